@@ -1,0 +1,25 @@
+// Pinhole camera: x right, y down, z forward; pixel centres at integer coordinates.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/core/pose.h"
+
+namespace vpm {
+
+struct Intrinsics {
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels
+};
+
+struct Camera {
+  Intrinsics intrinsics;
+  std::uint32_t width = 0, height = 0;
+  Pose to_world;  // camera coordinates to world coordinates
+};
+
+// The point seen at pixel (u, v) with depth z along the optical axis, in camera coordinates.
+VPM_HD constexpr Vec3 unproject(const Intrinsics& k, double u, double v, double z) {
+  return {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
+}
+
+}  // namespace vpm

@@ -1,0 +1,29 @@
+// Sums that do not depend on the order of their terms: 64-bit fixed point.
+//
+// A term is rounded once to a multiple of 2^-bits and added as an integer, so any order, any number
+// of threads and any device give the same sum. Overflow is a matter of |sum| < 2^(63-bits); who
+// adds states why that holds.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/core/host_device.h"
+
+namespace vpm {
+
+template <int Bits>
+struct FixedSum {
+  static constexpr double kOne = static_cast<double>(std::int64_t{1} << Bits);
+  std::int64_t value = 0;
+
+  // Rounds half away from zero, with nothing but IEEE operations and a truncating conversion.
+  VPM_HD static constexpr std::int64_t round(double term) {
+    const double scaled = term * kOne;
+    return static_cast<std::int64_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
+  }
+  VPM_HD constexpr void add(double term) { value += round(term); }
+  VPM_HD constexpr void add(const FixedSum& other) { value += other.value; }
+  VPM_HD constexpr double real() const { return static_cast<double>(value) / kOne; }
+};
+
+}  // namespace vpm

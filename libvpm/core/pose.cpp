@@ -1,0 +1,113 @@
+#include "libvpm/core/pose.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "libvpm/core/error.h"
+
+namespace vpm {
+namespace {
+
+// The nearest rotation to m by Newton's iteration for the polar decomposition: m <- (m + m^-T) / 2.
+// Converges quadratically from the small deviations that are let through.
+Rotation nearest_rotation(Rotation m) {
+  constexpr int kIterations = 8;
+  for (int k = 0; k < kIterations; ++k) {
+    const double determinant = dot(m.row0, cross(m.row1, m.row2));
+    const Rotation inverse_transpose{cross(m.row1, m.row2) / determinant,
+                                     cross(m.row2, m.row0) / determinant,
+                                     cross(m.row0, m.row1) / determinant};
+    m = {0.5 * (m.row0 + inverse_transpose.row0), 0.5 * (m.row1 + inverse_transpose.row1),
+         0.5 * (m.row2 + inverse_transpose.row2)};
+  }
+  return m;
+}
+
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const char* begin = text.data() + at;
+    const char* end = text.data() + comma;
+    while (begin < end && *begin == ' ') ++begin;
+    while (end > begin && end[-1] == ' ') --end;
+    double value = 0;
+    const auto [stop, fault] = std::from_chars(begin, end, value);
+    if (fault != std::errc() || stop != end) {
+      throw Error(ErrorKind::usage,
+                  "pose: '" + std::string(begin, end) + "' is not a number in '" + text + "'");
+    }
+    numbers.push_back(value);
+    at = comma + 1;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!std::isfinite(length)) refuse("pose: the quaternion is not finite");
+  if (!(std::abs(length - 1) <= kRotationTolerance)) {
+    refuse("pose: the quaternion has length " + std::to_string(length) +
+           " instead of 1; give x,y,z,w of a unit quaternion");
+  }
+  if (deviation != nullptr) *deviation = std::abs(length - 1);
+  const double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
+  return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+          {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+          {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+}
+
+Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation) {
+  const Rotation given{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
+  const Rotation gram = given * transpose(given);
+  const double off =
+      std::max({std::abs(gram.row0.x - 1), std::abs(gram.row1.y - 1), std::abs(gram.row2.z - 1),
+                std::abs(gram.row0.y), std::abs(gram.row0.z), std::abs(gram.row1.z)});
+  if (!std::isfinite(off)) refuse("pose: the rotation matrix is not finite");
+  if (dot(given.row0, cross(given.row1, given.row2)) <= 0) {
+    refuse(
+        "pose: the rotation matrix mirrors (its determinant is not positive); give a proper "
+        "rotation");
+  }
+  if (off > kRotationTolerance) {
+    refuse("pose: the 3x3 block is " + std::to_string(off) + " away from a rotation matrix");
+  }
+  if (deviation != nullptr) *deviation = off;
+  return nearest_rotation(given);
+}
+
+Quaternion quaternion_from_rotation(const Rotation& r) {
+  const double xx = r.row0.x, yy = r.row1.y, zz = r.row2.z;
+  const std::array<double, 4> squares{1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz,
+                                      1 + xx + yy + zz};
+  const auto largest = std::max_element(squares.begin(), squares.end()) - squares.begin();
+  const double root = std::sqrt(squares[static_cast<std::size_t>(largest)]), half = 0.5 / root;
+  const double a = (r.row2.y - r.row1.z) * half, b = (r.row0.z - r.row2.x) * half,
+               c = (r.row1.x - r.row0.y) * half;
+  const double xy = (r.row0.y + r.row1.x) * half, xz = (r.row0.z + r.row2.x) * half,
+               yz = (r.row1.z + r.row2.y) * half;
+  Quaternion q;
+  if (largest == 0) q = {0.5 * root, xy, xz, a};
+  if (largest == 1) q = {xy, 0.5 * root, yz, b};
+  if (largest == 2) q = {xz, yz, 0.5 * root, c};
+  if (largest == 3) q = {a, b, c, 0.5 * root};
+  return q.w < 0 ? Quaternion{-q.x, -q.y, -q.z, -q.w} : q;
+}
+
+Pose pose_from_text(const std::string& text, double* deviation) {
+  const std::vector<double> n = parse_numbers(text);
+  if (n.size() != 7) {
+    throw Error(ErrorKind::usage, "pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found " +
+                                      std::to_string(n.size()) + " in '" + text + "'");
+  }
+  const Vec3 translation{n[0], n[1], n[2]};
+  if (!is_finite(translation)) refuse("pose: the translation is not finite");
+  return {rotation_from_quaternion({n[3], n[4], n[5], n[6]}, deviation), translation};
+}
+
+}  // namespace vpm

@@ -1,0 +1,103 @@
+// The container of every vpm file: formats/container.md is its specification.
+//
+// magic, layout version, feature flags, kind; a JSON header; a table of chunks with a checksum
+// each; chunks aligned to 64 bytes. Little-endian. Identical input gives identical bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace vpm::file {
+
+enum class Kind : std::uint32_t { packing = 1, tool_model = 2, cloud = 3 };
+
+// Four characters that name a chunk, e.g. "SPHR".
+struct ChunkId {
+  char name[4];
+  consteval ChunkId(const char (&text)[5]) : name{text[0], text[1], text[2], text[3]} {}
+  constexpr ChunkId(const char* text, std::nullptr_t) : name{text[0], text[1], text[2], text[3]} {}
+  friend constexpr bool operator==(const ChunkId&, const ChunkId&) = default;
+};
+
+class Writer {
+ public:
+  Writer(Kind kind, nlohmann::json header);
+
+  // Chunks are written in the order of the calls. `index` tells chunks of one name apart (a model's
+  // levels).
+  template <class T>
+  void add(ChunkId id, std::uint32_t index, std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add_bytes(id, index, sizeof(T), std::as_bytes(values));
+  }
+
+  std::vector<std::byte> bytes() const;
+
+  // Atomic: temporary file beside `path`, synced, renamed; "-" streams to standard output. Refuses
+  // (usage) to overwrite an existing file of another kind of content unless `force`. Throws
+  // Error(cannot_write).
+  void write(const std::string& path) const;
+
+ private:
+  struct Chunk {
+    ChunkId id;
+    std::uint32_t index;
+    std::uint32_t element_size;
+    std::vector<std::byte> data;
+  };
+  void add_bytes(ChunkId id, std::uint32_t index, std::size_t element_size,
+                 std::span<const std::byte> bytes);
+
+  Kind kind_;
+  nlohmann::json header_;
+  std::vector<Chunk> chunks_;
+};
+
+// A file read whole and checked: magic, version, flags, kind, sizes, checksums. Every constructor
+// throws Error(refused) with the file's name, the defect and how to mend it.
+class Reader {
+ public:
+  Reader(const std::string& path, Kind expected);  // "-" is standard input
+  Reader(std::vector<std::byte> bytes, std::string name, Kind expected);
+
+  const nlohmann::json& header() const { return header_; }
+  const std::string& name() const { return name_; }
+  bool has(ChunkId id, std::uint32_t index) const;
+
+  // The chunk's values. Refuses a missing chunk, and one whose element size is not sizeof(T).
+  template <class T>
+  std::vector<T> read(ChunkId id, std::uint32_t index) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const std::span<const std::byte> bytes = find(id, index, sizeof(T));
+    std::vector<T> values(bytes.size() / sizeof(T));
+    copy_bytes(values.data(), bytes);
+    return values;
+  }
+
+  // Throws Error(refused) "<name>: <defect>".
+  [[noreturn]] void refuse_file(const std::string& defect) const;
+
+ private:
+  struct Entry {
+    ChunkId id;
+    std::uint32_t index;
+    std::uint32_t element_size;
+    std::span<const std::byte> data;
+  };
+  void parse(Kind expected);
+  std::span<const std::byte> find(ChunkId id, std::uint32_t index, std::size_t element_size) const;
+  static void copy_bytes(void* to, std::span<const std::byte> from);
+
+  std::vector<std::byte> bytes_;
+  std::string name_;
+  nlohmann::json header_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace vpm::file

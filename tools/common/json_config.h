@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace vpm::tools {
+
+// JSON configurations for CLI11: keys are the long option names without dashes, e.g. {"spheres":
+// 1000}. formats/schemas/config.*.json describe them.
+class JsonConfig : public CLI::Config {
+ public:
+  std::string to_config(const CLI::App* app, bool default_also, bool write_description,
+                        std::string prefix) const override;
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
+};
+
+}  // namespace vpm::tools

@@ -1,0 +1,116 @@
+#include "tools/common/tool.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <new>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "tools/common/json_config.h"
+
+namespace vpm::tools {
+
+Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), app_(purpose, name) {
+  app_.set_version_flag("--version", name + " " VPM_VERSION);
+  app_.config_formatter(std::make_shared<JsonConfig>());
+  app_.set_config("--config", "", "Options from a JSON file; the command line wins");
+  app_.allow_config_extras(false);
+  app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
+      ->configurable(false);
+  app_.add_option("--device", common_.device, "Where to compute: auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  app_.add_option("--threads", common_.threads,
+                  "Threads to use; 0 is one per core. Never changes a result")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app_.add_flag("--quiet", common_.quiet, "No notes and no progress; warnings and errors stay");
+  app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
+  app_.add_flag("--force", common_.force, "Overwrite outputs that exist");
+}
+
+int Tool::run(int argc, char** argv, const std::function<void()>& job) {
+  // A reader that closes the pipe early is reported as a failed write, not as a silent death.
+  std::signal(SIGPIPE, SIG_IGN);
+  const auto fail = [&](ErrorKind kind, const std::string& message) {
+    std::cerr << name_ << ": error: " << message << '\n';
+    return static_cast<int>(kind);
+  };
+  try {
+    app_.parse(argc, argv);
+    if (dump_config_) {
+      std::cout << app_.config_to_str(true, false) << std::flush;
+      return 0;
+    }
+    if (common_.device == "cuda") {
+      throw Error(
+          ErrorKind::unavailable,
+          "--device cuda: this build has no CUDA; use --device cpu, or leave the option out");
+    }
+    set_thread_count(common_.threads);
+    job();
+    return 0;
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app_.exit(asked);
+  } catch (const CLI::ParseError& fault) {
+    return fail(ErrorKind::usage, std::string(fault.what()) + " (see " + name_ + " --help)");
+  } catch (const Error& fault) {
+    return fail(fault.kind(), fault.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorKind::refused, "not enough memory for this input");
+  } catch (const std::exception& fault) {
+    return fail(ErrorKind::refused, fault.what());
+  }
+}
+
+void Tool::note(const std::string& text) const {
+  if (!common_.quiet) std::cerr << name_ << ": note: " << text << '\n';
+}
+
+void Tool::warn(const std::string& text) const {
+  std::cerr << name_ << ": warning: " << text << '\n';
+}
+
+void Tool::detail(const std::string& text) const {
+  if (common_.verbose && !common_.quiet) std::cerr << name_ << ": " << text << '\n';
+}
+
+nlohmann::json Tool::parameters() const {
+  nlohmann::json all = nlohmann::json::parse(app_.config_to_str(true, false));
+  for (const char* name :
+       {"device", "threads", "quiet", "verbose", "force", "output", "report", "export", "stats"}) {
+    all.erase(name);
+  }
+  return all;
+}
+
+void check_output(const std::string& path, const CommonOptions& common) {
+  struct stat status {};
+  if (path.empty() || path == "-" || common.force) return;
+  if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode)) {
+    throw Error(ErrorKind::usage, path + " exists; give --force to overwrite it");
+  }
+}
+
+Progress::Progress(std::string what, const CommonOptions& common)
+    : what_(std::move(what)), shown_(!common.quiet && isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (shown_ && percent_ >= 0) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::update(double fraction) {
+  if (!shown_ || !(fraction >= 0)) return;
+  const int percent = static_cast<int>(std::floor(100 * std::min(fraction, 1.0)));
+  if (percent == percent_) return;
+  percent_ = percent;
+  std::fprintf(stderr, "\r%s %3d %%", what_.c_str(), percent);
+}
+
+}  // namespace vpm::tools

@@ -1,0 +1,65 @@
+// What all executables share: common options, JSON configurations, exit codes, messages, progress.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace vpm::tools {
+
+struct CommonOptions {
+  std::string device = "auto";  // auto, cpu, cuda
+  int threads = 0;              // 0: one per core
+  bool quiet = false;
+  bool verbose = false;
+  bool force = false;
+};
+
+class Tool {
+ public:
+  // `name` is the executable's, `purpose` its first line of help.
+  Tool(const std::string& name, const std::string& purpose);
+
+  CLI::App& app() { return app_; }
+  const CommonOptions& common() const { return common_; }
+  const std::string& name() const { return name_; }
+
+  // Parses, then runs `job`; turns every error into a message on standard error and an exit code.
+  int run(int argc, char** argv, const std::function<void()>& job);
+
+  // "vpm-pack: note: ..." on standard error unless --quiet.
+  void note(const std::string& text) const;
+  void warn(const std::string& text) const;    // also with --quiet
+  void detail(const std::string& text) const;  // only with --verbose
+
+  // The options as parsed, for the provenance of an output: no paths of outputs, nothing that
+  // changes no result.
+  nlohmann::json parameters() const;
+
+ private:
+  std::string name_;
+  CLI::App app_;
+  CommonOptions common_;
+  bool dump_config_ = false;
+};
+
+// Refuses (usage) to overwrite an existing file unless --force. "-" and devices always pass.
+void check_output(const std::string& path, const CommonOptions& common);
+
+// Shows a line of progress on standard error, if that is a terminal and --quiet is not given.
+class Progress {
+ public:
+  Progress(std::string what, const CommonOptions& common);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void update(double fraction);  // 0..1; thread-safe is not promised
+
+ private:
+  std::string what_;
+  bool shown_;
+  int percent_ = -1;
+};
+
+}  // namespace vpm::tools
