@@ -27,6 +27,7 @@ struct ChunkId {
 
 class Writer {
  public:
+  // The header must be an object with "unit": "m".
   Writer(Kind kind, nlohmann::json header);
 
   // Chunks are written in the order of the calls. `index` tells chunks of one name apart (a model's
@@ -39,9 +40,8 @@ class Writer {
 
   std::vector<std::byte> bytes() const;
 
-  // Atomic: temporary file beside `path`, synced, renamed; "-" streams to standard output. Refuses
-  // (usage) to overwrite an existing file of another kind of content unless `force`. Throws
-  // Error(cannot_write).
+  // As write_all (stream.h): atomic, "-" is standard output. Throws Error(cannot_write). Overwrites
+  // whatever is there: check_container_output (overwrite.h) asks first.
   void write(const std::string& path) const;
 
  private:
@@ -65,6 +65,9 @@ class Reader {
  public:
   Reader(const std::string& path, Kind expected);  // "-" is standard input
   Reader(std::vector<std::byte> bytes, std::string name, Kind expected);
+
+  Reader(const Reader&) = delete;  // the entries point into the bytes
+  Reader& operator=(const Reader&) = delete;
 
   const nlohmann::json& header() const { return header_; }
   const std::string& name() const { return name_; }
@@ -91,6 +94,8 @@ class Reader {
     std::span<const std::byte> data;
   };
   void parse(Kind expected);
+  void parse_directory(std::uint64_t chunk_count, std::uint64_t header_size,
+                       std::uint64_t directory_checksum);
   std::span<const std::byte> find(ChunkId id, std::uint32_t index, std::size_t element_size) const;
   static void copy_bytes(void* to, std::span<const std::byte> from);
 

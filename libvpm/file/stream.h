@@ -17,4 +17,8 @@ std::vector<std::byte> read_all(const std::string& path);
 void write_all(const std::string& path, std::span<const std::byte> bytes);
 void write_all(const std::string& path, std::string_view text);
 
+// Removes the temporary file of a write that is under way, if any. For signal handlers:
+// async-signal-safe.
+void remove_unfinished_output();
+
 }  // namespace vpm::file

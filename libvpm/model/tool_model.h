@@ -88,4 +88,9 @@ struct ToolModel {
   const Level& level(std::uint32_t sphere_count) const;
 };
 
+// Refuses (Error(refused)) a model that breaks a promise of the types above, naming the first
+// defect: a query may index without asking and is certain to end. Reading and writing a file check
+// this too.
+void validate(const ToolModel& model, const std::string& name);
+
 }  // namespace vpm

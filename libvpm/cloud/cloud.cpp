@@ -1,0 +1,61 @@
+#include "libvpm/cloud/cloud.h"
+
+#include <cmath>
+#include <limits>
+
+#include "libvpm/core/error.h"
+
+namespace vpm {
+namespace {
+
+// Normals are stored as floats; anything farther from unit length was not normalised.
+constexpr double kNormalTolerance = 1e-3;
+// A camera's rotation comes from the functions of pose.h, so it is off by rounding only.
+constexpr double kCameraRotationTolerance = 1e-9;
+
+void check_sensor(const CloudSensor& sensor, const std::string& name) {
+  const Camera& camera = sensor.camera;
+  const Intrinsics& k = camera.intrinsics;
+  if (!(k.fx > 0 && k.fy > 0) || !std::isfinite(k.fx) || !std::isfinite(k.fy) ||
+      !std::isfinite(k.cx) || !std::isfinite(k.cy))
+    refuse(name + ": the camera's intrinsics are not finite, or a focal length is not positive");
+  const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
+  if (pixels == 0 || pixels > std::numeric_limits<std::uint32_t>::max())
+    refuse(name + ": the camera's image is empty or has more than 2^32 - 1 pixels");
+  if (sensor.depth.width != camera.width || sensor.depth.height != camera.height ||
+      sensor.depth.depth.size() != pixels)
+    refuse(name + ": the depth image is not as large as the camera's");
+  const Rotation& r = camera.to_world.rotation;
+  const Rotation gram = r * transpose(r);
+  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
+                     norm(gram.row2 - Vec3{0, 0, 1});
+  if (!(off <= kCameraRotationTolerance) || dot(r.row0, cross(r.row1, r.row2)) <= 0 ||
+      !is_finite(camera.to_world.translation))
+    refuse(name + ": the camera's pose is not finite, or not a rotation and a translation");
+}
+
+}  // namespace
+
+void validate(const Cloud& cloud, const std::string& name) {
+  const std::size_t n = cloud.size();
+  if (n > std::numeric_limits<std::uint32_t>::max()) refuse(name + ": more than 2^32 - 1 points");
+  if (cloud.normals.size() != n || cloud.radii.size() != n ||
+      (cloud.sensor ? cloud.pixels.size() != n : !cloud.pixels.empty()))
+    refuse(name + ": positions, normals, radii and pixels differ in number");
+  if (!is_finite(cloud.origin)) refuse(name + ": the cloud's origin is not finite");
+  if (cloud.sensor) check_sensor(*cloud.sensor, name);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto refuse_point = [&](const char* defect) {
+      refuse(name + ": point " + std::to_string(i) + " " + defect);
+    };
+    if (!is_finite(cloud.positions[i])) refuse_point("is not finite");
+    if (!(cloud.radii[i] >= 0) || !std::isfinite(cloud.radii[i]))
+      refuse_point("has a sampling radius that is negative or not finite");
+    if (!(std::abs(norm(widen(cloud.normals[i])) - 1) <= kNormalTolerance))
+      refuse_point("has a normal that is not of unit length");
+    if (cloud.sensor && cloud.pixels[i] >= cloud.sensor->depth.depth.size())
+      refuse_point("lies outside of the camera's image");
+  }
+}
+
+}  // namespace vpm

@@ -1,0 +1,64 @@
+#include "libvpm/model/packing_file.h"
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/container.h"
+#include "libvpm/model/sphere_check.h"
+
+namespace vpm {
+namespace {
+
+constexpr file::ChunkId kSpheres("SPHR"), kVertices("VERT"), kTriangles("TRIA");
+
+static_assert(sizeof(Sphere) == 32 && sizeof(Vec3) == 24 && sizeof(Triangle) == 12,
+              "chunks hold these types as they lie in memory");
+
+void check_solid(const Solid& solid, const std::string& name) {
+  if (solid.triangles.empty()) refuse(name + ": the solid has no triangles");
+  for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
+    if (!is_finite(solid.vertices[i]))
+      refuse(name + ": vertex " + std::to_string(i) + " of the solid is not finite");
+  }
+  for (std::size_t i = 0; i < solid.triangles.size(); ++i) {
+    for (const std::uint32_t vertex : solid.triangles[i]) {
+      if (vertex < solid.vertices.size()) continue;
+      refuse(name + ": triangle " + std::to_string(i) + " of the solid names vertex " +
+             std::to_string(vertex) + ", but there are " + std::to_string(solid.vertices.size()));
+    }
+  }
+}
+
+void check(const Packing& packing, const std::string& name) {
+  check_spheres(packing.spheres, name);
+  check_solid(packing.solid, name);
+}
+
+Packing packing_of(const file::Reader& reader) {
+  Packing packing;
+  packing.spheres = reader.read<Sphere>(kSpheres, 0);
+  packing.solid.vertices = reader.read<Vec3>(kVertices, 0);
+  packing.solid.triangles = reader.read<Triangle>(kTriangles, 0);
+  packing.provenance = reader.header().value("provenance", nlohmann::json());
+  check(packing, reader.name());
+  return packing;
+}
+
+}  // namespace
+
+Packing read_packing(const std::string& path) {
+  return packing_of(file::Reader(path, file::Kind::packing));
+}
+
+Packing parse_packing(std::vector<std::byte> bytes, const std::string& name) {
+  return packing_of(file::Reader(std::move(bytes), name, file::Kind::packing));
+}
+
+void write_packing(const std::string& path, const Packing& packing) {
+  check(packing, path);
+  file::Writer writer(file::Kind::packing, {{"unit", "m"}, {"provenance", packing.provenance}});
+  writer.add(kSpheres, 0, std::span(packing.spheres));
+  writer.add(kVertices, 0, std::span(packing.solid.vertices));
+  writer.add(kTriangles, 0, std::span(packing.solid.triangles));
+  writer.write(path);
+}
+
+}  // namespace vpm

@@ -1,0 +1,33 @@
+// What the spheres of every file must hold.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "libvpm/core/error.h"
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+
+// Refuses no spheres, more than 32-bit indices reach, and spheres that are not finite, not positive
+// or not largest first; names the first such sphere.
+inline void check_spheres(const std::vector<Sphere>& spheres, const std::string& name) {
+  if (spheres.empty()) refuse(name + ": there are no spheres");
+  if (spheres.size() >= std::numeric_limits<std::uint32_t>::max())
+    refuse(name + ": more than 2^32 - 2 spheres");
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const Sphere& s = spheres[i];
+    const auto refuse_sphere = [&](const char* defect) {
+      refuse(name + ": sphere " + std::to_string(i) + " " + defect);
+    };
+    if (!is_finite(s.center) || !std::isfinite(s.radius)) refuse_sphere("is not finite");
+    if (!(s.radius > 0)) refuse_sphere("has a radius that is not positive");
+    if (i > 0 && s.radius > spheres[i - 1].radius)
+      refuse_sphere("is larger than the one before; spheres must be largest first");
+  }
+}
+
+}  // namespace vpm
