@@ -1,0 +1,29 @@
+// Named scenes: a surface that faces the camera, touched at (0, 0, 1) by whatever moves along +z.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "libvpm/synthetic/render.h"
+
+namespace vpm::synthetic {
+
+struct Scene {
+  std::string name;
+  SurfacePtr surface;
+  Camera camera;
+};
+
+// wall           the plane z = 1
+// inverted-ball  everything but a ball of radius 0.3 m whose deepest point is (0, 0, 1)
+// tilted-wall    a plane 30 degrees off the optical axis
+// ball           a ball of radius 0.25 m whose top is (0, 0, 1)
+// groove         a V of 90 degrees, 0.15 m deep, in the wall
+// step           a wall that is 0.05 m further away on one side
+// plate          4 mm thick, 0.4 m wide, half a metre before a wall
+// block          a free-standing cube of 0.2 m before a wall
+// Throws Error(usage) naming the scenes there are.
+Scene make_scene(const std::string& name);
+const std::vector<std::string>& scene_names();
+
+}  // namespace vpm::synthetic
