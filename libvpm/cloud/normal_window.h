@@ -1,0 +1,86 @@
+// Windows over a depth image, and which of their pixels lie on the surface of the centre.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/cloud/normals.h"
+
+namespace vpm {
+
+// Pixels of a window's row that are handled at once.
+inline constexpr int kLanes = 8;
+
+// An image with zeros around it, so that windows need no care at the border. (0, 0) is the image's
+// own first pixel; coordinates from -margin to size + margin are there, and to the right of them
+// enough for a last group of lanes.
+struct PaddedImage {
+  int width = 0, height = 0, margin = 0;
+  std::size_t stride = 0;
+  std::vector<float> values;
+
+  PaddedImage(const DepthImage& image, int margin);
+  const float* at(int u, int v) const { return values.data() + offset(u, v); }
+  float* at(int u, int v) { return values.data() + offset(u, v); }
+
+ private:
+  std::size_t offset(int u, int v) const {
+    return static_cast<std::size_t>(v + margin) * stride + static_cast<std::size_t>(u + margin);
+  }
+};
+
+// Depth and its inverse; both 0 where nothing was measured or the depth is out of range.
+PaddedImage padded_depth(const DepthImage& depth, int margin);
+PaddedImage inverse_of(const PaddedImage& depth);
+
+// Tells the windows of a row that are whole, measured everywhere and without an edge: there, plain
+// sums over all pixels will do. They are most of a usual image.
+class SmoothWindows {
+ public:
+  SmoothWindows(const PaddedImage& inverse, const NormalOptions& options);
+  void scan(int v);
+  bool smooth(int u) const { return smooth_[static_cast<std::size_t>(u)] != 0; }
+
+ private:
+  const PaddedImage& inverse_;
+  int radius_;
+  float lowest_, highest_;  // of the window's inverse depths, relative to the centre's
+  std::vector<float> column_min_, column_max_, window_min_, window_max_;
+  std::vector<std::uint8_t> smooth_;
+};
+
+// The pixels of one window that belong to the surface of its centre, and their plane.
+//
+// A first choice admits what the steepest plausible surface through the centre could reach; the
+// plane fitted to it then leaves only what lies within the edge gate of that plane.
+class GatedWindow {
+ public:
+  GatedWindow(const PaddedImage& inverse, const NormalOptions& options, const Intrinsics& k);
+
+  // Inverse depth relative to the centre's, minus 1: c + a du + b dv.
+  struct Plane {
+    bool found = false;  // false: too few pixels remain, or they lie on a line
+    float a = 0, b = 0, c = 0;
+  };
+  Plane fit(int u, int v);
+
+  // After fit() found a plane: 1 where pixel (u + du, v + dv) belongs to it, otherwise 0.
+  float weight(int du, int dv) const { return weight_[(dv + radius_) * kStride + du + radius_]; }
+
+ private:
+  static constexpr int kStride = (kMaxWindow + kLanes - 1) / kLanes * kLanes;
+  Plane fit_admitted(const float* centre, const Plane& near, float gate, float slope);
+  Plane solve() const;
+
+  const PaddedImage& inverse_;
+  int radius_, lanes_;
+  float gate_, slope_;
+  float lane_offset_[kStride] = {};  // du
+  float lane_exists_[kStride] = {};  // 1 for the lanes of the window
+  float weight_[kMaxWindow * kStride];
+  // Sums down each column: of 1, dv, dv^2, difference, dv * difference.
+  float count_[kStride], v_[kStride], vv_[kStride], e_[kStride], ve_[kStride];
+};
+
+}  // namespace vpm

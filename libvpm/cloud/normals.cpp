@@ -1,0 +1,118 @@
+#include "libvpm/cloud/normals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/cloud/normal_rows.h"
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+
+namespace vpm {
+namespace {
+
+// Rows of one task: enough work to outweigh the rows above and below that it reads as well.
+constexpr std::size_t kRowsPerTask = 32;
+
+// A disk seen this obliquely (cosine of the angle between normal and ray; 84 degrees) is not
+// enlarged any further: there a normal's error decides its size, not the surface.
+constexpr double kGrazingCosine = 0.1;
+
+void check(const DepthImage& depth, const Intrinsics& k, const NormalOptions& options) {
+  if (options.window < kMinWindow || options.window > kMaxWindow || options.window % 2 == 0) {
+    throw Error(ErrorKind::usage, "normals: the window must be odd and between " +
+                                      std::to_string(kMinWindow) + " and " +
+                                      std::to_string(kMaxWindow) + " pixels, not " +
+                                      std::to_string(options.window));
+  }
+  if (!(options.edge_gate >= 0 && options.edge_gate < 1)) {
+    throw Error(ErrorKind::usage, "normals: the edge gate must be at least 0 and less than 1");
+  }
+  if (!(k.fx > 0 && k.fy > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) && std::isfinite(k.cx) &&
+        std::isfinite(k.cy))) {
+    throw Error(ErrorKind::usage,
+                "normals: intrinsics must be finite, with fx and fy greater than 0 (pixels)");
+  }
+  if (depth.depth.size() != std::size_t{depth.width} * depth.height) {
+    refuse("normals: the depth image has " + std::to_string(depth.depth.size()) +
+           " values for a size of " + std::to_string(depth.width) + " x " +
+           std::to_string(depth.height));
+  }
+}
+
+float disk_radius(const Intrinsics& k, Vec3 point, Vec3 normal) {
+  const double half_diagonal = 0.5 * std::sqrt(1 / (k.fx * k.fx) + 1 / (k.fy * k.fy));
+  const double cosine = -dot(point, normal) / norm(point);
+  return static_cast<float>(point.z * half_diagonal / std::max(cosine, kGrazingCosine));
+}
+
+}  // namespace
+
+std::string to_text(NormalMethod method) {
+  return method == NormalMethod::pca ? "pca" : "inverse-depth";
+}
+
+NormalMethod normal_method_from_text(const std::string& text) {
+  if (text == "pca") return NormalMethod::pca;
+  if (text == "inverse-depth") return NormalMethod::inverse_depth;
+  throw Error(ErrorKind::usage,
+              "normals: unknown method '" + text + "'; there are inverse-depth and pca");
+}
+
+std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
+                                    const NormalOptions& options) {
+  check(depth, intrinsics, options);
+  std::vector<Vec3f> normals(depth.depth.size());
+  const int radius = options.window / 2;
+  const PaddedImage usable = padded_depth(depth, radius);
+  const PaddedImage inverse = inverse_of(usable);
+  parallel_for(depth.height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    const int first = static_cast<int>(begin), last = static_cast<int>(end);
+    if (options.method == NormalMethod::pca)
+      pca_rows(usable, inverse, intrinsics, options, first, last, normals.data());
+    else
+      inverse_depth_rows(inverse, intrinsics, options, first, last, normals.data());
+  });
+  return normals;
+}
+
+Cloud assemble_cloud(const DepthImage& depth, const Camera& camera,
+                     const std::vector<Vec3f>& normals) {
+  const auto exists = [](Vec3f n) { return n.x != 0 || n.y != 0 || n.z != 0; };
+  std::vector<std::size_t> first(std::size_t{depth.height} + 1);
+  for (std::size_t v = 0; v < depth.height; ++v) {
+    const auto row = normals.begin() + static_cast<std::ptrdiff_t>(v * depth.width);
+    first[v + 1] =
+        first[v] + static_cast<std::size_t>(std::count_if(row, row + depth.width, exists));
+  }
+  Cloud cloud;
+  cloud.origin = camera.to_world.translation;
+  cloud.positions.resize(first.back());
+  cloud.normals.resize(first.back());
+  cloud.radii.resize(first.back());
+  cloud.pixels.resize(first.back());
+  cloud.sensor = CloudSensor{camera, depth};
+  const Rotation& rotation = camera.to_world.rotation;
+  parallel_for(depth.height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin, k = first[begin]; v < end; ++v) {
+      for (std::size_t i = v * depth.width; i < (v + 1) * depth.width; ++i) {
+        if (!is_measured(depth.depth[i])) cloud.sensor->depth.depth[i] = 0;
+        if (!exists(normals[i])) continue;
+        const Vec3 normal = widen(normals[i]);
+        const Vec3 point = unproject(camera.intrinsics, static_cast<double>(i - v * depth.width),
+                                     static_cast<double>(v), depth.depth[i]);
+        cloud.positions[k] = narrow(rotation * point);
+        cloud.normals[k] = narrow(rotation * normal);
+        cloud.radii[k] = disk_radius(camera.intrinsics, point, normal);
+        cloud.pixels[k] = static_cast<std::uint32_t>(i);
+        ++k;
+      }
+    }
+  });
+  return cloud;
+}
+
+Cloud make_cloud(const DepthImage& depth, const Camera& camera, const NormalOptions& options) {
+  return assemble_cloud(depth, camera, estimate_normals(depth, camera.intrinsics, options));
+}
+
+}  // namespace vpm
