@@ -23,11 +23,11 @@ SurfacePtr make_groove() {
 }
 
 SurfacePtr make_step() {
-  constexpr double kEdge = -0.03, kHeight = 0.05;  // left of the axis, so that the camera sees it
-  return make_prism({{-kFar, 1},
+  constexpr double kEdge = -0.03, kHeight = 0.05;  // the camera sees the riser
+  return make_prism({{-kFar, 1 - kHeight},
+                     {kEdge, 1 - kHeight},
                      {kEdge, 1},
-                     {kEdge, 1 + kHeight},
-                     {kFar, 1 + kHeight},
+                     {kFar, 1},
                      {kFar, kFar},
                      {-kFar, kFar}},
                     {});

@@ -19,7 +19,7 @@ struct Scene {
 // tilted-wall    a plane 30 degrees off the optical axis
 // ball           a ball of radius 0.25 m whose top is (0, 0, 1)
 // groove         a V of 90 degrees, 0.15 m deep, in the wall
-// step           a wall that is 0.05 m further away on one side
+// step           the wall, 0.05 m nearer left of x = -0.03 m
 // plate          4 mm thick, 0.4 m wide, half a metre before a wall
 // block          a free-standing cube of 0.2 m before a wall
 // Throws Error(usage) naming the scenes there are.

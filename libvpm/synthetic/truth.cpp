@@ -11,10 +11,11 @@ namespace {
 // Along no face or edge of a scene, so that G has kinks but no jumps.
 const Vec3 kColumn = normalized_or_zero({0.1831, 0.2297, 1});
 
-// Triangles that the surface may cross are cut at least this small, as a fraction of the reach, so
-// that a corner that only just dips in is not missed between the points of the rule.
-constexpr double kCrossedSize = 1.0 / 32;
-constexpr int kDeepest = 16;  // halvings: 4^-16 of a face, beyond which rounding rules
+// Triangles are cut at least this small, as a fraction of the reach, so that no corner that only
+// just dips in and no shadow of an edge falls between the points of the rule.
+constexpr double kFaceSize = 1.0 / 12;
+constexpr double kCrossedSize = 1.0 / 32;  // where the surface may cross the triangle
+constexpr int kDeepest = 16;               // halvings: 4^-16 of a face, beyond which rounding rules
 
 // How many crossed triangles share the tolerance: the curve where the surface cuts the solid passes
 // through about this many.
@@ -107,7 +108,8 @@ class Cubature {
   bool is_coarse(const Corners& t) const {
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
     const double radius = std::max({norm(t[0] - middle), norm(t[1] - middle), norm(t[2] - middle)});
-    return radius > kCrossedSize * reach_ && std::abs(surface_.distance(middle)) <= radius;
+    return radius > kFaceSize * reach_ ||
+           (radius > kCrossedSize * reach_ && std::abs(surface_.distance(middle)) <= radius);
   }
 
   const Surface& surface_;
@@ -117,7 +119,7 @@ class Cubature {
   std::vector<double> crossings_;
 };
 
-Penetration penetration_of(const Corners& t, Vec3 center, Cubature& cubature) {
+Penetration penetration_of(const Corners& t, Cubature& cubature) {
   const Vec3 normal = normalized_or_zero(cross(t[1] - t[0], t[2] - t[0]));
   const Integrals over = cubature.integrate(t);
   return {over.length * dot(kColumn, normal), over.depth * normal, cross(over.moment, normal), 0};
@@ -152,7 +154,7 @@ Penetration TrueSolid::penetration(const Pose& pose, const Surface& surface,
         const auto& [a, b, c] = solid_.triangles[k];
         add(parts[part], penetration_of({pose * solid_.vertices[a], pose * solid_.vertices[b],
                                          pose * solid_.vertices[c]},
-                                        center, cubature));
+                                        cubature));
       }
       parts[part].error = cubature.error();
     }

@@ -71,8 +71,8 @@ TEST_P(TruthTest, KeepsItsErrorBound) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TruthTest, testing::ValuesIn(scene_names()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(All, TruthTest, testing::ValuesIn(scene_names()), [](const auto& scene) {
+  std::string name = scene.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
