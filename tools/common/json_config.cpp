@@ -1,7 +1,8 @@
 #include "tools/common/json_config.h"
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
-#include <set>
 
 namespace vpm::tools {
 namespace {
@@ -12,42 +13,45 @@ std::string text_of(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// Options that steer one call and make no sense in a file.
-bool is_kept(const std::string& name) {
-  static const std::set<std::string> kOneCall{"help", "version", "config", "dump-config"};
-  return !name.empty() && kOneCall.count(name) == 0;
+// Only options that take numbers give JSON numbers: a file may be called 1e5.
+bool takes_numbers(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type.rfind("INT", 0) == 0 || type.rfind("UINT", 0) == 0 || type.rfind("FLOAT", 0) == 0;
+}
+
+json number_or_text(const CLI::Option& option, const std::string& text) {
+  const json parsed = json::parse(text, nullptr, false);
+  return takes_numbers(option) && parsed.is_number() ? parsed : json(text);
 }
 
 json value_of(const CLI::Option& option) {
-  if (option.get_expected_max() == 0) return option.count() > 0;
-  const std::vector<std::string> given = option.results();
-  const auto as_json = [](const std::string& text) {
-    const json parsed = json::parse(text, nullptr, false);
-    return parsed.is_number() || parsed.is_boolean() ? parsed : json(text);
-  };
-  if (given.size() == 1) return as_json(given.front());
+  if (option.get_expected_max() == 0) return option.as<bool>();
+  const std::vector<std::string>& given = option.results();
+  if (given.size() == 1) return number_or_text(option, given.front());
   json list = json::array();
-  for (const std::string& text : given) list.push_back(as_json(text));
+  for (const std::string& text : given) list.push_back(number_or_text(option, text));
   return list;
 }
 
 }  // namespace
 
+std::string config_key(const CLI::Option& option) {
+  return option.get_lnames().empty() ? option.get_name(true) : option.get_lnames().front();
+}
+
 std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, std::string) const {
   json config = json::object();
   for (const CLI::Option* option : app->get_options()) {
-    const std::string name =
-        option->get_lnames().empty() ? option->get_name(true) : option->get_lnames().front();
-    if (!option->get_configurable() || !is_kept(name)) continue;
+    const std::string key = config_key(*option);
+    if (!option->get_configurable() || key.empty()) continue;
     if (option->count() > 0) {
-      config[name] = value_of(*option);
+      config[key] = value_of(*option);
     } else if (default_also && !option->get_default_str().empty()) {
       const json parsed = json::parse(option->get_default_str(), nullptr, false);
-      config[name] =
-          parsed.is_number() || parsed.is_boolean() ? parsed : json(option->get_default_str());
+      config[key] = parsed.is_array() ? parsed : number_or_text(*option, option->get_default_str());
     }
   }
-  return config.dump(2) + "\n";
+  return config.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
@@ -59,21 +63,21 @@ std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const 
   }
   if (!config.is_object())
     throw CLI::FileError("the configuration must be a JSON object of options");
-  std::vector<CLI::ConfigItem> items;
+  std::vector<CLI::ConfigItem> found;
   for (const auto& [key, value] : config.items()) {
     CLI::ConfigItem item;
     item.name = key;
-    if (value.is_array()) {
-      for (const json& element : value) item.inputs.push_back(text_of(element));
-    } else if (value.is_null() || value.is_object()) {
-      throw CLI::FileError("the configuration's '" + key +
-                           "' must be a number, a string, true, false or a list");
-    } else {
-      item.inputs.push_back(text_of(value));
+    const json list = value.is_array() ? value : json::array({value});
+    for (const json& element : list) {
+      if (element.is_null() || element.is_structured()) {
+        throw CLI::FileError("the configuration's '" + key +
+                             "' must be a number, a string, true, false or a list of these");
+      }
+      item.inputs.push_back(text_of(element));
     }
-    items.push_back(item);
+    found.push_back(item);
   }
-  return items;
+  return found;
 }
 
 }  // namespace vpm::tools

@@ -4,13 +4,15 @@
 
 namespace vpm::tools {
 
-// JSON configurations for CLI11: keys are the long option names without dashes, e.g. {"spheres":
-// 1000}. formats/schemas/config.*.json describe them.
+// JSON configurations for CLI11: keys are the long option names without dashes (for positional
+// arguments their names), e.g. {"spheres": 1000}. formats/schemas/config.*.json describe them.
 class JsonConfig : public CLI::Config {
  public:
   std::string to_config(const CLI::App* app, bool default_also, bool write_description,
                         std::string prefix) const override;
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
 };
+
+std::string config_key(const CLI::Option& option);
 
 }  // namespace vpm::tools

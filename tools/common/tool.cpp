@@ -1,8 +1,8 @@
 #include "tools/common/tool.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -12,14 +12,51 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/file/overwrite.h"
+#include "libvpm/file/stream.h"
 #include "tools/common/json_config.h"
 
 namespace vpm::tools {
+namespace {
+
+// An interrupted run leaves no temporary file, and still dies of the signal, as its caller expects.
+extern "C" void clean_up_and_die(int signal) {
+  file::remove_unfinished_output();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void set_signals() {
+  // A reader that closes the pipe early is reported as a failed write, not as a silent death.
+  std::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What nohup, or a shell for a background job, has set to be ignored stays ignored.
+    if (std::signal(signal, clean_up_and_die) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+}
+
+bool is_asked(int argc, char** argv, const std::string& flag) {
+  return std::find(argv, argv + argc, flag) != argv + argc;
+}
+
+void flush_output() {
+  if (!std::cout.flush()) throw Error(ErrorKind::cannot_write, "cannot write to standard output");
+}
+
+std::string message_of(const CLI::ParseError& fault) {
+  constexpr std::string_view kUnknownKey = "INI was not able to parse ";
+  const std::string what = fault.what();
+  if (what.rfind(kUnknownKey, 0) != 0) return what;
+  return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
+}
+
+}  // namespace
 
 Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), app_(purpose, name) {
   app_.set_version_flag("--version", name + " " VPM_VERSION);
   app_.config_formatter(std::make_shared<JsonConfig>());
-  app_.set_config("--config", "", "Options from a JSON file; the command line wins");
+  app_.set_config("--config", "", "Options from a JSON file; the command line wins")
+      ->transform([](const std::string& path) { return path == "-" ? "/dev/stdin" : path; });
   app_.allow_config_extras(false);
   app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
       ->configurable(false);
@@ -32,20 +69,24 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
       ->capture_default_str();
   app_.add_flag("--quiet", common_.quiet, "No notes and no progress; warnings and errors stay");
   app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
-  app_.add_flag("--force", common_.force, "Overwrite outputs that exist");
+  app_.add_flag("--force", common_.force, "Overwrite outputs whatever is there now");
 }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
-  // A reader that closes the pipe early is reported as a failed write, not as a silent death.
-  std::signal(SIGPIPE, SIG_IGN);
+  set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
     std::cerr << name_ << ": error: " << message << '\n';
     return static_cast<int>(kind);
   };
   try {
+    // A configuration may be written before its inputs are known.
+    if (is_asked(argc, argv, "--dump-config")) {
+      for (CLI::Option* option : app_.get_options()) option->required(false);
+    }
     app_.parse(argc, argv);
     if (dump_config_) {
-      std::cout << app_.config_to_str(true, false) << std::flush;
+      std::cout << app_.config_to_str(true, false);
+      flush_output();
       return 0;
     }
     if (common_.device == "cuda") {
@@ -55,11 +96,12 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     }
     set_thread_count(common_.threads);
     job();
+    flush_output();
     return 0;
   } catch (const CLI::Success& asked) {  // --help, --version
     return app_.exit(asked);
   } catch (const CLI::ParseError& fault) {
-    return fail(ErrorKind::usage, std::string(fault.what()) + " (see " + name_ + " --help)");
+    return fail(ErrorKind::usage, message_of(fault) + " (see " + name_ + " --help)");
   } catch (const Error& fault) {
     return fail(fault.kind(), fault.what());
   } catch (const std::bad_alloc&) {
@@ -83,19 +125,23 @@ void Tool::detail(const std::string& text) const {
 
 nlohmann::json Tool::parameters() const {
   nlohmann::json all = nlohmann::json::parse(app_.config_to_str(true, false));
-  for (const char* name :
-       {"device", "threads", "quiet", "verbose", "force", "output", "report", "export", "stats"}) {
+  for (const CLI::Option* option : app_.get_options()) {
+    if (option->get_positional()) all.erase(config_key(*option));
+  }
+  for (const char* name : {"device", "threads", "quiet", "verbose", "force",  // change no result
+                           "output", "report", "export", "stats", "spheres-out", "out",  // outputs
+                           "mesh", "for-scene", "tool", "cloud", "poses"}) {             // inputs
     all.erase(name);
   }
   return all;
 }
 
+void check_output(const std::string& path, file::Kind kind, const CommonOptions& common) {
+  common.force ? file::check_folder_of(path) : file::check_container_output(path, kind);
+}
+
 void check_output(const std::string& path, const CommonOptions& common) {
-  struct stat status {};
-  if (path.empty() || path == "-" || common.force) return;
-  if (::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode)) {
-    throw Error(ErrorKind::usage, path + " exists; give --force to overwrite it");
-  }
+  common.force ? file::check_folder_of(path) : file::check_text_output(path);
 }
 
 Progress::Progress(std::string what, const CommonOptions& common)

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "libvpm/file/container.h"
+
 namespace vpm::tools {
 
 struct CommonOptions {
@@ -33,8 +35,8 @@ class Tool {
   void warn(const std::string& text) const;    // also with --quiet
   void detail(const std::string& text) const;  // only with --verbose
 
-  // The options as parsed, for the provenance of an output: no paths of outputs, nothing that
-  // changes no result.
+  // The options as parsed, for the provenance of an output: no names of files (what was in them
+  // counts, so say its hash), nothing that changes no result.
   nlohmann::json parameters() const;
 
  private:
@@ -44,7 +46,9 @@ class Tool {
   bool dump_config_ = false;
 };
 
-// Refuses (usage) to overwrite an existing file unless --force. "-" and devices always pass.
+// To be called before the work begins. Without --force a container replaces only one of its kind,
+// and another output (report, table, mesh) anything but a container: libvpm/file/overwrite.h.
+void check_output(const std::string& path, file::Kind kind, const CommonOptions& common);
 void check_output(const std::string& path, const CommonOptions& common);
 
 // Shows a line of progress on standard error, if that is a terminal and --quiet is not given.
