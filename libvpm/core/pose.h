@@ -47,6 +47,13 @@ VPM_HD constexpr Pose inverse(const Pose& p) {
   return {back, -(back * p.translation)};
 }
 
+// `pose` seen from `frame`: inverse(frame) * pose, but the translations are subtracted first, so that a far world
+// origin costs no digits.
+VPM_HD constexpr Pose relative_to(const Pose& frame, const Pose& pose) {
+  const Rotation back = transpose(frame.rotation);
+  return {back * pose.rotation, back * (pose.translation - frame.translation)};
+}
+
 // Deviation from a unit quaternion or an orthonormal matrix up to which an input is taken for a
 // rounded rotation and normalised (recorded camera poses reach 4e-4); beyond it the input is
 // refused.

@@ -1,0 +1,22 @@
+// Parts of a ball below a plane.
+#pragma once
+
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+
+// Volume of the cap of height `height` (0..2) of the unit ball. Kaluschke et al. 2017, section 4.
+VPM_HD constexpr double unit_cap_volume(double height) {
+  return kPi * height * height * (3 - height) / 3;
+}
+
+// Fraction of a ball on the inner side of a plane at signed distance `distance` (in radii;
+// negative: the centre is inside). Exact, monotone, 0 and 1 outside of [-1, 1].
+VPM_HD constexpr double ball_fraction_inside(double distance) {
+  if (distance >= 1) return 0;
+  if (distance <= -1) return 1;
+  const double away = 1 - distance;
+  return away * away * (2 + distance) / 4;
+}
+
+}  // namespace vpm

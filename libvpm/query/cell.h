@@ -1,0 +1,152 @@
+// The part of one sphere's share that lies behind the surface.
+//
+// The share is known as samples: compact pieces with centroid, volume and size, in blocks with an
+// enclosing ball. A block that the surface cannot reach counts whole or not at all; where it may
+// pass, each sample gives the fraction of a ball of its size. One definition for host and device.
+#pragma once
+
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/ball_fraction.h"
+#include "libvpm/query/surface.h"
+#include "libvpm/query/tool_sum.h"
+
+namespace vpm {
+
+// What a level knows of its blocks beyond the file: volume and centroid of the samples together.
+struct BlockMass {
+  Vec3 centroid;      // about the tool's centre of mass
+  double weight = 0;  // sum of the samples' weights
+};
+
+struct CellView {
+  const CellBlock* blocks = nullptr;
+  const BlockMass* masses = nullptr;
+  const CellSample* samples = nullptr;
+  std::uint32_t begin = 0, end = 0;  // blocks of the cell
+  Vec3 center;                       // of the sphere, about the tool's centre of mass
+  double reach = 0;                  // of the share, from the sphere's centre
+};
+
+// The surface inside a cell, averaged: used for what lies out of the direct view.
+struct ContactPlane {
+  // Unit normals, and feet relative to the cell's reach: |terms| <= kSheetReach < 8; 2^20 samples
+  // fit.
+  using Sum = FixedSum<40>;
+  Sum normal[3], foot[3];
+  std::int64_t count = 0;
+
+  VPM_HD void add(Vec3 n, Vec3 relative_foot) {
+    normal[0].add(n.x), normal[1].add(n.y), normal[2].add(n.z);
+    foot[0].add(relative_foot.x), foot[1].add(relative_foot.y), foot[2].add(relative_foot.z);
+    ++count;
+  }
+  // Whether a place, relative to the cell's centre and reach, lies behind the plane.
+  VPM_HD bool is_behind(Vec3 relative) const {
+    const double per = 1 / static_cast<double>(count);
+    const Vec3 n{normal[0].real(), normal[1].real(), normal[2].real()};
+    const Vec3 p{per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
+    return dot(n, relative - p) < 0;
+  }
+};
+
+struct CellResult {
+  ToolSum sum;         // surface axes, arms about the tool's centre of mass
+  ContactPlane plane;  // plane.count > 0: the surface cuts the cell
+};
+
+// A surface further than this many reaches from the cell is not the one that cuts the cell: a place
+// behind it is merely hidden by it (a silhouette before a background).
+inline constexpr double kSheetReach = 3;
+
+template <class Surface>
+class CellMeasure {
+ public:
+  // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `tool_reach`
+  // scales the arms.
+  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, double tool_reach,
+                     const CellView& cell)
+      : surface_(surface),
+        to_surface_(to_surface),
+        tool_reach_(tool_reach),
+        cell_(cell),
+        center_(to_surface * cell.center) {}
+
+  VPM_HD CellResult run() {
+    CellResult result;
+    bool any_hidden = false;
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
+      any_hidden |= add_block(b, Pass::seen, result);
+    if (any_hidden) {
+      for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, Pass::hidden, result);
+    }
+    return result;
+  }
+
+  // The whole share, known to be inside.
+  VPM_HD ToolSum whole() const {
+    ToolSum sum;
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
+      const Vec3 x = to_surface_ * cell_.masses[b].centroid;
+      const Reading reading = surface_.read(x);
+      const Vec3 normal =
+          reading.known && reading.distance < 0 ? surface_.closest_normal(x, reading) : Vec3{};
+      sum.add(cell_.masses[b].weight, normal, arm(cell_.masses[b].centroid));
+    }
+    return sum;
+  }
+
+ private:
+  enum class Pass { seen, hidden };
+
+  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
+    return to_surface_.rotation * about_center_of_mass / tool_reach_;
+  }
+  VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
+  VPM_HD bool is_hidden(const Reading& reading) const {
+    return squared_norm(reading.foot - center_) >
+           (kSheetReach * kSheetReach) * (cell_.reach * cell_.reach);
+  }
+
+  // Returns whether something was left for the pass of the hidden.
+  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) {
+    const CellBlock& block = cell_.blocks[b];
+    const Side side = surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+    if (side == Side::free) return false;
+    if (side != Side::mixed) {
+      return add_piece(cell_.masses[b].centroid, 0, cell_.masses[b].weight, pass, result);
+    }
+    bool any_hidden = false;
+    for (std::uint32_t s = block.begin; s < block.end; ++s) {
+      const CellSample& sample = cell_.samples[s];
+      any_hidden |= add_piece(widen(sample.center), sample.radius, sample.weight, pass, result);
+    }
+    return any_hidden;
+  }
+
+  VPM_HD bool add_piece(Vec3 at, double radius, double weight, Pass pass, CellResult& result) {
+    const Vec3 x = to_surface_ * at;
+    const Reading reading = surface_.read(x);
+    if (!reading.known || reading.distance >= radius) return false;
+    const bool hidden = is_hidden(reading);
+    if (hidden != (pass == Pass::hidden)) return hidden;
+    if (hidden && result.plane.count > 0 && !result.plane.is_behind(relative(x))) return false;
+    double fraction = 1;
+    Vec3 normal = reading.normal;
+    if (reading.distance > -radius) {
+      fraction = ball_fraction_inside(reading.distance / radius);
+      if (!hidden) result.plane.add(normal, relative(reading.foot));
+    } else {
+      normal = surface_.closest_normal(x, reading);
+    }
+    result.sum.add(weight * fraction, normal, arm(at));
+    return false;
+  }
+
+  const Surface& surface_;
+  const Pose& to_surface_;
+  double tool_reach_;
+  CellView cell_;
+  Vec3 center_;  // in the surface's frame
+};
+
+}  // namespace vpm

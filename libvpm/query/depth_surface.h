@@ -1,0 +1,151 @@
+// A surface as an organised cloud holds it: one inverse depth per pixel of a pinhole camera.
+//
+// Inverse depth is affine in the pixel on a plane, so bilinear interpolation is exact there. Which
+// side a place lies on is read off its own pixel, without normals; the normal only scales the
+// distance. Camera coordinates.
+#pragma once
+
+#include "libvpm/cloud/camera.h"
+#include "libvpm/query/surface.h"
+
+namespace vpm {
+
+// Least and greatest inverse depth of a tile of pixels; low = 0 where any pixel is unknown, both 0
+// where all are.
+struct InverseDepthRange {
+  float low = 0, high = 0;
+};
+
+// A view: plain pointers, for host or device.
+struct DepthSurface {
+  static constexpr int kMaxLevels = 16;  // images up to 65536 pixels wide or high
+  // Pixels whose inverse depths differ by more than this fraction belong to two surfaces. A plane
+  // at 1 m seen by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
+  static constexpr double kJump = 0.03;
+  // Below this cosine between normal and ray the normal is not trusted to scale a distance.
+  static constexpr double kGrazing = 0.05;
+  static constexpr int kFootIterations = 3;
+
+  Intrinsics k;
+  std::int32_t width = 0, height = 0;
+  std::int32_t levels = 0;
+  const Vec3f* normals = nullptr;  // of each pixel, camera axes; zero where none is known
+  const InverseDepthRange* tiles[kMaxLevels] =
+      {};  // tiles[l]: 2^l by 2^l pixels; tiles[0].high is the pixel's
+
+  struct Pixel {
+    double inverse_depth = 0;  // 0: unknown
+    std::int32_t nearest = 0;  // index of the nearest pixel
+  };
+
+  VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
+  VPM_HD double inverse_depth(std::int32_t u, std::int32_t v) const {
+    return tiles[0][v * width + u].high;
+  }
+
+  // Inverse depth of the surface in the direction of x (x.z > 0).
+  VPM_HD Pixel look_up(Vec3 x) const {
+    const double u = k.fx * (x.x / x.z) + k.cx, v = k.fy * (x.y / x.z) + k.cy;
+    if (!(u >= -0.5 && v >= -0.5 && u < width - 0.5 && v < height - 0.5)) return {};
+    const std::int32_t un = static_cast<std::int32_t>(u + 0.5),
+                       vn = static_cast<std::int32_t>(v + 0.5);
+    const std::int32_t u0 = u < 0 ? 0 : static_cast<std::int32_t>(u),
+                       v0 = v < 0 ? 0 : static_cast<std::int32_t>(v);
+    const std::int32_t u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
+    const double a = inverse_depth(u0, v0), b = inverse_depth(u1, v0);
+    const double c = inverse_depth(u0, v1), d = inverse_depth(u1, v1);
+    const double low_ab = a < b ? a : b, low_cd = c < d ? c : d,
+                 low = low_ab < low_cd ? low_ab : low_cd;
+    const double high_ab = a > b ? a : b, high_cd = c > d ? c : d,
+                 high = high_ab > high_cd ? high_ab : high_cd;
+    const std::int32_t nearest = vn * width + un;
+    if (!(low > 0) || high - low > kJump * high) return {inverse_depth(un, vn), nearest};
+    const double fu = u < 0 ? 0 : u - u0, fv = v < 0 ? 0 : v - v0;
+    const double top = a + fu * (b - a), bottom = c + fu * (d - c);
+    return {top + fv * (bottom - top), nearest};
+  }
+
+  VPM_HD Reading read(Vec3 x) const {
+    if (!(x.z > 0)) return {};
+    const Pixel pixel = look_up(x);
+    if (!(pixel.inverse_depth > 0)) return {};
+    Reading reading;
+    reading.known = true;
+    const double to_foot = 1 / (x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
+    reading.foot = to_foot * x;
+    reading.normal = widen(normals[pixel.nearest]);
+    const double length = norm(x), along = dot(reading.normal, x);
+    if (along >
+        -kGrazing *
+            length) {  // no normal, or one that cannot be right: take the surface to face the ray
+      reading.normal = -1 / length * x;
+      reading.distance = length * (to_foot - 1);
+    } else {
+      reading.distance = along * (1 - to_foot);
+    }
+    return reading;
+  }
+
+  // The normal at the surface point nearest to x, found from the point on x's ray by projecting
+  // again and again; as far as the steps approach. `reading` is that of x.
+  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
+    Vec3 normal = reading.normal;
+    double distance = reading.distance;
+    for (int step = 0; step < kFootIterations; ++step) {
+      const Reading next = read(x - distance * normal);
+      if (!next.known) break;
+      const double next_distance = dot(next.normal, x - next.foot);
+      const double off = norm(x - next.foot);
+      if (!(next_distance < 0) || off > 1.5 * (-distance)) break;  // another sheet
+      normal = next.normal;
+      distance = next_distance;
+    }
+    return normal;
+  }
+
+  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
+    const double nearest = center.z - radius, farthest = center.z + radius;
+    if (!(farthest > 0)) return Side::free;
+    if (!(nearest > 0)) return Side::mixed;
+    const double left = center.x - radius, right = center.x + radius;
+    const double top = center.y - radius, bottom = center.y + radius;
+    const double u_low = k.fx * (left / (left >= 0 ? farthest : nearest)) + k.cx;
+    const double u_high = k.fx * (right / (right >= 0 ? nearest : farthest)) + k.cx;
+    const double v_low = k.fy * (top / (top >= 0 ? farthest : nearest)) + k.cy;
+    const double v_high = k.fy * (bottom / (bottom >= 0 ? nearest : farthest)) + k.cy;
+    if (u_high < -0.5 || v_high < -0.5 || u_low >= width - 0.5 || v_low >= height - 0.5)
+      return Side::free;
+    const bool leaves_image =
+        u_low < -0.5 || v_low < -0.5 || u_high >= width - 0.5 || v_high >= height - 0.5;
+    // Every pixel that look_up may touch for a place in the ball.
+    const std::int32_t u0 = u_low < 0 ? 0 : static_cast<std::int32_t>(u_low);
+    const std::int32_t v0 = v_low < 0 ? 0 : static_cast<std::int32_t>(v_low);
+    const std::int32_t u1 = u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1);
+    const std::int32_t v1 =
+        v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1);
+    const InverseDepthRange range = range_of(u0, v0, u1, v1);
+    if (farthest * range.high < 1) return Side::free;
+    if (!leaves_image && nearest * range.low > 1) return Side::behind;
+    return Side::mixed;
+  }
+
+ private:
+  // Range of a rectangle of pixels, from at most 3 by 3 tiles that cover it.
+  VPM_HD InverseDepthRange range_of(std::int32_t u0, std::int32_t v0, std::int32_t u1,
+                                    std::int32_t v1) const {
+    int level = 0;
+    while (level + 1 < levels && ((u1 - u0) >> level > 1 || (v1 - v0) >> level > 1)) ++level;
+    const std::int32_t row = tiles_per_row(level);
+    InverseDepthRange all = tiles[level][(v0 >> level) * row + (u0 >> level)];
+    for (std::int32_t v = v0 >> level; v <= v1 >> level; ++v) {
+      for (std::int32_t u = u0 >> level; u <= u1 >> level; ++u) {
+        const InverseDepthRange tile = tiles[level][v * row + u];
+        all.low = tile.low < all.low ? tile.low : all.low;
+        all.high = tile.high > all.high ? tile.high : all.high;
+      }
+    }
+    return all;
+  }
+};
+
+}  // namespace vpm

@@ -1,0 +1,100 @@
+// A surface as an unorganised cloud holds it: disks (point, normal, sampling radius) in a bounding
+// volume hierarchy.
+//
+// The nearest point decides on which side a place lies. Points are in the cloud's frame about its
+// origin.
+#pragma once
+
+#include "libvpm/query/surface.h"
+
+namespace vpm {
+
+// Axis-aligned box of the points below a node; empty boxes (padding) have low > high.
+struct PointBox {
+  Vec3f low, high;
+};
+
+// A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
+// 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize) in
+// canonical order.
+struct DiskSurface {
+  static constexpr std::uint32_t kLeafSize = 8;
+  static constexpr int kMaxDepth = 32;
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  const Vec3f* positions = nullptr;
+  const Vec3f* normals = nullptr;
+  const PointBox* nodes = nullptr;
+  std::uint32_t count = 0;
+  std::uint32_t leaves = 0;   // a power of two
+  double largest_radius = 0;  // of any disk
+
+  VPM_HD static double axis_gap(double x, double low, double high) {
+    return x < low ? low - x : (x > high ? x - high : 0);
+  }
+  VPM_HD static double squared_distance(const PointBox& box, Vec3 x) {
+    if (box.low.x > box.high.x) return HUGE_VAL;
+    const double dx = axis_gap(x.x, box.low.x, box.high.x),
+                 dy = axis_gap(x.y, box.low.y, box.high.y),
+                 dz = axis_gap(x.z, box.low.z, box.high.z);
+    return dx * dx + dy * dy + dz * dz;
+  }
+
+  // The point nearest to x among those closer than `bound`; equal distances go to the smaller
+  // index. kNone if none.
+  VPM_HD std::uint32_t nearest(Vec3 x, double bound) const {
+    if (count == 0) return kNone;
+    std::uint32_t best = kNone;
+    double best_squared = bound * bound;
+    std::uint32_t stack[kMaxDepth];
+    double stack_squared[kMaxDepth];
+    int size = 0;
+    std::uint32_t node = 1;
+    double node_squared = squared_distance(nodes[1], x);
+    for (;;) {
+      // A node at exactly the best distance may hold an equal point of smaller index: it is
+      // entered.
+      if (node_squared <= best_squared) {
+        if (node < leaves) {
+          const std::uint32_t left = 2 * node;
+          const double dl = squared_distance(nodes[left], x),
+                       dr = squared_distance(nodes[left + 1], x);
+          const bool left_first = dl <= dr;
+          stack[size] = left_first ? left + 1 : left;
+          stack_squared[size++] = left_first ? dr : dl;
+          node = left_first ? left : left + 1;
+          node_squared = left_first ? dl : dr;
+          continue;
+        }
+        const std::uint32_t begin = (node - leaves) * kLeafSize;
+        const std::uint32_t end = begin + kLeafSize < count ? begin + kLeafSize : count;
+        for (std::uint32_t i = begin; i < end; ++i) {
+          const double squared = squared_norm(widen(positions[i]) - x);
+          if (squared < best_squared || (squared == best_squared && best != kNone && i < best)) {
+            best_squared = squared;
+            best = i;
+          }
+        }
+      }
+      if (size == 0) return best;
+      node = stack[--size];
+      node_squared = stack_squared[size];
+    }
+  }
+
+  // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
+  VPM_HD Reading read(Vec3 x) const {
+    const std::uint32_t i = nearest(x, HUGE_VAL);
+    if (i == kNone) return {};
+    const Vec3 normal = widen(normals[i]), foot = widen(positions[i]);
+    return {true, dot(normal, x - foot), normal, foot};
+  }
+
+  VPM_HD Vec3 closest_normal(Vec3, const Reading& reading) const { return reading.normal; }
+
+  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
+    return nearest(center, radius + largest_radius) == kNone ? Side::uncut : Side::mixed;
+  }
+};
+
+}  // namespace vpm

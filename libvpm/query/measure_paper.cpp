@@ -1,0 +1,151 @@
+#include "libvpm/query/measure_paper.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "libvpm/query/ball_fraction.h"
+#include "libvpm/query/tool_sum.h"
+
+namespace vpm {
+namespace {
+
+void add_atomically(std::int64_t& sum, std::int64_t term) {
+  std::atomic_ref<std::int64_t>(sum).fetch_add(term, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level, PointLocation location)
+    : tool_(tool), level_(level), location_(location) {
+  contacts_.resize(level.sphere_count);
+  normals_.resize(level.sphere_count);
+  depth_.resize(level.sphere_count);
+}
+
+Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,
+                         std::vector<SphereState>& states) {
+  std::fill(contacts_.begin(), contacts_.end(), Contact{});
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  const std::uint32_t points = gather(cloud, pose);
+  find_boundary(states);
+  enter(states);
+  flood(states);
+  Result result = total(pose, states);
+  result.points = points;
+  return result;
+}
+
+// Steps 1 and 2: the points strictly inside each sphere, and their caps.
+std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose) {
+  const Rotation to_tool = transpose(pose.rotation);
+  const auto add = [&](std::uint32_t i, std::uint32_t point, Vec3 x) {
+    const Sphere& s = tool_.spheres[i];
+    const Vec3 n = to_tool * widen(cloud.normals()[point]);
+    const Vec3 offset = (x - s.center) / s.radius;
+    const double height =
+        std::clamp(1 + dot(n, offset), 0.0, 2.0);  // r - d, d = n . (c - p), in radii
+    using Sum = FixedSum<kBits>;
+    Contact& c = contacts_[i];
+    add_atomically(c.points, 1);
+    add_atomically(c.cap, Sum::round(unit_cap_volume(height)));
+    add_atomically(c.normal[0], Sum::round(n.x));
+    add_atomically(c.normal[1], Sum::round(n.y));
+    add_atomically(c.normal[2], Sum::round(n.z));
+    add_atomically(c.offset[0], Sum::round(offset.x));
+    add_atomically(c.offset[1], Sum::round(offset.y));
+    add_atomically(c.offset[2], Sum::round(offset.z));
+  };
+  return for_points_inside(cloud, tool_, level_, location_, pose, ranges_, add);
+}
+
+// Step 3: a sphere with a point in it is boundary; its normal is the mean of its points'.
+void PaperMeasure::find_boundary(std::vector<SphereState>& states) {
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    const Contact& c = contacts_[i];
+    if (c.points == 0) continue;
+    states[i] = SphereState::boundary;
+    normals_[i] =
+        normalized_or_zero({static_cast<double>(c.normal[0]), static_cast<double>(c.normal[1]),
+                            static_cast<double>(c.normal[2])});
+  }
+}
+
+// Step 4: n_i . (c_j - c_i) <= -r_j. An entry sphere's normal is the mean over the boundary spheres
+// that let it in.
+void PaperMeasure::enter(std::vector<SphereState>& states) {
+  const SphereGraph& graph = level_.graph;
+  front_.clear();
+  for (std::uint32_t j = 0; j < level_.sphere_count; ++j) {
+    if (states[j] == SphereState::boundary) continue;
+    Vec3 normal;
+    bool entered = false;
+    for (std::uint32_t k = graph.begin[j]; k < graph.begin[j + 1]; ++k) {
+      const std::uint32_t i = graph.neighbors[k];
+      if (states[i] != SphereState::boundary) continue;
+      if (dot(normals_[i], tool_.spheres[j].center - tool_.spheres[i].center) >
+          -tool_.spheres[j].radius)
+        continue;
+      entered = true;
+      normal += normals_[i];
+    }
+    if (!entered) continue;
+    normals_[j] = normalized_or_zero(normal);
+    depth_[j] = 1;
+    front_.push_back(j);
+  }
+  for (const std::uint32_t j : front_) states[j] = SphereState::inside;
+}
+
+// Step 5, front by front, so that the normals do not depend on the order of the traversal: a
+// sphere's normal is the mean over its neighbours in the front before.
+void PaperMeasure::flood(std::vector<SphereState>& states) {
+  const SphereGraph& graph = level_.graph;
+  for (std::uint32_t depth = 2; !front_.empty(); ++depth) {
+    next_front_.clear();
+    for (const std::uint32_t i : front_) {
+      for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+        const std::uint32_t j = graph.neighbors[k];
+        if (states[j] != SphereState::outside) continue;
+        states[j] = SphereState::inside;
+        depth_[j] = depth;
+        next_front_.push_back(j);
+      }
+    }
+    for (const std::uint32_t j : next_front_) {
+      Vec3 normal;
+      for (std::uint32_t k = graph.begin[j]; k < graph.begin[j + 1]; ++k) {
+        const std::uint32_t i = graph.neighbors[k];
+        if (states[i] == SphereState::inside && depth_[i] + 1 == depth) normal += normals_[i];
+      }
+      normals_[j] = normalized_or_zero(normal);
+    }
+    std::swap(front_, next_front_);
+  }
+}
+
+// Step 6. Caps and spheres lie in disjoint spheres inside the solid, so the sums of a ToolSum hold.
+Result PaperMeasure::total(const Pose& pose, const std::vector<SphereState>& states) const {
+  ToolSum sum;
+  Result result;
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    const Sphere& s = tool_.spheres[i];
+    if (states[i] == SphereState::boundary) {
+      const Contact& c = contacts_[i];
+      const double per_point = 1 / (FixedSum<kBits>::kOne * static_cast<double>(c.points));
+      const double cap = s.radius * s.radius * s.radius * (static_cast<double>(c.cap) * per_point);
+      const Vec3 mean{static_cast<double>(c.offset[0]), static_cast<double>(c.offset[1]),
+                      static_cast<double>(c.offset[2])};
+      const Vec3 at = s.center + s.radius * (per_point * mean);
+      sum.add(cap / tool_.volume, normals_[i], (at - tool_.center_of_mass) / tool_.reach);
+      ++result.boundary;
+    } else if (states[i] == SphereState::inside) {
+      sum.add(volume(s) / tool_.volume, normals_[i],
+              (s.center - tool_.center_of_mass) / tool_.reach);
+      ++result.inside;
+    }
+  }
+  sum.write(tool_, pose.rotation, result);
+  return result;
+}
+
+}  // namespace vpm

@@ -1,0 +1,48 @@
+// The measure as printed: Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure for 6-DOF
+// Haptic Rendering of Streaming Point Clouds" (2017). README.md lists the two misprints that are
+// read as they must be meant.
+#pragma once
+
+#include <vector>
+
+#include "libvpm/core/fixed_sum.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/points_inside.h"
+#include "libvpm/query/result.h"
+
+namespace vpm {
+
+class PaperMeasure {
+ public:
+  PaperMeasure(const ToolModel& tool, const Level& level, PointLocation location);
+
+  // `states` receives one entry per sphere. Allocates nothing after the first call.
+  Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
+
+ private:
+  // Sums over the points in a sphere, of terms local to it: |terms| <= 4 pi / 3 < 8 and at most
+  // 2^24 points, so 2^3 * 2^24 * 2^36 = 2^63 is never reached.
+  static constexpr int kBits = 36;
+  static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << (63 - 3 - kBits));
+  struct Contact {
+    std::int64_t points, cap, normal[3], offset[3];
+  };
+
+  std::uint32_t gather(const PreparedCloud& cloud, const Pose& pose);
+  void find_boundary(std::vector<SphereState>& states);
+  void flood(std::vector<SphereState>& states);
+  void enter(std::vector<SphereState>& states);
+  Result total(const Pose& pose, const std::vector<SphereState>& states) const;
+
+  const ToolModel& tool_;
+  const Level& level_;
+  PointLocation location_;
+  std::vector<Contact> contacts_;
+  std::vector<Vec3> normals_;  // n_s of boundary, n_j of inside spheres, tool axes
+  std::vector<std::uint32_t> front_, next_front_;
+  PointRanges ranges_;
+  std::vector<std::uint32_t> depth_;  // flood level of inside spheres, 1 at the entry
+};
+
+}  // namespace vpm

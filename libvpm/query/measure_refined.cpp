@@ -1,0 +1,155 @@
+#include "libvpm/query/measure_refined.h"
+
+#include <algorithm>
+
+#include "libvpm/core/parallel.h"
+
+namespace vpm {
+
+RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
+    : tool_(tool), level_(level) {
+  masses_.resize(level.blocks.size());
+  for (std::size_t b = 0; b < masses_.size(); ++b) {
+    Vec3 moment;
+    for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
+      masses_[b].weight += level.samples[s].weight;
+      moment += level.samples[s].weight * widen(level.samples[s].center);
+    }
+    masses_[b].centroid =
+        masses_[b].weight > 0 ? moment / masses_[b].weight : widen(level.blocks[b].center);
+  }
+  cells_.resize(level.sphere_count);
+  results_.resize(level.sphere_count);
+  reached_.resize(level.sphere_count);
+  inside_.reserve(level.sphere_count);
+}
+
+CellView RefinedMeasure::cell(std::uint32_t i) const {
+  return {level_.blocks.data(),      masses_.data(),
+          level_.samples.data(),     level_.block_begin[i],
+          level_.block_begin[i + 1], tool_.spheres[i].center - tool_.center_of_mass,
+          level_.share_reach[i]};
+}
+
+Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose,
+                           std::vector<SphereState>& states) {
+  const Pose from_center_of_mass{pose.rotation, pose * tool_.center_of_mass};
+  if (cloud.is_organised()) {
+    const Pose& frame = cloud.camera_to_world();
+    return run_on(cloud.depth_surface(), relative_to(frame, from_center_of_mass), frame.rotation,
+                  states);
+  }
+  return run_on(cloud.disk_surface(), relative_to({{}, cloud.origin()}, from_center_of_mass),
+                Rotation{}, states);
+}
+
+template <class Surface>
+Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
+                              const Rotation& to_world, std::vector<SphereState>& states) {
+  classify(surface, to_surface);
+  flood(surface, to_surface);
+
+  constexpr std::size_t kGrain = 64;
+  parallel_for(inside_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = inside_[k];
+      if (cells_[i] != Cell::partial) {
+        results_[i].sum = CellMeasure(surface, to_surface, tool_.reach, cell(i)).whole();
+      }
+    }
+  });
+
+  ToolSum sum;
+  Result result;
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    if (cells_[i] == Cell::cut) {
+      states[i] = SphereState::boundary;
+      sum.add(results_[i].sum);
+      ++result.boundary;
+    }
+  }
+  for (const std::uint32_t i : inside_) {
+    states[i] = SphereState::inside;
+    sum.add(results_[i].sum);
+  }
+  result.inside = static_cast<std::uint32_t>(inside_.size());
+  sum.write(tool_, to_world, result);
+  return result;
+}
+
+template <class Surface>
+void RefinedMeasure::classify(const Surface& surface, const Pose& to_surface) {
+  constexpr std::size_t kGrain = 32;
+  parallel_for(level_.sphere_count, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const CellView view = cell(static_cast<std::uint32_t>(i));
+      const Side side = surface.side_of_ball(to_surface * view.center, view.reach);
+      if (side == Side::free) {
+        cells_[i] = Cell::free;
+      } else if (side == Side::behind) {
+        cells_[i] = Cell::whole;
+      } else if (side == Side::uncut) {
+        cells_[i] = Cell::open;
+      } else {
+        results_[i] = CellMeasure(surface, to_surface, tool_.reach, view).run();
+        const bool counts = results_[i].sum.volume.value > 0;
+        cells_[i] = results_[i].plane.count > 0 ? Cell::cut : (counts ? Cell::partial : Cell::free);
+      }
+    }
+  });
+}
+
+// The surface enters the tool through cut cells; from there every cell behind it that the graph
+// reaches is inside.
+template <class Surface>
+void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
+  const SphereGraph& graph = level_.graph;
+  std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
+  inside_.clear();
+  const auto reach = [&](std::uint32_t j) {
+    reached_[j] = 1;
+    inside_.push_back(j);
+  };
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    if (cells_[i] != Cell::cut) continue;
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+      const std::uint32_t j = graph.neighbors[k];
+      if (!reached_[j] && is_candidate(surface, to_surface, j) && enters(surface, to_surface, i, j))
+        reach(j);
+    }
+  }
+  for (std::size_t next = 0; next < inside_.size(); ++next) {
+    const std::uint32_t i = inside_[next];
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+      const std::uint32_t j = graph.neighbors[k];
+      if (!reached_[j] && is_candidate(surface, to_surface, j)) reach(j);
+    }
+  }
+}
+
+template <class Surface>
+bool RefinedMeasure::is_candidate(const Surface& surface, const Pose& to_surface, std::uint32_t j) {
+  if (cells_[j] == Cell::open) {
+    const Reading reading =
+        surface.read(to_surface * (tool_.spheres[j].center - tool_.center_of_mass));
+    cells_[j] = reading.known && reading.distance < 0 ? Cell::whole : Cell::free;
+  }
+  return cells_[j] == Cell::whole || cells_[j] == Cell::partial;
+}
+
+// From a cut cell to an uncut one behind the surface: unless the surface before the latter is
+// another one than that which cuts the former, and the former's own plane has it in front.
+template <class Surface>
+bool RefinedMeasure::enters(const Surface& surface, const Pose& to_surface, std::uint32_t i,
+                            std::uint32_t j) const {
+  const Vec3 at = to_surface * (tool_.spheres[j].center - tool_.center_of_mass);
+  const double near = kSheetReach * (level_.share_reach[i] + level_.share_reach[j]);
+  const Reading reading = surface.read(at);
+  if (reading.known && reading.distance < 0 && squared_norm(reading.foot - at) <= near * near)
+    return true;
+  const Vec3 from = to_surface * (tool_.spheres[i].center - tool_.center_of_mass);
+  return results_[i].plane.is_behind((at - from) / level_.share_reach[i]);
+}
+
+}  // namespace vpm

@@ -1,0 +1,54 @@
+// The refined measure: shares instead of spheres, the surface instead of points. README.md derives
+// it.
+#pragma once
+
+#include <vector>
+
+#include "libvpm/query/cell.h"
+#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/result.h"
+
+namespace vpm {
+
+class RefinedMeasure {
+ public:
+  RefinedMeasure(const ToolModel& tool, const Level& level);
+
+  // `states` receives one entry per sphere. Allocates nothing after the first call.
+  Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
+
+ private:
+  // How the surface meets a sphere's share.
+  enum class Cell : std::uint8_t {
+    free,     // counts for nothing
+    cut,      // the surface passes through it: its result counts
+    partial,  // behind the surface as far as its result says, if the flood comes
+    whole,    // behind the surface, if the flood comes
+    open,     // no surface near; its centre decides when the flood comes
+  };
+
+  template <class Surface>
+  Result run_on(const Surface& surface, const Pose& to_surface, const Rotation& to_world,
+                std::vector<SphereState>& states);
+  template <class Surface>
+  void classify(const Surface& surface, const Pose& to_surface);
+  template <class Surface>
+  void flood(const Surface& surface, const Pose& to_surface);
+  template <class Surface>
+  bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t from,
+              std::uint32_t to) const;
+  template <class Surface>
+  bool is_candidate(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  CellView cell(std::uint32_t sphere) const;
+
+  const ToolModel& tool_;
+  const Level& level_;
+  std::vector<BlockMass> masses_;
+  std::vector<Cell> cells_;
+  std::vector<CellResult> results_;
+  std::vector<std::uint8_t> reached_;
+  std::vector<std::uint32_t>
+      inside_;  // spheres that the flood has reached, in the order of the flood
+};
+
+}  // namespace vpm

@@ -1,0 +1,297 @@
+#include "libvpm/query/prepared_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <string>
+#include <tuple>
+
+#include "libvpm/core/error.h"
+
+namespace vpm {
+namespace {
+
+// A point off its pixel by more than this would be missed by the search over pixels; float32
+// rounding and recovered intrinsics stay far below.
+constexpr double kPixelTolerance = 0.5;
+
+// -0 and 0 are one place: they must sort and merge as one.
+float positive_zero(float x) {
+  return x == 0 ? 0.0f : x;
+}
+
+auto order_key(const Cloud& cloud, std::uint32_t i) {
+  const Vec3f p = cloud.positions[i], n = cloud.normals[i];
+  return std::make_tuple(positive_zero(p.x), positive_zero(p.y), positive_zero(p.z),
+                         positive_zero(n.x), positive_zero(n.y), positive_zero(n.z),
+                         cloud.radii[i]);
+}
+
+std::uint64_t spread_bits(std::uint64_t x) {  // 21 bits to every third of 63
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffULL;
+  x = (x | x << 16) & 0x1f0000ff0000ffULL;
+  x = (x | x << 8) & 0x100f00f00f00f00fULL;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+// Places along a Morton curve over the cloud's box, in cells of a power of two so that scaling by
+// one keeps them.
+class MortonCurve {
+ public:
+  explicit MortonCurve(const std::vector<Vec3f>& points) {
+    Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    low_ = -high;
+    for (const Vec3f& p : points) {
+      low_ = {std::min<double>(low_.x, p.x), std::min<double>(low_.y, p.y),
+              std::min<double>(low_.z, p.z)};
+      high = {std::max<double>(high.x, p.x), std::max<double>(high.y, p.y),
+              std::max<double>(high.z, p.z)};
+    }
+    const double extent = std::max({high.x - low_.x, high.y - low_.y, high.z - low_.z});
+    constexpr int kBits = 21;
+    cells_per_metre_ = extent > 0 ? std::ldexp(1.0, kBits - 1 - std::ilogb(extent)) : 0;
+  }
+  std::uint64_t operator()(Vec3f p) const {
+    const Vec3 cell = cells_per_metre_ * (widen(p) - low_);
+    return spread_bits(static_cast<std::uint64_t>(cell.x)) |
+           spread_bits(static_cast<std::uint64_t>(cell.y)) << 1 |
+           spread_bits(static_cast<std::uint64_t>(cell.z)) << 2;
+  }
+
+ private:
+  Vec3 low_;
+  double cells_per_metre_ = 0;
+};
+
+// Neighbours of a pixel in opposite pairs.
+constexpr std::array<std::array<int, 2>, 4> kHalfRing{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+
+// A pixel between measured ones, from opposite neighbours that see one surface: their mean is exact
+// on a plane.
+float fill_between(const std::vector<float>& image, int width, int height, int u, int v) {
+  double sum = 0;
+  int pairs = 0;
+  for (const auto& [du, dv] : kHalfRing) {
+    if (u - du < 0 || u + du >= width || std::min(v - dv, v + dv) < 0 ||
+        std::max(v - dv, v + dv) >= height)
+      continue;
+    const double a = image[static_cast<std::size_t>((v - dv) * width + u - du)];
+    const double b = image[static_cast<std::size_t>((v + dv) * width + u + du)];
+    if (!(a > 0 && b > 0) || std::abs(a - b) > DepthSurface::kJump * std::max(a, b)) continue;
+    sum += a + b;
+    ++pairs;
+  }
+  return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0f;
+}
+
+// Holes up to this many pixels wide are closed (twice this many passes would be needed for a pair
+// to reach further).
+constexpr int kFillPasses = 2;
+
+std::vector<float> filled_inverse_depth(const DepthImage& depth) {
+  const int width = static_cast<int>(depth.width), height = static_cast<int>(depth.height);
+  std::vector<float> image(depth.depth.size());
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    image[i] =
+        is_measured(depth.depth[i]) ? static_cast<float>(1.0 / double{depth.depth[i]}) : 0.0f;
+  }
+  for (int pass = 0; pass < kFillPasses; ++pass) {
+    std::vector<std::pair<std::size_t, float>> filled;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        const std::size_t i = static_cast<std::size_t>(v * width + u);
+        if (image[i] > 0) continue;
+        const float value = fill_between(image, width, height, u, v);
+        if (value > 0) filled.emplace_back(i, value);
+      }
+    }
+    if (filled.empty()) break;
+    for (const auto& [i, value] : filled) image[i] = value;
+  }
+  return image;
+}
+
+std::vector<InverseDepthRange> coarser(const std::vector<InverseDepthRange>& fine,
+                                       std::uint32_t width, std::uint32_t height) {
+  const std::uint32_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+  std::vector<InverseDepthRange> tiles(std::size_t{half_width} * half_height);
+  for (std::uint32_t v = 0; v < half_height; ++v) {
+    for (std::uint32_t u = 0; u < half_width; ++u) {
+      InverseDepthRange& tile = tiles[std::size_t{v} * half_width + u];
+      tile = fine[std::size_t{2 * v} * width + 2 * u];
+      for (std::uint32_t y = 2 * v; y < std::min(2 * v + 2, height); ++y) {
+        for (std::uint32_t x = 2 * u; x < std::min(2 * u + 2, width); ++x) {
+          const InverseDepthRange& child = fine[std::size_t{y} * width + x];
+          tile = {std::min(tile.low, child.low), std::max(tile.high, child.high)};
+        }
+      }
+    }
+  }
+  return tiles;
+}
+
+}  // namespace
+
+PreparedCloud::PreparedCloud(const Cloud& cloud) : origin_(cloud.origin) {
+  if (cloud.size() > kMaxPoints) {
+    refuse("the cloud has " + std::to_string(cloud.size()) + " points; at most " +
+           std::to_string(kMaxPoints) + " can be counted exactly: thin it out, or split it");
+  }
+  validate(cloud, "the cloud");
+  for (const float radius : cloud.radii)
+    largest_radius_ = std::max(largest_radius_, double{radius});
+  if (cloud.sensor) {
+    camera_ = cloud.sensor->camera;
+    order_by_pixel(cloud);
+    build_depth_tiles(cloud);
+  } else {
+    order_in_space(cloud);
+    build_boxes();
+  }
+}
+
+void PreparedCloud::order_by_pixel(const Cloud& cloud) {
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  if (!std::is_sorted(cloud.pixels.begin(), cloud.pixels.end(), std::less_equal<>())) {
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      if (cloud.pixels[a] != cloud.pixels[b]) return cloud.pixels[a] < cloud.pixels[b];
+      return order_key(cloud, a) < order_key(cloud, b);
+    });
+    order.erase(std::unique(order.begin(), order.end(),
+                            [&](std::uint32_t a, std::uint32_t b) {
+                              return cloud.pixels[a] == cloud.pixels[b] &&
+                                     order_key(cloud, a) == order_key(cloud, b);
+                            }),
+                order.end());
+  }
+  take_in_order(cloud, order);
+
+  const Pose to_camera = relative_to(camera_->to_world, {{}, origin_});
+  const Intrinsics& k = camera_->intrinsics;
+  const std::size_t pixels = std::size_t{camera_->width} * camera_->height;
+  pixel_begin_.assign(pixels + 1, 0);
+  pixel_normals_.assign(pixels, Vec3f{});
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::uint32_t pixel = cloud.pixels[order[i]];
+    if (i > 0 && pixel == cloud.pixels[order[i - 1]]) {
+      refuse("the cloud has two different points at pixel " +
+             std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
+    }
+    const Vec3 at = to_camera * widen(positions_[i]);
+    const double u = pixel % camera_->width, v = pixel / camera_->width;
+    if (!(at.z > 0 && std::abs(k.fx * at.x / at.z + k.cx - u) <= kPixelTolerance &&
+          std::abs(k.fy * at.y / at.z + k.cy - v) <= kPixelTolerance)) {
+      refuse("point " + std::to_string(order[i]) +
+             " of the cloud does not lie on the ray of its pixel " +
+             std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
+    }
+    pixel_begin_[pixel + 1] = 1;
+    pixel_normals_[pixel] = narrow(to_camera.rotation * widen(normals_[i]));
+  }
+  std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
+}
+
+void PreparedCloud::order_in_space(const Cloud& cloud) {
+  const MortonCurve curve(cloud.positions);
+  std::vector<std::uint64_t> code(cloud.size());
+  for (std::size_t i = 0; i < code.size(); ++i) code[i] = curve(cloud.positions[i]);
+  std::vector<std::uint32_t> order(cloud.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return code[a] != code[b] ? code[a] < code[b] : order_key(cloud, a) < order_key(cloud, b);
+  });
+  order.erase(std::unique(order.begin(), order.end(),
+                          [&](std::uint32_t a, std::uint32_t b) {
+                            return order_key(cloud, a) == order_key(cloud, b);
+                          }),
+              order.end());
+  take_in_order(cloud, order);
+}
+
+void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order) {
+  positions_.reserve(order.size());
+  normals_.reserve(order.size());
+  for (const std::uint32_t i : order) {
+    positions_.push_back(cloud.positions[i]);
+    normals_.push_back(cloud.normals[i]);
+  }
+}
+
+void PreparedCloud::build_depth_tiles(const Cloud& cloud) {
+  const std::vector<float> image = filled_inverse_depth(cloud.sensor->depth);
+  tiles_.emplace_back(image.size());
+  for (std::size_t i = 0; i < image.size(); ++i) tiles_[0][i] = {image[i], image[i]};
+  for (std::uint32_t w = camera_->width, h = camera_->height; w > 1 || h > 1;
+       w = (w + 1) / 2, h = (h + 1) / 2) {
+    tiles_.push_back(coarser(tiles_.back(), w, h));
+  }
+}
+
+void PreparedCloud::build_boxes() {
+  const std::uint32_t count = static_cast<std::uint32_t>(positions_.size());
+  leaves_ =
+      std::bit_ceil((count + DiskSurface::kLeafSize - 1) / DiskSurface::kLeafSize + (count == 0));
+  constexpr float kInf = HUGE_VALF;
+  boxes_.assign(2 * std::size_t{leaves_}, {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}});
+  const auto grow = [](PointBox& box, Vec3f low, Vec3f high) {
+    box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z)};
+    box.high = {std::max(box.high.x, high.x), std::max(box.high.y, high.y),
+                std::max(box.high.z, high.z)};
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    grow(boxes_[leaves_ + i / DiskSurface::kLeafSize], positions_[i], positions_[i]);
+  }
+  for (std::uint32_t node = leaves_; node-- > 1;) {
+    for (const std::uint32_t child : {2 * node, 2 * node + 1})
+      grow(boxes_[node], boxes_[child].low, boxes_[child].high);
+  }
+}
+
+DepthSurface PreparedCloud::depth_surface() const {
+  DepthSurface surface;
+  surface.k = camera_->intrinsics;
+  surface.width = static_cast<std::int32_t>(camera_->width);
+  surface.height = static_cast<std::int32_t>(camera_->height);
+  surface.levels =
+      static_cast<std::int32_t>(std::min<std::size_t>(tiles_.size(), DepthSurface::kMaxLevels));
+  surface.normals = pixel_normals_.data();
+  for (int level = 0; level < surface.levels; ++level) {
+    surface.tiles[level] = tiles_[static_cast<std::size_t>(level)].data();
+  }
+  return surface;
+}
+
+DiskSurface PreparedCloud::disk_surface() const {
+  return {positions_.data(), normals_.data(),
+          boxes_.data(),     static_cast<std::uint32_t>(positions_.size()),
+          leaves_,           largest_radius_};
+}
+
+PreparedCloud::PixelRectangle PreparedCloud::rectangle_of_ball(Vec3 center, double radius) const {
+  const Vec3 at = relative_to(camera_->to_world, {{}, origin_}) * center;
+  const int width = static_cast<int>(camera_->width), height = static_cast<int>(camera_->height);
+  const double nearest = at.z - radius, farthest = at.z + radius;
+  if (!(farthest > 0)) return {0, 0, -1, -1};
+  if (!(nearest > 0)) return {0, 0, width - 1, height - 1};
+  const auto range = [&](double x, double f, double c, int size, std::int32_t& low,
+                         std::int32_t& high) {
+    const double left = x - radius, right = x + radius;
+    const double first = f * (left / (left >= 0 ? farthest : nearest)) + c - kPixelTolerance;
+    const double last = f * (right / (right >= 0 ? nearest : farthest)) + c + kPixelTolerance;
+    low = static_cast<std::int32_t>(std::clamp(std::floor(first), 0.0, double(size)));
+    high = static_cast<std::int32_t>(std::clamp(std::ceil(last), -1.0, double(size - 1)));
+  };
+  const Intrinsics& k = camera_->intrinsics;
+  PixelRectangle r{};
+  range(at.x, k.fx, k.cx, width, r.u0, r.u1);
+  range(at.y, k.fy, k.cy, height, r.v0, r.v1);
+  return r;
+}
+
+}  // namespace vpm

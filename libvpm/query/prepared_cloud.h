@@ -1,0 +1,99 @@
+// A cloud made ready for queries: everything that depends on the frame alone is done once, here.
+//
+// Points are put into a canonical order and equal points are merged, so that the order of the
+// points, or giving each twice, changes no result. Immutable; safe to share between threads.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/query/depth_surface.h"
+#include "libvpm/query/disk_surface.h"
+
+namespace vpm {
+
+class PreparedCloud {
+ public:
+  // The most points a cloud may have: what the fixed-point sums of a sphere can count (see
+  // measure_paper.cpp).
+  static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
+
+  // Throws Error(refused): more than kMaxPoints, or what validate(cloud) refuses.
+  explicit PreparedCloud(const Cloud& cloud);
+
+  Vec3 origin() const { return origin_; }
+  const std::vector<Vec3f>& positions() const {
+    return positions_;
+  }  // about origin(), canonical order
+  const std::vector<Vec3f>& normals() const { return normals_; }
+
+  // The camera's surface, where there is one; in the frame of camera_to_world().
+  bool is_organised() const { return camera_.has_value(); }
+  const Pose& camera_to_world() const { return camera_->to_world; }
+  DepthSurface depth_surface() const;
+  DiskSurface disk_surface() const;  // of clouds that are not organised
+
+  // Calls visit(begin, end) for ranges of points that hold all that lie in the ball (about
+  // origin()), and others.
+  template <class Visit>
+  void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const;
+
+ private:
+  void order_by_pixel(const Cloud& cloud);
+  void order_in_space(const Cloud& cloud);
+  void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
+  void build_depth_tiles(const Cloud& cloud);
+  void build_boxes();
+
+  struct PixelRectangle {
+    std::int32_t u0, v0, u1, v1;  // inclusive; empty if u0 > u1
+  };
+  PixelRectangle rectangle_of_ball(Vec3 center, double radius) const;
+
+  Vec3 origin_;
+  std::vector<Vec3f> positions_, normals_;
+  double largest_radius_ = 0;
+
+  std::optional<Camera> camera_;
+  std::vector<std::uint32_t> pixel_begin_;  // first point at or after each pixel; pixels + 1
+  std::vector<Vec3f> pixel_normals_;        // camera axes
+  std::vector<std::vector<InverseDepthRange>> tiles_;
+
+  std::vector<PointBox> boxes_;
+  std::uint32_t leaves_ = 0;
+};
+
+template <class Visit>
+void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const {
+  if (is_organised()) {
+    const PixelRectangle r = rectangle_of_ball(center, radius);
+    for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
+      const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
+      const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];
+      const std::uint32_t end = pixel_begin_[row + static_cast<std::size_t>(r.u1) + 1];
+      if (begin < end) visit(begin, end);
+    }
+    return;
+  }
+  const DiskSurface disks = disk_surface();
+  if (disks.count == 0) return;
+  std::uint32_t stack[DiskSurface::kMaxDepth];
+  int size = 0;
+  stack[size++] = 1;
+  while (size > 0) {
+    const std::uint32_t node = stack[--size];
+    if (DiskSurface::squared_distance(disks.nodes[node], center) > radius * radius) continue;
+    if (node >= disks.leaves) {
+      const std::uint32_t begin = (node - disks.leaves) * DiskSurface::kLeafSize;
+      visit(begin, begin + DiskSurface::kLeafSize < disks.count ? begin + DiskSurface::kLeafSize
+                                                                : disks.count);
+    } else {
+      stack[size++] = 2 * node + 1;
+      stack[size++] = 2 * node;
+    }
+  }
+}
+
+}  // namespace vpm

@@ -1,0 +1,53 @@
+// How much of a tool is inside a cloud's solid, and which wrench pushes it out.
+//
+//   const ToolModel tool = read_tool_model("tool.vpmg");
+//   const PreparedCloud cloud(read_cloud("scene.vpmc"));   // once per frame
+//   Query query(tool, {});
+//   const Result r = query.run(cloud, pose);               // a thousand times a second
+//
+// The tool must outlive its queries. A Query belongs to one thread at a time (it may use several
+// inside); tools and clouds may be shared. run() allocates nothing after the first call. The same
+// input gives the same bits, whatever the number of threads and the order of the points: README.md
+// states the domain of that promise.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libvpm/query/measure_paper.h"
+#include "libvpm/query/measure_refined.h"
+
+namespace vpm {
+
+struct QueryOptions {
+  Measure measure = Measure::refined;
+  std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
+  PointLocation location = PointLocation::grid;
+  double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+};
+
+class Query {
+ public:
+  // Throws Error(usage) where the model has no such level or the stiffness is not positive.
+  Query(const ToolModel& tool, const QueryOptions& options);
+
+  // `pose` maps tool to world coordinates and must be finite.
+  Result run(const PreparedCloud& cloud, const Pose& pose);
+
+  const Level& level() const { return level_; }
+  std::span<const SphereState> states() const {
+    return states_;
+  }  // of the last run, one per sphere of the level
+
+ private:
+  const ToolModel& tool_;
+  const Level& level_;
+  QueryOptions options_;
+  std::unique_ptr<PaperMeasure> paper_;
+  std::unique_ptr<RefinedMeasure> refined_;
+  std::vector<SphereState> states_;
+  PointRanges ranges_;
+};
+
+}  // namespace vpm

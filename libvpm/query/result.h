@@ -1,0 +1,29 @@
+// The answer of a query.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+enum class Measure { refined, paper };
+
+enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
+
+// Force and torque per unit of stiffness, in world axes; the torque is about the tool's centre of
+// mass. Both push the tool into free space. m^3 and m^4.
+struct Wrench {
+  Vec3 force, torque;
+};
+
+struct Result {
+  double volume = 0;           // m^3 of the tool that is inside the cloud's solid
+  double volume_fraction = 0;  // volume / volume of the tool
+  Wrench wrench;
+  std::uint32_t boundary = 0;  // spheres that the surface cuts
+  std::uint32_t inside = 0;    // spheres reached by the flood
+  std::uint32_t points = 0;    // distinct cloud points strictly inside a sphere of the tool
+};
+
+}  // namespace vpm

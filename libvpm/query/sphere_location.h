@@ -1,0 +1,45 @@
+// Which spheres of a packing hold a point strictly inside: by the grid (fast) or by the hierarchy
+// (the paper's Algorithm 1). Both visit the same spheres.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "libvpm/model/tool_model.h"
+
+namespace vpm {
+
+VPM_HD constexpr bool strictly_inside(const Sphere& s, Vec3 x) {
+  return squared_norm(x - s.center) < s.radius * s.radius;
+}
+
+// Tool coordinates. `visit(index)` for every sphere that holds x.
+template <class Visit>
+void for_spheres_at(const PointLocationGrid& grid, const Sphere* spheres, Vec3 x,
+                    const Visit& visit) {
+  const Vec3 at = (x - grid.low) / grid.cell;
+  if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < grid.nx && at.y < grid.ny && at.z < grid.nz))
+    return;
+  const std::size_t cell =
+      (static_cast<std::size_t>(at.z) * grid.ny + static_cast<std::size_t>(at.y)) * grid.nx +
+      static_cast<std::size_t>(at.x);
+  for (std::uint32_t k = grid.begin[cell]; k < grid.begin[cell + 1]; ++k) {
+    if (strictly_inside(spheres[grid.spheres[k]], x)) visit(grid.spheres[k]);
+  }
+}
+
+template <class Visit>
+void for_spheres_at(const Hierarchy& tree, const Sphere* spheres, Vec3 x, const Visit& visit,
+                    std::uint32_t node_index = 0) {
+  const HierarchyNode& node = tree.nodes[node_index];
+  if (!strictly_inside(node.bound, x)) return;
+  for (std::uint32_t k = node.begin; k < node.end; ++k) {
+    if (node.children_are_leaves == 0) {
+      for_spheres_at(tree, spheres, x, visit, k);
+    } else if (strictly_inside(spheres[tree.leaves[k]], x)) {
+      visit(tree.leaves[k]);
+    }
+  }
+}
+
+}  // namespace vpm

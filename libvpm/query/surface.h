@@ -1,0 +1,29 @@
+// What a query asks of the scanned surface. Two kinds of cloud answer: DepthSurface (a camera's
+// image, by projection) and DiskSurface (points without a camera, by the nearest disk). README.md
+// has the reasons.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+// Where a ball lies, decided conservatively: `mixed` may be said of any ball, the others only where
+// they are true.
+enum class Side : std::uint8_t {
+  free,    // seen free space, or never seen: counts for nothing
+  behind,  // wholly behind the seen surface
+  uncut,   // no surface passes through it; a reading at its centre holds for all of it
+  mixed,   // look closer
+};
+
+// The surface as seen from one place x.
+struct Reading {
+  bool known = false;   // false: nothing was measured in this direction
+  double distance = 0;  // signed distance to the surface along its normal; negative inside
+  Vec3 normal;          // unit, into free space
+  Vec3 foot;            // the surface point that was read
+};
+
+}  // namespace vpm
