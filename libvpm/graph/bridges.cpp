@@ -1,0 +1,112 @@
+// Boruvka's algorithm: in every round each component takes its shortest edge to another one.
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/graph/edges.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kMixed =
+    ~std::uint32_t{0};  // a node whose spheres lie in several components
+constexpr std::size_t kGrain = 64;
+
+// Total order on edges: no two pairs are equal, so the shortest ones never close a cycle.
+struct Edge {
+  double gap = std::numeric_limits<double>::infinity();
+  std::uint32_t low = kMixed, high = kMixed;
+  bool operator<(const Edge& other) const {
+    return std::tie(gap, low, high) < std::tie(other.gap, other.low, other.high);
+  }
+};
+
+// The component that all spheres of a node share, so that a search skips its own at once.
+std::vector<std::uint32_t> label_nodes(const SphereBvh& bvh,
+                                       const std::vector<std::uint32_t>& component) {
+  const auto nodes = bvh.nodes();
+  std::vector<std::uint32_t> label(nodes.size());
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    if (nodes[n].right != 0) {
+      label[n] = label[n + 1] == label[nodes[n].right] ? label[n + 1] : kMixed;
+      continue;
+    }
+    label[n] = component[bvh.order()[nodes[n].begin]];
+    for (std::uint32_t k = nodes[n].begin; k < nodes[n].end; ++k) {
+      if (component[bvh.order()[k]] != label[n]) label[n] = kMixed;
+    }
+  }
+  return label;
+}
+
+Edge shortest_to_other(const SphereBvh& bvh, const std::vector<std::uint32_t>& component,
+                       const std::vector<std::uint32_t>& label, std::uint32_t i) {
+  const std::span<const Sphere> spheres = bvh.spheres();
+  Edge best;
+  bvh.walk(
+      spheres[i].center,
+      [&](std::uint32_t node, double bound) {
+        return label[node] != component[i] && bound - spheres[i].radius <= best.gap;
+      },
+      [&](std::uint32_t j) {
+        if (component[j] == component[i]) return;
+        best = std::min(best,
+                        Edge{surface_gap(spheres[i], spheres[j]), std::min(i, j), std::max(i, j)});
+      });
+  return best;
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::uint32_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0u);
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  bool join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+    return a != b;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+std::vector<SpherePair> shortest_bridges(const SphereBvh& bvh, const SphereGraph& graph) {
+  const std::size_t count = bvh.spheres().size();
+  std::vector<std::uint32_t> component;
+  std::uint32_t components = connected_components(graph, component);
+  DisjointSets sets(components);
+  std::vector<std::uint32_t> first = component;  // as labelled before any bridge
+  std::vector<SpherePair> bridges;
+  while (components > 1) {
+    const std::vector<std::uint32_t> label = label_nodes(bvh, component);
+    std::vector<Edge> nearest(count);
+    parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        nearest[i] = shortest_to_other(bvh, component, label, static_cast<std::uint32_t>(i));
+      }
+    });
+    std::vector<Edge> shortest(count);  // by component
+    for (std::size_t i = 0; i < count; ++i) {
+      shortest[component[i]] = std::min(shortest[component[i]], nearest[i]);
+    }
+    for (const Edge& edge : shortest) {
+      if (edge.low == kMixed || !sets.join(first[edge.low], first[edge.high])) continue;
+      bridges.push_back({edge.low, edge.high});
+      --components;
+    }
+    for (std::size_t i = 0; i < count; ++i) component[i] = sets.find(first[i]);
+  }
+  return bridges;
+}
+
+}  // namespace vpm

@@ -1,0 +1,151 @@
+#include "libvpm/graph/build_tool_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libvpm/core/error.h"
+#include "libvpm/graph/cells.h"
+#include "libvpm/graph/edges.h"
+#include "libvpm/graph/hierarchy.h"
+#include "libvpm/graph/point_location_grid.h"
+
+namespace vpm {
+namespace {
+
+constexpr double kEpsilonPart = 0.1;  // of the smallest radius, as in the paper
+// Pieces of the gap: enough for a good share of a single sphere, and for the whole at few spheres.
+constexpr double kPiecesPerSphere = 400, kFewestPieces = 1e6, kMostPieces = 1e8;
+
+// Coordinates of magnitude 1 about the solid's middle; the unit is a power of two, so that scaling
+// a packing by one changes no digit.
+struct Frame {
+  Vec3 origin;
+  double unit = 1;
+  Vec3 to(Vec3 p) const { return (p - origin) / unit; }
+  Vec3 from(Vec3 p) const { return origin + unit * p; }
+  double cubed() const { return unit * unit * unit; }
+};
+
+Frame frame_of(const Solid& solid) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  for (const Vec3& v : solid.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  const Vec3 extent = high - low;
+  return {low + 0.5 * extent,
+          std::ldexp(1.0, std::ilogb(std::max({extent.x, extent.y, extent.z})))};
+}
+
+struct Normalized {
+  Frame frame;
+  Solid solid;
+  MassProperties mass;
+  std::vector<Sphere> spheres;
+};
+
+Normalized normalize(const Packing& packing, const MassProperties& mass) {
+  Normalized n{frame_of(packing.solid), packing.solid, mass, packing.spheres};
+  for (Vec3& v : n.solid.vertices) v = n.frame.to(v);
+  for (Sphere& s : n.spheres) s = {n.frame.to(s.center), s.radius / n.frame.unit};
+  n.mass = {mass.volume / n.frame.cubed(), n.frame.to(mass.center_of_mass)};
+  return n;
+}
+
+void check(const Packing& packing, const MassProperties& mass, const GraphOptions& options) {
+  if (packing.spheres.empty()) refuse("the packing has no spheres; pack the mesh again");
+  if (!(mass.volume > 0)) refuse("the packing's solid has no volume; pack the mesh again");
+  double before = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
+    const Sphere& s = packing.spheres[i];
+    if (!is_finite(s.center) || !(s.radius > 0) || !(s.radius <= before) ||
+        !std::isfinite(s.radius)) {
+      refuse(
+          "sphere " + std::to_string(i) +
+          " of the packing is not finite, or larger than the one before it; pack the mesh again");
+    }
+    before = s.radius;
+  }
+  if (!(options.epsilon >= 0) || !std::isfinite(options.epsilon)) {
+    throw Error(ErrorKind::usage, "epsilon must be a positive length in metres");
+  }
+  if (std::count(options.levels.begin(), options.levels.end(), 0u) > 0) {
+    throw Error(ErrorKind::usage, "a level needs at least one sphere");
+  }
+}
+
+// Ascending, without repetition, none above the whole packing, which is the last.
+std::vector<std::uint32_t> level_counts(const GraphOptions& options, std::uint32_t spheres) {
+  std::vector<std::uint32_t> counts = options.levels;
+  for (std::uint32_t& count : counts) count = std::min(count, spheres);
+  counts.push_back(spheres);
+  std::sort(counts.begin(), counts.end());
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+  return counts;
+}
+
+void fill_graph(const SphereBvh& bvh, const Frame& frame, Level& level) {
+  const SphereGraph edges = epsilon_edges(bvh, level.epsilon / frame.unit);
+  std::vector<std::uint32_t> component;
+  level.components_before = connected_components(edges, component);
+  const std::vector<SpherePair> bridges = shortest_bridges(bvh, edges);
+  level.bridges = static_cast<std::uint32_t>(bridges.size());
+  level.graph = with_edges(edges, bridges);
+}
+
+ShareQuality fill_shares(const Normalized& n, const SphereBvh& bvh, Level& level) {
+  const double pieces =
+      std::clamp(kPiecesPerSphere * level.sphere_count, kFewestPieces, kMostPieces);
+  const Shares shares = find_shares(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
+  for (std::size_t i = 0; i < level.sphere_count; ++i) {
+    level.share_volume.push_back(n.frame.cubed() * shares.volume[i]);
+    level.share_centroid.push_back(n.frame.from(shares.centroid[i]));
+    level.share_reach.push_back(n.frame.unit * shares.reach[i]);
+  }
+  Cells cells = build_cells(bvh.spheres(), shares, std::cbrt(n.mass.volume) / kSamplesPerLength,
+                            n.mass.center_of_mass, n.frame.unit, n.mass.volume);
+  level.block_begin = std::move(cells.block_begin);
+  level.blocks = std::move(cells.blocks);
+  level.samples = std::move(cells.samples);
+  return shares.quality;
+}
+
+}  // namespace
+
+ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
+                           std::vector<ShareQuality>* quality) {
+  const MassProperties mass = mass_properties(packing.solid);
+  check(packing, mass, options);
+  const Normalized n = normalize(packing, mass);
+
+  ToolModel model;
+  model.volume = mass.volume;
+  model.center_of_mass = mass.center_of_mass;
+  model.reach = reach(packing.solid, mass.center_of_mass);
+  model.solid_hash = content_hash(packing.solid);
+  model.spheres = packing.spheres;
+  const auto counts = level_counts(options, static_cast<std::uint32_t>(packing.spheres.size()));
+  for (const std::uint32_t count : counts) {
+    Level level;
+    level.sphere_count = count;
+    level.epsilon =
+        options.epsilon > 0 ? options.epsilon : kEpsilonPart * packing.spheres[count - 1].radius;
+    const SphereBvh bvh(std::span(n.spheres).first(count));
+    const std::span<const Sphere> spheres = std::span(packing.spheres).first(count);
+    fill_graph(bvh, n.frame, level);
+    level.hierarchy = build_hierarchy(spheres);
+    level.grid = build_point_location_grid(spheres);
+    const ShareQuality found = fill_shares(n, bvh, level);
+    if (quality != nullptr) quality->push_back(found);
+    model.levels.push_back(std::move(level));
+    if (options.progress) {
+      options.progress(static_cast<double>(model.levels.size()) /
+                       static_cast<double>(counts.size()));
+    }
+  }
+  return model;
+}
+
+}  // namespace vpm

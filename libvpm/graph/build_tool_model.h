@@ -1,0 +1,31 @@
+// Makes the model that queries load from a packing.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "libvpm/graph/shares.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
+
+namespace vpm {
+
+// Edge of a cell sample in the solid's own size: this many samples fit along cbrt(volume). 40 keeps
+// the volume that a plane cuts off within 0.05 % of the solid.
+inline constexpr double kSamplesPerLength = 40;
+
+struct GraphOptions {
+  double epsilon = 0;                 // m; 0 takes a tenth of each level's smallest radius
+  std::vector<std::uint32_t> levels;  // sphere counts, any order; the full packing always is one
+  std::function<void(double fraction)> progress;
+};
+
+// Fills every level from the largest spheres and the solid of the packing. `quality`, if given,
+// receives one entry per level. Errors: usage for options that mean nothing, refused for a packing
+// that is none. Same bytes for any thread count; a power of two on all coordinates changes
+// exponents only.
+ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
+                           std::vector<ShareQuality>* quality = nullptr);
+
+}  // namespace vpm

@@ -1,0 +1,119 @@
+#include "libvpm/graph/hierarchy.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/graph/batch_neural_gas.h"
+#include "libvpm/graph/enclosing_sphere.h"
+
+namespace vpm {
+namespace {
+
+using Members = std::vector<std::uint32_t>;  // sphere indices, ascending
+
+// A clustering that leaves more than this part in one cluster gains too little and makes deep
+// trees.
+constexpr double kLargestPart = 7.0 / 8;
+
+std::vector<Sphere> gather(std::span<const Sphere> spheres, const Members& members) {
+  std::vector<Sphere> gathered;
+  gathered.reserve(members.size());
+  for (const std::uint32_t i : members) gathered.push_back(spheres[i]);
+  return gathered;
+}
+
+// Quarters along the longest axis of the centres.
+std::vector<std::uint8_t> median_clusters(std::span<const Sphere> spheres) {
+  Vec3 low = spheres.front().center, high = low;
+  for (const Sphere& s : spheres) {
+    low = {std::min(low.x, s.center.x), std::min(low.y, s.center.y), std::min(low.z, s.center.z)};
+    high = {std::max(high.x, s.center.x), std::max(high.y, s.center.y),
+            std::max(high.z, s.center.z)};
+  }
+  const Vec3 extent = high - low;
+  const auto key = [&](std::uint32_t i) {
+    const Vec3 c = spheres[i].center;
+    if (extent.x >= extent.y && extent.x >= extent.z) return c.x;
+    return extent.y >= extent.z ? c.y : c.z;
+  };
+  std::vector<std::uint32_t> order(spheres.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return key(a) != key(b) ? key(a) < key(b) : a < b;
+  });
+  std::vector<std::uint8_t> cluster(spheres.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    cluster[order[k]] = static_cast<std::uint8_t>(k * kPrototypes / order.size());
+  }
+  return cluster;
+}
+
+std::array<Members, kPrototypes> split(const Members& members,
+                                       const std::vector<std::uint8_t>& cluster) {
+  std::array<Members, kPrototypes> parts;
+  for (std::size_t k = 0; k < members.size(); ++k) parts[cluster[k]].push_back(members[k]);
+  return parts;
+}
+
+std::array<Members, kPrototypes> clusters(std::span<const Sphere> spheres, const Members& members) {
+  const std::vector<Sphere> gathered = gather(spheres, members);
+  std::array<Members, kPrototypes> parts = split(members, batch_neural_gas(gathered));
+  const auto largest =
+      std::max_element(parts.begin(), parts.end(),
+                       [](const Members& a, const Members& b) { return a.size() < b.size(); });
+  if (static_cast<double>(largest->size()) <= kLargestPart * static_cast<double>(members.size())) {
+    return parts;
+  }
+  return split(members, median_clusters(gathered));
+}
+
+}  // namespace
+
+Hierarchy build_hierarchy(std::span<const Sphere> spheres) {
+  Hierarchy tree;
+  std::vector<Members> row(1, Members(spheres.size()));  // nodes of one depth, not yet in the tree
+  std::iota(row[0].begin(), row[0].end(), 0u);
+  while (!row.empty()) {
+    const std::size_t first = tree.nodes.size();
+    tree.nodes.resize(first + row.size());
+    std::vector<std::array<Members, kPrototypes>> parts(row.size());
+    parallel_for(row.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        tree.nodes[first + n].bound = enclosing_sphere(gather(spheres, row[n]));
+        if (row[n].size() > kPrototypes) parts[n] = clusters(spheres, row[n]);
+      }
+    });
+    std::vector<Members> next;
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      HierarchyNode& node = tree.nodes[first + n];
+      if (row[n].size() <= kPrototypes) {
+        node.children_are_leaves = 1;
+        node.begin = static_cast<std::uint32_t>(tree.leaves.size());
+        tree.leaves.insert(tree.leaves.end(), row[n].begin(), row[n].end());
+        node.end = static_cast<std::uint32_t>(tree.leaves.size());
+        continue;
+      }
+      node.begin = static_cast<std::uint32_t>(first + row.size() + next.size());
+      for (Members& part : parts[n]) {
+        if (!part.empty()) next.push_back(std::move(part));
+      }
+      node.end = static_cast<std::uint32_t>(first + row.size() + next.size());
+    }
+    row = std::move(next);
+  }
+  return tree;
+}
+
+std::uint32_t depth(const Hierarchy& hierarchy) {
+  std::vector<std::uint32_t> level(hierarchy.nodes.size(), 1);
+  for (std::size_t n = 0; n < level.size(); ++n) {
+    const HierarchyNode& node = hierarchy.nodes[n];
+    if (node.children_are_leaves != 0) continue;
+    for (std::uint32_t child = node.begin; child < node.end; ++child) level[child] = level[n] + 1;
+  }
+  return *std::max_element(level.begin(), level.end());
+}
+
+}  // namespace vpm

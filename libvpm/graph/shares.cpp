@@ -1,0 +1,121 @@
+#include "libvpm/graph/shares.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+
+namespace vpm {
+namespace {
+
+// Spheres that hold more than the solid do not belong to it; less than this is rounding.
+constexpr double kVolumeTolerance = 1e-9;
+constexpr std::size_t kGrain = 256;
+
+// Counting sort by sphere, which keeps the order of lines.
+void group_by_sphere(std::size_t spheres, Shares& shares) {
+  std::vector<GapSegment>& segments = shares.gap.segments;
+  shares.gap_begin.assign(spheres + 1, 0);
+  for (const GapSegment& s : segments) ++shares.gap_begin[s.sphere + 1];
+  for (std::size_t i = 0; i < spheres; ++i) shares.gap_begin[i + 1] += shares.gap_begin[i];
+  std::vector<std::uint32_t> next(shares.gap_begin.begin(), shares.gap_begin.end() - 1);
+  std::vector<GapSegment> grouped(segments.size());
+  for (const GapSegment& s : segments) grouped[next[s.sphere]++] = s;
+  segments = std::move(grouped);
+}
+
+// Sampled, scaled gap of one sphere about its centre.
+struct GapPart {
+  double volume = 0;
+  Vec3 moment;
+};
+
+GapPart gap_of(const Shares& shares, Vec3 center, std::size_t i) {
+  GapPart part;
+  for (std::uint32_t k = shares.gap_begin[i]; k < shares.gap_begin[i + 1]; ++k) {
+    const GapSegment& s = shares.gap.segments[k];
+    const double v = shares.gap_scale * shares.gap.volume(s);
+    part.volume += v;
+    part.moment += v * (s.center - center);
+  }
+  return part;
+}
+
+double reach_of(const Shares& shares, const Sphere& sphere, std::size_t i) {
+  double reach = sphere.radius;
+  for (std::uint32_t k = shares.gap_begin[i]; k < shares.gap_begin[i + 1]; ++k) {
+    const GapSegment& s = shares.gap.segments[k];
+    const Vec3 apart = s.center - sphere.center, half = shares.gap.half_extent(s);
+    reach = std::max(reach, norm({std::abs(apart.x) + half.x, std::abs(apart.y) + half.y,
+                                  std::abs(apart.z) + half.z}));
+  }
+  return reach;
+}
+
+Vec3 centroid_deficit(std::span<const Sphere> spheres, const MassProperties& mass,
+                      const Shares& shares) {
+  Vec3 deficit;
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    deficit += shares.volume[i] * (mass.center_of_mass - shares.centroid[i]);
+  }
+  return deficit;
+}
+
+void sum_shares(std::span<const Sphere> spheres, Shares& shares) {
+  parallel_for(spheres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const GapPart part = gap_of(shares, spheres[i].center, i);
+      shares.volume[i] = volume(spheres[i]) + part.volume;
+      shares.centroid[i] = spheres[i].center + part.moment / shares.volume[i];
+      shares.reach[i] = reach_of(shares, spheres[i], i);
+    }
+  });
+}
+
+}  // namespace
+
+Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereBvh& bvh,
+                   double spacing) {
+  const std::span<const Sphere> spheres = bvh.spheres();
+  double balls = 0;
+  for (const Sphere& s : spheres) balls += volume(s);
+  if (balls > mass.volume * (1 + kVolumeTolerance)) {
+    refuse("the spheres hold " + std::to_string(balls / mass.volume) +
+           " times the volume of the solid, so they overlap or leave it; pack the mesh again");
+  }
+  const double gap_volume = std::max(0.0, mass.volume - balls);
+
+  Shares shares{find_gap_segments(solid, bvh, spacing), {}, 0, {}, {}, {}, {}};
+  group_by_sphere(spheres.size(), shares);
+  double sampled = 0;
+  for (const GapSegment& s : shares.gap.segments) sampled += shares.gap.volume(s);
+  if (!(sampled > 0) && gap_volume > kVolumeTolerance * mass.volume) {
+    refuse("no point was found between the spheres and the surface of the solid, although " +
+           std::to_string(100 * gap_volume / mass.volume) +
+           " % of it lies there; is it turned inside out? pack the mesh again");
+  }
+  shares.gap_scale = sampled > 0 ? gap_volume / sampled : 0;
+
+  shares.volume.resize(spheres.size());
+  shares.centroid.resize(spheres.size());
+  shares.reach.resize(spheres.size());
+  sum_shares(spheres, shares);
+  const Vec3 deficit = centroid_deficit(spheres, mass, shares);
+  shares.quality.gap_fraction = gap_volume / mass.volume;
+  shares.quality.volume_error = (sampled - gap_volume) / mass.volume;
+  shares.quality.centroid_error = norm(deficit) / mass.volume / std::cbrt(mass.volume);
+  // A common shift of the gap makes the first moment exact. It is sampling error and smaller than a
+  // piece, unless the mesh counts a volume twice: then nothing is to be mended here.
+  const Vec3 shift = gap_volume > 0 ? deficit / gap_volume : Vec3{};
+  if (norm(shift) < spacing) {
+    for (GapSegment& s : shares.gap.segments) s.center += shift;
+    sum_shares(spheres, shares);
+  }
+  double sum = 0;
+  for (const double v : shares.volume) sum += v;
+  shares.quality.share_sum_error = std::abs(sum - mass.volume) / mass.volume;
+  return shares;
+}
+
+}  // namespace vpm

@@ -1,0 +1,75 @@
+#include "libvpm/graph/sphere_bvh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+
+double coordinate(Vec3 v, int axis) {
+  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
+}
+
+int longest_axis(Vec3 extent) {
+  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
+  return extent.y >= extent.z ? 1 : 2;
+}
+
+}  // namespace
+
+SphereBvh::SphereBvh(std::span<const Sphere> spheres) : spheres_(spheres), order_(spheres.size()) {
+  std::iota(order_.begin(), order_.end(), 0u);
+  nodes_.reserve(spheres.size());
+  build(0, static_cast<std::uint32_t>(spheres.size()));
+}
+
+std::uint32_t SphereBvh::build(std::uint32_t begin, std::uint32_t end) {
+  const std::uint32_t self = static_cast<std::uint32_t>(nodes_.size());
+  Node node{spheres_[order_[begin]].center, spheres_[order_[begin]].center, begin, end, 0};
+  Vec3 low = node.low, high = node.high;  // of the centres
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const Sphere& s = spheres_[order_[k]];
+    low = {std::min(low.x, s.center.x), std::min(low.y, s.center.y), std::min(low.z, s.center.z)};
+    high = {std::max(high.x, s.center.x), std::max(high.y, s.center.y),
+            std::max(high.z, s.center.z)};
+    node.low = {std::min(node.low.x, s.center.x - s.radius),
+                std::min(node.low.y, s.center.y - s.radius),
+                std::min(node.low.z, s.center.z - s.radius)};
+    node.high = {std::max(node.high.x, s.center.x + s.radius),
+                 std::max(node.high.y, s.center.y + s.radius),
+                 std::max(node.high.z, s.center.z + s.radius)};
+  }
+  nodes_.push_back(node);
+  if (end - begin <= kLeafSize) return self;
+
+  const int axis = longest_axis(high - low);
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  const auto at = [&](std::uint32_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+    const double xa = coordinate(spheres_[a].center, axis),
+                 xb = coordinate(spheres_[b].center, axis);
+    return xa != xb ? xa < xb : a < b;
+  });
+  build(begin, middle);
+  nodes_[self].right = build(middle, end);
+  return self;
+}
+
+std::uint32_t SphereBvh::nearest_surface(Vec3 x, std::uint32_t start) const {
+  std::uint32_t best = start;
+  double distance = surface_distance(x, spheres_[start]);
+  walk(
+      x, [&](std::uint32_t, double bound) { return bound <= distance; },
+      [&](std::uint32_t i) {
+        const double d = surface_distance(x, spheres_[i]);
+        if (d < distance || (d == distance && i < best)) {
+          distance = d;
+          best = i;
+        }
+      });
+  return best;
+}
+
+}  // namespace vpm
