@@ -1,0 +1,73 @@
+#include "tools/bench/report.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+
+namespace vpm::bench {
+namespace {
+
+std::string text_of(const Table::Value& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  char number[32];
+  std::snprintf(number, sizeof number, "%.9g", std::get<double>(value));
+  return number;
+}
+
+// The first "model name" that the kernel tells, or nothing.
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.rfind("model name", 0) == 0 && colon != std::string::npos)
+      return line.substr(colon + 2);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string to_csv(const Table& table) {
+  std::string text;
+  for (const std::string& column : table.columns) text += (text.empty() ? "" : ",") + column;
+  text += '\n';
+  for (const auto& row : table.rows) {
+    std::string line;
+    for (const Table::Value& value : row)
+      line += (&value == row.data() ? "" : ",") + text_of(value);
+    text += line + '\n';
+  }
+  return text;
+}
+
+nlohmann::json to_json(const Report& report, const std::string& command) {
+  return {{"suite", report.suite},
+          {"version", VPM_VERSION},
+          {"commit", VPM_COMMIT},
+          {"command", command},
+          {"machine",
+           {{"processor", processor_name()},
+            {"cores", std::thread::hardware_concurrency()},
+            {"compiler", VPM_COMPILER},
+            {"build_type", VPM_BUILD_TYPE}}},
+          {"settings", report.settings},
+          {"results", report.results}};
+}
+
+void write(const Report& report, const std::string& command, const std::string& folder) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) {
+    throw Error(ErrorKind::cannot_write,
+                "cannot make the folder " + folder + ": " + fault.message());
+  }
+  const std::string stem = folder + "/" + report.suite;
+  file::write_all(stem + ".json", std::string_view(to_json(report, command).dump(2) + "\n"));
+  file::write_all(stem + ".csv", std::string_view(to_csv(report.table)));
+}
+
+}  // namespace vpm::bench

@@ -1,0 +1,34 @@
+// What a suite measured: a table for plots and JSON for the record.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace vpm::bench {
+
+struct Table {
+  using Value = std::variant<std::string, double>;
+  std::vector<std::string> columns;
+  std::vector<std::vector<Value>> rows;
+};
+
+struct Report {
+  std::string suite;
+  nlohmann::json settings = nlohmann::json::object();  // what was run: sizes, seeds, counts
+  nlohmann::json results = nlohmann::json::array();
+  Table table;
+  std::string summary;  // for the terminal
+};
+
+// Comma-separated with a header line; numbers with 9 digits, text without commas.
+std::string to_csv(const Table& table);
+
+// Suite, version, commit, machine, compiler, command, settings, results. No clock time.
+nlohmann::json to_json(const Report& report, const std::string& command);
+
+// Writes <folder>/<suite>.json and .csv; makes the folder. Throws Error(cannot_write).
+void write(const Report& report, const std::string& command, const std::string& folder);
+
+}  // namespace vpm::bench

@@ -1,0 +1,27 @@
+// Order statistics of measured samples.
+#pragma once
+
+#include <vector>
+
+namespace vpm::bench {
+
+struct Spread {
+  double median = 0, quartile1 = 0, quartile3 = 0, min = 0, max = 0;
+};
+
+// Quartiles interpolate between neighbouring samples. `samples` must not be empty.
+Spread spread_of(std::vector<double> samples);
+
+// Collects errors: their mean and their worst.
+class MeanAndWorst {
+ public:
+  void add(double value);
+  double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
+  double worst() const { return worst_; }
+
+ private:
+  double sum_ = 0, worst_ = 0;
+  int count_ = 0;
+};
+
+}  // namespace vpm::bench

@@ -1,0 +1,25 @@
+// The suites of vpm-bench.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tools/bench/report.h"
+
+namespace vpm::bench {
+
+struct SuiteOptions {
+  bool quick = false;  // fewer spheres, poses and runs: seconds instead of minutes
+  std::function<void(double fraction)> progress;
+};
+
+// Throws Error(usage) naming the suites there are.
+Report run_suite(const std::string& name, const SuiteOptions& options);
+
+// Errors of volume, force and torque against the truth, for `paper` and `refined`.
+Report run_accuracy(const SuiteOptions& options);
+
+// Times of every stage from the mesh to the wrench, with 1 and 2 threads.
+Report run_timing(const SuiteOptions& options);
+
+}  // namespace vpm::bench

@@ -1,0 +1,156 @@
+// Each stage of the main job on a scene that is always at hand: a twisted torus of 0.25 m with 50k
+// triangles and a noisy depth image of a tilted wall, 307 200 points.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/graph/build_tool_model.h"
+#include "libvpm/packing/packer.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/shapes.h"
+#include "tools/bench/penetration_case.h"
+#include "tools/bench/statistics.h"
+#include "tools/bench/suite.h"
+
+namespace vpm::bench {
+namespace {
+
+// Runs for a median: fast stages take many, slow ones few.
+struct Runs {
+  int slow, fast;
+};
+
+std::vector<double> milliseconds_of(int runs, const std::function<void()>& stage) {
+  stage();  // warm-up
+  std::vector<double> times;
+  for (int k = 0; k < runs; ++k) {
+    const auto begin = std::chrono::steady_clock::now();
+    stage();
+    const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - begin;
+    times.push_back(took.count());
+  }
+  return times;
+}
+
+class Timing {
+ public:
+  explicit Timing(const SuiteOptions& options)
+      : options_(options),
+        runs_(options.quick ? Runs{1, 5} : Runs{3, 31}),
+        sizes_(options.quick ? std::vector<std::size_t>{250}
+                             : std::vector<std::size_t>{1000, 10000}) {
+    report_.suite = "timing";
+    report_.settings = {{"quick", options.quick},   {"runs_slow", runs_.slow},
+                        {"runs_fast", runs_.fast},  {"spheres", sizes_},
+                        {"shape", "twisted torus"}, {"scene", "tilted-wall"}};
+    report_.table.columns = {"stage",        "spheres", "threads", "median_ms", "quartile1_ms",
+                             "quartile3_ms", "min_ms",  "max_ms",  "runs"};
+    report_.summary =
+        "stage                      spheres       1 thread: median [quartiles] ms      2 threads"
+        "   ratio\n";
+  }
+
+  Report run() {
+    time_cloud();
+    for (const std::size_t spheres : sizes_) time_tool(spheres);
+    return std::move(report_);
+  }
+
+ private:
+  // Times one stage with 1 and with 2 threads.
+  void time(const std::string& stage, std::size_t spheres, int runs,
+            const std::function<void()>& body) {
+    Spread by_threads[2];
+    for (const int threads : {1, 2}) {
+      set_thread_count(threads);
+      const Spread s = by_threads[threads - 1] = spread_of(milliseconds_of(runs, body));
+      report_.table.rows.push_back({stage, static_cast<double>(spheres),
+                                    static_cast<double>(threads), s.median, s.quartile1,
+                                    s.quartile3, s.min, s.max, static_cast<double>(runs)});
+      report_.results.push_back({{"stage", stage},
+                                 {"spheres", spheres},
+                                 {"threads", threads},
+                                 {"median_ms", s.median},
+                                 {"quartile1_ms", s.quartile1},
+                                 {"quartile3_ms", s.quartile3},
+                                 {"min_ms", s.min},
+                                 {"max_ms", s.max},
+                                 {"runs", runs}});
+    }
+    set_thread_count(0);
+    char line[160];
+    std::snprintf(line, sizeof line, "%-26s %7zu %12.3f [%.3f, %.3f] %15.3f %7.2f\n", stage.c_str(),
+                  spheres, by_threads[0].median, by_threads[0].quartile1, by_threads[0].quartile3,
+                  by_threads[1].median, by_threads[0].median / by_threads[1].median);
+    report_.summary += line;
+    if (options_.progress) {
+      const double stages = 4 + 5 * static_cast<double>(sizes_.size());
+      options_.progress(static_cast<double>(++done_) / stages);
+    }
+  }
+
+  void time_cloud() {
+    const DepthImage depth =
+        synthetic::render_with_kinect_noise(*scene_.surface, scene_.camera, kNoiseSeed);
+    std::vector<Vec3f> normals;
+    for (const NormalMethod method : {NormalMethod::pca, NormalMethod::inverse_depth}) {
+      NormalOptions options;
+      options.method = method;
+      time("normals " + to_text(method), 0, runs_.fast,
+           [&] { normals = estimate_normals(depth, scene_.camera.intrinsics, options); });
+    }
+    time("cloud assembly", 0, runs_.fast,
+         [&] { cloud_ = assemble_cloud(depth, scene_.camera, normals); });
+    time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
+  }
+
+  void time_tool(std::size_t spheres) {
+    Packing packing;
+    packing.solid = solid_;
+    PackOptions pack_options;
+    pack_options.spheres = spheres;
+    time("pack", spheres, runs_.slow,
+         [&] { packing.spheres = pack(packing.solid, pack_options).spheres; });
+    ToolModel model;
+    time("graph", spheres, runs_.slow, [&] { model = build_tool_model(packing, GraphOptions{}); });
+
+    const PreparedCloud cloud(cloud_);
+    const Pose pose =
+        make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
+    const auto time_query = [&](const char* stage, Measure measure, PointLocation location) {
+      QueryOptions options;
+      options.measure = measure;
+      options.location = location;
+      Query query(model, options);
+      time(stage, spheres, runs_.fast, [&] { query.run(cloud, pose); });
+    };
+    time_query("query refined", Measure::refined, PointLocation::grid);
+    time_query("query paper", Measure::paper, PointLocation::grid);
+    time_query("query paper, hierarchy", Measure::paper, PointLocation::hierarchy);
+  }
+
+  static constexpr std::uint64_t kNoiseSeed = 1;
+  static constexpr int kPoses = 9;  // the middle one is 3/8 of the tool's height deep
+
+  const SuiteOptions& options_;
+  Runs runs_;
+  std::vector<std::size_t> sizes_;
+  Report report_;
+  int done_ = 0;
+  const synthetic::Scene scene_ = synthetic::make_scene("tilted-wall");
+  const Solid solid_ = synthetic::make_twisted_torus(0.09, 0.05, 3, 6250);
+  Cloud cloud_;
+};
+
+}  // namespace
+
+Report run_timing(const SuiteOptions& options) {
+  return Timing(options).run();
+}
+
+}  // namespace vpm::bench
