@@ -1,0 +1,52 @@
+// A bounding-volume hierarchy over triangles: closest points in logarithmic time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "libvpm/core/vec3.h"
+#include "libvpm/model/solid.h"
+
+namespace vpm {
+
+struct SurfacePoint {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  Vec3 point;
+  double distance = std::numeric_limits<double>::infinity();
+  std::uint32_t triangle = kNone;
+};
+
+// Four boxes per node. Box corners are floats about the box centre of the whole mesh, rounded
+// outward, so that a far origin costs nothing; triangles stay in double precision.
+class TriangleBvh {
+ public:
+  struct Node {
+    float low[3][4], high[3][4];
+    // count[k] == 0: child[k] is a node (0 where the slot is empty); otherwise triangles
+    // child[k] .. child[k] + count[k] of corners().
+    std::uint32_t child[4], count[4];
+  };
+  struct Corners {
+    Vec3 a, b, c;
+    std::uint32_t triangle;  // its index in the mesh
+  };
+
+  // Needs at least one triangle and finite vertices; throws Error(refused) otherwise.
+  TriangleBvh(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+
+  // The closest surface point nearer than `within`; triangle == kNone where there is none. Exact
+  // in double precision; of equally near triangles any, but always the same. Thread-safe.
+  SurfacePoint closest(Vec3 x, double within = std::numeric_limits<double>::infinity()) const;
+
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<Corners>& corners() const { return corners_; }
+
+ private:
+  struct Build;
+  std::vector<Node> nodes_;  // nodes_[0] is the root
+  std::vector<Corners> corners_;
+  Vec3 origin_;
+};
+
+}  // namespace vpm

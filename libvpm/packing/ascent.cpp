@@ -1,0 +1,89 @@
+#include "libvpm/packing/ascent.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "libvpm/packing/max_min_step.h"
+
+namespace vpm {
+namespace {
+
+constexpr int kMaxSteps = 60;           // quadratic convergence needs about ten
+constexpr double kConverged = 1e-12;    // relative gain that is not worth a step
+constexpr double kBox = 0.3;            // trust region: |delta| < 0.52 d stays inside of the ball
+constexpr double kSmallestBox = 1e-10;  // relative to d
+constexpr std::size_t kMostObstacles = 20;
+
+// Obstacles met on the way and their linearisations about the current point.
+struct Contacts {
+  std::vector<Obstacle> obstacles;
+  std::vector<LinearBound> bounds;
+
+  void add(const Space& space, Obstacle obstacle, Vec3 x) {
+    obstacles.push_back(obstacle);
+    bounds.push_back(linearised(space, obstacle, x));
+  }
+  bool has(Obstacle obstacle) const {
+    return std::find(obstacles.begin(), obstacles.end(), obstacle) != obstacles.end();
+  }
+  // Linearises about a new point and forgets what no step within `horizon` can meet.
+  void move_to(const Space& space, Vec3 x, double horizon) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      const LinearBound bound = linearised(space, obstacles[i], x);
+      if (bound.value > horizon) continue;
+      obstacles[kept] = obstacles[i];
+      bounds[kept++] = bound;
+    }
+    obstacles.resize(kept);
+    bounds.resize(kept);
+    while (obstacles.size() > kMostObstacles) {
+      const auto slackest =
+          std::max_element(bounds.begin(), bounds.end(),
+                           [](const auto& a, const auto& b) { return a.value < b.value; });
+      obstacles.erase(obstacles.begin() + (slackest - bounds.begin()));
+      bounds.erase(slackest);
+    }
+  }
+
+ private:
+  static LinearBound linearised(const Space& space, Obstacle obstacle, Vec3 x) {
+    if (obstacle.kind == Obstacle::Kind::sphere) {
+      const Sphere& s = space.spheres()[obstacle.index];
+      const double distance = norm(x - s.center);
+      return {normalized_or_zero(x - s.center), distance - s.radius};
+    }
+    const Vec3 from = x - space.closest_on_triangle(obstacle.index, x);
+    return {normalized_or_zero(from), norm(from)};
+  }
+};
+
+}  // namespace
+
+Sphere ascend(const Space& space, Vec3 start, const Clearance& from) {
+  Sphere best{start, from.value};
+  if (from.nearest.kind == Obstacle::Kind::none) return best;
+  Contacts contacts;
+  contacts.add(space, from.nearest, start);
+  double box = kBox * best.radius;
+  for (int i = 0; i < kMaxSteps && box > kSmallestBox * best.radius; ++i) {
+    const MaxMinStep step = max_min_step(contacts.bounds, box);
+    if (!(step.value - best.radius > kConverged * best.radius)) break;
+    const Vec3 x = best.center + step.delta;
+    const Clearance there = space.clearance(x);
+    if (there.value > best.radius) {
+      best = {x, there.value};
+      box = kBox * best.radius;
+      if (there.nearest.kind == Obstacle::Kind::none) break;
+      contacts.move_to(space, x, best.radius * (1 + 4 * kBox));
+      if (!contacts.has(there.nearest)) contacts.add(space, there.nearest, x);
+    } else if (there.nearest.kind == Obstacle::Kind::none || contacts.has(there.nearest)) {
+      box *= 0.5;
+    } else {
+      contacts.add(space, there.nearest, best.center);
+    }
+  }
+  return best;
+}
+
+}  // namespace vpm

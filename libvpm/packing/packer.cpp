@@ -1,0 +1,148 @@
+#include "libvpm/packing/packer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/packing/solid_distance.h"
+#include "libvpm/packing/space.h"
+
+namespace vpm {
+namespace {
+
+// All spheres of a band of radii are found together. The first spheres decide the coverage of a
+// small packing, so their bands are narrow; later ones only need the right order of magnitude.
+constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
+constexpr std::size_t kFirstSpheres = 200;
+// A sphere that another of its round has shrunk by more than rounding is looked for again.
+constexpr double kUnchanged = 1 - 1e-9;
+// Radii shrink by this share, so that rounding makes no overlap.
+constexpr double kMargin = 1e-12;
+constexpr std::size_t kBlocksPerTask = 4;
+
+bool larger(const Sphere& a, const Sphere& b) {
+  if (a.radius != b.radius) return a.radius > b.radius;
+  if (a.center.x != b.center.x) return a.center.x < b.center.x;
+  if (a.center.y != b.center.y) return a.center.y < b.center.y;
+  return a.center.z < b.center.z;
+}
+
+void check(const PackOptions& options) {
+  const auto wrong = [](const std::string& what) { throw Error(ErrorKind::usage, what); };
+  if (!(options.coverage > 0 && options.coverage <= 1))
+    wrong("the coverage to reach must be above 0 and at most 1");
+  if (!(options.min_radius >= 0) || !std::isfinite(options.min_radius))
+    wrong("the smallest radius must be 0 or a positive number");
+  if (!(options.max_radius > 0)) wrong("the largest radius must be a positive number");
+  if (options.max_radius < options.min_radius)
+    wrong("the largest radius must not be below the smallest");
+}
+
+// Places all spheres of at least `radius` that fit, largest first as far as they compete.
+void fill_band(Space& space, double radius, double cap) {
+  std::vector<std::uint32_t> blocks = space.promising(radius);
+  while (!blocks.empty()) {
+    std::vector<std::vector<Sphere>> found(blocks.size());
+    parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) space.search(blocks[i], radius, cap, found[i]);
+    });
+    std::vector<Sphere> candidates;
+    for (const auto& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
+    std::sort(candidates.begin(), candidates.end(), larger);
+    for (const Sphere& s : candidates) {
+      const double room = space.clearance(s.center).value;
+      if (room >= kUnchanged * s.radius) space.place({s.center, std::min(room, s.radius)}, blocks);
+    }
+    std::sort(blocks.begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+    std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
+  }
+}
+
+class Packer {
+ public:
+  Packer(const Solid& solid, const PackOptions& options)
+      : options_(options),
+        distance_(solid),
+        frame_(distance_.frame()),
+        volume_(mass_properties(solid).volume),
+        smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
+        cap_(options.max_radius / frame_.scale),
+        space_(distance_, smallest_) {
+    if (!(volume_ > 0)) refuse("the solid has no volume; check that its triangles face outward");
+  }
+
+  PackResult run() {
+    double radius = std::min<double>(space_.bound(), cap_);
+    while (!enough() && radius > smallest_) {
+      const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
+      radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
+      space_.focus(radius);
+      const std::size_t before = space_.spheres().size();
+      fill_band(space_, radius, cap_);
+      for (std::size_t i = before; i < space_.spheres().size(); ++i)
+        filled_ += volume(in_metres(space_.spheres()[i]));
+      if (options_.progress) options_.progress(fraction());
+    }
+    return result();
+  }
+
+ private:
+  // The rounding of the way back to metres comes off the radius.
+  Sphere in_metres(const Sphere& s) const {
+    return {frame_.to_solid(s.center),
+            (1 - kMargin) * s.radius * frame_.scale - 2 * frame_.rounding};
+  }
+  double fraction() const {
+    return std::min(1.0, std::max(double(space_.spheres().size()) / double(options_.spheres),
+                                  filled_ / (volume_ * options_.coverage)));
+  }
+  bool enough() const {
+    return space_.spheres().size() >= options_.spheres || filled_ >= options_.coverage * volume_;
+  }
+
+  // The bands are complete, so the largest spheres come out the same however many are asked for.
+  PackResult result() const {
+    std::vector<Sphere> all;
+    for (const Sphere& s : space_.spheres())
+      if (const Sphere m = in_metres(s); m.radius > 0) all.push_back(m);
+    std::sort(all.begin(), all.end(), larger);
+    PackResult result;
+    result.stop = options_.min_radius / frame_.scale >= kNumericalFloor
+                      ? StopReason::min_radius
+                      : StopReason::numerical_floor;
+    double filled = 0;
+    for (const Sphere& s : all) {
+      if (result.spheres.size() == options_.spheres) break;
+      filled += volume(s);
+      result.spheres.push_back(s);
+      if (filled >= options_.coverage * volume_) {
+        result.stop = StopReason::coverage;
+        break;
+      }
+    }
+    if (result.stop != StopReason::coverage && result.spheres.size() == options_.spheres)
+      result.stop = StopReason::spheres;
+    result.coverage = filled / volume_;
+    return result;
+  }
+
+  const PackOptions& options_;
+  SolidDistance distance_;
+  UnitFrame frame_;
+  double volume_;          // m^3
+  double smallest_, cap_;  // in the unit frame
+  Space space_;
+  double filled_ = 0;  // m^3
+};
+
+}  // namespace
+
+PackResult pack(const Solid& solid, const PackOptions& options) {
+  check(options);
+  return Packer(solid, options).run();
+}
+
+}  // namespace vpm

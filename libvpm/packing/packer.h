@@ -1,0 +1,51 @@
+// Greedy sphere packing: always the largest sphere that fits into what is left of the solid.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "libvpm/model/solid.h"
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+
+// Metres. Spheres smaller than this share of the solid's longest side are not looked for.
+inline constexpr double kNumericalFloor = 0x1p-18;
+
+struct PackOptions {
+  std::size_t spheres = 1000;  // as many are delivered unless another limit comes first
+  double coverage = 1;         // stop where the spheres fill this share of the solid's volume
+  double min_radius = 0;       // m; no smaller sphere
+  double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
+  std::function<void(double fraction)> progress;  // called between rounds, on the calling thread
+};
+
+enum class StopReason {
+  spheres,          // as many as asked for
+  coverage,         // the coverage asked for is reached
+  min_radius,       // no sphere of the smallest radius fits any more
+  numerical_floor,  // what is left is below kNumericalFloor of the longest side
+};
+
+struct PackResult {
+  std::vector<Sphere> spheres;  // largest first; ties by centre
+  double coverage = 0;          // volume of the spheres / volume of the solid
+  StopReason stop = StopReason::spheres;
+};
+
+// No two spheres overlap and none protrudes: radii are exact distances less a rounding margin.
+// Every centre is a local maximum of the distance to the mesh and to the larger spheres (where
+// max_radius does not cut it). A sphere is placed before another that is more than about one
+// hundredth larger only where a local search has missed the larger one.
+//
+// Inside is what the mesh encloses a number of times other than zero; spheres respect every
+// triangle, also those of a self-intersecting mesh that lie inside of its union.
+//
+// Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
+// bit. A result with fewer spheres is a prefix of one with more, if the other options are the same.
+// Throws Error: usage for limits that are not positive numbers, refused for a solid without volume.
+PackResult pack(const Solid& solid, const PackOptions& options);
+
+}  // namespace vpm

@@ -1,0 +1,56 @@
+#include "libvpm/packing/solid_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libvpm/core/error.h"
+#include "libvpm/mesh/closest_point.h"
+
+namespace vpm {
+namespace {
+
+UnitFrame unit_frame(const Solid& solid) {
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (const Vec3 p : solid.vertices) {
+    if (!is_finite(p)) refuse("the solid has a vertex that is not finite; repair the mesh");
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3 side = high - low;
+  const double longest = std::max({side.x, side.y, side.z});
+  if (!(longest > 0) || !std::isfinite(longest)) {
+    refuse("the solid has no extent; a packing needs a mesh that encloses a volume");
+  }
+  UnitFrame frame;
+  frame.center = low + 0.5 * side;
+  frame.scale = std::ldexp(1.0, std::ilogb(longest) + 1);
+  const double farthest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z),
+                                    std::abs(high.x), std::abs(high.y), std::abs(high.z)});
+  // Three coordinates, each rounded on both ways by at most one unit in the last place.
+  frame.rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(farthest, frame.scale);
+  return frame;
+}
+
+std::vector<Vec3> in_unit_frame(const Solid& solid, const UnitFrame& frame) {
+  std::vector<Vec3> vertices;
+  vertices.reserve(solid.vertices.size());
+  for (const Vec3 p : solid.vertices) vertices.push_back(frame.to_unit(p));
+  return vertices;
+}
+
+}  // namespace
+
+SolidDistance::SolidDistance(const Solid& solid)
+    : frame_(unit_frame(solid)),
+      vertices_(in_unit_frame(solid, frame_)),
+      triangles_(solid.triangles),
+      bvh_(vertices_, triangles_),
+      winding_(bvh_) {}
+
+Vec3 SolidDistance::closest_on(std::uint32_t triangle, Vec3 x) const {
+  const auto [a, b, c] = triangles_[triangle];
+  return closest_point_on_triangle(x, vertices_[a], vertices_[b], vertices_[c]);
+}
+
+}  // namespace vpm

@@ -1,0 +1,42 @@
+// Distance to the boundary of a solid, in the packer's own frame.
+//
+// The frame puts the solid's box in the middle of the unit cube and scales by a power of two, so
+// that a solid 2^k times as large gives the same numbers to the bit.
+#pragma once
+
+#include "libvpm/mesh/triangle_bvh.h"
+#include "libvpm/mesh/winding_number.h"
+#include "libvpm/model/solid.h"
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+
+struct UnitFrame {
+  Vec3 center;          // of the solid's box
+  double scale = 1;     // a power of two: metres per unit
+  double rounding = 0;  // metres: bound of what coordinates lose on the way to the frame and back
+  Vec3 to_unit(Vec3 p) const { return (p - center) / scale + Vec3{0.5, 0.5, 0.5}; }
+  Vec3 to_solid(Vec3 p) const { return center + scale * (p - Vec3{0.5, 0.5, 0.5}); }
+};
+
+class SolidDistance {
+ public:
+  // Throws Error(refused) for a solid without triangles, extent or finite coordinates.
+  explicit SolidDistance(const Solid& solid);
+  SolidDistance(const SolidDistance&) = delete;
+  SolidDistance& operator=(const SolidDistance&) = delete;
+
+  const UnitFrame& frame() const { return frame_; }
+  SurfacePoint closest(Vec3 x, double within) const { return bvh_.closest(x, within); }
+  Vec3 closest_on(std::uint32_t triangle, Vec3 x) const;
+  bool inside(Vec3 x) const { return winding_.inside(x); }
+
+ private:
+  UnitFrame frame_;
+  std::vector<Vec3> vertices_;
+  std::vector<Triangle> triangles_;
+  TriangleBvh bvh_;
+  WindingNumber winding_;
+};
+
+}  // namespace vpm

@@ -1,0 +1,277 @@
+#include "libvpm/packing/space.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/packing/ascent.h"
+
+namespace vpm {
+namespace {
+
+// Blocks are cut when they are wider than this many radii: then between 2 and 4 of them.
+constexpr double kBlockWidth = 4;
+// Spheres are listed up to this share of the block's width away. The radius looked for is at most
+// half of the width; the rest is for maxima that a search of a larger radius has missed.
+constexpr double kReach = 0.6;
+// Cells whose half diagonal is below this share of the radius are searched instead of cut.
+constexpr float kLeaf = 0.125f;
+constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
+constexpr std::size_t kBlocksPerTask = 64;
+
+double edge(int level) {
+  return std::ldexp(1.0, -level);
+}
+
+// Half the diagonal of a cube, rounded up.
+float half_diagonal(int level) {
+  return static_cast<float>(0.866025404 * edge(level));
+}
+
+BlockIndex::Coordinates cube_of(Vec3 x, int level) {
+  const double scale = std::ldexp(1.0, level);
+  const auto index = [&](double v) {
+    return static_cast<std::uint32_t>(std::clamp(v * scale, 0.0, scale - 1));
+  };
+  return {index(x.x), index(x.y), index(x.z)};
+}
+
+Vec3 cube_center(BlockIndex::Coordinates c, int level) {
+  return edge(level) * Vec3{c.x + 0.5, c.y + 0.5, c.z + 0.5};
+}
+
+// The centre that puts a sphere of radius `cap` against its nearest obstacle.
+Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
+  return {x - (at.value - cap) * at.away, cap};
+}
+
+}  // namespace
+
+Space::Space(const SolidDistance& solid, double smallest)
+    : solid_(solid), smallest_(static_cast<float>(smallest)) {
+  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, false};
+  root.d = cell_distance(root, {});
+  root.bound = root.d + half_diagonal(0);
+  blocks_.push_back({{}, {root}});
+  bounds_ = {root.bound};
+  index_.assign({{0, 0, 0}});
+}
+
+float Space::bound() const {
+  return bounds_.empty() ? 0 : *std::max_element(bounds_.begin(), bounds_.end());
+}
+
+void Space::focus(double radius) {
+  while (edge(level_) > kBlockWidth * radius && level_ < kMaxBlockLevel) split_blocks();
+}
+
+std::vector<std::uint32_t> Space::promising(double radius) const {
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t b = 0; b < bounds_.size(); ++b)
+    if (is_promising(b, radius)) blocks.push_back(b);
+  return blocks;
+}
+
+float Space::cell_distance(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+  const Vec3 x = cell.center();
+  double d = reach_;
+  for (const std::uint32_t i : near)
+    d = std::min(d, norm(x - spheres_[i].center) - spheres_[i].radius);
+  if (d + half_diagonal(cell.level) > smallest_ && d > 0)
+    d = std::min(d, solid_.closest(x, d).distance);
+  return static_cast<float>(d);
+}
+
+void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
+                  std::vector<Cell>& parts) const {
+  const auto level = static_cast<std::uint8_t>(cell.level + 1);
+  const auto offset = static_cast<float>(edge(level + 1));
+  for (int octant = 0; octant < 8; ++octant) {
+    Cell part{cell.x + (octant & 1 ? offset : -offset),
+              cell.y + (octant & 2 ? offset : -offset),
+              cell.z + (octant & 4 ? offset : -offset),
+              0,
+              0,
+              level,
+              cell.inside};
+    part.d = cell_distance(part, near);
+    part.bound = part.d + half_diagonal(level);
+    if (part.bound > smallest_) parts.push_back(part);
+  }
+}
+
+void Space::split_blocks() {
+  const int level = level_ + 1;
+  const double reach = kReach * edge(level);
+  const double near = reach + half_diagonal(level);
+  std::vector<std::array<Block, 8>> parts(blocks_.size());
+  parallel_for(blocks_.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<Cell> cells;
+    for (std::size_t b = begin; b < end; ++b) {
+      Block& block = blocks_[b];
+      const Vec3 center = cube_center(index_[static_cast<std::uint32_t>(b)], level_);
+      cells.clear();
+      for (const Cell& cell : block.cells) {
+        if (cell.level == level_) {
+          split(cell, block.spheres, cells);
+        } else {
+          cells.push_back(cell);
+        }
+      }
+      for (const Cell& cell : cells) {
+        parts[b][(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
+                 (cell.z > center.z ? 4u : 0u)]
+            .cells.push_back(cell);
+      }
+      const double offset = edge(level + 1);
+      for (unsigned octant = 0; octant < 8; ++octant) {
+        Block& part = parts[b][octant];
+        if (part.cells.empty()) continue;
+        part.cells.shrink_to_fit();
+        const Vec3 at = center + Vec3{octant & 1 ? offset : -offset, octant & 2 ? offset : -offset,
+                                      octant & 4 ? offset : -offset};
+        for (const std::uint32_t i : block.spheres)
+          if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
+        part.spheres.shrink_to_fit();
+      }
+      block = {};
+    }
+  });
+
+  std::vector<BlockIndex::Coordinates> coordinates;
+  std::vector<Block> blocks;
+  for (std::uint32_t b = 0; b < parts.size(); ++b) {
+    const BlockIndex::Coordinates c = index_[b];
+    for (unsigned octant = 0; octant < 8; ++octant) {
+      if (parts[b][octant].cells.empty()) continue;
+      coordinates.push_back(
+          {2 * c.x + (octant & 1), 2 * c.y + ((octant >> 1) & 1), 2 * c.z + (octant >> 2)});
+      blocks.push_back(std::move(parts[b][octant]));
+    }
+  }
+  blocks_ = std::move(blocks);
+  index_.assign(std::move(coordinates));
+  level_ = level;
+  reach_ = reach;
+  bounds_.resize(blocks_.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) bounds_[b] = block_bound(blocks_[b]);
+}
+
+float Space::block_bound(const Block& block) {
+  float bound = 0;
+  for (const Cell& cell : block.cells) bound = std::max(bound, cell.bound);
+  return bound;
+}
+
+// Cuts the promising cells of a block down to leaves; all others go to `rest`.
+void Space::refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
+                   std::vector<Cell>& rest) const {
+  std::vector<Cell> pending;
+  for (const Cell& cell : block.cells) (cell.bound < radius ? rest : pending).push_back(cell);
+  while (!pending.empty()) {
+    Cell cell = pending.back();
+    pending.pop_back();
+    const float half = half_diagonal(cell.level);
+    if (cell.bound < radius) {
+      rest.push_back(cell);
+      continue;
+    }
+    // The mesh does not meet a cell that is farther from it than its corners.
+    if (!cell.inside && cell.d > half) {
+      if (!solid_.inside(cell.center())) continue;
+      cell.inside = true;
+    }
+    if (cell.inside && (cell.d >= cap || half <= kLeaf * radius)) {
+      leaves.push_back(cell);
+    } else {
+      split(cell, block.spheres, pending);
+    }
+  }
+}
+
+void Space::search(std::uint32_t block, double radius, double cap, std::vector<Sphere>& found) {
+  std::vector<Cell> leaves, cells;
+  refine(blocks_[block], radius, cap, leaves, cells);
+  std::sort(leaves.begin(), leaves.end(), [](const Cell& a, const Cell& b) {
+    if (a.d != b.d) return a.d > b.d;
+    if (a.x != b.x) return a.x < b.x;
+    if (a.y != b.y) return a.y < b.y;
+    return a.z < b.z;
+  });
+  const std::size_t before = found.size();
+  for (Cell& leaf : leaves) {
+    const Vec3 x = leaf.center();
+    const float half = half_diagonal(leaf.level);
+    const bool taken =
+        std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
+                    [&](const Sphere& s) { return norm(x - s.center) - s.radius + half < radius; });
+    if (!taken) {
+      const Clearance at = clearance(x);
+      const Sphere best = at.value >= cap ? against_obstacle(x, at, cap) : ascend(*this, x, at);
+      if (best.radius >= radius) {
+        found.push_back({best.center, std::min(best.radius, cap)});
+      } else {
+        leaf.bound = std::min(static_cast<float>(best.radius),
+                              std::nextafter(static_cast<float>(radius), 0.0f));
+      }
+    }
+    cells.push_back(leaf);
+  }
+  cells.shrink_to_fit();
+  blocks_[block].cells = std::move(cells);
+  bounds_[block] = block_bound(blocks_[block]);
+}
+
+Clearance Space::clearance(Vec3 x) const {
+  const std::uint32_t b = index_.find(cube_of(x, level_));
+  if (b == BlockIndex::kNone) return {-1, {}, {}};
+  Clearance best{reach_, {}, {}};
+  for (const std::uint32_t i : blocks_[b].spheres) {
+    const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
+    if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};
+  }
+  if (best.value > 0) {
+    if (const SurfacePoint p = solid_.closest(x, best.value); p.triangle != SurfacePoint::kNone) {
+      return {p.distance, {Obstacle::Kind::triangle, p.triangle}, normalized_or_zero(x - p.point)};
+    }
+  }
+  if (best.nearest.kind == Obstacle::Kind::sphere)
+    best.away = normalized_or_zero(x - spheres_[best.nearest.index].center);
+  return best;
+}
+
+void Space::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
+  const auto number = static_cast<std::uint32_t>(spheres_.size());
+  spheres_.push_back(sphere);
+  const double around = sphere.radius + reach_;
+  const BlockIndex::Coordinates low = cube_of(sphere.center - Vec3{around, around, around}, level_);
+  const BlockIndex::Coordinates high =
+      cube_of(sphere.center + Vec3{around, around, around}, level_);
+  const double near = around + half_diagonal(level_);
+  for (std::uint32_t z = low.z; z <= high.z; ++z) {
+    for (std::uint32_t y = low.y; y <= high.y; ++y) {
+      for (std::uint32_t x = low.x; x <= high.x; ++x) {
+        if (!(norm(cube_center({x, y, z}, level_) - sphere.center) < near)) continue;
+        const std::uint32_t b = index_.find({x, y, z});
+        if (b == BlockIndex::kNone) continue;
+        blocks_[b].spheres.push_back(number);
+        take_from(blocks_[b], sphere);
+        bounds_[b] = block_bound(blocks_[b]);
+        touched.push_back(b);
+      }
+    }
+  }
+}
+
+void Space::take_from(Block& block, const Sphere& sphere) const {
+  for (Cell& cell : block.cells) {
+    const auto d = static_cast<float>(norm(cell.center() - sphere.center) - sphere.radius);
+    cell.d = std::min(cell.d, d);
+    cell.bound = std::min(cell.bound, cell.d + half_diagonal(cell.level));
+  }
+  std::erase_if(block.cells, [&](const Cell& cell) { return cell.bound <= smallest_; });
+}
+
+}  // namespace vpm

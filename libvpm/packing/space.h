@@ -1,0 +1,90 @@
+// The room that is left in a solid: an octree of cells with upper bounds of the clearance, in
+// blocks that know the spheres around them.
+//
+// The clearance d(x) = min(distance to the mesh, min_i |x - c_i| - r_i) changes by at most |x - y|
+// between two points, so d(centre) + half diagonal bounds it over a cell. A cell that cannot hold a
+// sphere of the radius looked for sleeps; the others are cut finer until their size is a fraction
+// of that radius. No resolution is fixed beforehand: thin parts cost cells only where they are.
+//
+// Cells are grouped in blocks, the cubes of one octree level (2 to 4 times as wide as the radius
+// looked for). A block lists every sphere within reach of it, so that a clearance costs one lookup.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/model/sphere.h"
+#include "libvpm/packing/block_index.h"
+#include "libvpm/packing/clearance.h"
+#include "libvpm/packing/solid_distance.h"
+
+namespace vpm {
+
+class Space {
+ public:
+  // Nothing smaller than `smallest` (> 0) will be looked for. Keeps a reference to `solid`. Frame:
+  // the unit cube of `solid`.
+  Space(const SolidDistance& solid, double smallest);
+
+  // No sphere larger than this fits anywhere, up to what local searches have missed.
+  float bound() const;
+
+  // Prepares for searches of radius `radius` and above: blocks are cut to its size. Radii must not
+  // grow from call to call.
+  void focus(double radius);
+
+  // Blocks that may still hold a sphere of this radius, ascending.
+  std::vector<std::uint32_t> promising(double radius) const;
+  bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
+
+  // The largest spheres found in one block: local maxima of the clearance with at least `radius`,
+  // no two of them overlapping, capped at `cap`. Only touches what belongs to the block, so that
+  // blocks may be searched in parallel. Sets found only if the block is left promising.
+  void search(std::uint32_t block, double radius, double cap, std::vector<Sphere>& found);
+
+  // Clearance of a point in the solid. kind == none and value == reach where nothing is near;
+  // value < 0 where no room is left around the point.
+  Clearance clearance(Vec3 x) const;
+
+  // Takes a sphere out of the room; appends the blocks around it to `touched`.
+  void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
+
+  Vec3 closest_on_triangle(std::uint32_t triangle, Vec3 x) const {
+    return solid_.closest_on(triangle, x);
+  }
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+
+ private:
+  struct Cell {
+    float x, y, z;       // centre: exact, a multiple of 2^-24
+    float d;             // clearance of the centre, or a bound of it where the mesh is far
+    float bound;         // no larger sphere is centred in the cell
+    std::uint8_t level;  // edge length 2^-level
+    bool inside;         // the whole cell lies inside of the solid
+    Vec3 center() const { return {x, y, z}; }
+  };
+  struct Block {
+    std::vector<std::uint32_t> spheres;
+    std::vector<Cell> cells;
+  };
+
+  void split_blocks();
+  void split(const Cell& cell, const std::vector<std::uint32_t>& near,
+             std::vector<Cell>& parts) const;
+  float cell_distance(const Cell& cell, const std::vector<std::uint32_t>& near) const;
+  void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
+              std::vector<Cell>& rest) const;
+  void take_from(Block& block, const Sphere& sphere) const;
+  static float block_bound(const Block& block);
+
+  const SolidDistance& solid_;
+  float smallest_;
+  std::vector<Sphere> spheres_;
+  int level_ = 0;     // of the blocks
+  double reach_ = 2;  // clearances in a block are exact up to this; the cube's diagonal is shorter
+  BlockIndex index_;
+  std::vector<Block> blocks_;
+  std::vector<float> bounds_;  // largest cell bound per block
+};
+
+}  // namespace vpm
