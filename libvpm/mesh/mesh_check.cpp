@@ -1,0 +1,282 @@
+#include "libvpm/mesh/mesh_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "libvpm/core/error.h"
+#include "libvpm/mesh/self_intersection.h"
+#include "libvpm/mesh/shells.h"
+#include "libvpm/mesh/topology.h"
+#include "libvpm/mesh/triangle_intersection.h"
+#include "libvpm/mesh/weld.h"
+
+namespace vpm {
+namespace {
+
+// Beyond these the products of the measure (fourth powers of lengths) leave the range of doubles.
+constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
+// Rounding leaves a flat closed mesh a volume of about 1e-16 of area times diagonal; the thinnest
+// plate worth packing has far more.
+constexpr double kFlat = 1e-12;
+constexpr std::size_t kPlacesShown = 3;
+
+std::string text_of(Vec3 p) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", p.x, p.y, p.z);
+  return text;
+}
+
+std::string counted(std::size_t count, const std::string& thing, const std::string& things) {
+  return std::to_string(count) + " " + (count == 1 ? thing : things);
+}
+
+// "; at A, B, C, ...": where the first few of a list are.
+template <class T, class Place>
+std::string places(const std::vector<T>& list, Place place) {
+  std::string text;
+  for (std::size_t k = 0; k < std::min(list.size(), kPlacesShown); ++k)
+    text += (k == 0 ? ", at " : ", ") + place(list[k]);
+  return text + (list.size() > kPlacesShown ? " and more" : "");
+}
+
+struct Box {
+  Vec3 low, high;
+};
+
+Box box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  Box box{vertices[triangles[0][0]], vertices[triangles[0][0]]};
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t corner : t) {
+      const Vec3 p = vertices[corner];
+      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    }
+  }
+  return box;
+}
+
+double area_of(const Solid& solid) {
+  double area = 0;
+  for (const Triangle& t : solid.triangles) {
+    const Vec3 a = solid.vertices[t[0]];
+    area += 0.5 * norm(cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a));
+  }
+  return area;
+}
+
+// Carries one mesh from its raw triangles to the solid; each step is one of the checks.
+class Check {
+ public:
+  Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
+    result_.facts.format = mesh.format;
+    vertices() = mesh.vertices;
+    triangles() = triangulate(mesh);
+  }
+
+  CheckedSolid run() {
+    if (triangles().empty()) refuse(mesh_.name + ": the mesh has no faces");
+    check_extent();
+    const std::size_t repeated = drop_collapsed(triangles());
+    facts().collapsed_triangles += repeated;
+    join_vertices();
+    report_dropped();
+    if (triangles().empty()) refuse_empty();
+    topology_ = topology_of(vertices().size(), triangles());
+    close_by_welding();
+    refuse_defects();
+    // Joined vertices are unused too, but were not so in the file.
+    facts().unused_vertices = drop_unused(vertices(), triangles()) - facts().joined_vertices;
+    if (facts().unused_vertices > 0)
+      note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
+    orient();
+    look_for_self_intersections();
+    scale_and_measure();
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<Vec3>& vertices() { return result_.solid.vertices; }
+  std::vector<Triangle>& triangles() { return result_.solid.triangles; }
+  MeshFacts& facts() { return result_.facts; }
+
+  void check_extent() {
+    const Box box = box_of(vertices(), triangles());
+    const Vec3 size = options_.scale * (box.high - box.low);
+    const double extent = std::max({size.x, size.y, size.z});
+    const double farthest = options_.scale * std::max({std::abs(box.low.x), std::abs(box.low.y),
+                                                       std::abs(box.low.z), std::abs(box.high.x),
+                                                       std::abs(box.high.y), std::abs(box.high.z)});
+    diagonal_ = norm(box.high - box.low);
+    if (extent == 0) refuse(mesh_.name + ": all triangles lie in one point");
+    if (!(extent >= kSmallestExtent && farthest <= kLargestExtent)) {
+      refuse(mesh_.name + ": the mesh reaches from " + text_of(box.low) + " to " +
+             text_of(box.high) + ", which leaves the range of 1e-30 to 1e30 m; give --scale");
+    }
+  }
+
+  void join_vertices() {
+    const bool is_soup = mesh_.format == MeshFormat::stl;
+    if (!is_soup && !options_.weld.has_value()) return;
+    const Weld done =
+        weld(vertices(), options_.weld.value_or(kDefaultWeld) * diagonal_, triangles());
+    facts().joined_vertices = done.joined_vertices;
+    facts().collapsed_triangles += done.collapsed_triangles;
+  }
+
+  void report_dropped() {
+    if (facts().collapsed_triangles == 0) return;
+    note(counted(facts().collapsed_triangles, "triangle", "triangles") +
+         " with two equal corners dropped");
+  }
+
+  [[noreturn]] void refuse_empty() const {
+    refuse(mesh_.name + ": every triangle has two equal corners; the mesh has no surface");
+  }
+
+  // Formats with indices may still list a point of the surface twice, as at a seam of textures.
+  void close_by_welding() {
+    if (topology_.boundary.empty() || mesh_.format == MeshFormat::stl || options_.weld.has_value())
+      return;
+    std::vector<Triangle> joined = triangles();
+    const Weld done = weld(vertices(), kDefaultWeld * diagonal_, joined);
+    if (done.joined_vertices == 0 || joined.empty()) return;
+    Topology topology = topology_of(vertices().size(), joined);
+    if (!topology.boundary.empty() || !topology.non_manifold.empty()) return;
+    note("the mesh was open and is closed after joining " +
+         counted(done.joined_vertices, "vertex", "vertices") + " to others at the same place");
+    facts().joined_vertices = done.joined_vertices;
+    facts().collapsed_triangles += done.collapsed_triangles;
+    triangles() = std::move(joined);
+    topology_ = std::move(topology);
+  }
+
+  void refuse_defects() {
+    const auto edge_place = [&](const Edge& e) {
+      return text_of(vertices()[e.a]) + "-" + text_of(vertices()[e.b]);
+    };
+    const auto vertex_place = [&](std::uint32_t v) { return text_of(vertices()[v]); };
+    std::string defects;
+    const auto add = [&](const std::string& defect) {
+      defects += (defects.empty() ? "" : "; ") + defect;
+    };
+    if (!topology_.boundary.empty()) {
+      add("the mesh is open: " +
+          counted(topology_.boundary.size(), "edge belongs", "edges belong") +
+          " to one triangle only" + places(topology_.boundary, edge_place));
+    }
+    if (!topology_.non_manifold.empty()) {
+      add("the mesh is non-manifold: " +
+          counted(topology_.non_manifold.size(), "edge belongs", "edges belong") +
+          " to more than two triangles" + places(topology_.non_manifold, edge_place));
+    }
+    if (topology_.boundary.empty() && !topology_.pinched.empty()) {
+      add("the mesh is non-manifold: the surface touches itself in " +
+          counted(topology_.pinched.size(), "vertex", "vertices") +
+          places(topology_.pinched, vertex_place));
+    }
+    if (defects.empty()) return;
+    if (topology_.duplicate_triangles > 0) {
+      add(counted(topology_.duplicate_triangles, "triangle is", "triangles are") +
+          " listed more than once");
+    }
+    refuse(mesh_.name + ": " + defects +
+           ". Only a closed surface has an inside: close the holes and remove extra faces in a "
+           "mesh editor, or give --weld if parts should meet and do not");
+  }
+
+  void orient() {
+    std::size_t shell_count = 0;
+    const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
+    const std::vector<Triangle> given = triangles();
+    const bool consistent = topology_.conflicting.empty();
+    if (!consistent && orient_consistently(topology_, triangles()) == kNotOrientable) {
+      refuse(mesh_.name + ": the surface is one-sided (like a Klein bottle); it has no inside");
+    }
+    const ShellOrientation done =
+        orient_shells(vertices(), shell, shell_count, consistent, triangles());
+    facts().shells = shell_count;
+    facts().cavities = done.cavities;
+    for (std::size_t k = 0; k < given.size(); ++k)
+      facts().turned_triangles += given[k] != triangles()[k];
+    note_orientation(consistent, done, shell_count);
+  }
+
+  void note_orientation(bool consistent, const ShellOrientation& done, std::size_t shell_count) {
+    if (!consistent) {
+      note(counted(topology_.conflicting.size(), "edge", "edges") +
+           " had neighbours of opposite orientation; " +
+           counted(facts().turned_triangles, "triangle was", "triangles were") +
+           " turned to face outward");
+    } else if (done.turned > 0) {
+      note("the mesh faced inward and was turned" +
+           (shell_count == 1 ? ""
+                             : ": " + std::to_string(done.turned) + " of " +
+                                   std::to_string(shell_count) + " shells"));
+    }
+    if (done.nested_outward > 0 && consistent) {
+      warn(counted(done.nested_outward, "shell lies", "shells lie") +
+           " within another and faces outward too: it is taken as solid, and its volume is counted "
+           "twice; turn it over if it is a cavity");
+    }
+  }
+
+  void look_for_self_intersections() {
+    for (const Triangle& t : triangles()) {
+      facts().zero_area_triangles +=
+          !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
+    }
+    const SelfIntersections found = find_self_intersections(vertices(), triangles());
+    facts().self_intersections = found.pairs;
+    if (found.pairs == 0) return;
+    const auto place = [&](std::uint32_t triangle) {
+      const Triangle& t = triangles()[triangle];
+      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / 3);
+    };
+    warn("the mesh intersects itself: " + counted(found.pairs, "pair", "pairs") + " of triangles" +
+         places(found.first_triangles, place) +
+         "; what it encloses once or more is taken as inside, and the volume counts overlaps more "
+         "than once");
+  }
+
+  void scale_and_measure() {
+    for (Vec3& p : vertices()) p = options_.scale * p;
+    const Box box = box_of(vertices(), triangles());
+    facts().low = box.low;
+    facts().high = box.high;
+    facts().vertices = vertices().size();
+    facts().triangles = triangles().size();
+    // Every edge of a closed mesh has two triangles of three edges.
+    facts().euler = static_cast<std::int64_t>(vertices().size()) -
+                    static_cast<std::int64_t>(triangles().size() / 2);
+    facts().area = area_of(result_.solid);
+    facts().volume = mass_properties(result_.solid).volume;
+    if (!(facts().volume > kFlat * facts().area * norm(box.high - box.low))) {
+      refuse(mesh_.name + ": the mesh is degenerate: it is closed, but encloses no volume (" +
+             std::to_string(facts().volume) + " m^3)");
+    }
+  }
+
+  void note(const std::string& text) { result_.notes.push_back(text); }
+  void warn(const std::string& text) { result_.warnings.push_back(text); }
+
+  const RawMesh& mesh_;
+  const SolidOptions& options_;
+  CheckedSolid result_;
+  Topology topology_;
+  double diagonal_ = 0;
+};
+
+}  // namespace
+
+CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
+  if (!(options.scale > 0 && std::isfinite(options.scale)))
+    throw Error(ErrorKind::usage, "scale: must be a positive number");
+  if (options.weld && !(*options.weld >= 0 && *options.weld <= kLargestWeld)) {
+    throw Error(ErrorKind::usage,
+                "weld: must lie between 0 and 0.1; it is a share of the mesh's diagonal");
+  }
+  return Check(mesh, options).run();
+}
+
+}  // namespace vpm

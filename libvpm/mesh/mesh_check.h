@@ -1,0 +1,56 @@
+// From what a file says to a solid: diagnoses a mesh, mends what can be mended without guessing,
+// refuses the rest by name and place.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/model/solid.h"
+
+namespace vpm {
+
+struct SolidOptions {
+  double scale = 1;  // the file's unit in metres
+  // Vertices nearer than this share of the box's diagonal are one. Unset: kDefaultWeld for STL;
+  // for formats with indices only if the mesh is open as its indices have it and closed after.
+  std::optional<double> weld;
+};
+
+// CAD exporters write one coordinate as 0 here and as -2.7e-16 there.
+inline constexpr double kDefaultWeld = 1e-9;
+// A larger tolerance would eat parts of the mesh instead of joining them.
+inline constexpr double kLargestWeld = 0.1;
+
+// Lengths, areas and volumes after scaling: metres.
+struct MeshFacts {
+  MeshFormat format = MeshFormat::obj;
+  std::size_t vertices = 0, triangles = 0;  // of the solid
+  std::size_t shells = 0, cavities = 0;
+  std::int64_t euler = 0;  // vertices - edges + triangles: 2 - 2 genus for one shell
+  double area = 0;
+  double volume = 0;
+  Vec3 low, high;
+  std::size_t joined_vertices = 0;
+  std::size_t unused_vertices = 0;
+  std::size_t collapsed_triangles = 0;
+  std::size_t turned_triangles = 0;
+  std::size_t zero_area_triangles = 0;
+  std::size_t self_intersections = 0;  // pairs of triangles
+};
+
+struct CheckedSolid {
+  Solid solid;
+  MeshFacts facts;
+  std::vector<std::string> notes;     // what was mended
+  std::vector<std::string> warnings;  // what was accepted though it may surprise
+};
+
+// Throws Error(refused) for meshes that are empty, open, non-manifold, one-sided, that enclose no
+// volume, or whose extent leaves 1e-30 .. 1e30 m; Error(usage) for options out of range.
+CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
+
+}  // namespace vpm

@@ -1,0 +1,27 @@
+// One parser per format; parse_mesh chooses. Contracts as there.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "libvpm/mesh/raw_mesh.h"
+
+namespace vpm {
+
+RawMesh parse_obj(std::string_view text, const std::string& name);
+RawMesh parse_off(std::string_view text, const std::string& name);
+RawMesh parse_ply(std::string_view bytes, const std::string& name);
+RawMesh parse_stl(std::string_view bytes, const std::string& name);
+
+bool looks_like_off(std::string_view text);
+bool looks_like_ply(std::string_view bytes);
+bool looks_like_stl(std::string_view bytes);
+
+// Indices are 32 bits wide and the largest stands for "none".
+inline constexpr std::size_t kMaxVertices = 0xfffffffe;
+
+// Refuses where a header promises more than the file can hold: `least_bytes` for `what`.
+void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
+                         std::size_t file_bytes);
+
+}  // namespace vpm

@@ -1,0 +1,75 @@
+#include "libvpm/mesh/mesh_reader.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/mesh/mesh_parsers.h"
+#include "libvpm/mesh/text_lines.h"
+
+namespace vpm {
+namespace {
+
+std::string extension_of(const std::string& name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == std::string::npos || name.find('/', dot) != std::string::npos) return "";
+  std::string extension = name.substr(dot + 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// OBJ has no magic: its first statement must be one that OBJ files begin with.
+bool looks_like_obj(std::string_view text) {
+  TextLines lines(text.substr(0, 65536), "", '#');
+  if (!lines.next_line()) return false;
+  const std::string_view first = lines.word();
+  const auto known = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
+  return std::find(known.begin(), known.end(), first) != known.end();
+}
+
+}  // namespace
+
+const char* name_of(MeshFormat format) {
+  switch (format) {
+    case MeshFormat::obj:
+      return "OBJ";
+    case MeshFormat::off:
+      return "OFF";
+    case MeshFormat::ply:
+      return "PLY";
+    case MeshFormat::stl:
+      return "STL";
+  }
+  return "";
+}
+
+void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
+                         std::size_t file_bytes) {
+  if (least_bytes > static_cast<double>(file_bytes)) {
+    refuse(name + ": the header says " + what + ", but the file has only " +
+           std::to_string(file_bytes) + " bytes; it is truncated or damaged");
+  }
+}
+
+RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
+  if (bytes.empty()) refuse(name + ": the file is empty");
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string extension = extension_of(name);
+  if (looks_like_ply(text)) return parse_ply(text, name);
+  if (looks_like_off(text)) return parse_off(text, name);
+  if (looks_like_stl(text)) return parse_stl(text, name);
+  if (extension == "obj") return parse_obj(text, name);
+  if (extension == "off") return parse_off(text, name);
+  if (extension == "ply") return parse_ply(text, name);
+  if (extension == "stl") return parse_stl(text, name);
+  if (looks_like_obj(text)) return parse_obj(text, name);
+  refuse(name + ": this is no mesh in a format that is read here: OBJ, OFF, PLY or STL");
+}
+
+RawMesh read_mesh(const std::string& path) {
+  return parse_mesh(file::read_all(path), path == "-" ? "standard input" : path);
+}
+
+}  // namespace vpm

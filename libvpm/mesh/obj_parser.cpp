@@ -1,0 +1,62 @@
+// Wavefront OBJ: v and f lines; all other statements carry no geometry of polygons.
+#include <charconv>
+
+#include "libvpm/core/error.h"
+#include "libvpm/mesh/mesh_parsers.h"
+#include "libvpm/mesh/text_lines.h"
+
+namespace vpm {
+namespace {
+
+// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn": counted from 1, or backwards from the
+// last vertex so far.
+std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::size_t so_far) {
+  const std::string_view digits = word.substr(0, word.find('/'));
+  std::int64_t index = 0;
+  const auto [stop, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+  if (fault == std::errc::invalid_argument || stop != digits.data() + digits.size())
+    lines.refuse_here("a corner of the face is not a vertex index");
+  const std::int64_t from_zero = index > 0 ? index - 1 : static_cast<std::int64_t>(so_far) + index;
+  if (fault != std::errc() || index == 0 || from_zero < 0 ||
+      from_zero >= static_cast<std::int64_t>(kMaxVertices)) {
+    lines.refuse_here("vertex index " + std::string(digits) + " is out of range");
+  }
+  return static_cast<std::uint32_t>(from_zero);
+}
+
+}  // namespace
+
+RawMesh parse_obj(std::string_view text, const std::string& name) {
+  RawMesh mesh;
+  mesh.format = MeshFormat::obj;
+  mesh.name = name;
+  std::uint32_t largest = 0;  // a face may name a vertex that follows it
+  std::size_t largest_line = 0;
+  TextLines lines(text, name, '#');
+  while (lines.next_line()) {
+    const std::string_view keyword = lines.word();
+    if (keyword == "v") {
+      if (mesh.vertices.size() == kMaxVertices) lines.refuse_here("more than 2^32 - 2 vertices");
+      mesh.vertices.push_back(lines.point());
+    } else if (keyword == "f") {
+      const std::size_t begin = mesh.corners.size();
+      for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
+        mesh.corners.push_back(corner_vertex(lines, word, mesh.vertices.size()));
+        if (mesh.corners.back() >= largest) {
+          largest = mesh.corners.back();
+          largest_line = lines.line_number();
+        }
+      }
+      if (mesh.corners.size() - begin < 3) lines.refuse_here("a face has fewer than 3 corners");
+      mesh.polygon_end.push_back(mesh.corners.size());
+    }
+  }
+  if (!mesh.corners.empty() && largest >= mesh.vertices.size()) {
+    refuse(name + ": line " + std::to_string(largest_line) + ": vertex index " +
+           std::to_string(std::size_t{largest} + 1) + " is out of range; the file has " +
+           std::to_string(mesh.vertices.size()) + " vertices");
+  }
+  return mesh;
+}
+
+}  // namespace vpm

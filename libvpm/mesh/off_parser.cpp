@@ -1,0 +1,77 @@
+// Object file format: an optional keyword, three counts, one vertex and one face per line.
+#include "libvpm/core/error.h"
+#include "libvpm/mesh/mesh_parsers.h"
+#include "libvpm/mesh/text_lines.h"
+
+namespace vpm {
+namespace {
+
+// Vertices may carry texture coordinates, colours and normals; x, y, z come first in all of these.
+bool is_plain_keyword(std::string_view word) {
+  for (const char* const prefix : {"ST", "C", "N"}) {
+    if (word.starts_with(prefix)) word.remove_prefix(std::string_view(prefix).size());
+  }
+  return word == "OFF";
+}
+
+void read_vertices(TextLines& lines, std::int64_t count, RawMesh& mesh) {
+  mesh.vertices.reserve(static_cast<std::size_t>(count));
+  for (std::int64_t k = 0; k < count; ++k) {
+    lines.require_line("a vertex");
+    mesh.vertices.push_back(lines.point());
+  }
+}
+
+void read_faces(TextLines& lines, std::int64_t count, RawMesh& mesh) {
+  mesh.polygon_end.reserve(static_cast<std::size_t>(count));
+  const auto vertices = static_cast<std::int64_t>(mesh.vertices.size());
+  for (std::int64_t k = 0; k < count; ++k) {
+    lines.require_line("a face");
+    const std::int64_t corners = lines.integer("the face's number of corners");
+    if (corners < 3) lines.refuse_here("a face has fewer than 3 corners");
+    for (std::int64_t c = 0; c < corners; ++c) {
+      const std::int64_t index = lines.integer("a vertex index");
+      if (index < 0 || index >= vertices) {
+        lines.refuse_here("vertex index " + std::to_string(index) +
+                          " is out of range; the header says " + std::to_string(vertices) +
+                          " vertices, counted from 0");
+      }
+      mesh.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    mesh.polygon_end.push_back(mesh.corners.size());
+  }
+}
+
+}  // namespace
+
+bool looks_like_off(std::string_view text) {
+  TextLines lines(text.substr(0, 65536), "", '#');
+  return lines.next_line() && lines.word().ends_with("OFF");
+}
+
+RawMesh parse_off(std::string_view text, const std::string& name) {
+  RawMesh mesh;
+  mesh.format = MeshFormat::off;
+  mesh.name = name;
+  TextLines lines(text, name, '#');
+  lines.require_line("the keyword OFF");
+  const std::string_view keyword = lines.word();
+  if (!is_plain_keyword(keyword))
+    lines.refuse_here("expected the keyword OFF (three coordinates, text)");
+  std::string_view first = lines.word();
+  if (first == "BINARY") lines.refuse_here("binary OFF is not read; save it as text");
+  if (!first.empty()) lines.refuse_here("the counts must follow on a line of their own");
+  lines.require_line("the counts of vertices and faces");
+  const std::int64_t vertices = lines.integer("the number of vertices");
+  const std::int64_t faces = lines.integer("the number of faces");
+  if (vertices < 0 || faces < 0) lines.refuse_here("a count is negative");
+  // At least "0 0 0\n" for a vertex and "3 0 1 2\n" for a face.
+  check_header_counts(
+      name, std::to_string(vertices) + " vertices and " + std::to_string(faces) + " faces",
+      6.0 * static_cast<double>(vertices) + 8.0 * static_cast<double>(faces) - 1, text.size());
+  read_vertices(lines, vertices, mesh);
+  read_faces(lines, faces, mesh);
+  return mesh;
+}
+
+}  // namespace vpm

@@ -1,0 +1,35 @@
+// What a mesh file says, before anybody asks whether it bounds a solid.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "libvpm/core/vec3.h"
+#include "libvpm/model/solid.h"
+
+namespace vpm {
+
+enum class MeshFormat { obj, off, ply, stl };
+
+// Polygons as the file lists them. Corners are vertex indices, all below vertices.size();
+// coordinates are finite.
+struct RawMesh {
+  MeshFormat format = MeshFormat::obj;
+  std::string name;  // of the file, for messages
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`
+
+  std::size_t polygon_count() const { return polygon_end.size(); }
+};
+
+const char* name_of(MeshFormat format);  // "OBJ", "OFF", ...
+
+// Polygons of more than three corners are cut into triangles by ear clipping in their own plane;
+// a polygon that has no plane or crosses itself becomes a fan. Refuses polygons of more than 4096
+// corners.
+std::vector<Triangle> triangulate(const RawMesh& mesh);
+
+}  // namespace vpm

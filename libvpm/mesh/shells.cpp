@@ -1,0 +1,115 @@
+#include "libvpm/mesh/shells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+namespace {
+
+struct Shell {
+  std::vector<std::uint32_t> triangles;
+  Vec3 low, high;
+  Vec3 sample;        // a vertex of it
+  double volume = 0;  // signed
+};
+
+std::vector<Shell> collect(const std::vector<Vec3>& vertices,
+                           const std::vector<std::uint32_t>& shell_of_triangle, std::size_t count,
+                           const std::vector<Triangle>& triangles) {
+  std::vector<Shell> shells(count);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    shells[shell_of_triangle[t]].triangles.push_back(t);
+  for (Shell& shell : shells) {
+    shell.sample = shell.low = shell.high = vertices[triangles[shell.triangles.front()][0]];
+    for (const std::uint32_t t : shell.triangles) {
+      for (const std::uint32_t corner : triangles[t]) {
+        const Vec3 p = vertices[corner];
+        shell.low = {std::min(shell.low.x, p.x), std::min(shell.low.y, p.y),
+                     std::min(shell.low.z, p.z)};
+        shell.high = {std::max(shell.high.x, p.x), std::max(shell.high.y, p.y),
+                      std::max(shell.high.z, p.z)};
+      }
+    }
+    const Vec3 origin = shell.low + 0.5 * (shell.high - shell.low);
+    for (const std::uint32_t t : shell.triangles) {
+      const Vec3 a = vertices[triangles[t][0]] - origin, b = vertices[triangles[t][1]] - origin,
+                 c = vertices[triangles[t][2]] - origin;
+      shell.volume += dot(a, cross(b, c)) / 6;
+    }
+  }
+  return shells;
+}
+
+// How often the shell encloses p, by the solid angles of its triangles (van Oosterom and Strackee
+// 1983); near an integer for a closed shell.
+double winding_number(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                      const Shell& shell, Vec3 p) {
+  double angle = 0;
+  for (const std::uint32_t t : shell.triangles) {
+    const Vec3 a = vertices[triangles[t][0]] - p, b = vertices[triangles[t][1]] - p,
+               c = vertices[triangles[t][2]] - p;
+    const double la = norm(a), lb = norm(b), lc = norm(c);
+    const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    angle += 2 * std::atan2(dot(a, cross(b, c)), below);
+  }
+  return angle / (4 * kPi);
+}
+
+bool box_holds(const Shell& shell, Vec3 p) {
+  return p.x > shell.low.x && p.x < shell.high.x && p.y > shell.low.y && p.y < shell.high.y &&
+         p.z > shell.low.z && p.z < shell.high.z;
+}
+
+// For each shell, the shells that enclose a vertex of it.
+std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& vertices,
+                                                       const std::vector<Triangle>& triangles,
+                                                       const std::vector<Shell>& shells) {
+  std::vector<std::vector<std::uint32_t>> enclosing(shells.size());
+  parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      for (std::uint32_t other = 0; other < shells.size(); ++other) {
+        if (other == k || !box_holds(shells[other], shells[k].sample)) continue;
+        if (std::abs(winding_number(vertices, triangles, shells[other], shells[k].sample)) > 0.5)
+          enclosing[k].push_back(other);
+      }
+    }
+  });
+  return enclosing;
+}
+
+}  // namespace
+
+ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
+                               const std::vector<std::uint32_t>& shell_of_triangle,
+                               std::size_t shell_count, bool given_consistent,
+                               std::vector<Triangle>& triangles) {
+  std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
+  const auto enclosing = find_enclosing(vertices, triangles, shells);
+  // Shells around one another turn together: as the outermost one has to.
+  const auto faces_wrong = [&](std::size_t k) {
+    if (given_consistent) {
+      const auto outermost = [&](std::uint32_t other) { return enclosing[other].empty(); };
+      const auto root = std::find_if(enclosing[k].begin(), enclosing[k].end(), outermost);
+      return (root == enclosing[k].end() ? shells[k] : shells[*root]).volume < 0;
+    }
+    const bool is_cavity = enclosing[k].size() % 2 == 1;
+    return is_cavity ? shells[k].volume > 0 : shells[k].volume < 0;
+  };
+  ShellOrientation done;
+  for (std::size_t k = 0; k < shells.size(); ++k) {
+    const bool wrong = faces_wrong(k), nested = !enclosing[k].empty();
+    if (wrong) {
+      ++done.turned;
+      for (const std::uint32_t t : shells[k].triangles) std::swap(triangles[t][1], triangles[t][2]);
+    }
+    const bool outward = (shells[k].volume < 0) == wrong;
+    if (nested) ++(outward ? done.nested_outward : done.cavities);
+  }
+  return done;
+}
+
+}  // namespace vpm

@@ -1,0 +1,27 @@
+// Which way the closed surfaces of a mesh face, and which of them lie within which.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/model/solid.h"
+
+namespace vpm {
+
+struct ShellOrientation {
+  std::size_t turned = 0;          // shells whose triangles were turned over
+  std::size_t cavities = 0;        // shells that face inward within another one
+  std::size_t nested_outward = 0;  // shells that face outward within another one
+};
+
+// Turns shells so that the mesh bounds a solid from outside. Shells that lie within no other one
+// face outward. Shells within others: where the file is consistent they are left as they are (but
+// turn with the shell around them); where not (`given_consistent` false) they alternate, a shell
+// within an odd number of others being a cavity.
+ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
+                               const std::vector<std::uint32_t>& shell_of_triangle,
+                               std::size_t shell_count, bool given_consistent,
+                               std::vector<Triangle>& triangles);
+
+}  // namespace vpm

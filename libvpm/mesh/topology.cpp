@@ -1,0 +1,180 @@
+#include "libvpm/mesh/topology.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kNone = Topology::kNone;
+
+// One side of a triangle: from corner k to corner k + 1.
+struct Side {
+  std::uint32_t low, high;  // vertices
+  std::uint32_t triangle;
+  std::uint32_t corner;
+  bool forward;  // runs from low to high
+};
+
+std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle, a.corner) <
+           std::tie(b.low, b.high, b.triangle, b.corner);
+  });
+  return sides;
+}
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+  std::uint32_t find(std::uint32_t k) {
+    while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+    return k;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+std::uint32_t corner_at(const Triangle& t, std::uint32_t vertex) {
+  return t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
+}
+
+// Corners of one vertex are one fan if edges lead from each to each; more than one fan pinches the
+// vertex.
+std::vector<std::uint32_t> find_pinched(std::size_t vertex_count,
+                                        const std::vector<Triangle>& triangles,
+                                        const Topology& topology) {
+  DisjointSets fans(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t other = topology.neighbor[t][k];
+      if (other == kNone) continue;
+      for (const std::uint32_t end : {k, (k + 1) % 3})
+        fans.join(3 * t + end, 3 * other + corner_at(triangles[other], triangles[t][end]));
+    }
+  }
+  std::vector<std::uint32_t> fan_of(vertex_count, kNone), pinched;
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = triangles[t][k], fan = fans.find(3 * t + k);
+      if (fan_of[vertex] == kNone) {
+        fan_of[vertex] = fan;
+      } else if (fan_of[vertex] != fan) {
+        pinched.push_back(vertex);
+      }
+    }
+  }
+  std::sort(pinched.begin(), pinched.end());
+  pinched.erase(std::unique(pinched.begin(), pinched.end()), pinched.end());
+  return pinched;
+}
+
+std::size_t count_duplicates(std::vector<Triangle> triangles) {
+  for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  const auto last = std::unique(triangles.begin(), triangles.end());
+  return static_cast<std::size_t>(triangles.end() - last);
+}
+
+}  // namespace
+
+Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& triangles) {
+  Topology topology;
+  topology.neighbor.assign(triangles.size(), {kNone, kNone, kNone});
+  const std::vector<Side> sides = sorted_sides(triangles);
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    const Side& first = sides[begin];
+    while (end < sides.size() && sides[end].low == first.low && sides[end].high == first.high)
+      ++end;
+    const Edge edge{first.low, first.high};
+    if (end - begin == 1) topology.boundary.push_back(edge);
+    if (end - begin > 2) topology.non_manifold.push_back(edge);
+    if (end - begin != 2) continue;
+    const Side& second = sides[begin + 1];
+    if (first.forward == second.forward) topology.conflicting.push_back(edge);
+    topology.neighbor[first.triangle][first.corner] = second.triangle;
+    topology.neighbor[second.triangle][second.corner] = first.triangle;
+  }
+  // Around a non-manifold edge fans fall apart too; only what it leaves unsaid is worth looking at.
+  if (topology.non_manifold.empty())
+    topology.pinched = find_pinched(vertex_count, triangles, topology);
+  topology.duplicate_triangles = count_duplicates(triangles);
+  return topology;
+}
+
+std::vector<std::uint32_t> shells_of(const Topology& topology, std::size_t& count) {
+  std::vector<std::uint32_t> shell(topology.neighbor.size(), kNone), stack;
+  count = 0;
+  for (std::uint32_t seed = 0; seed < shell.size(); ++seed) {
+    if (shell[seed] != kNone) continue;
+    shell[seed] = static_cast<std::uint32_t>(count);
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      const std::uint32_t t = stack.back();
+      stack.pop_back();
+      for (const std::uint32_t other : topology.neighbor[t]) {
+        if (other == kNone || shell[other] != kNone) continue;
+        shell[other] = static_cast<std::uint32_t>(count);
+        stack.push_back(other);
+      }
+    }
+    ++count;
+  }
+  return shell;
+}
+
+std::size_t orient_consistently(const Topology& topology, std::vector<Triangle>& triangles) {
+  enum State : char { unseen, kept, turned };
+  std::vector<State> state(triangles.size(), unseen);
+  std::vector<std::uint32_t> stack;
+  // Two neighbours agree as given if they run their common edge in opposite directions.
+  const auto agree = [&](std::uint32_t t, std::uint32_t k, std::uint32_t other) {
+    const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+    return triangles[other][(corner_at(triangles[other], from) + 1) % 3] != to;
+  };
+  for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
+    if (state[seed] != unseen) continue;
+    state[seed] = kept;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      const std::uint32_t t = stack.back();
+      stack.pop_back();
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t other = topology.neighbor[t][k];
+        const State wanted = agree(t, k, other) == (state[t] == kept) ? kept : turned;
+        if (state[other] == unseen) {
+          state[other] = wanted;
+          stack.push_back(other);
+        } else if (state[other] != wanted) {
+          return kNotOrientable;
+        }
+      }
+    }
+  }
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (state[t] != turned) continue;
+    std::swap(triangles[t][1], triangles[t][2]);
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace vpm
