@@ -1,0 +1,161 @@
+# What all tools share.
+
+$ vpm-probe --version
+vpm-probe 0.1.0
+
+$ vpm-probe
+2> vpm-probe: error: input is required (see vpm-probe --help)
+[2]
+
+$ vpm-probe in.off -o - --flag --levels 1,2,3
+in.off none 3 0.100000 [1,2,3] flag
+
+# The configuration of a call gives the same call again.
+$ vpm-probe in.off -o out.txt --text 1e5 --factor 1e-9 --levels 10,20 --flag --threads 2 --dump-config | tee call.json
+{
+  "act": "nothing",
+  "count": 3,
+  "device": "auto",
+  "factor": 1e-09,
+  "flag": true,
+  "input": "in.off",
+  "levels": [
+    10,
+    20
+  ],
+  "output": "out.txt",
+  "text": "1e5",
+  "threads": 2
+}
+$ vpm-probe --config call.json --dump-config | cmp - call.json
+$ vpm-probe --config - --dump-config < call.json | cmp - call.json
+$ vpm-probe --config call.json && cat out.txt
+in.off 1e5 3 0.000000 [10,20] flag
+$ vpm-probe --config call.json --count 7 -o -
+in.off 1e5 7 0.000000 [10,20] flag
+
+# A configuration can be written before the inputs are known.
+$ vpm-probe --dump-config
+{
+  "act": "nothing",
+  "count": 3,
+  "device": "auto",
+  "factor": 0.1,
+  "text": "none",
+  "threads": 0
+}
+$ vpm-probe --dump-config > defaults.json && vpm-probe --config defaults.json in.off -o -
+in.off none 3 0.100000 []
+
+# Wrong configurations.
+$ echo '{"threadz": 2}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: --config: there is no option 'threadz' (see vpm-probe --help)
+[2]
+$ echo '{"help": true}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: help: This option is not allowed in a configuration file (see vpm-probe --help)
+[2]
+$ echo '{"count": {"a": 1}}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: the configuration's 'count' must be a number, a string, true, false or a list of these (see vpm-probe --help)
+[2]
+$ echo '[1]' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: the configuration must be a JSON object of options (see vpm-probe --help)
+[2]
+$ echo '{' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: the configuration is not JSON: [json.exception.parse_error.101] parse error at line 2, column 1: syntax error while parsing object key - unexpected end of input; expected string literal (see vpm-probe --help)
+[2]
+$ vpm-probe --config missing.json in.off -o -
+2> vpm-probe: error: missing.json was not readable (missing?) (see vpm-probe --help)
+[2]
+$ echo '{"flag": false, "count": 5}' | vpm-probe --config - in.off -o -
+in.off none 5 0.100000 []
+$ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: Could not convert: --count = five (see vpm-probe --help)
+[2]
+
+# Exit codes.
+$ vpm-probe in.off -o - --act refuse
+2> vpm-probe: error: input.off: refused as asked
+[1]
+$ vpm-probe in.off -o - --act usage
+2> vpm-probe: error: wrong as asked
+[2]
+$ vpm-probe in.off -o - --act unavailable
+2> vpm-probe: error: not there as asked
+[3]
+$ vpm-probe in.off -o - --act throw
+2> vpm-probe: error: thrown as asked
+[1]
+$ vpm-probe in.off -o - --act exhaust
+2> vpm-probe: error: not enough memory for this input
+[1]
+$ vpm-probe in.off -o - --wrong
+2> vpm-probe: error: The following argument was not expected: --wrong (see vpm-probe --help)
+[2]
+$ vpm-probe in.off -o - --count many
+2> vpm-probe: error: Could not convert: --count = many (see vpm-probe --help)
+[2]
+$ vpm-probe in.off -o - --threads -1
+2> vpm-probe: error: --threads: Value -1 not in range 0 to 4096 (see vpm-probe --help)
+[2]
+$ vpm-probe in.off -o - --device tpu
+2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda} (see vpm-probe --help)
+[2]
+$ vpm-probe in.off -o - --device cuda
+2> vpm-probe: error: --device cuda: this build has no CUDA; use --device cpu, or leave the option out
+[3]
+$ vpm-probe in.off -o missing/out.txt
+2> vpm-probe: error: cannot write missing/out.txt: there is no folder missing
+[4]
+$ vpm-probe in.off -o .
+2> vpm-probe: error: . is a folder; name a file
+[4]
+$ vpm-probe in.off -o /dev/full
+2> vpm-probe: error: cannot write /dev/full: No space left on device
+[4]
+$ vpm-probe in.off -o - > /dev/full
+2> vpm-probe: error: cannot write to standard output: No space left on device
+[4]
+$ vpm-probe --dump-config > /dev/full
+2> vpm-probe: error: cannot write to standard output
+[4]
+
+# Messages, and no progress where there is no terminal.
+$ vpm-probe in.off -o /dev/null --act say
+2> vpm-probe: note: a note
+2> vpm-probe: warning: a warning
+$ vpm-probe in.off -o /dev/null --act say --quiet
+2> vpm-probe: warning: a warning
+$ vpm-probe in.off -o /dev/null --act say --verbose
+2> vpm-probe: note: a note
+2> vpm-probe: warning: a warning
+2> vpm-probe: a detail
+
+# Provenance names no files and nothing that changes no result.
+$ vpm-probe in.off -o out.txt --act parameters --threads 2 --levels 4 --flag
+{"act":"parameters","count":3,"factor":0.1,"flag":true,"levels":4,"text":"none"}
+
+# A report may be renewed, but does not replace a vpm file.
+$ vpm-probe in.off -o out.txt
+$ printf '\x89VPM\r\n\x1a\n\x01\0\0\0\x03\0\0\0' > frame.vpmc && vpm-probe in.off -o frame.vpmc
+2> vpm-probe: error: frame.vpmc exists and is a cloud (.vpmc); name another output, or give --force to overwrite it
+[2]
+$ vpm-probe in.off -o frame.vpmc --force && cat frame.vpmc
+in.off none 3 0.100000 []
+
+# Links, pipes and devices.
+$ ln -s out.txt link && vpm-probe in.off -o link --text through && readlink link && cat out.txt
+out.txt
+in.off through 3 0.100000 []
+$ vpm-probe in.off -o /dev/stdout
+in.off none 3 0.100000 []
+$ vpm-probe in.off -o >(cat) | cat
+in.off none 3 0.100000 []
+$ umask 027 && vpm-probe in.off -o private.txt && stat -c %a private.txt
+640
+$ ls -A
+call.json
+defaults.json
+frame.vpmc
+link
+out.txt
+private.txt
