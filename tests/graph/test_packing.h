@@ -1,0 +1,42 @@
+// Simple packings and solids for tests of the graph.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libvpm/model/packing.h"
+
+namespace vpm::test {
+
+// Numbers that look random and are the same everywhere (SplitMix64).
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed) {}
+  double uniform(double low, double high);
+  Vec3 direction();
+
+ private:
+  std::uint64_t state_;
+};
+
+struct Shape {
+  std::string name;
+  Solid solid;
+  std::function<double(Vec3)> depth;  // not above the distance from the surface, positive inside
+};
+
+Shape convex(std::string name, Solid solid);
+Shape cube();
+Shape tetrahedron();
+Shape octahedron();
+Shape torus();
+
+// Greedy, largest sphere first, with centres on a lattice of about `candidates` points in the box.
+Packing greedy_packing(const Shape& shape, std::size_t spheres, double candidates = 125000);
+
+// Volume of the part of the solid where dot(normal, x) < offset; exact.
+double volume_below(const Solid& solid, Vec3 normal, double offset);
+
+}  // namespace vpm::test
