@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""Says in words what vpm-query found on the path of the demo, and draws it.
+
+usage: plot_demo.py FOLDER
+"""
+import csv
+import json
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+STATES = [("outside", "#a0a0a0"), ("boundary", "#ff8c00"), ("inside", "#c80000")]
+ML = 1e6  # millilitres in a cubic metre
+
+
+def read(folder):
+    results = [json.loads(line) for line in (folder / "results.jsonl").open()]
+    with (folder / "truth.csv").open() as file:
+        truth = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    return results, truth
+
+
+def read_spheres(path):
+    lines = path.read_text().splitlines()
+    begin = lines.index("end_header") + 1
+    return np.array([[float(x) for x in line.split()[:5]] for line in lines[begin:]])
+
+
+def describe(folder, results, truth):
+    pack = json.loads((folder / "pack.json").read_text())
+    stats = json.loads((folder / "stats.json").read_text())
+    tool = pack["volume_mesh"]
+    first = next(k for k, r in enumerate(results) if r["volume"] > 0)
+    last, true = results[-1], truth[-1]
+    errors = [abs(r["volume"] - t["volume"]) / tool for r, t in zip(results, truth)]
+    force = np.array(last["force"])
+    direction = force / np.linalg.norm(force)
+    print(f"""The tool has a volume of {tool * ML:.0f} ml; {pack['spheres']} spheres fill {100 * pack['coverage']:.1f} % of it.
+It goes {1000 * true['depth']:.0f} mm along its path, in {len(results)} poses.
+Up to pose {first - 1} it touches nothing. At the last pose {last['volume'] * ML:.1f} ml of it, {100 * last['volume_fraction']:.1f} %,
+are inside the bowl's wall; the truth is {true['volume'] * ML:.1f} ml.
+The force that pushes it out points along ({direction[0]:+.2f}, {direction[1]:+.2f}, {direction[2]:+.2f}), where -z is back to the camera.
+Along the path the volume is off by {100 * np.mean(errors):.2f} % of the tool on average, {100 * max(errors):.2f} % at worst.
+One query took {stats['query_us']['median'] / 1000:.2f} ms (median).""")
+
+
+def draw(folder, results, truth):
+    figure, (image, curve, spheres) = plt.subplots(1, 3, figsize=(15, 4.6))
+    depth = plt.imread(folder / "depth.png") * 65535 / 5000
+    shown = image.imshow(np.where(depth > 0, depth, np.nan), cmap="viridis_r")
+    figure.colorbar(shown, ax=image, label="depth, m", shrink=0.8)
+    image.set_title("what the camera saw")
+
+    along = [1000 * t["depth"] for t in truth]
+    curve.plot(along, [t["volume"] * ML for t in truth], "k-", lw=3, alpha=0.3, label="truth")
+    curve.plot(along, [r["volume"] * ML for r in results], "C3-", lw=1, label="vpm-query")
+    curve.set_xlabel("way into the bowl, mm")
+    curve.set_ylabel("penetration volume, ml")
+    curve.set_title("volume inside the wall")
+    curve.legend()
+
+    data = read_spheres(folder / "spheres.ply")
+    for state, (name, colour) in enumerate(STATES):
+        some = data[data[:, 4] == state]
+        # From the side: the camera is above, the bowl below.
+        spheres.scatter(some[:, 0], -some[:, 2], s=(some[:, 3] * 5500) ** 2, c=colour,
+                        edgecolors="k", linewidths=0.2, label=name)
+    angle = np.linspace(-0.6, 0.6, 200)
+    spheres.plot(0.3 * np.sin(angle), -(0.7 + 0.3 * np.cos(angle)), "k--", lw=1, label="bowl")
+    spheres.set_aspect("equal")
+    spheres.set_xlabel("x, m")
+    spheres.set_ylabel("-z, m")
+    spheres.set_title("the spheres at the last pose")
+    legend = spheres.legend(loc="upper right", fontsize=8)
+    for handle in legend.legendHandles:
+        if hasattr(handle, "set_sizes"):
+            handle.set_sizes([30])
+    figure.tight_layout()
+    figure.savefig(folder / "demo.png", dpi=110)
+    print(f"\nThe picture is {folder / 'demo.png'}; the other files lie beside it.")
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    results, truth = read(folder)
+    describe(folder, results, truth)
+    draw(folder, results, truth)
+
+
+if __name__ == "__main__":
+    main()

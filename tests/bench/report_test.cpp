@@ -1,0 +1,61 @@
+#include "tools/bench/report.h"
+
+#include <gtest/gtest.h>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "tools/bench/suite.h"
+
+namespace vpm::bench {
+namespace {
+
+TEST(Report, CsvHasAHeaderAndNineDigits) {
+  Table table;
+  table.columns = {"name", "value"};
+  table.rows = {{std::string("a"), 1.0 / 3}, {std::string("b"), 2.0}};
+  EXPECT_EQ(to_csv(table), "name,value\na,0.333333333\nb,2\n");
+}
+
+TEST(Report, JsonSaysWhatWasRunAndWhere) {
+  Report report;
+  report.suite = "timing";
+  const nlohmann::json json = to_json(report, "vpm-bench timing");
+  for (const char* key :
+       {"suite", "version", "commit", "command", "machine", "settings", "results"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["command"], "vpm-bench timing");
+  EXPECT_GE(json["machine"]["cores"], 1);
+}
+
+TEST(Report, IsWrittenIntoANewFolder) {
+  Report report;
+  report.suite = "accuracy";
+  const std::string folder = testing::TempDir() + "report_test/deep";
+  write(report, "vpm-bench accuracy", folder);
+  EXPECT_FALSE(file::read_all(folder + "/accuracy.json").empty());
+  EXPECT_FALSE(file::read_all(folder + "/accuracy.csv").empty());
+}
+
+TEST(Report, FolderThatCannotBeMadeIsSaid) {
+  try {
+    write(Report{}, "", "/dev/null/folder");
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_EQ(fault.kind(), ErrorKind::cannot_write);
+  }
+}
+
+TEST(Suite, UnknownOrMissingNameIsWrongUsage) {
+  for (const char* name : {"", "speed"}) {
+    try {
+      run_suite(name, {});
+      FAIL();
+    } catch (const Error& fault) {
+      EXPECT_EQ(fault.kind(), ErrorKind::usage);
+      EXPECT_NE(std::string(fault.what()).find("accuracy"), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vpm::bench
