@@ -1,0 +1,51 @@
+// Golden files give the content that is listed beside them, and are written again byte by byte.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/model/tool_model_file.h"
+#include "tests/formats/content_dump.h"
+#include "tests/formats/golden_content.h"
+
+namespace vpm::golden {
+namespace {
+
+const std::string kGolden = VPM_SOURCE_DIR "/formats/golden/v1/";
+
+std::string text_of(const std::string& path) {
+  const std::vector<std::byte> bytes = file::read_all(path);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+template <class Content>
+void expect_golden(const std::string& name, Content (*read)(const std::string&),
+                   void (*write)(const std::string&, const Content&), const Content& made) {
+  const Content content = read(kGolden + name);
+  EXPECT_EQ(dump(content), nlohmann::json::parse(text_of(kGolden + name + ".json")));
+  const std::string copy = testing::TempDir() + "golden-" + std::to_string(::getpid()) + "-" + name;
+  write(copy, content);
+  EXPECT_EQ(text_of(copy), text_of(kGolden + name)) << "read and written again";
+  write(copy, made);
+  EXPECT_EQ(text_of(copy), text_of(kGolden + name)) << "made anew";
+  std::filesystem::remove(copy);
+}
+
+TEST(Golden, Packing) {
+  expect_golden("cube.vpmp", read_packing, write_packing, cube_packing());
+}
+TEST(Golden, ToolModel) {
+  expect_golden("cube.vpmg", read_tool_model, write_tool_model, cube_model());
+}
+TEST(Golden, CloudWithSensor) {
+  expect_golden("wall.vpmc", read_cloud, write_cloud, wall_cloud());
+}
+TEST(Golden, CloudWithoutSensor) {
+  expect_golden("scattered.vpmc", read_cloud, write_cloud, scattered_cloud());
+}
+
+}  // namespace
+}  // namespace vpm::golden

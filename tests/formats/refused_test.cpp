@@ -1,0 +1,95 @@
+// Unsound files are refused in words, whatever is wrong with them.
+#include <gtest/gtest.h>
+
+#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/model/tool_model_file.h"
+#include "tests/formats/refused_files.h"
+
+namespace vpm {
+namespace {
+
+const std::string kFormats = VPM_SOURCE_DIR "/formats/";
+
+void parse_as(const std::string& kind, std::vector<std::byte> bytes) {
+  if (kind == "packing") parse_packing(std::move(bytes), "the file");
+  if (kind == "tool model") parse_tool_model(std::move(bytes), "the file");
+  if (kind == "cloud") parse_cloud(std::move(bytes), "the file");
+}
+
+// The refusal's words, or "" where the bytes are accepted.
+std::string refusal_of(const std::string& kind, const std::vector<std::byte>& bytes) {
+  try {
+    parse_as(kind, bytes);
+  } catch (const Error& fault) {
+    EXPECT_EQ(fault.kind(), ErrorKind::refused);
+    EXPECT_EQ(std::string(fault.what()).rfind("the file: ", 0), 0U) << fault.what();
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(RefusedFiles, SayWhatIsWrong) {
+  const std::vector<std::byte> text = file::read_all(kFormats + "refused/manifest.json");
+  const auto* begin = reinterpret_cast<const char*>(text.data());
+  const nlohmann::json manifest = nlohmann::json::parse(begin, begin + text.size());
+  ASSERT_GT(manifest.size(), 40U);
+  for (const nlohmann::json& entry : manifest) {
+    const std::string name = entry["file"], message = entry["message"];
+    const std::string said =
+        refusal_of(entry["read_as"], file::read_all(kFormats + "refused/" + name));
+    EXPECT_NE(said.find(message), std::string::npos) << name << " said '" << said << "'";
+  }
+}
+
+class DamagedFile : public testing::TestWithParam<std::pair<const char*, const char*>> {
+ protected:
+  const std::string kind_ = GetParam().second;
+  const std::vector<std::byte> good_ = file::read_all(kFormats + "golden/v1/" + GetParam().first);
+};
+
+TEST_P(DamagedFile, TruncationIsRefused) {
+  for (std::size_t tenth = 0; tenth < 10; ++tenth) {
+    const std::size_t size = good_.size() * tenth / 10;
+    EXPECT_NE(refusal_of(kind_, {good_.begin(), good_.begin() + std::ptrdiff_t(size)}), "")
+        << "cut to " << size << " of " << good_.size() << " bytes";
+  }
+  EXPECT_NE(refusal_of(kind_, {good_.begin(), good_.end() - 1}), "");
+}
+
+TEST_P(DamagedFile, EveryChangedByteIsRefused) {
+  std::vector<std::byte> bytes = good_;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (const unsigned change : {0x01U, 0x80U, 0xffU}) {
+      bytes[at] ^= static_cast<std::byte>(change);
+      EXPECT_NE(refusal_of(kind_, bytes), "") << "byte " << at << " ^ " << change;
+      bytes[at] = good_[at];
+    }
+  }
+}
+
+// With right checksums the content itself must be looked at. Accepted or refused, never a crash:
+// the sanitizers listen.
+TEST_P(DamagedFile, EveryChangedByteUnderRightChecksumsIsReadOrRefused) {
+  std::vector<std::byte> bytes = good_;
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    for (const unsigned change : {0x01U, 0x80U, 0xffU}) {
+      bytes[at] ^= static_cast<std::byte>(change);
+      if (!refusal_of(kind_, golden::resealed(bytes)).empty()) ++refused;
+      bytes[at] = good_[at];
+    }
+  }
+  EXPECT_GT(refused, bytes.size() / 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, DamagedFile,
+                         testing::Values(std::pair("cube.vpmp", "packing"),
+                                         std::pair("cube.vpmg", "tool model"),
+                                         std::pair("wall.vpmc", "cloud"),
+                                         std::pair("scattered.vpmc", "cloud")));
+
+}  // namespace
+}  // namespace vpm
