@@ -6,9 +6,10 @@
 namespace vpm {
 namespace {
 
-// The ball with the second moment of a compact piece of volume size^3 has about this radius, in
-// sizes.
-constexpr double kMomentRadius = 0.63;
+// Largest moment radius of a piece, in sizes. A compact piece of volume size^3 has 0.63; the gap
+// lines the solid's surface, where errors of neighbouring pieces add up instead of cancelling, so
+// its pieces are smaller.
+constexpr double kMomentRadius = 0.5;
 
 double coordinate(Vec3 v, int axis) {
   return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);

@@ -66,8 +66,7 @@ Shape convex(std::string name, Solid solid) {
   std::vector<std::pair<Vec3, double>> planes;
   for (const Triangle& t : solid.triangles) {
     const Vec3 a = solid.vertices[t[0]];
-    const Vec3 n =
-        normalized_or_zero(cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a));
+    const Vec3 n = normalized_or_zero(cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a));
     planes.push_back({n, dot(n, a)});
   }
   const auto depth = [planes](Vec3 p) {
@@ -78,15 +77,22 @@ Shape convex(std::string name, Solid solid) {
   return {std::move(name), std::move(solid), depth};
 }
 
-Shape cube() { return convex("cube", synthetic::make_cube(0.2)); }
-Shape tetrahedron() { return convex("tetrahedron", synthetic::make_tetrahedron(0.2)); }
-Shape octahedron() { return convex("octahedron", synthetic::make_octahedron(0.2)); }
+Shape cube() {
+  return convex("cube", synthetic::make_cube(0.2));
+}
+Shape tetrahedron() {
+  return convex("tetrahedron", synthetic::make_tetrahedron(0.2));
+}
+Shape octahedron() {
+  return convex("octahedron", synthetic::make_octahedron(0.2));
+}
 
 Shape torus() {
   constexpr double kRing = 0.07, kTube = 0.03;
   constexpr int kAround = 96, kAcross = 48;
   // The facets lie inside of the round torus by no more than their sagittas.
-  const double inner = kTube * std::cos(kPi / kAcross) - (kRing + kTube) * (1 - std::cos(kPi / kAround));
+  const double inner =
+      kTube * std::cos(kPi / kAcross) - (kRing + kTube) * (1 - std::cos(kPi / kAround));
   const auto depth = [inner](Vec3 p) {
     return inner - std::hypot(std::hypot(p.x, p.y) - kRing, p.z);
   };
