@@ -24,7 +24,8 @@ struct DepthSurface {
   static constexpr double kJump = 0.03;
   // Below this cosine between normal and ray the normal is not trusted to scale a distance.
   static constexpr double kGrazing = 0.05;
-  static constexpr int kFootIterations = 3;
+  static constexpr int kFootSteps = 5;        // of the search for the nearest surface point
+  static constexpr double kCreasePixels = 2;  // a foot further aside than this lies on a crease
 
   Intrinsics k;
   std::int32_t width = 0, height = 0;
@@ -86,21 +87,34 @@ struct DepthSurface {
     return reading;
   }
 
-  // The normal at the surface point nearest to x, found from the point on x's ray by projecting
-  // again and again; as far as the steps approach. `reading` is that of x.
+  // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
+  // point. Starts from the point on x's ray (`reading` is that of x), steps to the foot on its
+  // tangent plane and, where that overshoots a crease, back by halves.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    Vec3 normal = reading.normal;
-    double distance = reading.distance;
-    for (int step = 0; step < kFootIterations; ++step) {
-      const Reading next = read(x - distance * normal);
+    Vec3 foot = reading.foot, normal = reading.normal;
+    double squared = squared_norm(x - foot);
+    Vec3 target = x - reading.distance * normal;
+    for (int step = 0; step < kFootSteps; ++step) {
+      const Reading next = read(target);
       if (!next.known) break;
-      const double next_distance = dot(next.normal, x - next.foot);
-      const double off = norm(x - next.foot);
-      if (!(next_distance < 0) || off > 1.5 * (-distance)) break;  // another sheet
-      normal = next.normal;
-      distance = next_distance;
+      const double next_squared = squared_norm(x - next.foot);
+      if (next_squared < squared) {
+        foot = next.foot;
+        normal = next.normal;
+        squared = next_squared;
+        target = x - dot(normal, x - foot) * normal;
+      } else {
+        target = 0.5 * (foot + next.foot);
+      }
     }
-    return normal;
+    // Where the foot is not below x on its own tangent plane, it lies on a crease: there the
+    // gradient fans out.
+    const Vec3 towards = foot - x;
+    const double above = dot(normal, towards), pixel = foot.z / k.fx;
+    const double aside = squared_norm(towards - above * normal);
+    return above > 0 && aside <= (kCreasePixels * pixel) * (kCreasePixels * pixel)
+               ? normal
+               : normalized_or_zero(towards);
   }
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {

@@ -90,7 +90,16 @@ struct DiskSurface {
     return {true, dot(normal, x - foot), normal, foot};
   }
 
-  VPM_HD Vec3 closest_normal(Vec3, const Reading& reading) const { return reading.normal; }
+  // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
+  // towards the rim beside it (at a crease, where the gradient fans out).
+  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
+    const Vec3 towards = reading.foot - x;
+    const double height = dot(reading.normal, towards);
+    const Vec3 aside = towards - height * reading.normal;
+    const double aside_squared = squared_norm(aside);
+    if (height > 0 && aside_squared <= largest_radius * largest_radius) return reading.normal;
+    return normalized_or_zero(towards - (largest_radius / std::sqrt(aside_squared)) * aside);
+  }
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return nearest(center, radius + largest_radius) == kNone ? Side::uncut : Side::mixed;

@@ -1,0 +1,137 @@
+#include "tests/query/lattice_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "libvpm/cloud/normals.h"
+
+namespace vpm::testing {
+namespace {
+
+std::uint32_t lattice_index(std::uint32_t n, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return (z * n + y) * n + x;
+}
+
+void connect_neighbors(std::uint32_t n, SphereGraph& graph) {
+  graph.begin = {0};
+  for (std::uint32_t z = 0; z < n; ++z) {
+    for (std::uint32_t y = 0; y < n; ++y) {
+      for (std::uint32_t x = 0; x < n; ++x) {
+        if (z > 0) graph.neighbors.push_back(lattice_index(n, x, y, z - 1));
+        if (y > 0) graph.neighbors.push_back(lattice_index(n, x, y - 1, z));
+        if (x > 0) graph.neighbors.push_back(lattice_index(n, x - 1, y, z));
+        if (x + 1 < n) graph.neighbors.push_back(lattice_index(n, x + 1, y, z));
+        if (y + 1 < n) graph.neighbors.push_back(lattice_index(n, x, y + 1, z));
+        if (z + 1 < n) graph.neighbors.push_back(lattice_index(n, x, y, z + 1));
+        graph.begin.push_back(static_cast<std::uint32_t>(graph.neighbors.size()));
+      }
+    }
+  }
+}
+
+// One leaf level below a root.
+void wrap(std::uint32_t count, double reach, Hierarchy& hierarchy) {
+  hierarchy.leaves.resize(count);
+  std::iota(hierarchy.leaves.begin(), hierarchy.leaves.end(), 0u);
+  const Sphere all{{}, reach};
+  constexpr std::uint32_t kChildren = 4;
+  hierarchy.nodes.push_back({all, 1, 1 + kChildren, 0, 0});
+  for (std::uint32_t k = 0; k < kChildren; ++k) {
+    hierarchy.nodes.push_back({all, count * k / kChildren, count * (k + 1) / kChildren, 1, 0});
+  }
+}
+
+}  // namespace
+
+ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
+  ToolModel model;
+  model.volume = edge * edge * edge;
+  model.reach = std::sqrt(3.0) * edge / 2;
+  model.levels.resize(1);
+  Level& level = model.levels[0];
+  level.sphere_count = n * n * n;
+  const double share = edge / n, piece = share / m;
+  level.grid = {{-edge / 2, -edge / 2, -edge / 2}, share, n, n, n, {}, {}};
+  level.block_begin = {0};
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const Vec3 cell{double(i % n), double(i / n % n), double(i / (n * n))};
+    const Vec3 center = share * (cell + Vec3{0.5, 0.5, 0.5}) - Vec3{edge / 2, edge / 2, edge / 2};
+    model.spheres.push_back({center, share / 2});
+    level.grid.begin.push_back(i);
+    level.grid.spheres.push_back(i);
+    level.share_volume.push_back(share * share * share);
+    level.share_centroid.push_back(center);
+    level.share_reach.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
+    const std::uint32_t begin = static_cast<std::uint32_t>(level.samples.size());
+    for (std::uint32_t s = 0; s < m * m * m; ++s) {
+      const Vec3 at{double(s % m), double(s / m % m), double(s / (m * m))};
+      const Vec3 sample =
+          center + piece * (at + Vec3{0.5, 0.5, 0.5}) - Vec3{share / 2, share / 2, share / 2};
+      const double mean_squared_distance = piece * piece / 4;
+      level.samples.push_back({narrow(sample),
+                               static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)),
+                               std::pow(1.0 / (n * m), 3)});
+    }
+    level.blocks.push_back({narrow(center), static_cast<float>(level.share_reach.back()), begin,
+                            static_cast<std::uint32_t>(level.samples.size())});
+    level.block_begin.push_back(static_cast<std::uint32_t>(level.blocks.size()));
+  }
+  level.grid.begin.push_back(level.sphere_count);
+  connect_neighbors(n, level.graph);
+  wrap(level.sphere_count, model.reach, level.hierarchy);
+  return model;
+}
+
+Cloud see(const synthetic::Scene& scene) {
+  const DepthImage depth = synthetic::render(*scene.surface, scene.camera);
+  std::vector<Vec3f> normals(depth.depth.size());
+  for (std::uint32_t v = 0; v < depth.height; ++v) {
+    for (std::uint32_t u = 0; u < depth.width; ++u) {
+      const std::size_t i = depth.index(u, v);
+      if (!is_measured(depth.depth[i])) continue;
+      const Vec3 at = unproject(scene.camera.intrinsics, u, v, depth.depth[i]);
+      normals[i] = narrow(transpose(scene.camera.to_world.rotation) *
+                          scene.surface->gradient(scene.camera.to_world * at));
+    }
+  }
+  return assemble_cloud(depth, scene.camera, normals);
+}
+
+Cloud without_camera(Cloud cloud) {
+  cloud.sensor.reset();
+  cloud.pixels.clear();
+  return cloud;
+}
+
+Rotation generic_rotation() {
+  Quaternion q{0.31, -0.57, 0.21, 0.73};
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
+}
+
+Cloud permuted(const Cloud& cloud) {
+  constexpr std::size_t kPrime = 7919;  // coprime to any image size in these tests
+  Cloud other = cloud;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const std::size_t from = (i * kPrime + 13) % cloud.size();
+    other.positions[i] = cloud.positions[from];
+    other.normals[i] = cloud.normals[from];
+    other.radii[i] = cloud.radii[from];
+    if (!cloud.pixels.empty()) other.pixels[i] = cloud.pixels[from];
+  }
+  return other;
+}
+
+Cloud doubled(const Cloud& cloud) {
+  Cloud twice = cloud;
+  const auto append = [](auto& all) {
+    all.insert(all.end(), all.begin(), all.begin() + std::ptrdiff_t(all.size()));
+  };
+  twice.positions.reserve(2 * cloud.size()), twice.normals.reserve(2 * cloud.size());
+  twice.radii.reserve(2 * cloud.size()), twice.pixels.reserve(2 * cloud.size());
+  append(twice.positions), append(twice.normals), append(twice.radii), append(twice.pixels);
+  return twice;
+}
+
+}  // namespace vpm::testing

@@ -1,0 +1,132 @@
+// The refined measure against analytic truth, through everything a camera's cloud passes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/shapes.h"
+#include "libvpm/synthetic/truth.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::generic_rotation;
+using testing::lattice_cube;
+using testing::see;
+using testing::without_camera;
+
+constexpr double kEdge = 0.2;
+constexpr double kDegrees = 1;  // of the force
+
+struct SceneCase {
+  const char* scene;
+  bool camera;
+  double volume_bound;     // worst error, part of the tool's volume
+  bool sees_whole_wrench;  // the step's riser is thinner than a pixel: what it pushes cannot be
+                           // known
+};
+
+class RefinedScene : public ::testing::TestWithParam<SceneCase> {};
+
+TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
+  const SceneCase& c = GetParam();
+  const synthetic::Scene scene = synthetic::make_scene(c.scene);
+  const Cloud seen = see(scene);
+  const PreparedCloud cloud(c.camera ? seen : without_camera(seen));
+  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  Query query(tool, {});
+  double last_error = 0;
+  for (int k = 0; k <= 24; ++k) {
+    const Pose pose{generic_rotation(), {0.012, -0.007, 0.80 + 0.01 * k}};
+    const synthetic::Penetration truth = solid.penetration(pose, *scene.surface);
+    if (truth.volume > 0.6 * tool.volume) break;
+    const Result r = query.run(cloud, pose);
+    const double error = (r.volume - truth.volume) / tool.volume;
+    EXPECT_LE(std::abs(error), c.volume_bound)
+        << "pose " << k << ", truth " << truth.volume / tool.volume;
+    EXPECT_LE(std::abs(error - last_error), 2 * c.volume_bound) << "jump at pose " << k;
+    last_error = error;
+    if (c.sees_whole_wrench && truth.volume > 0.01 * tool.volume) {
+      const double cosine =
+          dot(r.wrench.force, truth.force) / (norm(r.wrench.force) * norm(truth.force));
+      EXPECT_LE(std::acos(std::min(1.0, cosine)) * 180 / kPi, kDegrees) << "pose " << k;
+      EXPECT_LE(norm(r.wrench.torque - truth.torque),
+                0.01 * truth.volume * tool.reach + 1e-4 * tool.volume * tool.reach)
+          << "pose " << k;
+    }
+    if (truth.volume == 0) {
+      EXPECT_LE(r.volume, c.volume_bound * tool.volume);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RefinedScene,
+                         ::testing::Values(SceneCase{"wall", true, 0.0005, true},
+                                           SceneCase{"tilted-wall", true, 0.0005, true},
+                                           SceneCase{"inverted-ball", true, 0.001, true},
+                                           SceneCase{"ball", true, 0.001, true},
+                                           SceneCase{"groove", true, 0.0015, true},
+                                           SceneCase{"step", true, 0.003, false},
+                                           SceneCase{"wall", false, 0.0005, true},
+                                           SceneCase{"tilted-wall", false, 0.0005, true},
+                                           SceneCase{"inverted-ball", false, 0.001, true},
+                                           SceneCase{"groove", false, 0.002, true}),
+                         [](const auto& variant) {
+                           std::string name = variant.param.scene;
+                           std::erase(name, '-');
+                           return name + (variant.param.camera ? "Camera" : "Points");
+                         });
+
+TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
+  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  const Result r = Query(tool, {}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
+  EXPECT_EQ(r.volume, 0);
+  EXPECT_EQ(r.boundary + r.inside + r.points, 0u);
+  EXPECT_EQ(norm(r.wrench.force), 0);
+}
+
+TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
+  // Before, beside and far from a free-standing block, also where the block hides the wall behind
+  // it.
+  const synthetic::Scene scene = synthetic::make_scene("block");
+  const PreparedCloud cloud(see(scene));
+  const ToolModel tool = lattice_cube(0.1, 6, 2);
+  Query query(tool, {});
+  double before = 0;
+  for (int k = 0; k <= 60; ++k) {
+    // Across the silhouette, in the gap between block (ends at 1.2) and wall (1.5).
+    const Result r = query.run(cloud, {generic_rotation(), {-0.3 + 0.01 * k, 0.01, 1.33}});
+    EXPECT_LE(std::abs(r.volume - before), 0.02 * tool.volume) << k;
+    EXPECT_EQ(r.volume, 0) << k;
+    before = r.volume;
+  }
+}
+
+TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
+  // Into a wall the energy is E(d) = integral of V; the force must be V along the normal at every
+  // pose.
+  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 8, 3);
+  Query query(tool, {});
+  for (int k = 0; k < 10; ++k) {
+    const Result r = query.run(cloud, {generic_rotation(), {0, 0, 0.9 + 0.02 * k}});
+    EXPECT_NEAR(-r.wrench.force.z, r.volume, 1e-6 * tool.volume);
+  }
+}
+
+TEST(RefinedMeasure, HolesDoNotLeak) {
+  Cloud cloud = see(synthetic::make_scene("wall"));
+  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  const Pose pose{generic_rotation(), {0, 0, 0.95}};
+  const double whole = Query(tool, {}).run(PreparedCloud(cloud), pose).volume;
+  for (std::size_t i = 0; i < cloud.sensor->depth.depth.size(); i += 7)
+    cloud.sensor->depth.depth[i] = 0;
+  EXPECT_NEAR(Query(tool, {}).run(PreparedCloud(cloud), pose).volume, whole, 1e-4 * tool.volume);
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,107 @@
+#include "libvpm/query/prepared_cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::see;
+using testing::without_camera;
+
+TEST(PreparedCloud, MergesEqualPointsAndForgetsTheirOrder) {
+  const Cloud seen = see(synthetic::make_scene("ball"));
+  for (const Cloud& cloud : {seen, without_camera(seen)}) {
+    const PreparedCloud plain(cloud), shuffled(testing::permuted(cloud)),
+        twice(testing::doubled(cloud));
+    EXPECT_EQ(plain.positions().size(), cloud.size());
+    EXPECT_EQ(plain.positions(), shuffled.positions());
+    EXPECT_EQ(plain.normals(), twice.normals());
+    EXPECT_EQ(plain.positions(), twice.positions());
+  }
+}
+
+TEST(PreparedCloud, RangesHoldEveryPointOfABall) {
+  const Cloud seen = see(synthetic::make_scene("inverted-ball"));
+  for (const Cloud& cloud : {seen, without_camera(seen)}) {
+    const PreparedCloud prepared(cloud);
+    for (const Vec3 center :
+         {Vec3{0, 0, 0.95}, Vec3{0.1, 0.2, 0.8}, Vec3{-0.3, 0, 0.01}, Vec3{0, 0, -1}}) {
+      const double radius = 0.15;
+      std::size_t expected = 0, found = 0;
+      for (const Vec3f& p : prepared.positions()) expected += norm(widen(p) - center) < radius;
+      prepared.for_ranges_in_ball(center, radius, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t k = begin; k < end; ++k)
+          found += norm(widen(prepared.positions()[k]) - center) < radius;
+      });
+      EXPECT_EQ(found, expected);
+    }
+  }
+}
+
+TEST(PreparedCloud, NearestIsTheNearest) {
+  Cloud cloud = without_camera(see(synthetic::make_scene("groove")));
+  cloud.positions.resize(3001), cloud.normals.resize(3001), cloud.radii.resize(3001);
+  const PreparedCloud prepared(cloud);
+  const DiskSurface disks = prepared.disk_surface();
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 x{std::sin(12.9 * k), std::sin(78.2 * k), 1 + std::sin(37.7 * k)};
+    double best = HUGE_VAL;
+    for (const Vec3f& p : prepared.positions()) best = std::min(best, squared_norm(widen(p) - x));
+    const std::uint32_t found = disks.nearest(x, HUGE_VAL);
+    ASSERT_NE(found, DiskSurface::kNone);
+    EXPECT_EQ(squared_norm(widen(prepared.positions()[found]) - x), best);
+  }
+}
+
+// Whatever side_of_ball says of a ball must be true of every place in it.
+TEST(DepthSurface, SideOfBallIsConservative) {
+  for (const char* name : {"wall", "groove", "block", "inverted-ball"}) {
+    const PreparedCloud cloud(see(synthetic::make_scene(name)));
+    const DepthSurface surface = cloud.depth_surface();
+    int decided = 0;
+    for (int k = 0; k < 3000; ++k) {
+      const Vec3 center{0.4 * std::sin(12.9 * k), 0.3 * std::sin(78.2 * k),
+                        1 + 0.5 * std::sin(37.7 * k)};
+      const double radius = 0.002 + 0.05 * std::abs(std::sin(4.1 * k));
+      const Side side = surface.side_of_ball(center, radius);
+      if (side == Side::mixed) continue;
+      ++decided;
+      for (int s = 0; s < 30; ++s) {
+        const Vec3 direction =
+            normalized_or_zero({std::sin(3.3 * s), std::sin(7.7 * s + 1), std::sin(5.1 * s + 2)});
+        const Reading reading = surface.read(center + radius * direction);
+        if (side == Side::behind) {
+          EXPECT_TRUE(reading.known && reading.distance < 0) << name << k;
+        } else {
+          EXPECT_TRUE(!reading.known || reading.distance > 0) << name << k;
+        }
+      }
+    }
+    EXPECT_GT(decided, 1000) << name;
+  }
+}
+
+TEST(PreparedCloud, RefusesAPointOffItsPixel) {
+  Cloud cloud = see(synthetic::make_scene("wall"));
+  cloud.positions[5].x += 0.1f;
+  EXPECT_THROW(PreparedCloud{cloud}, Error);
+}
+
+TEST(PreparedCloud, RefusesTwoPointsAtOnePixel) {
+  Cloud cloud = testing::doubled(see(synthetic::make_scene("wall")));
+  cloud.positions[5].z *= 1.001f;
+  EXPECT_THROW(PreparedCloud{cloud}, Error);
+}
+
+TEST(PreparedCloud, EmptyCloudsAnswerNothing) {
+  const PreparedCloud cloud{Cloud{}};
+  EXPECT_EQ(cloud.disk_surface().nearest({}, HUGE_VAL), DiskSurface::kNone);
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,145 @@
+// The same input gives the same bits: threads, order of the points, points given twice, powers of
+// two, far origins.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/query/query.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::generic_rotation;
+using testing::lattice_cube;
+using testing::see;
+using testing::without_camera;
+
+struct Variant {
+  const char* name;
+  Measure measure;
+  bool camera;
+};
+
+class SameBits : public ::testing::TestWithParam<Variant> {
+ protected:
+  Cloud cloud() const {
+    const Cloud seen = see(synthetic::make_scene("inverted-ball"));
+    return GetParam().camera ? seen : without_camera(seen);
+  }
+  std::vector<Result> sweep(const Cloud& cloud, const ToolModel& tool, double scale = 1,
+                            Vec3 shift = {}) const {
+    QueryOptions options;
+    options.measure = GetParam().measure;
+    Query query(tool, options);
+    const PreparedCloud prepared(cloud);
+    std::vector<Result> results;
+    for (int k = 0; k < 12; ++k) {
+      results.push_back(query.run(
+          prepared, {generic_rotation(), scale * Vec3{0.01, -0.02, 0.84 + 0.015 * k} + shift}));
+    }
+    return results;
+  }
+};
+
+void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, double scale = 1) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_GT(a.back().volume, 0);
+  const double cubed = scale * scale * scale;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(cubed * a[k].volume, b[k].volume);
+    EXPECT_EQ(a[k].volume_fraction, b[k].volume_fraction);
+    EXPECT_EQ(cubed * a[k].wrench.force, b[k].wrench.force);
+    EXPECT_EQ(cubed * scale * a[k].wrench.torque, b[k].wrench.torque);
+    EXPECT_EQ(a[k].boundary, b[k].boundary);
+    EXPECT_EQ(a[k].inside, b[k].inside);
+    EXPECT_EQ(a[k].points, b[k].points);
+  }
+}
+
+TEST_P(SameBits, ForAnyNumberOfThreads) {
+  const ToolModel tool = lattice_cube(0.2, 8, 2);
+  const Cloud seen = cloud();
+  set_thread_count(1);
+  const std::vector<Result> one = sweep(seen, tool);
+  for (const int threads : {2, 3, 8}) {
+    set_thread_count(threads);
+    expect_same(one, sweep(seen, tool));
+  }
+  set_thread_count(0);
+}
+
+TEST_P(SameBits, ForAnyOrderOfThePoints) {
+  const ToolModel tool = lattice_cube(0.2, 8, 2);
+  expect_same(sweep(cloud(), tool), sweep(testing::permuted(cloud()), tool));
+}
+
+TEST_P(SameBits, IfEveryPointIsGivenTwice) {
+  const ToolModel tool = lattice_cube(0.2, 8, 2);
+  expect_same(sweep(cloud(), tool), sweep(testing::doubled(cloud()), tool));
+}
+
+ToolModel scaled(ToolModel tool, double s) {
+  const float f = static_cast<float>(s);
+  const auto stretch = [f](Vec3f& x) { x = {f * x.x, f * x.y, f * x.z}; };
+  tool.volume *= s * s * s;
+  tool.center_of_mass = s * tool.center_of_mass;
+  tool.reach *= s;
+  for (Sphere& sphere : tool.spheres) sphere = {s * sphere.center, s * sphere.radius};
+  for (Level& level : tool.levels) {
+    for (HierarchyNode& node : level.hierarchy.nodes)
+      node.bound = {s * node.bound.center, s * node.bound.radius};
+    level.grid.low = s * level.grid.low;
+    level.grid.cell *= s;
+    for (double& reach : level.share_reach) reach *= s;
+    for (CellBlock& block : level.blocks) stretch(block.center), block.radius *= f;
+    for (CellSample& sample : level.samples) stretch(sample.center), sample.radius *= f;
+  }
+  return tool;
+}
+
+Cloud scaled(Cloud cloud, double s) {
+  const float f = static_cast<float>(s);
+  cloud.origin = s * cloud.origin;
+  for (Vec3f& p : cloud.positions) p = {f * p.x, f * p.y, f * p.z};
+  for (float& radius : cloud.radii) radius *= f;
+  if (cloud.sensor) {
+    cloud.sensor->camera.to_world.translation = s * cloud.sensor->camera.to_world.translation;
+    for (float& depth : cloud.sensor->depth.depth) depth *= f;
+  }
+  return cloud;
+}
+
+TEST_P(SameBits, ExceptTheExponentForPowersOfTwo) {
+  const ToolModel tool = lattice_cube(0.2, 8, 2);
+  const std::vector<Result> plain = sweep(cloud(), tool);
+  for (const int exponent : {-40, -7, 1, 40}) {
+    const double s = std::ldexp(1.0, exponent);
+    expect_same(plain, sweep(scaled(cloud(), s), scaled(tool, s), s), s);
+  }
+}
+
+TEST_P(SameBits, FarFromTheOriginToWhatDoubleHolds) {
+  const ToolModel tool = lattice_cube(0.2, 8, 2);
+  Cloud far = cloud();
+  const Vec3 shift{1e7, -1e7, 1e7};
+  far.origin += shift;
+  if (far.sensor) far.sensor->camera.to_world.translation += shift;
+  const std::vector<Result> near_results = sweep(cloud(), tool),
+                            far_results = sweep(far, tool, 1, shift);
+  for (std::size_t k = 0; k < near_results.size(); ++k) {
+    EXPECT_NEAR(near_results[k].volume, far_results[k].volume, 1e-6 * tool.volume);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Measures, SameBits,
+                         ::testing::Values(Variant{"RefinedCamera", Measure::refined, true},
+                                           Variant{"RefinedPoints", Measure::refined, false},
+                                           Variant{"PaperCamera", Measure::paper, true},
+                                           Variant{"PaperPoints", Measure::paper, false}),
+                         [](const auto& variant) { return std::string(variant.param.name); });
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,119 @@
+#include "tools/query/pose_reader.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "libvpm/core/error.h"
+
+namespace vpm::tools {
+namespace {
+
+constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
+
+std::vector<double> numbers_of(const std::string& line) {
+  constexpr const char* kBlank = " \t\r,";
+  std::vector<double> numbers;
+  for (std::size_t at = line.find_first_not_of(kBlank); at != std::string::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+    double value = 0;
+    const auto [stop, fault] = std::from_chars(line.data() + at, line.data() + end, value);
+    if (fault != std::errc() || stop != line.data() + end) {
+      refuse("'" + line.substr(at, end - at) + "' is not a number");
+    }
+    numbers.push_back(value);
+    at = line.find_first_not_of(kBlank, end);
+  }
+  return numbers;
+}
+
+std::vector<double> numbers_of(const nlohmann::json& list) {
+  if (!list.is_array()) refuse("a pose must be a list of numbers");
+  std::vector<double> numbers;
+  for (const nlohmann::json& number : list) {
+    if (!number.is_number()) refuse("a pose must be a list of numbers");
+    numbers.push_back(number.get<double>());
+  }
+  return numbers;
+}
+
+}  // namespace
+
+PoseReader::PoseReader(const std::string& path)
+    : name_(path == "-" ? "standard input" : path), stream_(path == "-" ? std::cin : file_) {
+  if (path == "-") return;
+  file_.open(path);
+  if (!file_) refuse(path + ": cannot be read; check the path of --poses");
+}
+
+std::optional<std::string> PoseReader::next_line() {
+  std::string line;
+  while (std::getline(stream_, line)) {
+    ++line_;
+    const std::size_t comment = line.find('#');
+    if (comment != std::string::npos) line.resize(comment);
+    if (line.find_first_not_of(" \t\r") != std::string::npos) return line;
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose> PoseReader::next() {
+  const std::optional<std::string> line = next_line();
+  if (!line) return std::nullopt;
+  try {
+    const char first = (*line)[line->find_first_not_of(" \t")];
+    return first == '{' || first == '[' ? parse_json(*line) : parse_text(*line);
+  } catch (const Error& fault) {
+    refuse(name_ + ", line " + std::to_string(line_) + ": " + fault.what());
+  }
+}
+
+Pose PoseReader::parse_json(const std::string& line) {
+  const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+  if (json.is_discarded()) refuse("not JSON; a line must be one whole pose");
+  if (json.is_array()) return from_numbers(numbers_of(json));
+  for (const char* key : {"pose", "matrix"}) {
+    if (json.contains(key)) return from_numbers(numbers_of(json[key]));
+  }
+  refuse("neither \"pose\" nor \"matrix\" in the object");
+}
+
+Pose PoseReader::parse_text(const std::string& line) {
+  std::vector<double> numbers = numbers_of(line);
+  if (numbers.size() == kMatrixRow) {
+    while (numbers.size() < kMatrix) {
+      const std::optional<std::string> row = next_line();
+      if (!row) refuse("the file ends inside of a 4x4 matrix");
+      const std::vector<double> more = numbers_of(*row);
+      if (more.size() != kMatrixRow) refuse("a row of a 4x4 matrix must have four numbers");
+      numbers.insert(numbers.end(), more.begin(), more.end());
+    }
+  } else if (numbers.size() == kTimedPose) {
+    numbers.erase(numbers.begin());
+  }
+  return from_numbers(numbers);
+}
+
+Pose PoseReader::from_numbers(const std::vector<double>& n) {
+  Pose pose;
+  double deviation = 0;
+  if (n.size() == kQuaternionPose) {
+    pose = {rotation_from_quaternion({n[3], n[4], n[5], n[6]}, &deviation), {n[0], n[1], n[2]}};
+  } else if (n.size() == kMatrix) {
+    if (n[12] != 0 || n[13] != 0 || n[14] != 0 || n[15] != 1)
+      refuse("the last row of a 4x4 pose must be 0 0 0 1");
+    pose = {
+        rotation_from_matrix({n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]}, &deviation),
+        {n[3], n[7], n[11]}};
+  } else {
+    refuse("found " + std::to_string(n.size()) +
+           " numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, "
+           "row by row)");
+  }
+  if (!is_finite(pose.translation)) refuse("pose: the translation is not finite");
+  largest_deviation_ = std::max(largest_deviation_, deviation);
+  return pose;
+}
+
+}  // namespace vpm::tools

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <fstream>
+#include <istream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "libvpm/core/pose.h"
+
+namespace vpm::tools {
+
+// Poses from a stream, one at a time, so that a pipe is answered line by line. Told apart by the
+// first line:
+//   JSON Lines   [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
+//   by row]} TUM text     "time tx ty tz qx qy qz qw" (the time may be left out); '#' begins a
+//   comment 4x4 text     four lines of four numbers for each pose
+class PoseReader {
+ public:
+  explicit PoseReader(const std::string& path);  // "-" is standard input
+
+  // The next pose; none at the end. Throws Error(refused) naming the line.
+  std::optional<Pose> next();
+
+  // How far the worst rotation so far was from one before it was normalised.
+  double largest_deviation() const { return largest_deviation_; }
+
+ private:
+  std::optional<std::string> next_line();
+  Pose parse_json(const std::string& line);
+  Pose parse_text(const std::string& line);
+  Pose from_numbers(const std::vector<double>& numbers);
+
+  std::string name_;
+  std::ifstream file_;
+  std::istream& stream_;
+  std::size_t line_ = 0;
+  double largest_deviation_ = 0;
+};
+
+}  // namespace vpm::tools

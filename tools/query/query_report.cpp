@@ -1,0 +1,41 @@
+#include "tools/query/query_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vpm::tools {
+
+std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
+                        Measure measure) {
+  nlohmann::ordered_json line;
+  line["pose"] = pose_index;
+  line["volume"] = r.volume;
+  line["volume_fraction"] = r.volume_fraction;
+  line["force"] = {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z};
+  line["torque"] = {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z};
+  line["boundary"] = r.boundary;
+  line["inside"] = r.inside;
+  line["points"] = r.points;
+  line["level"] = level.sphere_count;
+  line["measure"] = measure == Measure::paper ? "paper" : "refined";
+  return line.dump() + "\n";
+}
+
+nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  const auto microseconds = [&](double quantile) {
+    if (seconds.empty()) return 0.0;
+    const double rank = std::ceil(quantile * static_cast<double>(seconds.size()));
+    return 1e6 * seconds[static_cast<std::size_t>(std::max(rank - 1, 0.0))];
+  };
+  return {{"poses", seconds.size()},
+          {"prepare_seconds", prepare_seconds},
+          {"query_us",
+           {{"min", microseconds(0)},
+            {"median", microseconds(0.5)},
+            {"p95", microseconds(0.95)},
+            {"p99", microseconds(0.99)},
+            {"max", microseconds(1)}}}};
+}
+
+}  // namespace vpm::tools
