@@ -38,9 +38,23 @@ inline constexpr int kEigenSteps = 8;
 // its direction is rounding noise: the two small eigenvalues coincide (points on a line).
 inline constexpr double kEigenNoise = 1e-24;
 
+// Newton's iteration for the smallest root of x^3 - x^2 + minors x - determinant, from `root` below
+// it. The polynomial is concave and increasing up to there, so no step passes the root. Written
+// without a loop so that compilers can put several pixels into one vector.
+template <int Steps>
+VPM_HD inline double smallest_root(double root, double minors, double determinant) {
+  if constexpr (Steps == 0) {
+    return root;
+  } else {
+    const double value = ((root - 1) * root + minors) * root - determinant;
+    const double slope = (3 * root - 2) * root + minors;
+    const double step = value / (slope > 0 ? slope : 1.0);
+    return smallest_root<Steps - 1>(root - (value < 0 ? step : 0.0), minors, determinant);
+  }
+}
+
 // Eigenvector of the smallest eigenvalue of a positive semidefinite matrix, of any length; zero
-// where there is no single one. The characteristic polynomial is concave and increasing up to its
-// smallest root, so Newton's iteration from 0 never passes it.
+// where there is no single one.
 VPM_HD inline Vec3 smallest_eigenvector(const Symmetric3& m) {
   const double trace = m.xx + m.yy + m.zz;
   const double unit = trace > 0 ? 1 / trace : 0;
@@ -49,12 +63,7 @@ VPM_HD inline Vec3 smallest_eigenvector(const Symmetric3& m) {
   const double minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
   const double determinant =
       xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  double root = 0;
-  for (int step = 0; step < kEigenSteps; ++step) {
-    const double value = ((root - 1) * root + minors) * root - determinant;
-    const double slope = (3 * root - 2) * root + minors;
-    root = slope > 0 && value < 0 ? root - value / slope : root;
-  }
+  const double root = smallest_root<kEigenSteps>(0, minors, determinant);
   const double dx = xx - root, dy = yy - root, dz = zz - root;
   const Vec3 ab = cross({dx, xy, xz}, {xy, dy, yz});
   const Vec3 ac = cross({dx, xy, xz}, {xz, yz, dz});

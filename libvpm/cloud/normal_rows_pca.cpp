@@ -37,89 +37,85 @@ inline Vec3f normal_of_moments(const Moments& m, double per_fx, double per_fy, d
 }
 
 // Moments of whole windows along a row, with du and dv relative to each centre: first down each
-// column, then across.
+// column, then across. The second step and what follows it go by tiles of constant size on the
+// stack, which compilers turn into vector code.
 class WindowMoments {
  public:
+  static constexpr int kTile = 64;
+  struct Tile {
+    double x[kTile], y[kTile], z[kTile];
+    double xx[kTile], xy[kTile], xz[kTile], yy[kTile], yz[kTile], zz[kTile];
+  };
+
   WindowMoments(const PaddedImage& depth, int radius) : depth_(depth), radius_(radius) {
-    for (auto& column : columns_) column.resize(depth.stride);
-    for (auto& moment : moments_) moment.resize(depth.stride);
+    for (auto* column : {&z_, &vz_, &z2_, &vz2_, &vvz2_})
+      column->resize(depth.stride + std::size_t{kTile});
   }
 
-  void scan(int v) {
-    sum_columns(v);
-    const int width = depth_.width;
-    const double* c[5];
-    double* m[9];
-    for (int i = 0; i < 5; ++i) c[i] = columns_[i].data() + radius_;
-    for (int i = 0; i < 9; ++i) m[i] = moments_[i].data();
-    for (int i = 0; i < 9; ++i) {
-      if (kColumnOf[i] < 0)
-        std::fill(m[i], m[i] + width, 0.0);
-      else
-        std::copy(c[kColumnOf[i]], c[kColumnOf[i]] + width, m[i]);
-    }
-    for (int d = 1; d <= radius_; ++d) {
-      const double distance = d, square = distance * distance;
-      for (int u = 0; u < width; ++u) {
-        m[kX][u] += distance * (c[kZ1][u + d] - c[kZ1][u - d]);
-        m[kY][u] += c[kVZ1][u + d] + c[kVZ1][u - d];
-        m[kZ][u] += c[kZ1][u + d] + c[kZ1][u - d];
-        m[kXX][u] += square * (c[kZ2][u + d] + c[kZ2][u - d]);
-        m[kXY][u] += distance * (c[kVZ2][u + d] - c[kVZ2][u - d]);
-        m[kXZ][u] += distance * (c[kZ2][u + d] - c[kZ2][u - d]);
-        m[kYY][u] += c[kVVZ2][u + d] + c[kVVZ2][u - d];
-        m[kYZ][u] += c[kVZ2][u + d] + c[kVZ2][u - d];
-        m[kZZ][u] += c[kZ2][u + d] + c[kZ2][u - d];
-      }
-    }
-  }
-
-  Moments at(int u) const {
-    const auto i = static_cast<std::size_t>(u);
-    const double window = 2 * radius_ + 1;
-    return {window * window,  moments_[kX][i],  moments_[kY][i],  moments_[kZ][i],
-            moments_[kXX][i], moments_[kXY][i], moments_[kXZ][i], moments_[kYY][i],
-            moments_[kYZ][i], moments_[kZZ][i]};
-  }
+  void sum_columns(int v);
+  void sum_across(int first, Tile& tile) const;
 
  private:
-  enum Column { kZ1, kVZ1, kZ2, kVZ2, kVVZ2 };  // sums of z, dv z, z^2, dv z^2, dv^2 z^2
-  enum Moment { kX, kY, kZ, kXX, kXY, kXZ, kYY, kYZ, kZZ };
-  // The column sums a moment begins with at du = 0; those weighted with du begin with nothing.
-  static constexpr int kColumnOf[9] = {-1, kVZ1, kZ1, -1, -1, -1, kVVZ2, kVZ2, kZ2};
-
-  void sum_columns(int v) {
-    const int columns = depth_.width + 2 * radius_;
-    double* c[5];
-    for (int i = 0; i < 5; ++i) {
-      std::fill(columns_[i].begin(), columns_[i].end(), 0.0);
-      c[i] = columns_[i].data();
-    }
-    const float* middle = depth_.at(-radius_, v);
-    for (int i = 0; i < columns; ++i) {
-      const double z = middle[i];
-      c[kZ1][i] = z;
-      c[kZ2][i] = z * z;
-    }
-    for (int d = 1; d <= radius_; ++d) {
-      const float* below = depth_.at(-radius_, v + d);
-      const float* above = depth_.at(-radius_, v - d);
-      const double distance = d, square = distance * distance;
-      for (int i = 0; i < columns; ++i) {
-        const double b = below[i], a = above[i], bb = b * b, aa = a * a;
-        c[kZ1][i] += b + a;
-        c[kVZ1][i] += distance * (b - a);
-        c[kZ2][i] += bb + aa;
-        c[kVZ2][i] += distance * (bb - aa);
-        c[kVVZ2][i] += square * (bb + aa);
-      }
-    }
-  }
-
   const PaddedImage& depth_;
   int radius_;
-  std::vector<double> columns_[5], moments_[9];
+  std::vector<double> z_, vz_, z2_, vz2_, vvz2_;  // sums of z, dv z, z^2, dv z^2, dv^2 z^2
 };
+
+void WindowMoments::sum_columns(int v) {
+  const int columns = depth_.width + 2 * radius_;
+  double *z = z_.data(), *vz = vz_.data(), *z2 = z2_.data(), *vz2 = vz2_.data(),
+         *vvz2 = vvz2_.data();
+  const float* middle = depth_.at(-radius_, v);
+  for (int i = 0; i < columns; ++i) {
+    const double depth = middle[i];
+    z[i] = depth;
+    z2[i] = depth * depth;
+  }
+  for (std::vector<double>* column : {&vz_, &vz2_, &vvz2_})
+    std::fill(column->begin(), column->end(), 0.0);
+  for (int d = 1; d <= radius_; ++d) {
+    const float* below = depth_.at(-radius_, v + d);
+    const float* above = depth_.at(-radius_, v - d);
+    const double distance = d, square = distance * distance;
+    for (int i = 0; i < columns; ++i) {
+      const double b = below[i], a = above[i], bb = b * b, aa = a * a;
+      z[i] += b + a;
+      vz[i] += distance * (b - a);
+      z2[i] += bb + aa;
+      vz2[i] += distance * (bb - aa);
+      vvz2[i] += square * (bb + aa);
+    }
+  }
+}
+
+void WindowMoments::sum_across(int first, Tile& t) const {
+  const std::ptrdiff_t centre = first + radius_;
+  const double *z = z_.data() + centre, *vz = vz_.data() + centre, *z2 = z2_.data() + centre,
+               *vz2 = vz2_.data() + centre, *vvz2 = vvz2_.data() + centre;
+  for (int i = 0; i < kTile; ++i) {
+    t.x[i] = t.xx[i] = t.xy[i] = t.xz[i] = 0;
+    t.y[i] = vz[i], t.z[i] = z[i], t.yy[i] = vvz2[i], t.yz[i] = vz2[i], t.zz[i] = z2[i];
+  }
+  for (int d = 1; d <= radius_; ++d) {
+    const double distance = d, square = distance * distance;
+    for (int i = 0; i < kTile; ++i) {
+      t.x[i] += distance * (z[i + d] - z[i - d]);
+      t.z[i] += z[i + d] + z[i - d];
+      t.y[i] += vz[i + d] + vz[i - d];
+    }
+    for (int i = 0; i < kTile; ++i) {
+      const double sum = z2[i + d] + z2[i - d], difference = z2[i + d] - z2[i - d];
+      t.xx[i] += square * sum;
+      t.xz[i] += distance * difference;
+      t.zz[i] += sum;
+    }
+    for (int i = 0; i < kTile; ++i) {
+      t.xy[i] += distance * (vz2[i + d] - vz2[i - d]);
+      t.yz[i] += vz2[i + d] + vz2[i - d];
+      t.yy[i] += vvz2[i + d] + vvz2[i - d];
+    }
+  }
+}
 
 Moments gated_moments(const PaddedImage& depth, const GatedWindow& window, int radius, int u,
                       int v) {
@@ -144,22 +140,30 @@ void pca_rows(const PaddedImage& depth, const PaddedImage& inverse, const Intrin
   SmoothWindows windows(inverse, options);
   GatedWindow gated(inverse, options, k);
   WindowMoments moments(depth, radius);
-  std::vector<double> ray_x(static_cast<std::size_t>(width));
-  for (int u = 0; u < width; ++u) ray_x[static_cast<std::size_t>(u)] = (u - k.cx) / k.fx;
+  const double count = options.window * options.window;
   for (int v = begin; v < end; ++v) {
     const double ry = (v - k.cy) / k.fy;
     const float* centre = inverse.at(0, v);
     Vec3f* row = normals + static_cast<std::size_t>(v) * static_cast<std::size_t>(width);
     windows.scan(v);
-    moments.scan(v);
-    const double* rx = ray_x.data();
-    for (int u = 0; u < width; ++u)
-      row[u] = normal_of_moments(moments.at(u), per_fx, per_fy, rx[u], ry);
+    moments.sum_columns(v);
+    for (int first = 0; first < width; first += WindowMoments::kTile) {
+      WindowMoments::Tile t;
+      moments.sum_across(first, t);
+      Vec3f tile[WindowMoments::kTile];
+      for (int i = 0; i < WindowMoments::kTile; ++i) {
+        const double rx = (first + i - k.cx) / k.fx;
+        tile[i] = normal_of_moments(
+            {count, t.x[i], t.y[i], t.z[i], t.xx[i], t.xy[i], t.xz[i], t.yy[i], t.yz[i], t.zz[i]},
+            per_fx, per_fy, rx, ry);
+      }
+      std::copy(tile, tile + std::min(WindowMoments::kTile, width - first), row + first);
+    }
     for (int u = 0; u < width; ++u) {
       if (windows.smooth(u)) continue;
       const bool found = centre[u] > 0 && gated.fit(u, v).found;
       row[u] = found ? normal_of_moments(gated_moments(depth, gated, radius, u, v), per_fx, per_fy,
-                                         rx[u], ry)
+                                         (u - k.cx) / k.fx, ry)
                      : Vec3f{};
     }
   }

@@ -13,6 +13,20 @@ namespace {
 // of a gated window admits; beyond it a sensor returns next to nothing.
 constexpr double kSteepest = 5.7;
 
+// The sum of the lanes, pairwise.
+float fold(const float (&lanes)[kLanes]) {
+  float half[kLanes / 2];
+  for (int i = 0; i < kLanes / 2; ++i) half[i] = lanes[i] + lanes[i + kLanes / 2];
+  static_assert(kLanes == 8);
+  return (half[0] + half[2]) + (half[1] + half[3]);
+}
+
+float fold_product(const float (&a)[kLanes], const float (&b)[kLanes]) {
+  float product[kLanes];
+  for (int i = 0; i < kLanes; ++i) product[i] = a[i] * b[i];
+  return fold(product);
+}
+
 }  // namespace
 
 PaddedImage::PaddedImage(const DepthImage& image, int frame)
@@ -99,12 +113,11 @@ GatedWindow::GatedWindow(const PaddedImage& inverse, const NormalOptions& option
                          const Intrinsics& k)
     : inverse_(inverse), radius_(options.window / 2) {
   constexpr float kOpen = std::numeric_limits<float>::infinity();
-  lanes_ = (options.window + kLanes - 1) / kLanes * kLanes;
   gate_ = options.edge_gate > 0 ? static_cast<float>(options.edge_gate) : kOpen;
   slope_ = static_cast<float>(kSteepest / std::min(k.fx, k.fy));
-  for (int i = 0; i < options.window; ++i) {
-    lane_offset_[i] = static_cast<float>(i - radius_);
-    lane_exists_[i] = 1;
+  for (int i = 0; i < kStride; ++i) {
+    offset_[i] = static_cast<float>(i - radius_);
+    exists_[i] = i < options.window ? 1.0F : 0.0F;
   }
 }
 
@@ -114,48 +127,60 @@ GatedWindow::Plane GatedWindow::fit(int u, int v) {
   return first.found ? fit_admitted(centre, first, gate_, 0) : first;
 }
 
+// Lanes are columns, handled in groups of constant size so that compilers make vectors of them.
 GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& near, float gate,
                                              float slope) {
-  const float unit = 1.0F / *centre;
-  for (int i = 0; i < lanes_; ++i) count_[i] = v_[i] = vv_[i] = e_[i] = ve_[i] = 0;
-  for (int dv = -radius_; dv <= radius_; ++dv) {
-    const float* row = centre + dv * static_cast<std::ptrdiff_t>(inverse_.stride) - radius_;
-    float* weights = weight_ + (dv + radius_) * kStride;
-    const float y = static_cast<float>(dv), away = std::abs(y), base = near.c + near.b * y;
-    for (int i = 0; i < lanes_; ++i) {
-      const float along = std::abs(lane_offset_[i]);
-      const float allowed = gate + slope * (along > away ? along : away);
-      const float difference = (row[i] - *centre) * unit;
-      const float off = std::abs(difference - (base + near.a * lane_offset_[i]));
-      const float weight = (row[i] > 0) & (off <= allowed) ? lane_exists_[i] : 0.0F;
-      const float e = weight > 0 ? difference : 0.0F;
-      weights[i] = weight;
-      count_[i] += weight;
-      v_[i] += y * weight;
-      vv_[i] += y * y * weight;
-      e_[i] += e;
-      ve_[i] += y * e;
+  const float middle = *centre, unit = 1.0F / middle;
+  Sums sums;
+  for (int group = 0; group <= 2 * radius_; group += kLanes) {
+    float predicted[kLanes], along[kLanes], exists[kLanes];
+    float count[kLanes] = {}, y1[kLanes] = {}, y2[kLanes] = {}, e1[kLanes] = {}, ye[kLanes] = {};
+    for (int i = 0; i < kLanes; ++i) {
+      predicted[i] = near.c + near.a * offset_[group + i];
+      along[i] = std::abs(offset_[group + i]);
+      exists[i] = exists_[group + i];
     }
+    for (int dv = -radius_; dv <= radius_; ++dv) {
+      const float* row =
+          centre + dv * static_cast<std::ptrdiff_t>(inverse_.stride) - radius_ + group;
+      float* weights = weight_ + (dv + radius_) * kStride + group;
+      const float y = static_cast<float>(dv), away = std::abs(y), shift = near.b * y;
+      float weight[kLanes];
+      for (int i = 0; i < kLanes; ++i) {
+        const float value = row[i];
+        const float reach = along[i] > away ? along[i] : away;
+        const float difference = (value - middle) * unit;
+        const float off = std::abs(difference - (predicted[i] + shift));
+        const float kept = off <= gate + slope * reach ? exists[i] : 0.0F;
+        weight[i] = value > 0 ? kept : 0.0F;
+        const float e = weight[i] > 0 ? difference : 0.0F;
+        count[i] += weight[i];
+        y1[i] += y * weight[i];
+        y2[i] += y * y * weight[i];
+        e1[i] += e;
+        ye[i] += y * e;
+      }
+      for (int i = 0; i < kLanes; ++i) weights[i] = weight[i];
+    }
+    float x[kLanes], xx[kLanes];
+    for (int i = 0; i < kLanes; ++i) x[i] = offset_[group + i], xx[i] = x[i] * x[i];
+    sums.n += fold(count), sums.u += fold_product(x, count), sums.uu += fold_product(xx, count);
+    sums.v += fold(y1), sums.uv += fold_product(x, y1), sums.vv += fold(y2);
+    sums.e += fold(e1), sums.ue += fold_product(x, e1), sums.ve += fold(ye);
   }
-  return solve();
+  return solve(sums);
 }
 
-GatedWindow::Plane GatedWindow::solve() const {
-  double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, e = 0, ue = 0, ve = 0;
-  for (int i = 0; i <= 2 * radius_; ++i) {
-    const double x = i - radius_;
-    n += count_[i], u += x * count_[i], uu += x * x * count_[i];
-    v += v_[i], uv += x * v_[i], vv += vv_[i];
-    e += e_[i], ue += x * e_[i], ve += ve_[i];
-  }
+GatedWindow::Plane GatedWindow::solve(const Sums& s) {
   // Moments about the pixels' mean, times n: integers, exact in double.
-  const double cuu = n * uu - u * u, cuv = n * uv - u * v, cvv = n * vv - v * v;
-  const double determinant = cuu * cvv - cuv * cuv;
-  if (n < kMinSupport || determinant < kMinSpread * n * n * (cuu + cvv)) return {};
-  const double cue = n * ue - u * e, cve = n * ve - v * e;
-  const double a = (cue * cvv - cve * cuv) / determinant;
-  const double b = (cve * cuu - cue * cuv) / determinant;
-  const double c = (e - a * u - b * v) / n;
+  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
+               vv = s.n * s.vv - s.v * s.v;
+  const double determinant = uu * vv - uv * uv;
+  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
+  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
+  const double a = (ue * vv - ve * uv) * unit;
+  const double b = (ve * uu - ue * uv) * unit;
+  const double c = (s.e - a * s.u - b * s.v) / s.n;
   return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
 }
 

@@ -70,17 +70,19 @@ class GatedWindow {
 
  private:
   static constexpr int kStride = (kMaxWindow + kLanes - 1) / kLanes * kLanes;
+  // Sums over the admitted pixels of 1, du, dv, their products, the difference and its products.
+  struct Sums {
+    double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, e = 0, ue = 0, ve = 0;
+  };
   Plane fit_admitted(const float* centre, const Plane& near, float gate, float slope);
-  Plane solve() const;
+  static Plane solve(const Sums& s);
 
   const PaddedImage& inverse_;
-  int radius_, lanes_;
+  int radius_;
   float gate_, slope_;
-  float lane_offset_[kStride] = {};  // du
-  float lane_exists_[kStride] = {};  // 1 for the lanes of the window
+  float offset_[kStride];  // du of each lane
+  float exists_[kStride];  // 1 for the lanes of the window, 0 for those that fill the last group
   float weight_[kMaxWindow * kStride];
-  // Sums down each column: of 1, dv, dv^2, difference, dv * difference.
-  float count_[kStride], v_[kStride], vv_[kStride], e_[kStride], ve_[kStride];
 };
 
 }  // namespace vpm
