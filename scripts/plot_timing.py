@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""Draws what `vpm-bench timing` measured: median and quartiles of every stage, 1 and 2 threads.
+
+usage: plot_timing.py FOLDER    (reads timing.csv, writes timing.png)
+"""
+import csv
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    with (folder / "timing.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    stages = list(dict.fromkeys((r["stage"], int(r["spheres"])) for r in rows))
+    figure, axis = plt.subplots(figsize=(10, 0.5 * len(stages) + 1.5))
+    for threads, shift in ((1, -0.2), (2, 0.2)):
+        of = {(r["stage"], int(r["spheres"])): r for r in rows if int(r["threads"]) == threads}
+        median = np.array([float(of[s]["median_ms"]) for s in stages])
+        low = median - np.array([float(of[s]["quartile1_ms"]) for s in stages])
+        high = np.array([float(of[s]["quartile3_ms"]) for s in stages]) - median
+        at = np.arange(len(stages)) + shift
+        axis.barh(at, median, 0.36, xerr=[low, high], label=f"{threads} thread" + "s" * (threads > 1))
+        for y, value in zip(at, median):
+            axis.text(value * 1.15, y, f"{value:.3g}", va="center", fontsize=7)
+    axis.set_yticks(range(len(stages)))
+    axis.set_yticklabels([stage + (f", {n} spheres" if n else "") for stage, n in stages], fontsize=8)
+    axis.invert_yaxis()
+    axis.set_xscale("log")
+    axis.set_xlabel("ms (median, quartiles)")
+    axis.legend()
+    figure.tight_layout()
+    figure.savefig(folder / "timing.png", dpi=110)
+    print(folder / "timing.png")
+
+
+if __name__ == "__main__":
+    main()
