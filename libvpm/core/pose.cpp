@@ -63,18 +63,20 @@ Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
 }
 
 Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation) {
+  for (const double value : m) {
+    if (!std::isfinite(value)) refuse("pose: the rotation matrix is not finite");
+  }
   const Rotation given{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
   const Rotation gram = given * transpose(given);
   const double off =
       std::max({std::abs(gram.row0.x - 1), std::abs(gram.row1.y - 1), std::abs(gram.row2.z - 1),
                 std::abs(gram.row0.y), std::abs(gram.row0.z), std::abs(gram.row1.z)});
-  if (!std::isfinite(off)) refuse("pose: the rotation matrix is not finite");
-  if (dot(given.row0, cross(given.row1, given.row2)) <= 0) {
+  if (!(dot(given.row0, cross(given.row1, given.row2)) > 0)) {
     refuse(
         "pose: the rotation matrix mirrors (its determinant is not positive); give a proper "
         "rotation");
   }
-  if (off > kRotationTolerance) {
+  if (!(off <= kRotationTolerance)) {
     refuse("pose: the 3x3 block is " + std::to_string(off) + " away from a rotation matrix");
   }
   if (deviation != nullptr) *deviation = off;

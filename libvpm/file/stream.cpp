@@ -97,6 +97,17 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
+// A link stays a link: what it points to is written, also where that is not there yet.
+fs::path end_of_links(fs::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel
+  std::error_code fault;
+  for (int k = 0; fs::is_symlink(path, fault); ++k) {
+    if (k == kMostLinks) cannot_write(path.string(), ELOOP);
+    path = path.parent_path() / fs::read_symlink(path);
+  }
+  return path;
+}
+
 void write_file(const fs::path& target, std::span<const std::byte> bytes) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
@@ -151,10 +162,7 @@ void write_all(const std::string& path, std::span<const std::byte> bytes) {
     if (opened < 0) cannot_write(path, errno);
     return write_to(opened, bytes, path);
   }
-  // A link stays a link: what it points to is replaced.
-  const fs::path target =
-      fs::is_symlink(path, fault) ? fs::weakly_canonical(path, fault) : fs::path(path);
-  write_file(target.empty() ? fs::path(path) : target, bytes);
+  write_file(end_of_links(path), bytes);
 }
 
 void write_all(const std::string& path, std::string_view text) {

@@ -44,10 +44,14 @@ TEST(RefusedFiles, SayWhatIsWrong) {
   }
 }
 
-class DamagedFile : public testing::TestWithParam<std::pair<const char*, const char*>> {
+struct GoldenFile {
+  std::string name, kind;
+};
+
+class DamagedFile : public testing::TestWithParam<GoldenFile> {
  protected:
-  const std::string kind_ = GetParam().second;
-  const std::vector<std::byte> good_ = file::read_all(kFormats + "golden/v1/" + GetParam().first);
+  const std::string kind_ = GetParam().kind;
+  const std::vector<std::byte> good_ = file::read_all(kFormats + "golden/v1/" + GetParam().name);
 };
 
 TEST_P(DamagedFile, TruncationIsRefused) {
@@ -85,11 +89,16 @@ TEST_P(DamagedFile, EveryChangedByteUnderRightChecksumsIsReadOrRefused) {
   EXPECT_GT(refused, bytes.size() / 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, DamagedFile,
-                         testing::Values(std::pair("cube.vpmp", "packing"),
-                                         std::pair("cube.vpmg", "tool model"),
-                                         std::pair("wall.vpmc", "cloud"),
-                                         std::pair("scattered.vpmc", "cloud")));
+INSTANTIATE_TEST_SUITE_P(Golden, DamagedFile,
+                         testing::Values(GoldenFile{"cube.vpmp", "packing"},
+                                         GoldenFile{"cube.vpmg", "tool model"},
+                                         GoldenFile{"wall.vpmc", "cloud"},
+                                         GoldenFile{"scattered.vpmc", "cloud"}),
+                         [](const auto& info) {
+                           std::string name = info.param.name;
+                           name[name.find('.')] = '_';
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace vpm

@@ -1,0 +1,67 @@
+#include "libvpm/file/overwrite.h"
+
+#include "libvpm/core/error.h"
+#include "tests/file/temporary_folder.h"
+
+namespace vpm::file {
+namespace {
+
+class Overwrite : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    Writer(Kind::cloud, {{"unit", "m"}}).write(path("cloud"));
+    write_all(path("text"), std::string_view("x,y,z\n"));
+    write_all(path("empty"), std::string_view());
+  }
+
+  // The exit code of the refusal, 0 where none.
+  template <class Check>
+  static int outcome(Check check) {
+    try {
+      check();
+    } catch (const Error& fault) {
+      return static_cast<int>(fault.kind());
+    }
+    return 0;
+  }
+  int container(const std::string& name) const {
+    return outcome([&] { check_container_output(path(name), Kind::cloud); });
+  }
+  int text(const std::string& name) const {
+    return outcome([&] { check_text_output(path(name)); });
+  }
+};
+
+TEST_F(Overwrite, AContainerReplacesOnlyItsOwnKind) {
+  EXPECT_EQ(container("cloud"), 0);
+  EXPECT_EQ(container("empty"), 0);
+  EXPECT_EQ(container("new"), 0);
+  EXPECT_EQ(container("text"), 2);
+  EXPECT_EQ(outcome([&] { check_container_output(path("cloud"), Kind::packing); }), 2);
+}
+
+TEST_F(Overwrite, TextReplacesAnythingButAContainer) {
+  EXPECT_EQ(text("text"), 0);
+  EXPECT_EQ(text("empty"), 0);
+  EXPECT_EQ(text("new"), 0);
+  EXPECT_EQ(text("cloud"), 2);
+}
+
+TEST_F(Overwrite, FoldersMustBeThere) {
+  EXPECT_EQ(container("missing/cloud"), 4);
+  EXPECT_EQ(text("missing/text"), 4);
+  EXPECT_EQ(text("text/file"), 4);
+  EXPECT_EQ(text("."), 4);
+  EXPECT_EQ(outcome([&] { check_folder_of(path("missing/text")); }), 4);
+}
+
+TEST_F(Overwrite, StreamsAndDevicesPass) {
+  for (const char* name : {"-", "", "/dev/null", "/dev/stdout"}) {
+    EXPECT_EQ(outcome([&] { check_container_output(name, Kind::cloud); }), 0) << name;
+    EXPECT_EQ(outcome([&] { check_text_output(name); }), 0) << name;
+  }
+}
+
+}  // namespace
+}  // namespace vpm::file
