@@ -46,6 +46,7 @@ TEST(RefusedFiles, SayWhatIsWrong) {
 
 struct GoldenFile {
   std::string name, kind;
+  friend void PrintTo(const GoldenFile& file, std::ostream* out) { *out << file.name; }
 };
 
 class DamagedFile : public testing::TestWithParam<GoldenFile> {
@@ -94,8 +95,8 @@ INSTANTIATE_TEST_SUITE_P(Golden, DamagedFile,
                                          GoldenFile{"cube.vpmg", "tool model"},
                                          GoldenFile{"wall.vpmc", "cloud"},
                                          GoldenFile{"scattered.vpmc", "cloud"}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& instance) {
+                           std::string name = instance.param.name;
                            name[name.find('.')] = '_';
                            return name;
                          });
