@@ -17,28 +17,6 @@ constexpr std::size_t kRowsPerTask = 32;
 // enlarged any further: there a normal's error decides its size, not the surface.
 constexpr double kGrazingCosine = 0.1;
 
-void check(const DepthImage& depth, const Intrinsics& k, const NormalOptions& options) {
-  if (options.window < kMinWindow || options.window > kMaxWindow || options.window % 2 == 0) {
-    throw Error(ErrorKind::usage, "normals: the window must be odd and between " +
-                                      std::to_string(kMinWindow) + " and " +
-                                      std::to_string(kMaxWindow) + " pixels, not " +
-                                      std::to_string(options.window));
-  }
-  if (!(options.edge_gate >= 0 && options.edge_gate < 1)) {
-    throw Error(ErrorKind::usage, "normals: the edge gate must be at least 0 and less than 1");
-  }
-  if (!(k.fx > 0 && k.fy > 0 && std::isfinite(k.fx) && std::isfinite(k.fy) && std::isfinite(k.cx) &&
-        std::isfinite(k.cy))) {
-    throw Error(ErrorKind::usage,
-                "normals: intrinsics must be finite, with fx and fy greater than 0 (pixels)");
-  }
-  if (depth.depth.size() != std::size_t{depth.width} * depth.height) {
-    refuse("normals: the depth image has " + std::to_string(depth.depth.size()) +
-           " values for a size of " + std::to_string(depth.width) + " x " +
-           std::to_string(depth.height));
-  }
-}
-
 float disk_radius(const Intrinsics& k, Vec3 point, Vec3 normal) {
   const double half_diagonal = 0.5 * std::sqrt(1 / (k.fx * k.fx) + 1 / (k.fy * k.fy));
   const double cosine = -dot(point, normal) / norm(point);
@@ -58,9 +36,35 @@ NormalMethod normal_method_from_text(const std::string& text) {
               "normals: unknown method '" + text + "'; there are inverse-depth and pca");
 }
 
+void check_normal_options(const NormalOptions& options) {
+  if (options.window < kMinWindow || options.window > kMaxWindow || options.window % 2 == 0) {
+    throw Error(ErrorKind::usage, "normals: the window must be odd and between " +
+                                      std::to_string(kMinWindow) + " and " +
+                                      std::to_string(kMaxWindow) + " pixels, not " +
+                                      std::to_string(options.window));
+  }
+  if (!(options.edge_gate >= 0 && options.edge_gate < 1))
+    throw Error(ErrorKind::usage, "normals: the edge gate must be at least 0 and less than 1");
+}
+
+void check_intrinsics(const Intrinsics& k) {
+  const bool finite =
+      std::isfinite(k.fx) && std::isfinite(k.fy) && std::isfinite(k.cx) && std::isfinite(k.cy);
+  if (!(finite && k.fx > 0 && k.fy > 0)) {
+    throw Error(ErrorKind::usage,
+                "intrinsics: fx,fy,cx,cy must be finite, fx and fy greater than 0 (pixels)");
+  }
+}
+
 std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
                                     const NormalOptions& options) {
-  check(depth, intrinsics, options);
+  check_normal_options(options);
+  check_intrinsics(intrinsics);
+  if (depth.depth.size() != std::size_t{depth.width} * depth.height) {
+    refuse("normals: the depth image has " + std::to_string(depth.depth.size()) +
+           " values for a size of " + std::to_string(depth.width) + " x " +
+           std::to_string(depth.height));
+  }
   std::vector<Vec3f> normals(depth.depth.size());
   const int radius = options.window / 2;
   const PaddedImage usable = padded_depth(depth, radius);

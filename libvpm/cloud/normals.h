@@ -46,6 +46,10 @@ struct NormalOptions {
   double edge_gate = kEdgeGate;  // 0 < gate < 1; 0 keeps every pixel of the window
 };
 
+// Throw Error(usage) where a value is out of range.
+void check_normal_options(const NormalOptions& options);
+void check_intrinsics(const Intrinsics& intrinsics);
+
 // One unit normal per pixel, row by row, in camera coordinates and towards the sensor; zero where
 // nothing was measured or too little of the window remains (kMinSupport, kMinSpread). Throws
 // Error(usage) for options out of range, Error(refused) for an image whose size does not fit.

@@ -1,0 +1,13 @@
+#include "libvpm/core/error.h"
+#include "libvpm/import/depth_files.h"
+
+namespace vpm {
+
+DepthImage parse_exr_depth(std::span<const std::byte>, const std::string& name, double) {
+  throw Error(ErrorKind::unavailable,
+              name +
+                  ": this build reads no OpenEXR; build with VPM_EXR=ON, or convert the image "
+                  "to a 16-bit PNG");
+}
+
+}  // namespace vpm

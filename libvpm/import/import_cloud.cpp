@@ -1,0 +1,108 @@
+#include "libvpm/import/import_cloud.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "libvpm/cloud/scattered_points.h"
+#include "libvpm/core/error.h"
+#include "libvpm/import/depth_files.h"
+#include "libvpm/import/file_text.h"
+#include "libvpm/import/pcd.h"
+#include "libvpm/import/pinhole_fit.h"
+#include "libvpm/import/ply_points.h"
+
+namespace vpm {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+enum class Format { png, exr, pcd, ply, unknown };
+
+Format format_of(std::string_view text) {
+  if (text.starts_with("\x89PNG\r\n\x1a\n"sv)) return Format::png;
+  if (text.starts_with("\x76\x2f\x31\x01"sv)) return Format::exr;
+  if (text.starts_with("ply\n"sv) || text.starts_with("ply\r"sv)) return Format::ply;
+  for (const std::string_view start : {"# .PCD"sv, "VERSION"sv, "FIELDS"sv, "#"sv}) {
+    if (text.starts_with(start)) return Format::pcd;
+  }
+  return Format::unknown;
+}
+
+std::size_t count_invalid(const DepthImage& depth) {
+  return static_cast<std::size_t>(std::count_if(depth.depth.begin(), depth.depth.end(),
+                                                [](float d) { return !is_measured(d); }));
+}
+
+ImportedCloud cloud_of_depth(const DepthImage& depth, const Intrinsics& k, const Pose& to_world,
+                             const std::string& name, const NormalOptions& options) {
+  ImportedCloud imported;
+  imported.width = depth.width;
+  imported.height = depth.height;
+  imported.invalid = count_invalid(depth);
+  imported.normals_estimated = true;
+  const std::size_t measured = depth.depth.size() - imported.invalid;
+  if (measured == 0) refuse(name + ": no pixel holds a measurement");
+  imported.cloud = make_cloud(depth, Camera{k, depth.width, depth.height, to_world}, options);
+  if (imported.cloud.size() == 0) {
+    refuse(name + ": none of its " + std::to_string(measured) +
+           " measured pixels has neighbours enough for a normal");
+  }
+  imported.without_normal = measured - imported.cloud.size();
+  return imported;
+}
+
+ImportedCloud cloud_of_points(PointSet points, const std::string& name,
+                              const ImportOptions& options) {
+  const double scale = options.units_per_metre.value_or(1);
+  Pose to_world = options.to_world.value_or(points.viewpoint);
+  if (!options.to_world) to_world.translation = to_world.translation / scale;
+  if (points.organised()) {
+    if (options.intrinsics) check_pinhole(points, *options.intrinsics, name);
+    const Intrinsics k = options.intrinsics ? *options.intrinsics : fit_pinhole(points, name);
+    ImportedCloud imported =
+        cloud_of_depth(depth_of(points, scale), k, to_world, name, options.normals);
+    imported.intrinsics_recovered = !options.intrinsics;
+    return imported;
+  }
+  if (points.normals.empty()) {
+    refuse(name +
+           ": points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx "
+           "ny nz); estimate them first, or give the depth image");
+  }
+  for (Vec3& p : points.positions) p = p / scale;
+  ImportedCloud imported;
+  imported.width = points.width;
+  imported.height = points.height;
+  imported.cloud = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
+  imported.invalid =
+      static_cast<std::size_t>(std::count_if(points.positions.begin(), points.positions.end(),
+                                             [](const Vec3& p) { return !is_finite(p); }));
+  imported.without_normal = points.positions.size() - imported.invalid - imported.cloud.size();
+  return imported;
+}
+
+}  // namespace
+
+ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
+                           const ImportOptions& options) {
+  const Format format = format_of(as_text(bytes));
+  if (format == Format::pcd) return cloud_of_points(parse_pcd(bytes, name), name, options);
+  if (format == Format::ply) return cloud_of_points(parse_ply_points(bytes, name), name, options);
+  if (format == Format::unknown) {
+    refuse(name +
+           (bytes.empty() ? ": the file is empty; "
+                          : ": neither PNG, OpenEXR, PCD nor PLY by its content; ") +
+           "give a depth image or a cloud");
+  }
+  if (!options.intrinsics) {
+    throw Error(ErrorKind::usage, name + ": a depth image needs --intrinsics fx,fy,cx,cy (pixels)");
+  }
+  const DepthImage depth =
+      format == Format::png
+          ? parse_png_depth(bytes, name, options.units_per_metre.value_or(kPngUnitsPerMetre))
+          : parse_exr_depth(bytes, name, options.units_per_metre.value_or(1));
+  return cloud_of_depth(depth, *options.intrinsics, options.to_world.value_or(Pose{}), name,
+                        options.normals);
+}
+
+}  // namespace vpm

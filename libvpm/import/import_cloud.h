@@ -1,0 +1,39 @@
+// A cloud of whatever a sensor left behind, told by its content: 16-bit PNG, OpenEXR, PCD, PLY.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/cloud/normals.h"
+
+namespace vpm {
+
+struct ImportOptions {
+  std::optional<Intrinsics> intrinsics;   // an organised PCD tells its own where this is not given
+  std::optional<double> units_per_metre;  // otherwise 1000 for PNG, 1 for the rest
+  std::optional<Pose> to_world;           // otherwise a PCD's VIEWPOINT, or identity
+  NormalOptions normals;
+};
+
+inline constexpr double kPngUnitsPerMetre = 1000;
+
+struct ImportedCloud {
+  Cloud cloud;
+  std::uint32_t width = 0, height = 0;  // of the image; of a list of points, its number and 1
+  std::size_t invalid = 0;              // pixels or points without measurement
+  std::size_t without_normal = 0;       // measured, but not in the cloud
+  bool intrinsics_recovered = false;
+  bool normals_estimated = false;  // false: taken from the file
+};
+
+// Depth images and organised PCD become clouds with a sensor, their normals estimated from the
+// depth whatever the file holds. Other PCD and PLY need normals, which must point into free space.
+// Throws Error: refused for what is damaged, unknown, without normals or without any point; usage
+// for depth images without intrinsics; unavailable for OpenEXR in a build without it.
+ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
+                           const ImportOptions& options);
+
+}  // namespace vpm

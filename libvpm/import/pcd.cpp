@@ -1,0 +1,292 @@
+#include "libvpm/import/pcd.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "libvpm/core/error.h"
+#include "libvpm/import/file_text.h"
+#include "libvpm/import/lzf.h"
+
+namespace vpm {
+namespace {
+
+struct Field {
+  std::string name;
+  ScalarType type;
+  std::uint64_t count = 1;   // values of the field per point
+  std::uint64_t offset = 0;  // of the field in a point, bytes
+  std::uint64_t first = 0;   // index of its first value in a point
+};
+
+struct Header {
+  std::vector<Field> fields;
+  std::uint64_t width = 0, height = 1, points = 0;
+  std::uint64_t point_size = 0, point_values = 0;
+  Pose viewpoint;
+  std::string encoding;
+};
+
+// The columns that matter: x, y, z, normal_x, normal_y, normal_z.
+constexpr std::array<const char*, 6> kColumns{"x", "y", "z", "normal_x", "normal_y", "normal_z"};
+// More fields or values per point than any sensor has; keeps products of sizes far from overflow.
+constexpr std::uint64_t kMaxFields = 4096;
+
+class PcdParser {
+ public:
+  PcdParser(std::span<const std::byte> bytes, const std::string& name)
+      : bytes_(bytes), name_(name), cursor_(as_text(bytes)) {}
+
+  PointSet parse() {
+    read_header();
+    find_columns();
+    points_.width = static_cast<std::uint32_t>(header_.width);
+    points_.height = static_cast<std::uint32_t>(header_.height);
+    points_.viewpoint = header_.viewpoint;
+    if (header_.encoding == "ascii") read_ascii();
+    if (header_.encoding == "binary") read_binary();
+    if (header_.encoding == "binary_compressed") read_compressed();
+    return std::move(points_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& defect) const { refuse(name_ + ": PCD " + defect); }
+
+  void read_header();
+  void read_entry(const std::vector<std::string_view>& words);
+  void read_fields(const std::vector<std::string_view>& words);
+  void read_viewpoint(const std::vector<std::string_view>& words);
+  void check_header();
+  void find_columns();
+  void allocate();
+  void read_ascii();
+  void read_binary();
+  void read_compressed();
+  // Values of all points: of field f and point i at `data + start[f] + i * step[f]`.
+  void read_values(const std::byte* data, bool by_field);
+  std::uint64_t count_of(std::string_view word, const std::string& entry) const;
+  double& value(std::size_t column, std::size_t point);
+
+  std::span<const std::byte> bytes_;
+  const std::string& name_;
+  TextCursor cursor_;
+  Header header_;
+  std::array<const Field*, 6> column_{};
+  PointSet points_;
+};
+
+std::uint64_t PcdParser::count_of(std::string_view word, const std::string& entry) const {
+  const std::optional<std::uint64_t> count = to_count(word);
+  if (!count) fail("header: '" + std::string(word) + "' in " + entry + " is not a count");
+  return *count;
+}
+
+void PcdParser::read_header() {
+  while (header_.encoding.empty()) {
+    const std::optional<std::string_view> line = cursor_.line();
+    if (!line) fail("header ends before its DATA line");
+    const std::vector<std::string_view> words = split_words(*line);
+    if (words.empty() || words[0].front() == '#') continue;
+    if (words.size() < 2) fail("header: '" + std::string(words[0]) + "' has no value");
+    read_entry(words);
+  }
+  check_header();
+}
+
+void PcdParser::read_entry(const std::vector<std::string_view>& words) {
+  const std::string entry(words[0]);
+  if (entry == "VERSION") {
+    const std::string_view version = words[1].substr(words[1].find('.') + 1);
+    if (version != "7" && version != "6")
+      fail("version " + std::string(words[1]) + " is not known; write version 0.7");
+  } else if (entry == "FIELDS" || entry == "COLUMNS" || entry == "SIZE" || entry == "TYPE" ||
+             entry == "COUNT") {
+    read_fields(words);
+  } else if (entry == "WIDTH") {
+    header_.width = count_of(words[1], entry);
+  } else if (entry == "HEIGHT") {
+    header_.height = count_of(words[1], entry);
+  } else if (entry == "POINTS") {
+    header_.points = count_of(words[1], entry);
+  } else if (entry == "VIEWPOINT") {
+    read_viewpoint(words);
+  } else if (entry == "DATA") {
+    header_.encoding = words[1];
+  } else {
+    fail("header: unknown entry '" + entry.substr(0, 40) + "'");
+  }
+}
+
+void PcdParser::read_fields(const std::vector<std::string_view>& words) {
+  const std::string entry(words[0]);
+  const std::size_t count = words.size() - 1;
+  if (entry == "FIELDS" || entry == "COLUMNS") {
+    if (count > kMaxFields) fail("header: " + std::to_string(count) + " fields are too many");
+    header_.fields.resize(count);
+  }
+  if (count != header_.fields.size()) {
+    fail("header: " + entry + " names " + std::to_string(count) + " fields, FIELDS " +
+         std::to_string(header_.fields.size()));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Field& field = header_.fields[i];
+    const std::string_view word = words[i + 1];
+    if (entry == "SIZE") {
+      field.type.size =
+          static_cast<std::uint8_t>(std::min<std::uint64_t>(count_of(word, entry), 255));
+    } else if (entry == "TYPE") {
+      field.type.kind = word.size() == 1 ? word[0] : '?';
+    } else if (entry == "COUNT") {
+      field.count = count_of(word, entry);
+      if (field.count > kMaxFields)
+        fail("header: a COUNT of " + std::string(word) + " is too large");
+    } else {
+      field.name = word;
+    }
+  }
+}
+
+void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
+  double n[7];
+  if (words.size() != 8) fail("header: VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
+  for (std::size_t i = 0; i < 7; ++i) {
+    const std::optional<double> number = to_number(words[i + 1]);
+    if (!number) fail("header: '" + std::string(words[i + 1]) + "' in VIEWPOINT is not a number");
+    n[i] = *number;
+  }
+  header_.viewpoint.translation = {n[0], n[1], n[2]};
+  if (!is_finite(header_.viewpoint.translation)) fail("header: VIEWPOINT is not finite");
+  try {
+    header_.viewpoint.rotation = rotation_from_quaternion({n[4], n[5], n[6], n[3]});
+  } catch (const Error& fault) {
+    fail(std::string("header: VIEWPOINT: ") + fault.what());
+  }
+}
+
+void PcdParser::check_header() {
+  Header& h = header_;
+  if (h.fields.empty()) fail("header names no FIELDS");
+  for (Field& field : h.fields) {
+    if (!is_known(field.type)) {
+      fail("header: field '" + field.name + "' has TYPE " + std::string(1, field.type.kind) +
+           " of SIZE " + std::to_string(field.type.size) + ", which is no number");
+    }
+    field.offset = h.point_size;
+    field.first = h.point_values;
+    h.point_size += field.type.size * field.count;
+    h.point_values += field.count;
+  }
+  if (h.width == 0 && h.height == 1) h.width = h.points;
+  if (h.points == 0 && h.width <= kMaxPoints && h.height <= kMaxPoints)
+    h.points = h.width * h.height;
+  if (h.points == 0) fail("holds no points");
+  if (h.points > kMaxPoints || h.width > kMaxPoints || h.height > kMaxPoints) {
+    fail("header promises " + std::to_string(std::max({h.points, h.width, h.height})) +
+         " points; at most " + std::to_string(kMaxPoints) + " are read");
+  }
+  if (h.width * h.height != h.points) {
+    fail("header: WIDTH " + std::to_string(h.width) + " times HEIGHT " + std::to_string(h.height) +
+         " is not POINTS " + std::to_string(h.points));
+  }
+  if (h.encoding != "ascii" && h.encoding != "binary" && h.encoding != "binary_compressed")
+    fail("header: DATA '" + h.encoding.substr(0, 40) +
+         "' is not ascii, binary or binary_compressed");
+}
+
+void PcdParser::find_columns() {
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    for (const Field& field : header_.fields) {
+      if (field.name == kColumns[c] && field.count == 1) column_[c] = &field;
+    }
+    if (c < 3 && column_[c] == nullptr) fail(std::string("has no field ") + kColumns[c]);
+  }
+  // Two components of a normal are none.
+  if (!column_[3] || !column_[4] || !column_[5]) column_[3] = column_[4] = column_[5] = nullptr;
+}
+
+void PcdParser::allocate() {
+  points_.positions.resize(header_.points);
+  if (column_[3] != nullptr) points_.normals.resize(header_.points);
+}
+
+double& PcdParser::value(std::size_t column, std::size_t point) {
+  Vec3& vector = column < 3 ? points_.positions[point] : points_.normals[point];
+  return column % 3 == 0 ? vector.x : column % 3 == 1 ? vector.y : vector.z;
+}
+
+void PcdParser::read_ascii() {
+  // Each value takes a character and a blank, the last one perhaps no blank.
+  if (header_.points > (cursor_.remaining() + 1) / 2 / header_.point_values)
+    fail("is truncated: " + std::to_string(header_.points) + " points cannot fit into the file");
+  allocate();
+  std::vector<std::string_view> words(header_.point_values);
+  for (std::size_t i = 0; i < header_.points; ++i) {
+    for (std::string_view& word : words) {
+      word = cursor_.word();
+      if (word.empty()) fail("is truncated at point " + std::to_string(i));
+    }
+    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+      if (column_[c] == nullptr) continue;
+      const std::string_view word = words[column_[c]->first];
+      const std::optional<double> number = to_number(word);
+      if (!number) {
+        fail("point " + std::to_string(i) + ": '" + std::string(word.substr(0, 40)) +
+             "' is not a number");
+      }
+      value(c, i) = *number;
+    }
+  }
+}
+
+void PcdParser::read_values(const std::byte* data, bool by_field) {
+  allocate();
+  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    if (column_[c] == nullptr) continue;
+    const Field& field = *column_[c];
+    const std::byte* from = data + field.offset * (by_field ? header_.points : 1);
+    const std::size_t step = by_field ? field.type.size : header_.point_size;
+    for (std::size_t i = 0; i < header_.points; ++i)
+      value(c, i) = read_scalar(from + i * step, field.type, false);
+  }
+}
+
+void PcdParser::read_binary() {
+  const std::uint64_t size = header_.points * header_.point_size;
+  if (size > cursor_.remaining()) {
+    fail("is truncated: " + std::to_string(size) + " bytes of points promised, " +
+         std::to_string(cursor_.remaining()) + " there");
+  }
+  read_values(bytes_.data() + cursor_.offset(), false);
+}
+
+void PcdParser::read_compressed() {
+  std::uint32_t sizes[2];  // compressed, uncompressed
+  if (cursor_.remaining() < sizeof sizes) fail("is truncated before its compressed data");
+  const std::span<const std::byte> body = bytes_.subspan(cursor_.offset());
+  std::memcpy(sizes, body.data(), sizeof sizes);
+  const std::uint64_t compressed = sizes[0], uncompressed = sizes[1];
+  if (compressed > body.size() - sizeof sizes) {
+    fail("is truncated: " + std::to_string(compressed) + " compressed bytes promised, " +
+         std::to_string(body.size() - sizeof sizes) + " there");
+  }
+  if (uncompressed != header_.points * header_.point_size) {
+    fail("holds " + std::to_string(uncompressed) + " bytes uncompressed; its points need " +
+         std::to_string(header_.points * header_.point_size));
+  }
+  if (uncompressed > compressed * kMaxLzfRatio)
+    fail("is corrupt: the compressed data is too short");
+  std::vector<std::byte> data(uncompressed);
+  if (!decode_lzf(body.subspan(sizeof sizes, compressed), data))
+    fail("is corrupt: the compressed data cannot be decoded");
+  read_values(data.data(), true);
+}
+
+}  // namespace
+
+PointSet parse_pcd(std::span<const std::byte> bytes, const std::string& name) {
+  return PcdParser(bytes, name).parse();
+}
+
+}  // namespace vpm
