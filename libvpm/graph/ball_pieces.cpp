@@ -76,7 +76,7 @@ struct Point {
 };
 
 // A cubic lattice of points in the ball of this radius about the origin, symmetric to it. A point
-// at the surface weighs as much as the ball covers of its cube.
+// at the surface weighs as much as the ball covers of its cube, and lies in the middle of that.
 std::vector<Point> points_in_ball(double radius, double spacing) {
   std::vector<Point> points;
   const int half = static_cast<int>(std::ceil(radius / spacing + 0.5));
@@ -84,8 +84,10 @@ std::vector<Point> points_in_ball(double radius, double spacing) {
     for (int y = -half; y < half; ++y) {
       for (int x = -half; x < half; ++x) {
         const Vec3 p = spacing * Vec3{x + 0.5, y + 0.5, z + 0.5};
-        const double covered = std::min(1.0, (radius - norm(p)) / spacing + 0.5);
-        if (covered > 0) points.push_back({p, covered, 0});
+        const double distance = norm(p);
+        const double covered = std::min(1.0, (radius - distance) / spacing + 0.5);
+        if (!(covered > 0)) continue;
+        points.push_back({(1 - 0.5 * (1 - covered) * spacing / distance) * p, covered, 0});
       }
     }
   }

@@ -69,12 +69,42 @@ class RowCutter {
     const double length = high - low;
     if (!(length > kNegligible * spacing_)) return;
     const int pieces = static_cast<int>(std::ceil(length / spacing_));
-    for (int k = 0; k < pieces; ++k) {
-      const double w = low + length * ((k + 0.5) / pieces);
-      const Vec3 center = lattice_.to_xyz({lattice_.u_of(row_, column), lattice_.v_of(row_), w});
-      owner_ = bvh_.nearest_surface(center, owner_);
-      segments_.push_back({center, static_cast<float>(length / pieces), owner_});
+    const double half = 0.5 * length / pieces;
+    double begin = low, middle = low + half;
+    owner_ = bvh_.nearest_surface(point(column, middle), owner_);
+    for (int k = 1; k < pieces; ++k) {
+      const std::uint32_t owner = owner_;
+      const double next = low + length * ((k + 0.5) / pieces);
+      owner_ = bvh_.nearest_surface(point(column, next), owner);
+      const double end =
+          owner == owner_ ? 0.5 * (middle + next) : boundary(column, middle, owner, next, owner_);
+      add_piece(column, begin, end, owner);
+      begin = end;
+      middle = next;
     }
+    add_piece(column, begin, high, owner_);
+  }
+
+  // Where the shares of two spheres meet, between a point of the one and a point of the other.
+  double boundary(std::uint32_t column, double w0, std::uint32_t sphere0, double w1,
+                  std::uint32_t sphere1) const {
+    const auto nearer_to_1 = [&](double w) {
+      const Vec3 p = point(column, w);
+      return surface_distance(p, bvh_.spheres()[sphere0]) -
+             surface_distance(p, bvh_.spheres()[sphere1]);
+    };
+    const double from = nearer_to_1(w0), to = nearer_to_1(w1);
+    const double along = to > from ? std::clamp(-from / (to - from), 0.0, 1.0) : 0.5;
+    return w0 + along * (w1 - w0);
+  }
+
+  void add_piece(std::uint32_t column, double begin, double end, std::uint32_t sphere) {
+    const float length = static_cast<float>(end - begin);
+    if (length > 0) segments_.push_back({point(column, 0.5 * (begin + end)), length, sphere});
+  }
+
+  Vec3 point(std::uint32_t column, double w) const {
+    return lattice_.to_xyz({lattice_.u_of(row_, column), lattice_.v_of(row_), w});
   }
 
   const LineLattice& lattice_;

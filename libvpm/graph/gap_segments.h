@@ -20,7 +20,7 @@ namespace vpm {
 struct GapSegment {
   Vec3 center;  // midpoint of the piece
   float length = 0;
-  std::uint32_t sphere = 0;  // whose surface is nearest to the midpoint
+  std::uint32_t sphere = 0;  // whose surface is nearest
 };
 
 struct GapSegments {

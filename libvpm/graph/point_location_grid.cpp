@@ -42,7 +42,10 @@ std::uint32_t cells_along(double extent, double cell) {
 }
 
 double cell_for(Vec3 extent, double cells) {
-  double cell = std::cbrt(extent.x * extent.y * extent.z / cells);
+  // The library's cube root rounds differently for different exponents; a power of two must not.
+  const double unit = std::ldexp(1.0, std::ilogb(extent.x));
+  const double ratio = extent.y / unit * (extent.z / unit) * (extent.x / unit);
+  double cell = unit * std::cbrt(ratio / cells);
   // One cell more per axis than the extent holds: thin boxes need larger cells to keep the count.
   constexpr double kGrow = 1.0625;
   const auto count = [&] {

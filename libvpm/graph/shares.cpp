@@ -25,6 +25,20 @@ void group_by_sphere(std::size_t spheres, Shares& shares) {
   segments = std::move(grouped);
 }
 
+// Neumaier's sum: many equal terms round the same way, and the shares must sum to 1e-12.
+class CompensatedSum {
+ public:
+  void add(double term) {
+    const double sum = sum_ + term;
+    lost_ += std::abs(sum_) >= std::abs(term) ? (sum_ - sum) + term : (term - sum) + sum_;
+    sum_ = sum;
+  }
+  double value() const { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0, lost_ = 0;
+};
+
 // Sampled, scaled gap of one sphere about its centre.
 struct GapPart {
   double volume = 0;
@@ -33,12 +47,14 @@ struct GapPart {
 
 GapPart gap_of(const Shares& shares, Vec3 center, std::size_t i) {
   GapPart part;
+  CompensatedSum sum;
   for (std::uint32_t k = shares.gap_begin[i]; k < shares.gap_begin[i + 1]; ++k) {
     const GapSegment& s = shares.gap.segments[k];
     const double v = shares.gap_scale * shares.gap.volume(s);
-    part.volume += v;
+    sum.add(v);
     part.moment += v * (s.center - center);
   }
+  part.volume = sum.value();
   return part;
 }
 
@@ -78,8 +94,9 @@ void sum_shares(std::span<const Sphere> spheres, Shares& shares) {
 Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereBvh& bvh,
                    double spacing) {
   const std::span<const Sphere> spheres = bvh.spheres();
-  double balls = 0;
-  for (const Sphere& s : spheres) balls += volume(s);
+  CompensatedSum ball_sum;
+  for (const Sphere& s : spheres) ball_sum.add(volume(s));
+  const double balls = ball_sum.value();
   if (balls > mass.volume * (1 + kVolumeTolerance)) {
     refuse("the spheres hold " + std::to_string(balls / mass.volume) +
            " times the volume of the solid, so they overlap or leave it; pack the mesh again");
@@ -88,8 +105,9 @@ Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereB
 
   Shares shares{find_gap_segments(solid, bvh, spacing), {}, 0, {}, {}, {}, {}};
   group_by_sphere(spheres.size(), shares);
-  double sampled = 0;
-  for (const GapSegment& s : shares.gap.segments) sampled += shares.gap.volume(s);
+  CompensatedSum sampled_sum;
+  for (const GapSegment& s : shares.gap.segments) sampled_sum.add(shares.gap.volume(s));
+  const double sampled = sampled_sum.value();
   if (!(sampled > 0) && gap_volume > kVolumeTolerance * mass.volume) {
     refuse("no point was found between the spheres and the surface of the solid, although " +
            std::to_string(100 * gap_volume / mass.volume) +

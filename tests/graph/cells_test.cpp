@@ -1,0 +1,175 @@
+#include "libvpm/graph/cells.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/graph/build_tool_model.h"
+#include "libvpm/query/ball_fraction.h"
+#include "libvpm/synthetic/truth.h"
+#include "tests/graph/test_packing.h"
+
+namespace vpm {
+namespace {
+
+// What the samples say lies where distance(x) < 0, as a fraction; x is about the centre of mass.
+double fraction_inside(const Level& level, const std::function<double(Vec3)>& distance) {
+  double sum = 0;
+  for (const CellSample& s : level.samples) {
+    sum += s.weight * ball_fraction_inside(distance(widen(s.center)) / double{s.radius});
+  }
+  return sum;
+}
+
+struct Error {
+  double mean = 0, worst = 0;
+  int count = 0;
+  void add(double error) {
+    mean = (mean * count + std::abs(error)) / (count + 1);
+    worst = std::max(worst, std::abs(error));
+    ++count;
+  }
+};
+
+class Cells : public testing::TestWithParam<test::Shape (*)()> {};
+
+// The promise of kSamplesPerLength.
+TEST_P(Cells, CutByPlanesAndBallsAsTheSolid) {
+  const test::Shape shape = GetParam()();
+  const Packing packing = test::greedy_packing(shape, 1000);
+  const ToolModel model = build_tool_model(packing, {});
+  const Level& level = model.levels.back();
+  test::Numbers numbers(1);
+  Error plane, ball;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 normal = numbers.direction();
+    const double offset = numbers.uniform(-0.8, 0.8) * model.reach;
+    const double truth =
+        test::volume_below(packing.solid, normal, offset + dot(normal, model.center_of_mass)) /
+        model.volume;
+    plane.add(fraction_inside(level, [&](Vec3 x) { return dot(normal, x) - offset; }) - truth);
+  }
+  const synthetic::TrueSolid solid(packing.solid);
+  const double radius = 3 * model.reach;
+  for (int k = 0; k < 10; ++k) {
+    const Vec3 center = (radius + numbers.uniform(-0.6, 0.6) * model.reach) * numbers.direction();
+    const auto truth =
+        solid.penetration({}, *synthetic::make_ball(center + model.center_of_mass, radius), 1e-5);
+    ball.add(fraction_inside(level, [&](Vec3 x) { return norm(x - center) - radius; }) -
+             truth.volume / model.volume);
+  }
+  EXPECT_LE(plane.mean, 1e-4);
+  EXPECT_LE(plane.worst, 5e-4);
+  EXPECT_LE(ball.worst, 5e-4);
+  RecordProperty("samples", static_cast<int>(level.samples.size()));
+  EXPECT_LE(level.samples.size(), 100000u);
+}
+
+// A plane along a face, where the errors of neighbouring samples add up.
+TEST_P(Cells, SmoothFacesByLittle) {
+  const test::Shape shape = GetParam()();
+  const Packing packing = test::greedy_packing(shape, 1000);
+  const ToolModel model = build_tool_model(packing, {});
+  const Triangle& t = packing.solid.triangles[0];
+  const Vec3 a = packing.solid.vertices[t[0]];
+  const Vec3 normal =
+      normalized_or_zero(cross(packing.solid.vertices[t[1]] - a, packing.solid.vertices[t[2]] - a));
+  double face = -HUGE_VAL;
+  for (const Vec3& v : packing.solid.vertices) face = std::max(face, dot(normal, v));
+  Error error;
+  for (int k = 0; k < 100; ++k) {
+    const double offset = face - dot(normal, model.center_of_mass) - 0.002 * k * model.reach;
+    const double truth =
+        test::volume_below(packing.solid, normal, offset + dot(normal, model.center_of_mass)) /
+        model.volume;
+    error.add(fraction_inside(model.levels[0], [&](Vec3 x) { return dot(normal, x) - offset; }) -
+              truth);
+  }
+  EXPECT_LE(error.worst, 2.5e-3);
+}
+
+TEST_P(Cells, HoldTheShareOfTheirSphere) {
+  const Packing packing = test::greedy_packing(GetParam()(), 300, 40000);
+  const ToolModel model = build_tool_model(packing, {});
+  const Level& level = model.levels.back();
+  double sum = 0;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    double weight = 0;
+    Vec3 moment;
+    for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
+      const CellBlock& block = level.blocks[b];
+      ASSERT_LT(block.begin, block.end);
+      ASSERT_LE(block.end - block.begin, 64u);
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const CellSample& sample = level.samples[s];
+        ASSERT_LE(norm(widen(sample.center) - widen(block.center)), double{block.radius});
+        weight += sample.weight;
+        moment += sample.weight * widen(sample.center);
+      }
+    }
+    EXPECT_NEAR(weight * model.volume / level.share_volume[i], 1, 1e-11);
+    const Vec3 centroid = moment / weight + model.center_of_mass;
+    EXPECT_LT(norm(centroid - level.share_centroid[i]), 1e-6 * model.reach);
+    sum += weight;
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+}
+
+// Every point of the solid in a block of the sphere whose surface is nearest.
+TEST_P(Cells, BlocksEncloseTheirShare) {
+  const test::Shape shape = GetParam()();
+  const Packing packing = test::greedy_packing(shape, 300, 40000);
+  const ToolModel model = build_tool_model(packing, {});
+  const Level& level = model.levels.back();
+  const SphereBvh bvh(packing.spheres);
+  test::Numbers numbers(3);
+  int inside = 0, found = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 x =
+        model.reach * Vec3{numbers.uniform(-1, 1), numbers.uniform(-1, 1), numbers.uniform(-1, 1)};
+    if (!(shape.depth(x + model.center_of_mass) > 0)) continue;
+    ++inside;
+    const std::uint32_t i = bvh.nearest_surface(x + model.center_of_mass, 0);
+    EXPECT_LE(norm(x + model.center_of_mass - packing.spheres[i].center),
+              level.share_reach[i] + 0.01 * model.reach);
+    bool enclosed = false;
+    for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
+      enclosed |= norm(x - widen(level.blocks[b].center)) <= double{level.blocks[b].radius};
+    }
+    found += enclosed;
+  }
+  // Shares are known to the spacing of lines: what lies between two lines may belong to a
+  // neighbour.
+  EXPECT_GE(found, 0.999 * inside);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, Cells,
+                         testing::Values(test::cube, test::tetrahedron, test::octahedron,
+                                         test::torus),
+                         [](const auto& tested) { return tested.param().name; });
+
+TEST(BallPieces, SumToTheBall) {
+  for (const double radius : {0.1, 1.0, 1.7, 2.5, 4.0, 9.3}) {
+    std::vector<CellPiece> pieces;
+    cut_ball(radius, 1, pieces);
+    double sum = 0, second = 0;
+    Vec3 moment;
+    for (const CellPiece& p : pieces) {
+      sum += p.volume;
+      moment += p.volume * p.centroid;
+      second += p.volume * (squared_norm(p.centroid) + 0.6 * p.moment_radius * p.moment_radius);
+      EXPECT_LE(norm(p.centroid), radius);
+      EXPECT_GE(p.reach, 0.999 * p.moment_radius);
+    }
+    const double exact = volume({{}, radius});
+    EXPECT_NEAR(sum / exact, 1, 1e-13);
+    EXPECT_LT(norm(moment) / exact, 1e-12 * radius);
+    EXPECT_NEAR(second / (exact * 0.6 * radius * radius), 1, 0.01);  // mean squared radius: 3/5 r^2
+    if (radius > 2) {
+      EXPECT_NEAR(static_cast<double>(pieces.size()) / exact, 1, 0.5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vpm

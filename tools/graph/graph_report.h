@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "libvpm/graph/shares.h"
+#include "libvpm/model/tool_model.h"
+
+namespace vpm::tools {
+
+// The report of vpm-graph (formats/schemas): the finest level at the top, all of them in `levels`.
+nlohmann::ordered_json graph_report(const ToolModel& model,
+                                    const std::vector<ShareQuality>& quality, double seconds);
+
+}  // namespace vpm::tools

@@ -1,0 +1,94 @@
+// vpm-graph: makes the tool model that queries load from a packing.
+
+#include <chrono>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/graph/build_tool_model.h"
+#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/model/tool_model_file.h"
+#include "tools/common/tool.h"
+#include "tools/graph/graph_report.h"
+
+namespace vpm::tools {
+namespace {
+
+struct Arguments {
+  std::string packing, output, mesh, report;
+  GraphOptions options;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("packing", a.packing, "Packing (.vpmp)")->required();
+  app.add_option("-o,--output", a.output, "Tool model (.vpmg)")->required();
+  app.add_option("--mesh", a.mesh, "Refuse the packing unless it was made of this mesh");
+  app.add_option("--epsilon", a.options.epsilon,
+                 "Largest gap of an edge in metres; a tenth of the smallest radius if not given")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--levels", a.options.levels,
+                 "Sphere counts of further levels of detail, e.g. 250,1000,4000")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  app.add_option("--report", a.report, "What was made, as JSON");
+}
+
+// The mesh must be read as vpm-pack read it to give the same solid.
+SolidOptions options_of(const nlohmann::json& provenance) {
+  SolidOptions options;
+  const auto number = [&](const char* key) -> std::optional<double> {
+    const nlohmann::json::json_pointer at(std::string("/parameters/") + key);
+    if (!provenance.contains(at) || !provenance.at(at).is_number()) return std::nullopt;
+    return provenance.at(at).get<double>();
+  };
+  options.scale = number("scale").value_or(1);
+  options.weld = number("weld");
+  return options;
+}
+
+void check_mesh(const Packing& packing, const Arguments& a) {
+  const RawMesh mesh = parse_mesh(file::read_all(a.mesh), a.mesh);
+  const std::string expected = content_hash(packing.solid);
+  const std::string found = content_hash(make_solid(mesh, options_of(packing.provenance)).solid);
+  if (found != expected) {
+    refuse(a.packing + " was not made of " + a.mesh + ": their solids have the hashes " + expected +
+           " and " + found + "; pack this mesh, or leave --mesh out");
+  }
+}
+
+void run(const Tool& tool, Arguments& a) {
+  if (a.packing == "-" && a.mesh == "-") {
+    throw Error(ErrorKind::usage, "only one of the packing and --mesh can be standard input");
+  }
+  check_output(a.output, file::Kind::tool_model, tool.common());
+  check_output(a.report, tool.common());
+  const Packing packing = read_packing(a.packing);
+  if (!a.mesh.empty()) check_mesh(packing, a);
+
+  Progress progress("levels", tool.common());
+  a.options.progress = [&](double fraction) { progress.update(fraction); };
+  std::vector<ShareQuality> quality;
+  const auto start = std::chrono::steady_clock::now();
+  ToolModel model = build_tool_model(packing, a.options, &quality);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  model.provenance = {{"tool", tool.name()},
+                      {"version", VPM_VERSION},
+                      {"parameters", tool.parameters()},
+                      {"packing", packing.provenance}};
+  write_tool_model(a.output, model);
+  if (!a.report.empty()) {
+    file::write_all(a.report, graph_report(model, quality, seconds.count()).dump(2) + "\n");
+  }
+}
+
+}  // namespace
+}  // namespace vpm::tools
+
+int main(int argc, char** argv) {
+  using namespace vpm::tools;
+  Tool tool("vpm-graph", "Tool model for penetration queries from a sphere packing");
+  Arguments arguments;
+  declare(tool.app(), arguments);
+  return tool.run(argc, argv, [&] { run(tool, arguments); });
+}
