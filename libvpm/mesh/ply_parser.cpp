@@ -66,7 +66,7 @@ Type parse_type(const TextLines& lines, std::string_view word) {
   for (const TypeName& known : kTypeNames) {
     if (word == known.name) return known.type;
   }
-  lines.refuse_here("'" + std::string(word.substr(0, 40)) + "' is not a type of a PLY property");
+  lines.refuse_here(std::string(word.substr(0, 40)) + " is not a type of a PLY property");
 }
 
 Property parse_property(TextLines& lines) {

@@ -83,6 +83,18 @@ std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& 
 
 }  // namespace
 
+std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
+                                     const std::vector<std::uint32_t>& shell_of_triangle,
+                                     std::size_t shell_count,
+                                     const std::vector<Triangle>& triangles) {
+  const std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
+  const auto enclosing = find_enclosing(vertices, triangles, shells);
+  std::vector<ShellPlace> places;
+  for (std::size_t k = 0; k < shells.size(); ++k)
+    places.push_back({enclosing[k].size(), shells[k].volume >= 0});
+  return places;
+}
+
 ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& shell_of_triangle,
                                std::size_t shell_count, bool given_consistent,

@@ -9,6 +9,17 @@
 
 namespace vpm {
 
+struct ShellPlace {
+  std::size_t depth = 0;  // shells around it
+  bool outward = true;    // as its triangles face
+};
+
+// Of each shell, by number (see shells_of in topology.h).
+std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
+                                     const std::vector<std::uint32_t>& shell_of_triangle,
+                                     std::size_t shell_count,
+                                     const std::vector<Triangle>& triangles);
+
 struct ShellOrientation {
   std::size_t turned = 0;          // shells whose triangles were turned over
   std::size_t cavities = 0;        // shells that face inward within another one

@@ -1,0 +1,157 @@
+// vpm-pack: fills a mesh with spheres that neither overlap nor protrude.
+
+#include <chrono>
+#include <limits>
+#include <optional>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/checksum.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/packer.h"
+#include "libvpm/packing/packing_export.h"
+#include "libvpm/packing/validation.h"
+#include "tools/common/tool.h"
+#include "tools/pack/pack_report.h"
+
+namespace vpm::tools {
+namespace {
+
+struct Arguments {
+  std::string mesh, output, report, export_path;
+  std::size_t spheres = 1000;
+  double coverage = 1, min_radius = 0;
+  std::optional<double> max_radius, weld;
+  double scale = 1;
+  bool validate = false;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("mesh", a.mesh, "Closed mesh: OBJ, OFF, PLY or STL; - is standard input");
+  app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
+  app.add_option("--spheres", a.spheres, "Stop after this many spheres")->capture_default_str();
+  app.add_option("--coverage", a.coverage, "Stop at this share of the solid's volume, 0 to 1")
+      ->capture_default_str();
+  app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, m")->capture_default_str();
+  app.add_option("--max-radius", a.max_radius, "Place no larger sphere, m");
+  app.add_flag("--validate", a.validate,
+               "Count voxels (OpenVDB) as a second opinion on coverage, protrusion and overlap");
+  app.add_option("--report", a.report, "Facts and figures (JSON)");
+  app.add_option("--export", a.export_path,
+                 "Also write the spheres as .csv, .ply or .yml (cuRobo)");
+  app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
+      ->capture_default_str();
+  app.add_option("--weld", a.weld,
+                 "Join vertices nearer than this share of the mesh's diagonal (STL: 1e-9)");
+}
+
+void check(const Arguments& a, const CommonOptions& common) {
+  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  if (a.mesh.empty()) wrong("no mesh is given: name an OBJ, OFF, PLY or STL file, or - for a pipe");
+  if (a.output.empty() && a.export_path.empty() && a.report.empty())
+    wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
+  if (a.spheres == 0) wrong("--spheres must be at least 1");
+  if ((a.output == "-") + (a.report == "-") + (a.export_path == "-") > 1)
+    wrong("only one output can be standard output");
+  if (!a.export_path.empty()) export_format(a.export_path);
+  check_output(a.output, file::Kind::packing, common);
+  check_output(a.report, common);
+  check_output(a.export_path, common);
+}
+
+// What the robot description calls the part: the mesh's name without folder and extension.
+std::string link_name(const std::string& mesh) {
+  const std::string name = mesh.substr(mesh.rfind('/') + 1);
+  return mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
+}
+
+PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid) {
+  Progress progress("packing", tool.common());
+  PackOptions options;
+  options.spheres = a.spheres;
+  options.coverage = a.coverage;
+  options.min_radius = a.min_radius;
+  options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  PackResult result = pack(solid, options);
+  if (result.spheres.empty()) {
+    refuse(a.mesh + ": no sphere fits (stopped by " + name_of(result.stop) +
+           "); give a smaller --min-radius");
+  }
+  return result;
+}
+
+void say_result(const Tool& tool, const Arguments& a, const PackResult& result) {
+  const std::string count = std::to_string(result.spheres.size());
+  if (result.stop == StopReason::min_radius || result.stop == StopReason::numerical_floor) {
+    tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " +
+              (result.stop == StopReason::min_radius
+                   ? "no other of --min-radius fits"
+                   : "what is left is too narrow for the numbers"));
+  }
+  tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
+}
+
+void refuse_uncertified(const Arguments& a, const Certificate& certificate) {
+  if (certificate.holds) return;
+  refuse(a.mesh + ": the packing does not hold its certificate (protrusion " +
+         std::to_string(certificate.max_protrusion) + " m, overlap " +
+         std::to_string(certificate.max_overlap) +
+         " m); nothing is written. This is a fault of the program: please report it with the mesh");
+}
+
+Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
+                     std::vector<Sphere> spheres) {
+  Packing packing;
+  packing.spheres = std::move(spheres);
+  packing.provenance = {{"tool", tool.name()},
+                        {"version", VPM_VERSION},
+                        {"parameters", tool.parameters()},
+                        {"input_hash", input_hash},
+                        {"solid_hash", content_hash(checked.solid)}};
+  packing.solid = std::move(checked.solid);
+  return packing;
+}
+
+void run(const Tool& tool, const Arguments& a) {
+  check(a, tool.common());
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<std::byte> bytes = file::read_all(a.mesh);
+  const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
+  CheckedSolid checked = make_solid(parse_mesh(bytes, name), {a.scale, a.weld});
+  for (const std::string& note : checked.notes) tool.note(name + ": " + note);
+  for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
+
+  const PackResult result = pack_checked(tool, a, checked.solid);
+  const Certificate certificate = certify(checked.solid, result.spheres);
+  refuse_uncertified(a, certificate);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  say_result(tool, a, result);
+
+  std::optional<Validation> validation;
+  if (a.validate) validation = validate_packing(checked.solid, result.spheres);
+  if (!a.report.empty()) {
+    const auto report = pack_report(checked, result, certificate, validation, seconds);
+    file::write_all(a.report, report.dump(2) + "\n");
+  }
+  if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a.mesh));
+  if (!a.output.empty()) {
+    write_packing(a.output, make_packing(tool, file::content_hash({bytes}), std::move(checked),
+                                         result.spheres));
+  }
+}
+
+}  // namespace
+}  // namespace vpm::tools
+
+int main(int argc, char** argv) {
+  using namespace vpm::tools;
+  Tool tool("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
+  Arguments arguments;
+  declare(tool.app(), arguments);
+  return tool.run(argc, argv, [&] { run(tool, arguments); });
+}

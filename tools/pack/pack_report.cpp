@@ -1,0 +1,85 @@
+#include "tools/pack/pack_report.h"
+
+#include <algorithm>
+
+namespace vpm::tools {
+namespace {
+
+using nlohmann::json;
+
+json as_json(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
+json as_json(const MeshFacts& facts) {
+  return {{"format", name_of(facts.format)},
+          {"vertices", facts.vertices},
+          {"triangles", facts.triangles},
+          {"shells", facts.shells},
+          {"cavities", facts.cavities},
+          {"euler_characteristic", facts.euler},
+          {"area", facts.area},
+          {"volume", facts.volume},
+          {"box_low", as_json(facts.low)},
+          {"box_high", as_json(facts.high)},
+          {"joined_vertices", facts.joined_vertices},
+          {"unused_vertices", facts.unused_vertices},
+          {"collapsed_triangles", facts.collapsed_triangles},
+          {"turned_triangles", facts.turned_triangles},
+          {"zero_area_triangles", facts.zero_area_triangles},
+          {"self_intersections", facts.self_intersections}};
+}
+
+json as_json(const Validation& validation) {
+  return {{"voxel", validation.voxel},
+          {"volume_mesh", validation.volume_mesh},
+          {"coverage", validation.coverage},
+          {"coverage_error", validation.coverage_error},
+          {"max_protrusion", validation.max_protrusion},
+          {"max_overlap", validation.max_overlap},
+          {"protruding_voxels", validation.protruding_voxels},
+          {"overlapping_voxels", validation.overlapping_voxels},
+          {"detection_limit", validation.detection_limit}};
+}
+
+}  // namespace
+
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::spheres:
+      return "spheres";
+    case StopReason::coverage:
+      return "coverage";
+    case StopReason::min_radius:
+      return "min_radius";
+    case StopReason::numerical_floor:
+      return "numerical_floor";
+  }
+  return "";
+}
+
+json pack_report(const CheckedSolid& checked, const PackResult& result,
+                 const Certificate& certificate, const std::optional<Validation>& validation,
+                 double seconds) {
+  double volume_spheres = 0;
+  for (const Sphere& s : result.spheres) volume_spheres += volume(s);
+  json report = {{"spheres", result.spheres.size()},
+                 {"coverage", result.coverage},
+                 {"volume_mesh", checked.facts.volume},
+                 {"volume_spheres", volume_spheres},
+                 {"max_protrusion", std::max(certificate.max_protrusion, 0.0)},
+                 {"max_overlap", std::max(certificate.max_overlap, 0.0)},
+                 {"certified", certificate.holds},
+                 {"tolerance", certificate.tolerance},
+                 {"r_min", result.spheres.back().radius},
+                 {"r_max", result.spheres.front().radius},
+                 {"stop_reason", name_of(result.stop)},
+                 {"seconds", seconds},
+                 {"mesh", as_json(checked.facts)},
+                 {"notes", checked.notes},
+                 {"warnings", checked.warnings}};
+  if (validation) report["validation"] = as_json(*validation);
+  return report;
+}
+
+}  // namespace vpm::tools
