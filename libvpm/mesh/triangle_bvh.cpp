@@ -155,14 +155,12 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
       continue;
     }
     const Node& node = nodes_[entry.child];
-    float bound2[4] = {0, 0, 0, 0};
+    Float4 bound2{};
     for (int axis = 0; axis < 3; ++axis) {
-      for (int slot = 0; slot < 4; ++slot) {
-        const float below = node.low[axis][slot] - at[axis];
-        const float above = at[axis] - node.high[axis][slot];
-        const float gap = std::max(std::max(below, above), 0.0f);
-        bound2[slot] += gap * gap;
-      }
+      const Float4 below = node.low[axis] - at[axis], above = at[axis] - node.high[axis];
+      const Float4 outside = below > above ? below : above;
+      const Float4 gap = outside > Float4{} ? outside : Float4{};
+      bound2 += gap * gap;
     }
     const std::size_t base = top;
     for (int slot = 0; slot < 4; ++slot) {  // nearest child last, so that it is next

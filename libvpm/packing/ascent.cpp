@@ -26,6 +26,11 @@ struct Contacts {
   bool has(Obstacle obstacle) const {
     return std::find(obstacles.begin(), obstacles.end(), obstacle) != obstacles.end();
   }
+  double clearance(const Space& space, Vec3 x) const {
+    double d = HUGE_VAL;
+    for (const Obstacle o : obstacles) d = std::min(d, linearised(space, o, x).value);
+    return d;
+  }
   // Linearises about a new point and forgets what no step within `horizon` can meet.
   void move_to(const Space& space, Vec3 x, double horizon) {
     std::size_t kept = 0;
@@ -70,17 +75,19 @@ Sphere ascend(const Space& space, Vec3 start, const Clearance& from) {
     const MaxMinStep step = max_min_step(contacts.bounds, box);
     if (!(step.value - best.radius > kConverged * best.radius)) break;
     const Vec3 x = best.center + step.delta;
-    const Clearance there = space.clearance(x);
+    const Clearance there = space.clearance(x, contacts.clearance(space, x));
+    const bool unforeseen =
+        there.nearest.kind != Obstacle::Kind::none && !contacts.has(there.nearest);
     if (there.value > best.radius) {
       best = {x, there.value};
       box = kBox * best.radius;
-      if (there.nearest.kind == Obstacle::Kind::none) break;
       contacts.move_to(space, x, best.radius * (1 + 4 * kBox));
-      if (!contacts.has(there.nearest)) contacts.add(space, there.nearest, x);
-    } else if (there.nearest.kind == Obstacle::Kind::none || contacts.has(there.nearest)) {
-      box *= 0.5;
-    } else {
+      if (unforeseen) contacts.add(space, there.nearest, x);
+      if (contacts.bounds.empty()) break;  // nothing within reach
+    } else if (unforeseen) {
       contacts.add(space, there.nearest, best.center);
+    } else {
+      box *= 0.5;
     }
   }
   return best;

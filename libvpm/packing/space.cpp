@@ -17,7 +17,9 @@ constexpr double kBlockWidth = 4;
 // half of the width; the rest is for maxima that a search of a larger radius has missed.
 constexpr double kReach = 0.6;
 // Cells whose half diagonal is below this share of the radius are searched instead of cut.
-constexpr float kLeaf = 0.125f;
+constexpr float kLeaf = 0.25f;
+// A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
+constexpr double kSlope = 2.5;
 constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
 
@@ -28,6 +30,10 @@ double edge(int level) {
 // Half the diagonal of a cube, rounded up.
 float half_diagonal(int level) {
   return static_cast<float>(0.866025404 * edge(level));
+}
+
+float round_down(double v) {
+  return std::nextafter(static_cast<float>(v), 0.0f);
 }
 
 BlockIndex::Coordinates cube_of(Vec3 x, int level) {
@@ -51,10 +57,9 @@ Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
 
 Space::Space(const SolidDistance& solid, double smallest)
     : solid_(solid), smallest_(static_cast<float>(smallest)) {
-  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, false};
-  root.d = cell_distance(root, {});
-  root.bound = root.d + half_diagonal(0);
-  blocks_.push_back({{}, {root}});
+  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, 0, false};
+  measure(root, 0, {});
+  blocks_.push_back({{}, {root}, {}});
   bounds_ = {root.bound};
   index_.assign({{0, 0, 0}});
 }
@@ -74,14 +79,20 @@ std::vector<std::uint32_t> Space::promising(double radius) const {
   return blocks;
 }
 
-float Space::cell_distance(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+// Sets d, mesh and bound. `mesh_bound`: the mesh is known to be at least that far.
+void Space::measure(Cell& cell, float mesh_bound, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
+  const float half = half_diagonal(cell.level);
   double d = reach_;
   for (const std::uint32_t i : near)
     d = std::min(d, norm(x - spheres_[i].center) - spheres_[i].radius);
-  if (d + half_diagonal(cell.level) > smallest_ && d > 0)
+  cell.mesh = mesh_bound;
+  if (d > mesh_bound && d + half > smallest_) {
     d = std::min(d, solid_.closest(x, d).distance);
-  return static_cast<float>(d);
+    cell.mesh = round_down(d);
+  }
+  cell.d = static_cast<float>(d);
+  cell.bound = cell.d + half;
 }
 
 void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
@@ -94,10 +105,10 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
               cell.z + (octant & 4 ? offset : -offset),
               0,
               0,
+              0,
               level,
               cell.inside};
-    part.d = cell_distance(part, near);
-    part.bound = part.d + half_diagonal(level);
+    measure(part, cell.mesh - half_diagonal(level), near);
     if (part.bound > smallest_) parts.push_back(part);
   }
 }
@@ -178,10 +189,17 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
       rest.push_back(cell);
       continue;
     }
-    // The mesh does not meet a cell that is farther from it than its corners.
-    if (!cell.inside && cell.d > half) {
-      if (!solid_.inside(cell.center())) continue;
-      cell.inside = true;
+    // A side is asked for where it decides: of a cell that the mesh does not meet, and of one that
+    // is out of the question if its centre lies outside.
+    if (!cell.inside && cell.d > 0 && (cell.d > half || half - cell.d < radius)) {
+      if (solid_.inside(cell.center())) {
+        cell.inside = cell.d > half;
+      } else {
+        cell.d = -cell.d;
+        cell.bound = cell.d + half;
+        if (cell.bound > smallest_) pending.push_back(cell);
+        continue;
+      }
     }
     if (cell.inside && (cell.d >= cap || half <= kLeaf * radius)) {
       leaves.push_back(cell);
@@ -191,43 +209,55 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
   }
 }
 
-void Space::search(std::uint32_t block, double radius, double cap, std::vector<Sphere>& found) {
+void Space::search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found) {
+  Block& block = blocks_[number];
   std::vector<Cell> leaves, cells;
-  refine(blocks_[block], radius, cap, leaves, cells);
+  refine(block, radius, cap, leaves, cells);
   std::sort(leaves.begin(), leaves.end(), [](const Cell& a, const Cell& b) {
     if (a.d != b.d) return a.d > b.d;
     if (a.x != b.x) return a.x < b.x;
     if (a.y != b.y) return a.y < b.y;
     return a.z < b.z;
   });
-  const std::size_t before = found.size();
   for (Cell& leaf : leaves) {
-    const Vec3 x = leaf.center();
-    const float half = half_diagonal(leaf.level);
-    const bool taken =
-        std::any_of(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
-                    [&](const Sphere& s) { return norm(x - s.center) - s.radius + half < radius; });
-    if (!taken) {
-      const Clearance at = clearance(x);
-      const Sphere best = at.value >= cap ? against_obstacle(x, at, cap) : ascend(*this, x, at);
-      if (best.radius >= radius) {
-        found.push_back({best.center, std::min(best.radius, cap)});
-      } else {
-        leaf.bound = std::min(static_cast<float>(best.radius),
-                              std::nextafter(static_cast<float>(radius), 0.0f));
-      }
+    const double maximum = local_maximum(block, leaf, radius, cap);
+    if (maximum < radius) {
+      leaf.bound = std::min({leaf.bound, static_cast<float>(maximum),
+                             std::nextafter(static_cast<float>(radius), 0.0f)});
     }
     cells.push_back(leaf);
   }
   cells.shrink_to_fit();
-  blocks_[block].cells = std::move(cells);
-  bounds_[block] = block_bound(blocks_[block]);
+  block.cells = std::move(cells);
+  bounds_[number] = block_bound(block);
+  std::erase_if(block.maxima, [&](const Sphere& m) {
+    if (m.radius < radius) return false;
+    found.push_back(m);
+    return true;
+  });
 }
 
-Clearance Space::clearance(Vec3 x) const {
+// Radius of the local maximum above a leaf; a new one joins the block's maxima.
+double Space::local_maximum(Block& block, const Cell& leaf, double radius, double cap) const {
+  const Vec3 x = leaf.center();
+  const float half = half_diagonal(leaf.level);
+  for (const Sphere& m : block.maxima) {
+    const double distance = norm(x - m.center);
+    // The leaf lies on the slope of this maximum, or has no room left once it is placed.
+    if (distance < kSlope * half && leaf.d <= m.radius) return m.radius;
+    if (m.radius >= radius && distance - m.radius + half < radius) return m.radius;
+  }
+  const Clearance at = clearance(x);
+  Sphere best = at.value >= cap ? against_obstacle(x, at, cap) : ascend(*this, x, at);
+  best.radius = std::min(best.radius, cap);
+  block.maxima.push_back(best);
+  return best.radius;
+}
+
+Clearance Space::clearance(Vec3 x, double within) const {
   const std::uint32_t b = index_.find(cube_of(x, level_));
   if (b == BlockIndex::kNone) return {-1, {}, {}};
-  Clearance best{reach_, {}, {}};
+  Clearance best{std::min(within, reach_), {}, {}};
   for (const std::uint32_t i : blocks_[b].spheres) {
     const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
     if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};
@@ -272,6 +302,9 @@ void Space::take_from(Block& block, const Sphere& sphere) const {
     cell.bound = std::min(cell.bound, cell.d + half_diagonal(cell.level));
   }
   std::erase_if(block.cells, [&](const Cell& cell) { return cell.bound <= smallest_; });
+  std::erase_if(block.maxima, [&](const Sphere& m) {
+    return norm(m.center - sphere.center) - sphere.radius < m.radius;
+  });
 }
 
 }  // namespace vpm

@@ -40,11 +40,12 @@ class Space {
   // The largest spheres found in one block: local maxima of the clearance with at least `radius`,
   // no two of them overlapping, capped at `cap`. Only touches what belongs to the block, so that
   // blocks may be searched in parallel. Sets found only if the block is left promising.
-  void search(std::uint32_t block, double radius, double cap, std::vector<Sphere>& found);
+  void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
 
-  // Clearance of a point in the solid. kind == none and value == reach where nothing is near;
-  // value < 0 where no room is left around the point.
-  Clearance clearance(Vec3 x) const;
+  // Clearance of a point in the solid where it is below `within`. kind == none and value == the
+  // smaller of `within` and the reach where nothing is nearer; value < 0 where no room is left
+  // around the point.
+  Clearance clearance(Vec3 x, double within = 2) const;
 
   // Takes a sphere out of the room; appends the blocks around it to `touched`.
   void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
@@ -57,7 +58,8 @@ class Space {
  private:
   struct Cell {
     float x, y, z;       // centre: exact, a multiple of 2^-24
-    float d;             // clearance of the centre, or a bound of it where the mesh is far
+    float d;             // clearance of the centre if it lies inside; negative where known outside
+    float mesh;          // the mesh is at least this far from the centre
     float bound;         // no larger sphere is centred in the cell
     std::uint8_t level;  // edge length 2^-level
     bool inside;         // the whole cell lies inside of the solid
@@ -66,14 +68,16 @@ class Space {
   struct Block {
     std::vector<std::uint32_t> spheres;
     std::vector<Cell> cells;
+    std::vector<Sphere> maxima;  // local maxima met by searches of a larger radius
   };
 
   void split_blocks();
   void split(const Cell& cell, const std::vector<std::uint32_t>& near,
              std::vector<Cell>& parts) const;
-  float cell_distance(const Cell& cell, const std::vector<std::uint32_t>& near) const;
+  void measure(Cell& cell, float mesh_bound, const std::vector<std::uint32_t>& near) const;
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
+  double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
   void take_from(Block& block, const Sphere& sphere) const;
   static float block_bound(const Block& block);
 
