@@ -1,5 +1,7 @@
 // The arithmetic of normals: from a window's sums to a unit vector. IEEE operations and square
-// roots only, in a written order, so that every compiler and device gives the same bits.
+// roots only, in a written order, so that every compiler and device gives the same bits. Inlined
+// without exception, since a call inside a loop over pixels keeps compilers from making vector
+// code.
 #pragma once
 
 #include "libvpm/cloud/camera.h"
@@ -15,8 +17,8 @@ struct PlaneSlopes {
 };
 
 template <class Real>
-VPM_HD inline Vec3f normal_of_plane(const PlaneSlopes<Real>& plane, Real fx, Real fy, Real du_axis,
-                                    Real dv_axis) {
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_plane(const PlaneSlopes<Real>& plane, Real fx,
+                                                           Real fy, Real du_axis, Real dv_axis) {
   const Real x = plane.a * fx, y = plane.b * fy;
   const Real z = plane.a * du_axis + plane.b * dv_axis + plane.c;
   const Real scale = Real(-1) / std::sqrt(x * x + y * y + z * z);
@@ -42,7 +44,8 @@ inline constexpr double kEigenNoise = 1e-24;
 // it. The polynomial is concave and increasing up to there, so no step passes the root. Written
 // without a loop so that compilers can put several pixels into one vector.
 template <int Steps>
-VPM_HD inline double smallest_root(double root, double minors, double determinant) {
+[[gnu::always_inline]] VPM_HD inline double smallest_root(double root, double minors,
+                                                          double determinant) {
   if constexpr (Steps == 0) {
     return root;
   } else {
@@ -55,7 +58,7 @@ VPM_HD inline double smallest_root(double root, double minors, double determinan
 
 // Eigenvector of the smallest eigenvalue of a positive semidefinite matrix, of any length; zero
 // where there is no single one.
-VPM_HD inline Vec3 smallest_eigenvector(const Symmetric3& m) {
+[[gnu::always_inline]] VPM_HD inline Vec3 smallest_eigenvector(const Symmetric3& m) {
   const double trace = m.xx + m.yy + m.zz;
   const double unit = trace > 0 ? 1 / trace : 0;
   const double xx = m.xx * unit, xy = m.xy * unit, xz = m.xz * unit;

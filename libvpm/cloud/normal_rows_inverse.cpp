@@ -3,6 +3,7 @@
 
 #include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normal_rows.h"
+#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
@@ -68,6 +69,7 @@ class WindowSums {
 
 }  // namespace
 
+VPM_VECTOR_CLONES
 void inverse_depth_rows(const PaddedImage& inverse, const Intrinsics& k,
                         const NormalOptions& options, int begin, int end, Vec3f* normals) {
   const int radius = options.window / 2, width = inverse.width;

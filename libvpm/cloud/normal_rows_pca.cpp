@@ -3,6 +3,7 @@
 
 #include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normal_rows.h"
+#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
@@ -14,8 +15,8 @@ struct Moments {
 };
 
 // The unit normal towards the sensor, seen from the pixel whose ray is (rx, ry, 1).
-inline Vec3f normal_of_moments(const Moments& m, double per_fx, double per_fy, double rx,
-                               double ry) {
+[[gnu::always_inline]] inline Vec3f normal_of_moments(const Moments& m, double per_fx,
+                                                      double per_fy, double rx, double ry) {
   const double per_n = 1 / m.n;
   // Covariance (times n) in the centre's frame ...
   const double xx = m.xx - m.x * m.x * per_n, xy = m.xy - m.x * m.y * per_n,
@@ -133,6 +134,7 @@ Moments gated_moments(const PaddedImage& depth, const GatedWindow& window, int r
 
 }  // namespace
 
+VPM_VECTOR_CLONES
 void pca_rows(const PaddedImage& depth, const PaddedImage& inverse, const Intrinsics& k,
               const NormalOptions& options, int begin, int end, Vec3f* normals) {
   const int radius = options.window / 2, width = inverse.width;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
@@ -14,14 +15,15 @@ namespace {
 constexpr double kSteepest = 5.7;
 
 // The sum of the lanes, pairwise.
-float fold(const float (&lanes)[kLanes]) {
+[[gnu::always_inline]] inline float fold(const float (&lanes)[kLanes]) {
   float half[kLanes / 2];
   for (int i = 0; i < kLanes / 2; ++i) half[i] = lanes[i] + lanes[i + kLanes / 2];
   static_assert(kLanes == 8);
   return (half[0] + half[2]) + (half[1] + half[3]);
 }
 
-float fold_product(const float (&a)[kLanes], const float (&b)[kLanes]) {
+[[gnu::always_inline]] inline float fold_product(const float (&a)[kLanes],
+                                                 const float (&b)[kLanes]) {
   float product[kLanes];
   for (int i = 0; i < kLanes; ++i) product[i] = a[i] * b[i];
   return fold(product);
@@ -76,6 +78,7 @@ SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& op
   smooth_.resize(static_cast<std::size_t>(inverse.width));
 }
 
+VPM_VECTOR_CLONES
 void SmoothWindows::scan(int v) {
   const int columns = inverse_.width + 2 * radius_;
   const auto least = [](float a, float b) { return b < a ? b : a; };
@@ -127,7 +130,21 @@ GatedWindow::Plane GatedWindow::fit(int u, int v) {
   return first.found ? fit_admitted(centre, first, gate_, 0) : first;
 }
 
+[[gnu::always_inline]] inline GatedWindow::Plane GatedWindow::solve(const Sums& s) {
+  // Moments about the pixels' mean, times n: integers, exact in double.
+  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
+               vv = s.n * s.vv - s.v * s.v;
+  const double determinant = uu * vv - uv * uv;
+  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
+  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
+  const double a = (ue * vv - ve * uv) * unit;
+  const double b = (ve * uu - ue * uv) * unit;
+  const double c = (s.e - a * s.u - b * s.v) / s.n;
+  return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+}
+
 // Lanes are columns, handled in groups of constant size so that compilers make vectors of them.
+VPM_VECTOR_CLONES
 GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& near, float gate,
                                              float slope) {
   const float middle = *centre, unit = 1.0F / middle;
@@ -169,19 +186,6 @@ GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& n
     sums.e += fold(e1), sums.ue += fold_product(x, e1), sums.ve += fold(ye);
   }
   return solve(sums);
-}
-
-GatedWindow::Plane GatedWindow::solve(const Sums& s) {
-  // Moments about the pixels' mean, times n: integers, exact in double.
-  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
-               vv = s.n * s.vv - s.v * s.v;
-  const double determinant = uu * vv - uv * uv;
-  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
-  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
-  const double a = (ue * vv - ve * uv) * unit;
-  const double b = (ve * uu - ue * uv) * unit;
-  const double c = (s.e - a * s.u - b * s.v) / s.n;
-  return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
 }
 
 }  // namespace vpm
