@@ -20,7 +20,7 @@ std::vector<double> numbers_of(const std::string& line) {
     double value = 0;
     const auto [stop, fault] = std::from_chars(line.data() + at, line.data() + end, value);
     if (fault != std::errc() || stop != line.data() + end) {
-      refuse("'" + line.substr(at, end - at) + "' is not a number");
+      refuse("not a number: " + line.substr(at, end - at));
     }
     numbers.push_back(value);
     at = line.find_first_not_of(kBlank, end);
