@@ -17,7 +17,7 @@ struct SolidOptions {
   double scale = 1;  // the file's unit in metres
   // Vertices nearer than this share of the box's diagonal are one. Unset: kDefaultWeld for STL;
   // for formats with indices only if the mesh is open as its indices have it and closed after.
-  std::optional<double> weld;
+  std::optional<double> weld = std::nullopt;
 };
 
 // CAD exporters write one coordinate as 0 here and as -2.7e-16 there.

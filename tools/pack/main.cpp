@@ -105,11 +105,13 @@ void refuse_uncertified(const Arguments& a, const Certificate& certificate) {
 
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
+  nlohmann::json parameters = tool.parameters();
+  parameters.erase("validate");  // looks at the packing, changes nothing
   Packing packing;
   packing.spheres = std::move(spheres);
   packing.provenance = {{"tool", tool.name()},
                         {"version", VPM_VERSION},
-                        {"parameters", tool.parameters()},
+                        {"parameters", parameters},
                         {"input_hash", input_hash},
                         {"solid_hash", content_hash(checked.solid)}};
   packing.solid = std::move(checked.solid);

@@ -1,0 +1,78 @@
+#include "libvpm/mesh/self_intersection.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/triangle_intersection.h"
+#include "libvpm/synthetic/shapes.h"
+#include "tests/mesh/mesh_files.h"
+
+namespace vpm::test {
+namespace {
+
+bool meet(const std::vector<Vec3>& six) {
+  return triangles_intersect(six, {0, 1, 2}, {3, 4, 5});
+}
+
+TEST(TriangleIntersection, KnowsDisjointTriangles) {
+  EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, -1}, {0.5, 0.5, 1}, {3, 3, 1}}));
+  EXPECT_FALSE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}}));
+  EXPECT_FALSE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1.5, 1.5, -1}, {1.5, 1.5, 1}, {3, 3, 1}}));
+  // A corner that touches from above.
+  EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0}, {0, 0, 1}, {1, 0, 1}}));
+  // In one plane: overlapping, one within the other, apart.
+  EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0}, {3, 3, 0}, {3, 2, 0}}));
+  EXPECT_TRUE(meet({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));
+  EXPECT_TRUE(meet({{1, 1, 0}, {2, 1, 0}, {1, 2, 0}, {0, 0, 0}, {9, 0, 0}, {0, 9, 0}}));
+  EXPECT_FALSE(meet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));
+}
+
+TEST(TriangleIntersection, SharedCornersAndEdgesAreNoIntersection) {
+  const std::vector<Vec3> points{{0, 0, 0},     {1, 0, 0},     {0, 1, 0},
+                                 {1, 1, 0.5},   {-1, -1, 0},   {-1, 0, 1},
+                                 {0.4, 0.4, 0}, {0.2, 0.2, 1}, {0.2, 0.2, -1}};
+  EXPECT_FALSE(triangles_intersect(points, {0, 1, 2}, {2, 1, 3}));  // an edge
+  EXPECT_TRUE(triangles_intersect(points, {0, 1, 2}, {2, 1, 6}));   // folded flat
+  EXPECT_FALSE(triangles_intersect(points, {0, 1, 2}, {0, 4, 5}));  // a corner
+  EXPECT_TRUE(triangles_intersect(points, {0, 1, 2}, {0, 7, 8}));   // a corner, and cut
+  EXPECT_TRUE(triangles_intersect(points, {0, 1, 2}, {1, 2, 0}));   // the same
+}
+
+TEST(SelfIntersection, AgreesWithAllPairs) {
+  std::mt19937 random(11);
+  const auto coordinate = [&] { return static_cast<double>(random() % 1000) / 100; };
+  Solid soup;
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    const Vec3 at{coordinate(), coordinate(), coordinate()};
+    for (int corner = 0; corner < 3; ++corner)
+      soup.vertices.push_back(at + 0.6 * Vec3{coordinate(), coordinate(), coordinate()});
+    soup.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+    for (std::size_t j = i + 1; j < soup.triangles.size(); ++j)
+      pairs += triangles_intersect(soup.vertices, soup.triangles[i], soup.triangles[j]);
+  }
+  ASSERT_GT(pairs, 100U);
+  std::vector<std::uint32_t> first;
+  for (const int threads : {1, 2, 8}) {
+    set_thread_count(threads);
+    const SelfIntersections found = find_self_intersections(soup.vertices, soup.triangles);
+    EXPECT_EQ(found.pairs, pairs);
+    if (first.empty()) first = found.first_triangles;
+    EXPECT_EQ(found.first_triangles, first);
+  }
+  set_thread_count(0);
+}
+
+TEST(SelfIntersection, CleanMeshesHaveNone) {
+  for (const Solid& solid : {synthetic::make_cube(1), synthetic::make_icosphere(1, 3),
+                             synthetic::make_torus(1, 0.3, 48, 24)}) {
+    EXPECT_EQ(find_self_intersections(solid.vertices, solid.triangles).pairs, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace vpm::test

@@ -1,0 +1,95 @@
+#include "libvpm/packing/validation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/synthetic/shapes.h"
+
+namespace vpm {
+namespace {
+
+using synthetic::make_box;
+using synthetic::make_cube;
+using synthetic::make_icosphere;
+
+constexpr int kVoxels = 64;  // enough to test what is promised for any number
+
+void expect_clean(const Validation& v) {
+  EXPECT_EQ(v.protruding_voxels, 0U);
+  EXPECT_EQ(v.overlapping_voxels, 0U);
+  EXPECT_EQ(v.max_protrusion, 0);
+  EXPECT_EQ(v.max_overlap, 0);
+}
+
+TEST(Validation, CountsKnownVolumes) {
+  for (const Solid& solid : {make_cube(2), make_box(1, 0.2, 0.05), make_icosphere(1, 3)}) {
+    const double volume_mesh = mass_properties(solid).volume;
+    const Validation v = validate_packing(solid, {}, kVoxels);
+    EXPECT_NEAR(v.volume_mesh, volume_mesh, v.coverage_error * volume_mesh);
+    EXPECT_EQ(v.coverage, 0);
+    expect_clean(v);
+  }
+}
+
+TEST(Validation, AgreesOnTheCoverageOfSoundPackings) {
+  const std::vector<Sphere> spheres{{{0, 0, 0}, 1}, {{0.8, 0.8, 0.8}, 0.2}};
+  const Validation v = validate_packing(make_cube(2), spheres, kVoxels);
+  EXPECT_NEAR(v.coverage, (volume(spheres[0]) + volume(spheres[1])) / 8, v.coverage_error);
+  EXPECT_LT(v.coverage_error, 0.01);
+  expect_clean(v);
+}
+
+TEST(Validation, SeesProtrusions) {
+  const double out = 0.2;
+  const Validation v = validate_packing(make_cube(2), {{{0.5, 0, 0}, 0.5 + out}}, kVoxels);
+  ASSERT_GT(out, v.detection_limit);
+  EXPECT_GT(v.protruding_voxels, 0U);
+  // Measured up to the band of 3 voxels.
+  EXPECT_GT(v.max_protrusion, std::min(out, 3 * v.voxel) - v.detection_limit);
+  EXPECT_LE(v.max_protrusion, out);
+}
+
+TEST(Validation, SeesOverlaps) {
+  const std::vector<Sphere> spheres{{{-0.4, 0, 0}, 0.5}, {{0.4, 0, 0}, 0.5}};
+  const Validation v = validate_packing(make_cube(2), spheres, kVoxels);
+  ASSERT_GT(0.2, v.detection_limit);
+  EXPECT_GT(v.overlapping_voxels, 0U);
+  EXPECT_NEAR(v.max_overlap, 0.2, 1e-12);
+  // The union is counted, not the sum.
+  EXPECT_LT(v.coverage + v.coverage_error, 2 * volume(spheres[0]) / 8);
+}
+
+TEST(Validation, ACavityIsOutside) {
+  Solid hollow = make_cube(2);
+  for (const Triangle& t : make_cube(1).triangles)
+    hollow.triangles.push_back({t[0] + 8, t[2] + 8, t[1] + 8});
+  for (const Vec3& p : make_cube(1).vertices) hollow.vertices.push_back(p);
+  const Validation sound = validate_packing(hollow, {{{0.75, 0, 0}, 0.25}}, kVoxels);
+  EXPECT_NEAR(sound.volume_mesh, 7, 7 * sound.coverage_error);
+  expect_clean(sound);
+  EXPECT_GT(validate_packing(hollow, {{{0, 0, 0}, 0.4}}, kVoxels).protruding_voxels, 0U);
+}
+
+TEST(Validation, DoesNotDependOnThreads) {
+  const std::vector<Sphere> spheres{{{-0.4, 0, 0}, 0.5}, {{0.4, 0.1, 0}, 0.7}};
+  set_thread_count(1);
+  const Validation one = validate_packing(make_cube(2), spheres, kVoxels);
+  set_thread_count(8);
+  const Validation eight = validate_packing(make_cube(2), spheres, kVoxels);
+  set_thread_count(0);
+  EXPECT_EQ(one.coverage, eight.coverage);
+  EXPECT_EQ(one.max_protrusion, eight.max_protrusion);
+  EXPECT_EQ(one.protruding_voxels, eight.protruding_voxels);
+  EXPECT_EQ(one.overlapping_voxels, eight.overlapping_voxels);
+}
+
+TEST(Validation, RefusesASolidWithoutExtent) {
+  EXPECT_THROW(validate_packing({}, {}), Error);
+  EXPECT_THROW(validate_packing({{{1, 1, 1}}, {}}, {}), Error);
+}
+
+}  // namespace
+}  // namespace vpm
