@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kEpsilonPart = 0.1;  // of the smallest radius, as in the paper
 // Pieces of the gap: enough for a good share of a single sphere, and for the whole at few spheres.
-constexpr double kPiecesPerSphere = 400, kFewestPieces = 1e6, kMostPieces = 1e8;
+constexpr double kPiecesPerSphere = 1000, kFewestPieces = 2e6, kMostPieces = 3e7;
 
 // Coordinates of magnitude 1 about the solid's middle; the unit is a power of two, so that scaling
 // a packing by one changes no digit.

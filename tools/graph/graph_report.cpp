@@ -1,5 +1,7 @@
 #include "tools/graph/graph_report.h"
 
+#include <cmath>
+
 #include "libvpm/graph/hierarchy.h"
 
 namespace vpm::tools {
@@ -21,7 +23,7 @@ nlohmann::ordered_json level_report(const Level& level, const ShareQuality& qual
       {"share_sum", share_sum},
       {"share_sum_relative_error", quality.share_sum_error},
       {"gap_fraction", quality.gap_fraction},
-      {"gap_sampling_error", quality.volume_error},
+      {"gap_sampling_error", std::abs(quality.volume_error)},
       {"centroid_sampling_error", quality.centroid_error},
       {"blocks", level.blocks.size()},
       {"samples", level.samples.size()}};
