@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Checks JSON files against a schema of formats/schemas.
 
     validate_json.py SCHEMA FILE...
