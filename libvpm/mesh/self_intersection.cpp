@@ -10,7 +10,7 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kMostPartners = 1000;
+constexpr std::size_t kMostPartners = 100;
 
 using Pair = std::pair<std::uint32_t, std::uint32_t>;
 

@@ -18,7 +18,7 @@ struct SelfIntersections {
 };
 
 // Decided by exact predicates. Triangles without area are left out. A group of a few triangles
-// stops at 1000 partners each, so that a mesh of coinciding triangles costs no quadratic memory.
+// stops at 100 partners each, so that a mesh of coinciding triangles costs no quadratic memory.
 SelfIntersections find_self_intersections(const std::vector<Vec3>& vertices,
                                           const std::vector<Triangle>& triangles);
 
