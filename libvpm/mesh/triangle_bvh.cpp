@@ -107,15 +107,16 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
   Box box;
   corners_.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto [a, b, c] = triangles[i];
-    corners_.push_back({vertices.at(a), vertices.at(b), vertices.at(c),  //
-                        static_cast<std::uint32_t>(i)});
-    for (const Vec3 p : {vertices[a], vertices[b], vertices[c]}) {
-      if (!is_finite(p)) {
-        refuse("triangle " + std::to_string(i) + " has a vertex that is not finite; repair it");
+    for (const std::uint32_t v : triangles[i]) {
+      if (v >= vertices.size() || !is_finite(vertices[v])) {
+        refuse("triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
+               (v < vertices.size() ? ", which is not finite" : ", which does not exist") +
+               "; repair the mesh");
       }
-      box.add(p);
+      box.add(vertices[v]);
     }
+    const auto [a, b, c] = triangles[i];
+    corners_.push_back({vertices[a], vertices[b], vertices[c], static_cast<std::uint32_t>(i)});
   }
   origin_ = box.low + 0.5 * (box.high - box.low);
   const Vec3 side = box.high - box.low;

@@ -18,6 +18,10 @@ constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
 constexpr std::size_t kFirstSpheres = 200;
 // A sphere that another of its round has shrunk by more than rounding is looked for again.
 constexpr double kUnchanged = 1 - 1e-9;
+// A band is finished, so that what is asked for is a prefix of what more would have been, unless it
+// brings more than this beyond twice the number: a plate holds millions of equal spheres.
+constexpr std::size_t kFinishedBand = 1000;
+constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
 // Radii shrink by this share, so that rounding makes no overlap.
 constexpr double kMargin = 1e-12;
 constexpr std::size_t kBlocksPerTask = 4;
@@ -40,24 +44,44 @@ void check(const PackOptions& options) {
     wrong("the largest radius must not be below the smallest");
 }
 
-// Places all spheres of at least `radius` that fit, largest first as far as they compete.
-void fill_band(Space& space, double radius, double cap) {
-  std::vector<std::uint32_t> blocks = space.promising(radius);
-  while (!blocks.empty()) {
-    std::vector<std::vector<Sphere>> found(blocks.size());
-    parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) space.search(blocks[i], radius, cap, found[i]);
-    });
-    std::vector<Sphere> candidates;
-    for (const auto& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
-    std::sort(candidates.begin(), candidates.end(), larger);
-    for (const Sphere& s : candidates) {
-      const double room = space.clearance(s.center).value;
-      if (room >= kUnchanged * s.radius) space.place({s.center, std::min(room, s.radius)}, blocks);
+// The `most` blocks with the highest bounds, ascending; the others are removed.
+void keep_most_promising(const Space& space, std::vector<std::uint32_t>& blocks, std::size_t most) {
+  if (blocks.size() <= most) return;
+  const auto cut = blocks.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(blocks.begin(), cut, blocks.end(), [&](std::uint32_t a, std::uint32_t b) {
+    if (space.bound(a) != space.bound(b)) return space.bound(a) > space.bound(b);
+    return a < b;
+  });
+  blocks.erase(cut, blocks.end());
+  std::sort(blocks.begin(), blocks.end());
+}
+
+// Places spheres of at least `radius`, largest first as far as they compete, until none fits or
+// `most` are there. Each round searches as many blocks as there may be spheres wanted: a plate has
+// millions of blocks that are all as good.
+void fill_band(Space& space, double radius, double cap, std::size_t most) {
+  while (space.spheres().size() < most) {
+    std::vector<std::uint32_t> blocks = space.promising(radius);
+    if (blocks.empty()) return;
+    keep_most_promising(space, blocks, most);
+    while (!blocks.empty()) {
+      std::vector<std::vector<Sphere>> found(blocks.size());
+      parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) space.search(blocks[i], radius, cap, found[i]);
+      });
+      std::vector<Sphere> candidates;
+      for (const auto& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
+      std::sort(candidates.begin(), candidates.end(), larger);
+      for (const Sphere& s : candidates) {
+        if (space.spheres().size() == most) return;
+        const double room = space.clearance(s.center).value;
+        if (room >= kUnchanged * s.radius)
+          space.place({s.center, std::min(room, s.radius)}, blocks);
+      }
+      std::sort(blocks.begin(), blocks.end());
+      blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+      std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
     }
-    std::sort(blocks.begin(), blocks.end());
-    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-    std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
   }
 }
 
@@ -70,6 +94,7 @@ class Packer {
         volume_(mass_properties(solid).volume),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
         cap_(options.max_radius / frame_.scale),
+        most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
         space_(distance_, smallest_) {
     if (!(volume_ > 0)) refuse("the solid has no volume; check that its triangles face outward");
   }
@@ -81,7 +106,7 @@ class Packer {
       radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
       space_.focus(radius);
       const std::size_t before = space_.spheres().size();
-      fill_band(space_, radius, cap_);
+      fill_band(space_, radius, cap_, most_);
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
         filled_ += volume(in_metres(space_.spheres()[i]));
       if (options_.progress) options_.progress(fraction());
@@ -92,8 +117,7 @@ class Packer {
  private:
   // The rounding of the way back to metres comes off the radius.
   Sphere in_metres(const Sphere& s) const {
-    return {frame_.to_solid(s.center),
-            (1 - kMargin) * s.radius * frame_.scale - 2 * frame_.rounding};
+    return {frame_.to_solid(s.center), (1 - kMargin) * s.radius * frame_.scale - frame_.rounding};
   }
   double fraction() const {
     return std::min(1.0, std::max(double(space_.spheres().size()) / double(options_.spheres),
@@ -134,6 +158,7 @@ class Packer {
   UnitFrame frame_;
   double volume_;          // m^3
   double smallest_, cap_;  // in the unit frame
+  std::size_t most_;       // spheres at which even a band is broken off
   Space space_;
   double filled_ = 0;  // m^3
 };

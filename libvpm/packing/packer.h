@@ -19,7 +19,8 @@ struct PackOptions {
   double coverage = 1;         // stop where the spheres fill this share of the solid's volume
   double min_radius = 0;       // m; no smaller sphere
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
-  std::function<void(double fraction)> progress;  // called between rounds, on the calling thread
+  std::function<void(double fraction)> progress =
+      nullptr;  // called between rounds, on the calling thread
 };
 
 enum class StopReason {
@@ -44,7 +45,8 @@ struct PackResult {
 // triangle, also those of a self-intersecting mesh that lie inside of its union.
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
-// bit. A result with fewer spheres is a prefix of one with more, if the other options are the same.
+// bit. A result with fewer spheres is a prefix of one with more if the other options are the same
+// (but for solids that hold more than twice as many spheres of one and the same size).
 // Throws Error: usage for limits that are not positive numbers, refused for a solid without volume.
 PackResult pack(const Solid& solid, const PackOptions& options);
 

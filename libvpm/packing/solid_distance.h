@@ -14,7 +14,7 @@ namespace vpm {
 struct UnitFrame {
   Vec3 center;          // of the solid's box
   double scale = 1;     // a power of two: metres per unit
-  double rounding = 0;  // metres: bound of what coordinates lose on the way to the frame and back
+  double rounding = 0;  // metres: bound of what the frame and distances in it lose
   Vec3 to_unit(Vec3 p) const { return (p - center) / scale + Vec3{0.5, 0.5, 0.5}; }
   Vec3 to_solid(Vec3 p) const { return center + scale * (p - Vec3{0.5, 0.5, 0.5}); }
 };

@@ -7,6 +7,7 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/packing/ascent.h"
+#include "libvpm/packing/max_min_step.h"
 
 namespace vpm {
 namespace {
@@ -36,6 +37,10 @@ float round_down(double v) {
   return std::nextafter(static_cast<float>(v), 0.0f);
 }
 
+float round_up(double v) {
+  return std::nextafter(static_cast<float>(v), HUGE_VALF);
+}
+
 BlockIndex::Coordinates cube_of(Vec3 x, int level) {
   const double scale = std::ldexp(1.0, level);
   const auto index = [&](double v) {
@@ -57,7 +62,7 @@ Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
 
 Space::Space(const SolidDistance& solid, double smallest)
     : solid_(solid), smallest_(static_cast<float>(smallest)) {
-  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, 0, false};
+  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, 0, Side::unknown};
   measure(root, 0, {});
   blocks_.push_back({{}, {root}, {}});
   bounds_ = {root.bound};
@@ -82,23 +87,64 @@ std::vector<std::uint32_t> Space::promising(double radius) const {
 // Sets d, mesh and bound. `mesh_bound`: the mesh is known to be at least that far.
 void Space::measure(Cell& cell, float mesh_bound, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
-  const float half = half_diagonal(cell.level);
   double d = reach_;
-  for (const std::uint32_t i : near)
-    d = std::min(d, norm(x - spheres_[i].center) - spheres_[i].radius);
+  Sphere nearest;
+  for (const std::uint32_t i : near) {
+    const Sphere& s = spheres_[i];
+    if (const double beside = norm(x - s.center) - s.radius; beside < d) d = beside, nearest = s;
+  }
+  double bound = d < reach_ ? farthest(cell, nearest) : d + half_diagonal(cell.level);
   cell.mesh = mesh_bound;
-  if (d > mesh_bound && d + half > smallest_) {
-    d = std::min(d, solid_.closest(x, d).distance);
+  if (d > mesh_bound && bound > smallest_) {
+    const SurfacePoint p = solid_.closest(x, d);
+    if (p.triangle != SurfacePoint::kNone) {
+      d = p.distance;
+      bound = farthest(cell, {p.point, 0});
+    }
     cell.mesh = round_down(d);
   }
   cell.d = static_cast<float>(d);
-  cell.bound = cell.d + half;
+  cell.bound = round_up(bound);
+}
+
+// Bounds the clearance over a cell by all that is near at once: distances are convex and curved by
+// at most 1 / distance, so that planes lie above them within the cell.
+double Space::joint_bound(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+  const Vec3 x = cell.center();
+  const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
+  std::vector<LinearBound> bounds;
+  const auto add = [&](Vec3 from, double radius) {
+    const double distance = norm(from);
+    if (!(distance > 0) || distance - radius > horizon) return;
+    bounds.push_back({from / distance, distance - radius + half * half / (2 * distance)});
+  };
+  for (const std::uint32_t i : near) add(x - spheres_[i].center, spheres_[i].radius);
+  if (cell.mesh < horizon) {
+    if (const SurfacePoint p = solid_.closest(x, horizon); p.triangle != SurfacePoint::kNone)
+      add(x - p.point, 0);
+  }
+  if (bounds.empty()) return HUGE_VAL;
+  return max_min_step(bounds, edge(cell.level + 1)).value;
+}
+
+// Largest distance that a point of the cell has from a sphere: some corner has it.
+double Space::farthest(const Cell& cell, const Sphere& from) {
+  const double h = edge(cell.level + 1);
+  const Vec3 d = cell.center() - from.center;
+  return norm({std::abs(d.x) + h, std::abs(d.y) + h, std::abs(d.z) + h}) - from.radius;
+}
+
+// Sets the side of the centre, which bounds the cell if it is the wrong one.
+void Space::settle(Cell& cell, Side side) {
+  cell.side = side;
+  if (side == Side::outside) cell.bound = std::min(cell.bound, half_diagonal(cell.level) - cell.d);
 }
 
 void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
                   std::vector<Cell>& parts) const {
   const auto level = static_cast<std::uint8_t>(cell.level + 1);
   const auto offset = static_cast<float>(edge(level + 1));
+  const float half = half_diagonal(level);  // distance of the parts' centres from the cell's
   for (int octant = 0; octant < 8; ++octant) {
     Cell part{cell.x + (octant & 1 ? offset : -offset),
               cell.y + (octant & 2 ? offset : -offset),
@@ -107,8 +153,10 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
               0,
               0,
               level,
-              cell.inside};
-    measure(part, cell.mesh - half_diagonal(level), near);
+              Side::unknown};
+    measure(part, cell.mesh - half, near);
+    // Both centres lie in a ball that the mesh does not meet.
+    if (cell.mesh > half || part.d > half) settle(part, cell.side);
     if (part.bound > smallest_) parts.push_back(part);
   }
 }
@@ -189,19 +237,15 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
       rest.push_back(cell);
       continue;
     }
-    // A side is asked for where it decides: of a cell that the mesh does not meet, and of one that
-    // is out of the question if its centre lies outside.
-    if (!cell.inside && cell.d > 0 && (cell.d > half || half - cell.d < radius)) {
-      if (solid_.inside(cell.center())) {
-        cell.inside = cell.d > half;
-      } else {
-        cell.d = -cell.d;
-        cell.bound = cell.d + half;
-        if (cell.bound > smallest_) pending.push_back(cell);
-        continue;
-      }
+    if (cell.side == Side::unknown)
+      settle(cell, solid_.inside(cell.center()) ? Side::inside : Side::outside);
+    if (cell.side == Side::inside && cell.d > 0 && cell.d < radius)
+      cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres)));
+    if (cell.bound < radius) {
+      if (cell.bound > smallest_) rest.push_back(cell);
+      continue;
     }
-    if (cell.inside && (cell.d >= cap || half <= kLeaf * radius)) {
+    if (cell.side == Side::inside && (cell.d >= cap || half <= kLeaf * radius)) {
       leaves.push_back(cell);
     } else {
       split(cell, block.spheres, pending);
@@ -299,7 +343,7 @@ void Space::take_from(Block& block, const Sphere& sphere) const {
   for (Cell& cell : block.cells) {
     const auto d = static_cast<float>(norm(cell.center() - sphere.center) - sphere.radius);
     cell.d = std::min(cell.d, d);
-    cell.bound = std::min(cell.bound, cell.d + half_diagonal(cell.level));
+    cell.bound = std::min(cell.bound, round_up(farthest(cell, sphere)));
   }
   std::erase_if(block.cells, [&](const Cell& cell) { return cell.bound <= smallest_; });
   std::erase_if(block.maxima, [&](const Sphere& m) {

@@ -33,6 +33,8 @@ class Space {
   // grow from call to call.
   void focus(double radius);
 
+  float bound(std::uint32_t block) const { return bounds_[block]; }
+
   // Blocks that may still hold a sphere of this radius, ascending.
   std::vector<std::uint32_t> promising(double radius) const;
   bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
@@ -56,13 +58,14 @@ class Space {
   const std::vector<Sphere>& spheres() const { return spheres_; }
 
  private:
+  enum class Side : std::uint8_t { unknown, inside, outside };
   struct Cell {
     float x, y, z;       // centre: exact, a multiple of 2^-24
-    float d;             // clearance of the centre if it lies inside; negative where known outside
+    float d;             // clearance of the centre were it inside; a bound of it beyond the reach
     float mesh;          // the mesh is at least this far from the centre
     float bound;         // no larger sphere is centred in the cell
     std::uint8_t level;  // edge length 2^-level
-    bool inside;         // the whole cell lies inside of the solid
+    Side side;           // of the centre
     Vec3 center() const { return {x, y, z}; }
   };
   struct Block {
@@ -78,6 +81,9 @@ class Space {
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
+  double joint_bound(const Cell& cell, const std::vector<std::uint32_t>& near) const;
+  static void settle(Cell& cell, Side side);
+  static double farthest(const Cell& cell, const Sphere& from);
   void take_from(Block& block, const Sphere& sphere) const;
   static float block_bound(const Block& block);
 

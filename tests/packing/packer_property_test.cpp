@@ -1,0 +1,71 @@
+// What every packing promises, on random solids, by brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "brute_force.h"
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/packer.h"
+#include "test_solids.h"
+
+namespace vpm::test {
+namespace {
+
+class RandomSolids : public ::testing::TestWithParam<int> {};
+
+TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE(seed);
+    const Solid solid = random_solid(GetParam(), seed);
+    const PackResult result = pack(solid, {.spheres = 60});
+    ASSERT_EQ(result.spheres.size(), 60u);
+    EXPECT_EQ(result.stop, StopReason::spheres);
+    EXPECT_LE(worst_protrusion(solid, result.spheres), 0);
+    EXPECT_LE(worst_overlap(result.spheres), 0);
+    EXPECT_TRUE(
+        std::is_sorted(result.spheres.begin(), result.spheres.end(),
+                       [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; }));
+    const Certificate certificate = certify(solid, result.spheres);
+    EXPECT_TRUE(certificate.holds);
+    EXPECT_NEAR(certificate.max_protrusion, worst_protrusion(solid, result.spheres), 1e-14);
+    EXPECT_NEAR(certificate.max_overlap, worst_overlap(result.spheres), 1e-14);
+  }
+}
+
+TEST_P(RandomSolids, CentresAreLocalMaxima) {
+  const Solid solid = random_solid(GetParam(), 7);
+  const std::vector<Sphere> spheres = pack(solid, {.spheres = 30}).spheres;
+  Random random(11);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    for (int k = 0; k < 40; ++k) {
+      const double step = spheres[i].radius * std::pow(10, random.uniform(-5, -2));
+      const Vec3 beside =
+          spheres[i].center + step * normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1}));
+      EXPECT_LE(clearance(solid, spheres, beside, i), spheres[i].radius * (1 + 1e-8));
+    }
+  }
+}
+
+TEST_P(RandomSolids, NoRoomIsLeftForALargerSphere) {
+  const Solid solid = random_solid(GetParam(), 3);
+  const std::vector<Sphere> spheres = pack(solid, {.spheres = 100}).spheres;
+  Vec3 low = solid.vertices[0], high = low;
+  for (const Vec3 p : solid.vertices) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  Random random(5);
+  for (int k = 0; k < 4000; ++k) {
+    const Vec3 x = random.in_box(low, high);
+    EXPECT_LE(clearance(solid, spheres, x, spheres.size()), 1.05 * spheres.back().radius);
+  }
+}
+
+std::string family_name(const ::testing::TestParamInfo<int>& family) {
+  constexpr std::array kNames{"Union", "Plate", "Needle", "Cavity", "Torus", "TwoComponents"};
+  return kNames.at(static_cast<std::size_t>(family.param));
+}
+INSTANTIATE_TEST_SUITE_P(Families, RandomSolids, ::testing::Range(0, kFamilies), family_name);
+
+}  // namespace
+}  // namespace vpm::test

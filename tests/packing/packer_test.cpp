@@ -1,0 +1,178 @@
+#include "libvpm/packing/packer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "brute_force.h"
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "test_solids.h"
+
+namespace vpm::test {
+namespace {
+
+constexpr double kRounding = 1e-11;  // relative; the packer's own margin is 1e-12
+
+bool same_bytes(const std::vector<Sphere>& a, const std::vector<Sphere>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Sphere)) == 0;
+}
+
+TEST(Packer, CubeIsFilledAsGeometrySays) {
+  const PackResult result = pack(synthetic::make_cube(2), {.spheres = 9});
+  EXPECT_NEAR(result.spheres[0].radius, 1, kRounding);
+  EXPECT_LT(norm(result.spheres[0].center), kRounding);
+  // The eight corners: between three faces and the first sphere.
+  const double corner = (std::sqrt(3.0) - 1) / (std::sqrt(3.0) + 1);
+  for (std::size_t i = 1; i < 9; ++i) {
+    EXPECT_NEAR(result.spheres[i].radius, corner, kRounding);
+    EXPECT_NEAR(norm(result.spheres[i].center), std::sqrt(3.0) * (1 - corner), 1e-9);
+  }
+  EXPECT_NEAR(result.coverage, kPi / 6 * (1 + 8 * corner * corner * corner), 1e-9);
+}
+
+TEST(Packer, FirstSphereIsTheInsphere) {
+  const auto first = [](const Solid& solid) { return pack(solid, {.spheres = 1}).spheres.at(0); };
+  EXPECT_NEAR(first(synthetic::make_tetrahedron(1)).radius, std::sqrt(6.0) / 12, kRounding);
+  EXPECT_NEAR(first(synthetic::make_octahedron(1)).radius, std::sqrt(6.0) / 6, kRounding);
+  const Solid ball = synthetic::make_icosphere(1, 3);  // symmetric: the insphere is in the middle
+  const Sphere inner = first(ball);
+  EXPECT_NEAR(inner.radius, distance_to_mesh(ball, {0, 0, 0}), 1e-9);
+  EXPECT_LT(norm(inner.center), 1e-4);
+}
+
+TEST(Packer, CoverageOfAGreedyPacking) {
+  // Measured with an independent packer that starts from 256^3 voxels.
+  const struct {
+    Solid solid;
+    double at_10, at_100, at_1000;
+  } expected[] = {{synthetic::make_cube(1), .6076, .7427, .8377},
+                  {synthetic::make_tetrahedron(1), .4959, .6807, .8000},
+                  {synthetic::make_octahedron(1), .6808, .7799, .8590}};
+  for (const auto& e : expected) {
+    const PackResult result = pack(e.solid, {.spheres = 1000});
+    double filled = 0;
+    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      filled += volume(result.spheres[i]) / mass_properties(e.solid).volume;
+      const double before = i + 1 == 10     ? e.at_10
+                            : i + 1 == 100  ? e.at_100
+                            : i + 1 == 1000 ? e.at_1000
+                                            : 0;
+      EXPECT_GT(filled, before - .001);
+    }
+    EXPECT_NEAR(result.coverage, filled, 1e-12);
+  }
+}
+
+TEST(Packer, SameBytesForEveryThreadCount) {
+  const Solid solid = random_solid(0, 1);
+  set_thread_count(1);
+  const PackResult one = pack(solid, {.spheres = 300});
+  for (const int threads : {2, 8}) {
+    set_thread_count(threads);
+    EXPECT_TRUE(same_bytes(one.spheres, pack(solid, {.spheres = 300}).spheres)) << threads;
+  }
+  set_thread_count(0);
+}
+
+TEST(Packer, PowersOfTwoChangeTheExponentOnly) {
+  const Solid solid = random_solid(3, 2);
+  const std::vector<Sphere> spheres = pack(solid, {.spheres = 100}).spheres;
+  for (const int k : {-40, -3, 1, 40}) {
+    Solid scaled = solid;
+    for (Vec3& p : scaled.vertices) p = std::ldexp(1.0, k) * p;
+    std::vector<Sphere> expected = spheres;
+    for (Sphere& s : expected) {
+      s.center = std::ldexp(1.0, k) * s.center;
+      s.radius = std::ldexp(s.radius, k);
+    }
+    EXPECT_TRUE(same_bytes(pack(scaled, {.spheres = 100}).spheres, expected)) << k;
+  }
+}
+
+TEST(Packer, FarFromTheOriginNothingProtrudes) {
+  const Solid solid = moved(random_solid(4, 1), {}, {1e6, -2e6, 5e5});
+  const std::vector<Sphere> spheres = pack(solid, {.spheres = 50}).spheres;
+  ASSERT_EQ(spheres.size(), 50u);
+  EXPECT_LE(worst_protrusion(solid, spheres), 0);
+  EXPECT_LE(worst_overlap(spheres), 0);
+}
+
+TEST(Packer, FewerSpheresAreAPrefixOfMore) {
+  const Solid solid = random_solid(5, 1);
+  std::vector<Sphere> many = pack(solid, {.spheres = 400}).spheres;
+  for (const std::size_t n : {1u, 10u, 150u}) {
+    const std::vector<Sphere> few = pack(solid, {.spheres = n}).spheres;
+    EXPECT_TRUE(same_bytes(few, {many.begin(), many.begin() + static_cast<std::ptrdiff_t>(n)}));
+  }
+}
+
+TEST(Packer, StopsAtTheCoverage) {
+  const Solid solid = synthetic::make_cube(1);
+  const PackResult result = pack(solid, {.spheres = 100000, .coverage = 0.75});
+  EXPECT_EQ(result.stop, StopReason::coverage);
+  EXPECT_GE(result.coverage, 0.75);
+  EXPECT_LT(result.coverage - volume(result.spheres.back()), 0.75);
+}
+
+TEST(Packer, StopsAtTheSmallestRadius) {
+  const Solid solid = synthetic::make_tetrahedron(1);
+  const PackResult result = pack(solid, {.spheres = 100000, .min_radius = 0.02});
+  EXPECT_EQ(result.stop, StopReason::min_radius);
+  EXPECT_GE(result.spheres.back().radius, 0.02 * (1 - kRounding));
+  Random random(1);
+  for (int k = 0; k < 2000; ++k) {
+    const Vec3 x = random.in_box({-.6, -.6, -.6}, {.6, .6, .8});
+    EXPECT_LE(clearance(solid, result.spheres, x, result.spheres.size()), 0.021);
+  }
+}
+
+TEST(Packer, RespectsTheLargestRadius) {
+  const Solid solid = synthetic::make_box(1, 0.7, 0.5);
+  const PackResult result = pack(solid, {.spheres = 500, .max_radius = 0.05});
+  ASSERT_EQ(result.spheres.size(), 500u);
+  EXPECT_NEAR(result.spheres.front().radius, 0.05, kRounding);
+  EXPECT_LE(result.spheres.front().radius, 0.05);
+  EXPECT_LE(worst_protrusion(solid, result.spheres), 0);
+  EXPECT_LE(worst_overlap(result.spheres), 0);
+}
+
+TEST(Packer, ThinPlateOfManyEqualSpheresStopsInTime) {
+  const Solid solid = synthetic::make_box(1, 1, 0.004);
+  const PackResult result = pack(solid, {.spheres = 50});
+  ASSERT_EQ(result.spheres.size(), 50u);
+  EXPECT_NEAR(result.spheres.back().radius, 0.002, 1e-12);
+}
+
+TEST(Packer, RefusesWhatCannotBePacked) {
+  const auto kind = [](const Solid& solid, const PackOptions& options) {
+    try {
+      pack(solid, options);
+    } catch (const Error& e) {
+      return static_cast<int>(e.kind());
+    }
+    return 0;
+  };
+  const Solid cube = synthetic::make_cube(1);
+  EXPECT_EQ(kind(cube, {.coverage = 0}), 2);
+  EXPECT_EQ(kind(cube, {.coverage = 1.1}), 2);
+  EXPECT_EQ(kind(cube, {.min_radius = -1}), 2);
+  EXPECT_EQ(kind(cube, {.min_radius = std::nan("")}), 2);
+  EXPECT_EQ(kind(cube, {.max_radius = 0}), 2);
+  EXPECT_EQ(kind(cube, {.min_radius = 2, .max_radius = 1}), 2);
+  EXPECT_EQ(kind({}, {}), 1);
+  EXPECT_EQ(kind(reversed(cube), {}), 1);
+  Solid broken = cube;
+  broken.vertices[0].x = std::nan("");
+  EXPECT_EQ(kind(broken, {}), 1);
+  Solid point = cube;
+  for (Vec3& p : point.vertices) p = {1, 2, 3};
+  EXPECT_EQ(kind(point, {}), 1);
+  Solid dangling = cube;
+  dangling.triangles[0][0] = 99;
+  EXPECT_EQ(kind(dangling, {}), 1);
+}
+
+}  // namespace
+}  // namespace vpm::test

@@ -1,0 +1,89 @@
+// Solids that packers find hard, made from a seed.
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+#include "libvpm/core/pose.h"
+#include "libvpm/model/solid.h"
+#include "libvpm/synthetic/shapes.h"
+
+namespace vpm::test {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) {  // the same on every standard library
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  Vec3 in_box(Vec3 low, Vec3 high) {
+    const double x = uniform(low.x, high.x), y = uniform(low.y, high.y);
+    return {x, y, uniform(low.z, high.z)};
+  }
+  Rotation rotation() {
+    const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(-1, 1);
+    return rotation_from_unit({x, y, z, uniform(0.1, 1)});
+  }
+
+ private:
+  static Rotation rotation_from_unit(Quaternion q) {
+    const double n = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    return rotation_from_quaternion({q.x / n, q.y / n, q.z / n, q.w / n});
+  }
+  std::mt19937_64 engine_;
+};
+
+inline Solid moved(Solid solid, const Rotation& turn, Vec3 shift) {
+  for (Vec3& p : solid.vertices) p = turn * p + shift;
+  return solid;
+}
+
+inline Solid reversed(Solid solid) {
+  for (Triangle& t : solid.triangles) std::swap(t[0], t[1]);
+  return solid;
+}
+
+// Both meshes in one: a union, a cavity or two components, as they lie.
+inline Solid joined(Solid a, const Solid& b) {
+  const auto offset = static_cast<std::uint32_t>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const auto& [i, j, k] : b.triangles)
+    a.triangles.push_back({i + offset, j + offset, k + offset});
+  return a;
+}
+
+inline constexpr int kFamilies = 6;
+
+// family 0: self-intersecting union, 1: plate, 2: needle, 3: cavity, 4: torus, 5: two components.
+inline Solid random_solid(int family, std::uint64_t seed) {
+  Random random(seed * kFamilies + static_cast<std::uint64_t>(family));
+  const auto length = [&] { return random.uniform(0.3, 1); };
+  const auto box = [&] { return synthetic::make_box(length(), length(), length()); };
+  const Rotation turn = random.rotation();
+  const Vec3 shift = random.in_box({-3, -3, -3}, {3, 3, 3});
+  switch (family) {
+    case 0: {
+      const Solid second = moved(synthetic::make_octahedron(length()), random.rotation(),
+                                 random.in_box({-.3, -.3, -.3}, {.3, .3, .3}));
+      return moved(joined(joined(box(), moved(box(), random.rotation(), {.2, .1, 0})), second),
+                   turn, shift);
+    }
+    case 1:
+      return moved(synthetic::make_box(length(), length(), random.uniform(0.02, 0.05)), turn,
+                   shift);
+    case 2:
+      return moved(synthetic::make_box(length(), 1e-3 * length(), 1e-3 * length()), turn, shift);
+    case 3: {
+      const double edge = length();
+      const Solid hole =
+          moved(reversed(synthetic::make_icosphere(0.4 * edge, 1)), random.rotation(), {});
+      return moved(joined(synthetic::make_box(edge, edge, edge), hole), turn, shift);
+    }
+    case 4:
+      return moved(synthetic::make_torus(0.5, random.uniform(0.05, 0.2), 24, 9), turn, shift);
+    default:
+      return moved(joined(box(), moved(box(), random.rotation(), {3, 1, 0})), turn, shift);
+  }
+}
+
+}  // namespace vpm::test
