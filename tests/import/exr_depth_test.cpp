@@ -1,0 +1,102 @@
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <gtest/gtest.h>
+#include <half.h>
+
+#include <cmath>
+#include <limits>
+
+#include "libvpm/import/depth_files.h"
+#include "tests/import/test_files.h"
+
+namespace vpm {
+namespace {
+
+class MemorySink : public Imf::OStream {
+ public:
+  MemorySink() : Imf::OStream("memory") {}
+  void write(const char from[], int count) override {
+    if (bytes.size() < at_ + static_cast<std::size_t>(count))
+      bytes.resize(at_ + static_cast<std::size_t>(count));
+    bytes.replace(at_, static_cast<std::size_t>(count), from, static_cast<std::size_t>(count));
+    at_ += static_cast<std::size_t>(count);
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t to) override { at_ = to; }
+  std::string bytes;
+
+ private:
+  std::size_t at_ = 0;
+};
+
+struct ExrChannel {
+  std::string name;
+  std::vector<float> values;
+};
+
+std::string make_exr(int width, int height, bool as_half, const std::vector<ExrChannel>& channels) {
+  Imf::Header header(width, height);
+  Imf::FrameBuffer buffer;
+  std::vector<std::vector<half>> halves(channels.size());
+  const auto columns = static_cast<std::size_t>(width);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Imf::PixelType type = as_half ? Imf::HALF : Imf::FLOAT;
+    header.channels().insert(channels[c].name, Imf::Channel(type));
+    for (const float value : channels[c].values) halves[c].emplace_back(value);
+    auto* values = const_cast<float*>(channels[c].values.data());
+    const std::size_t size = as_half ? sizeof(half) : sizeof(float);
+    char* base =
+        as_half ? reinterpret_cast<char*>(halves[c].data()) : reinterpret_cast<char*>(values);
+    buffer.insert(channels[c].name, Imf::Slice(type, base, size, size * columns));
+  }
+  MemorySink sink;
+  {
+    Imf::OutputFile file(sink, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(height);
+  }
+  return sink.bytes;
+}
+
+const float kNaN = std::numeric_limits<float>::quiet_NaN();
+const float kInfinity = std::numeric_limits<float>::infinity();
+const std::vector<float> kValues{1.5F, 0, kNaN, -2, kInfinity, 0.25F};
+const std::vector<float> kDepth{1.5F, 0, 0, 0, 0, 0.25F};
+
+DepthImage parse(const std::string& file) {
+  return parse_exr_depth(bytes_of(file), "file", 1);
+}
+std::string refused(const std::string& file) {
+  return refusal([&] { parse(file); });
+}
+
+TEST(ExrDepth, ReadsEachKindOfChannel) {
+  for (const bool as_half : {false, true}) {
+    EXPECT_EQ(parse(make_exr(3, 2, as_half, {{"Z", kValues}})).depth, kDepth);
+    EXPECT_EQ(parse(make_exr(3, 2, as_half, {{"Y", kValues}})).depth, kDepth);
+    const DepthImage image =
+        parse(make_exr(3, 2, as_half, {{"R", kValues}, {"G", kValues}, {"B", kValues}}));
+    EXPECT_EQ(image.depth, kDepth);
+    EXPECT_EQ(image.width, 3U);
+    EXPECT_EQ(image.height, 2U);
+  }
+}
+
+TEST(ExrDepth, RefusesWhatIsNoDepth) {
+  std::vector<float> other = kValues;
+  other[5] = 0.5F;
+  EXPECT_TRUE(says(refused(make_exr(3, 2, true, {{"R", kValues}, {"G", other}, {"B", kValues}})),
+                   "R, G and B differ at pixel (2, 1)"));
+  EXPECT_TRUE(says(refused(make_exr(3, 2, true, {{"A", kValues}})), "it has A"));
+}
+
+TEST(ExrDepth, DamageIsRefused) {
+  expect_damage_is_refused(make_exr(3, 2, true, {{"Y", kValues}}), 300,
+                           [](auto bytes) { parse_exr_depth(bytes, "file", 1); });
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,121 @@
+#include "libvpm/import/import_cloud.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "tests/import/test_files.h"
+
+namespace vpm {
+namespace {
+
+const Intrinsics kCamera{100, 110, 9.5, 7.5};
+constexpr std::uint32_t kWidth = 20, kHeight = 16;
+
+// A tilted plane seen by the camera, as organised PCD in text.
+std::string organised_pcd(double bend = 0) {
+  std::string file =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\n"
+      "WIDTH 20\nHEIGHT 16\nVIEWPOINT 5 0 0 1 0 0 0\nPOINTS 320\nDATA ascii\n";
+  for (std::uint32_t v = 0; v < kHeight; ++v) {
+    for (std::uint32_t u = 0; u < kWidth; ++u) {
+      const Vec3 p = unproject(kCamera, u + bend * u * u, v, 1 + 0.002 * u + 0.003 * v);
+      char line[128];
+      std::snprintf(line, sizeof line, u == 3 && v == 4 ? "nan nan nan\n" : "%.9g %.9g %.9g\n", p.x,
+                    p.y, p.z);
+      file += line;
+    }
+  }
+  return file;
+}
+
+std::string depth_png() {
+  std::vector<std::uint16_t> values(std::size_t{kWidth} * kHeight, 2000);
+  values[7] = 0;
+  return make_png(kWidth, kHeight, 16, values);
+}
+
+ImportedCloud import(const std::string& file, const ImportOptions& options = {}) {
+  return import_cloud(bytes_of(file), "file", options);
+}
+std::string refused(const std::string& file, const ImportOptions& options = {}) {
+  return refusal([&] { import(file, options); });
+}
+
+constexpr const char* kPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n"
+    "0 0 0 0 0 1\n1 0 0 0 0 2\n0 1 0 0 0 1\nnan 1 0 0 0 1\n";
+
+TEST(ImportCloud, RecoversTheCameraOfAnOrganisedCloud) {
+  const ImportedCloud imported = import(organised_pcd());
+  validate(imported.cloud, "cloud");
+  EXPECT_TRUE(imported.intrinsics_recovered);
+  EXPECT_TRUE(imported.normals_estimated);
+  EXPECT_EQ(imported.invalid, 1U);
+  EXPECT_EQ(imported.cloud.size(), 319U);
+  const Camera& camera = imported.cloud.sensor->camera;
+  EXPECT_NEAR(camera.intrinsics.fx, 100, 1e-5);
+  EXPECT_NEAR(camera.intrinsics.fy, 110, 1e-5);
+  EXPECT_NEAR(camera.intrinsics.cx, 9.5, 1e-5);
+  EXPECT_NEAR(camera.intrinsics.cy, 7.5, 1e-5);
+  EXPECT_EQ(imported.cloud.origin, (Vec3{5, 0, 0})) << "the VIEWPOINT";
+}
+
+TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
+  EXPECT_TRUE(says(refused(organised_pcd(0.02)), "fits no pinhole camera"));
+  EXPECT_TRUE(says(refused(organised_pcd(0.02)), "pixels away"));
+  ImportOptions options;
+  options.intrinsics = Intrinsics{150, 150, 9.5, 7.5};
+  EXPECT_TRUE(says(refused(organised_pcd(), options), "does not fit the intrinsics given"));
+  options.intrinsics = kCamera;
+  EXPECT_FALSE(import(organised_pcd(), options).intrinsics_recovered);
+}
+
+TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {
+  try {
+    import(depth_png());
+    FAIL();
+  } catch (const Error& fault) {
+    EXPECT_EQ(fault.kind(), ErrorKind::usage);
+  }
+  ImportOptions options;
+  options.intrinsics = kCamera;
+  options.to_world = Pose{{}, {1, 2, 3}};
+  const ImportedCloud imported = import(depth_png(), options);
+  EXPECT_EQ(imported.width, kWidth);
+  EXPECT_EQ(imported.invalid, 1U);
+  EXPECT_EQ(imported.cloud.positions[0].z, 2);
+  EXPECT_EQ(imported.cloud.origin, (Vec3{1, 2, 3}));
+  options.units_per_metre = 4000;
+  EXPECT_EQ(import(depth_png(), options).cloud.positions[0].z, 0.5F);
+}
+
+TEST(ImportCloud, ScatteredPointsKeepTheirNormals) {
+  const ImportedCloud imported = import(kPly);
+  validate(imported.cloud, "cloud");
+  EXPECT_FALSE(imported.normals_estimated);
+  EXPECT_FALSE(imported.cloud.sensor);
+  EXPECT_EQ(imported.cloud.size(), 3U);
+  EXPECT_EQ(imported.invalid, 1U);
+  EXPECT_EQ(imported.cloud.normals[1], (Vec3f{0, 0, 1}));
+}
+
+TEST(ImportCloud, RefusesWhatHoldsNoCloud) {
+  EXPECT_TRUE(says(refused(""), "empty"));
+  EXPECT_TRUE(says(refused("OFF\n0 0 0\n"), "neither PNG, OpenEXR, PCD nor PLY"));
+  EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                           "property float y\nproperty float z\nend_header\n1 2 3\n"),
+                   "need normals"));
+  ImportOptions options;
+  options.intrinsics = kCamera;
+  std::vector<std::uint16_t> nothing(320, 0);
+  EXPECT_TRUE(
+      says(refused(make_png(20, 16, 16, nothing), options), "no pixel holds a measurement"));
+  nothing[100] = 1000;
+  EXPECT_TRUE(says(refused(make_png(20, 16, 16, nothing), options), "neighbours enough"));
+}
+
+}  // namespace
+}  // namespace vpm

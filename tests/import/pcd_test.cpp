@@ -1,0 +1,189 @@
+#include "libvpm/import/pcd.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/import/lzf.h"
+#include "tests/import/test_files.h"
+
+namespace vpm {
+namespace {
+
+PointSet parse(const std::string& file) {
+  return parse_pcd(bytes_of(file), "file");
+}
+std::string refused(const std::string& file) {
+  return refusal([&] { parse(file); });
+}
+
+std::string header(const std::string& fields, const std::string& size, const std::string& type,
+                   const std::string& count, int points) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type +
+         "\nCOUNT " + count + "\nWIDTH " + std::to_string(points) +
+         "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA ";
+}
+
+// Fields in an unusual order, of unusual types, with one of several values between.
+constexpr const char* kFields = "normal_z rgb y x z normal_x hist normal_y";
+constexpr const char* kSizes = "4 4 8 4 2 4 1 4";
+constexpr const char* kTypes = "F U F F I F U F";
+constexpr const char* kCounts = "1 1 1 1 1 1 3 1";
+
+struct Row {
+  float nz;
+  std::uint32_t rgb;
+  double y;
+  float x;
+  std::int16_t z;
+  float nx;
+  char hist[3];
+  float ny;
+};
+constexpr Row kRows[] = {{1, 7, 2.5, -1, 3, 0, {1, 2, 3}, 0.5F},
+                         {-1, 8, -2.25, 4, -7, 0.25F, {4, 5, 6}, 0}};
+
+std::string by_point() {
+  std::string bytes;
+  for (const Row& r : kRows) {
+    append(bytes, r.nz), append(bytes, r.rgb), append(bytes, r.y), append(bytes, r.x);
+    append(bytes, r.z), append(bytes, r.nx), bytes.append(r.hist, sizeof r.hist),
+        append(bytes, r.ny);
+  }
+  return bytes;
+}
+
+std::string by_field() {
+  std::string bytes;
+  for (const Row& r : kRows) append(bytes, r.nz);
+  for (const Row& r : kRows) append(bytes, r.rgb);
+  for (const Row& r : kRows) append(bytes, r.y);
+  for (const Row& r : kRows) append(bytes, r.x);
+  for (const Row& r : kRows) append(bytes, r.z);
+  for (const Row& r : kRows) append(bytes, r.nx);
+  for (const Row& r : kRows) bytes.append(r.hist, sizeof r.hist);
+  for (const Row& r : kRows) append(bytes, r.ny);
+  return bytes;
+}
+
+// LZF without references: runs of literals.
+std::string as_literals(const std::string& data) {
+  std::string bytes;
+  for (std::size_t i = 0; i < data.size(); i += 32) {
+    const std::string run = data.substr(i, 32);
+    bytes.push_back(static_cast<char>(run.size() - 1));
+    bytes += run;
+  }
+  return bytes;
+}
+
+std::string ascii_file() {
+  return header(kFields, kSizes, kTypes, kCounts, 2) +
+         "ascii\n1 7 2.5 -1 3 0 1 2 3 0.5\n-1 8 -2.25 4 -7 .25 4 5 6 0\n";
+}
+std::string binary_file() {
+  return header(kFields, kSizes, kTypes, kCounts, 2) + "binary\n" + by_point();
+}
+std::string compressed_file() {
+  std::string file = header(kFields, kSizes, kTypes, kCounts, 2) + "binary_compressed\n";
+  const std::string data = as_literals(by_field());
+  append(file, static_cast<std::uint32_t>(data.size()));
+  append(file, static_cast<std::uint32_t>(by_field().size()));
+  return file + data;
+}
+
+TEST(Pcd, EveryEncodingGivesTheSamePoints) {
+  for (const std::string& file : {ascii_file(), binary_file(), compressed_file()}) {
+    const PointSet points = parse(file);
+    ASSERT_EQ(points.positions.size(), 2U);
+    EXPECT_FALSE(points.organised());
+    EXPECT_EQ(points.positions[0], (Vec3{-1, 2.5, 3}));
+    EXPECT_EQ(points.positions[1], (Vec3{4, -2.25, -7}));
+    ASSERT_EQ(points.normals.size(), 2U);
+    EXPECT_EQ(points.normals[0], (Vec3{0, 0.5, 1}));
+    EXPECT_EQ(points.normals[1], (Vec3{0.25, 0, -1}));
+  }
+}
+
+TEST(Pcd, EveryDamageIsRefused) {
+  for (const std::string& file : {binary_file(), compressed_file()})
+    expect_damage_is_refused(file, 10000, [](auto bytes) { parse_pcd(bytes, "file"); });
+  // A text may lose its last digits and still be one: only whole values are missed.
+  const std::string ascii = ascii_file();
+  expect_damage_is_refused(ascii.substr(0, ascii.size() - 1), 10000,
+                           [](auto bytes) { parse_pcd(bytes, "file"); });
+}
+
+TEST(Pcd, TextHoldsNaNAndWindowsLineEnds) {
+  const PointSet points = parse(
+      "# .PCD v.7\r\nVERSION .7\r\nFIELDS x y z\r\nSIZE 4 4 4\r\nTYPE F F F\r\nWIDTH 2\r\n"
+      "HEIGHT 1\r\nPOINTS 2\r\nDATA ascii\r\nnan nan NaN\r\n1 +2 3e-1\r\n");
+  EXPECT_TRUE(std::isnan(points.positions[0].z));
+  EXPECT_EQ(points.positions[1], (Vec3{1, 2, 0.3}));
+  EXPECT_TRUE(points.normals.empty());
+}
+
+TEST(Pcd, KeepsGridAndViewpoint) {
+  const PointSet points = parse(
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\n"
+      "VIEWPOINT 1 2 3 0 1 0 0\nPOINTS 4\nDATA ascii\n0 0 1 1 0 1 0 1 1 1 1 1\n");
+  EXPECT_TRUE(points.organised());
+  EXPECT_EQ(points.width, 2U);
+  EXPECT_EQ(points.viewpoint * (Vec3{1, 1, 1}), (Vec3{2, 1, 2}));
+}
+
+TEST(Pcd, SaysWhatIsWrong) {
+  const std::string plain = header("x y z", "4 4 4", "F F F", "1 1 1", 2);
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3 4 x 6\n"), "point 1: 'x' is not a number"));
+  EXPECT_TRUE(says(refused(plain + "zip\n"), "DATA 'zip'"));
+  EXPECT_TRUE(says(refused(header("x y", "4 4", "F F", "1 1", 1) + "ascii\n1 2\n"), "no field z"));
+  EXPECT_TRUE(
+      says(refused(header("x y z", "4 4 3", "F F F", "1 1 1", 1) + "ascii\n1 2 3\n"), "no number"));
+  EXPECT_TRUE(says(refused("VERSION 0.8\n"), "version 0.8"));
+  EXPECT_TRUE(says(refused("VERSION 0.7\nFIELDS x y z\nSIZE 4 4\n"), "SIZE names 2 fields"));
+  EXPECT_TRUE(says(refused("VERSION 0.7\nWIDTH -1\n"), "is not a count"));
+  EXPECT_TRUE(says(refused("VERSION 0.7\nWIDTH"), "has no value"));
+}
+
+TEST(Pcd, CountsAreCheckedBeforeMemoryIsTaken) {
+  const std::string fields = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  for (const std::string size : {"60000000", "4294967296", "18446744073709551615"}) {
+    for (const std::string encoding : {"ascii", "binary", "binary_compressed"}) {
+      const std::string counts = "WIDTH " + size + "\nHEIGHT 1\nPOINTS " + size;
+      EXPECT_NE(refused(fields + counts + "\nDATA " + encoding + "\n12345678 12345678"), "");
+    }
+  }
+  EXPECT_TRUE(says(refused(fields + "WIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\nDATA ascii\n"),
+                   "holds no points"));
+  EXPECT_TRUE(says(refused(fields + "WIDTH 3\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3 4 5 6\n"),
+                   "is not POINTS 2"));
+  // Compressed to almost nothing: more than LZF can do.
+  std::string bomb = fields + "WIDTH 50000000\nHEIGHT 1\nPOINTS 50000000\nDATA binary_compressed\n";
+  append(bomb, std::uint32_t{4});
+  append(bomb, std::uint32_t{600000000});
+  EXPECT_TRUE(says(refused(bomb + "1234"), "too short"));
+}
+
+TEST(Lzf, CopiesRunsThatOverlapThemselves) {
+  // "ab", then 7 bytes from 2 back, then a long reference of 9 + 1 bytes from 1 back.
+  const std::string data{'\x01', 'a', 'b', '\xA0', '\x01', '\xE0', '\x01', '\x00'};
+  std::string out(2 + 7 + 10, '?');
+  EXPECT_TRUE(decode_lzf(bytes_of(data), std::as_writable_bytes(std::span(out))));
+  EXPECT_EQ(out, "ababababaaaaaaaaaaa");
+}
+
+TEST(Lzf, RefusesToLeaveItsBuffers) {
+  std::string out(8, '?');
+  const auto decodes = [&](const std::string& data) {
+    return decode_lzf(bytes_of(data), std::as_writable_bytes(std::span(out)));
+  };
+  EXPECT_FALSE(decodes(std::string{'\x07', 'a'}));                     // a run past the end
+  EXPECT_FALSE(decodes(std::string{'\x20', '\x00'}));                  // a reference to nothing
+  EXPECT_FALSE(decodes(std::string{'\x00', 'a', '\x20'}));             // a reference cut off
+  EXPECT_FALSE(decodes(std::string{'\x00', 'a', '\xE0'}));             // a length cut off
+  EXPECT_FALSE(decodes(std::string{'\x00', 'a', '\xE0', '\x40', 0}));  // more than the buffer holds
+  EXPECT_FALSE(decodes(std::string{'\x00', 'a'}));                     // less than promised
+}
+
+}  // namespace
+}  // namespace vpm
