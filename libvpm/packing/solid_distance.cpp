@@ -60,4 +60,14 @@ Vec3 SolidDistance::closest_on(std::uint32_t triangle, Vec3 x) const {
   return closest_point_on_triangle(x, vertices_[a], vertices_[b], vertices_[c]);
 }
 
+bool SolidDistance::holds_disk(std::uint32_t triangle, Vec3 point, double radius) const {
+  const auto [a, b, c] = triangles_[triangle];
+  const auto beyond = [&](std::uint32_t from, std::uint32_t to) {
+    const Vec3 along = vertices_[to] - vertices_[from];
+    return squared_norm(cross(along, point - vertices_[from])) >=
+           radius * radius * squared_norm(along);
+  };
+  return beyond(a, b) && beyond(b, c) && beyond(c, a);
+}
+
 }  // namespace vpm

@@ -29,6 +29,8 @@ class SolidDistance {
   const UnitFrame& frame() const { return frame_; }
   SurfacePoint closest(Vec3 x, double within) const { return bvh_.closest(x, within); }
   Vec3 closest_on(std::uint32_t triangle, Vec3 x) const;
+  // Whether the disk of this radius about a point of the triangle lies in the triangle.
+  bool holds_disk(std::uint32_t triangle, Vec3 point, double radius) const;
   bool inside(Vec3 x) const { return winding_.inside(x); }
 
  private:

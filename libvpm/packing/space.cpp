@@ -113,15 +113,16 @@ double Space::joint_bound(const Cell& cell, const std::vector<std::uint32_t>& ne
   const Vec3 x = cell.center();
   const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
   std::vector<LinearBound> bounds;
-  const auto add = [&](Vec3 from, double radius) {
+  const auto add = [&](Vec3 from, double radius, bool flat) {
     const double distance = norm(from);
     if (!(distance > 0) || distance - radius > horizon) return;
-    bounds.push_back({from / distance, distance - radius + half * half / (2 * distance)});
+    const double curvature = flat ? 0 : 1 / distance;
+    bounds.push_back({from / distance, distance - radius + 0.5 * curvature * half * half});
   };
-  for (const std::uint32_t i : near) add(x - spheres_[i].center, spheres_[i].radius);
+  for (const std::uint32_t i : near) add(x - spheres_[i].center, spheres_[i].radius, false);
   if (cell.mesh < horizon) {
     if (const SurfacePoint p = solid_.closest(x, horizon); p.triangle != SurfacePoint::kNone)
-      add(x - p.point, 0);
+      add(x - p.point, 0, solid_.holds_disk(p.triangle, p.point, half));
   }
   if (bounds.empty()) return HUGE_VAL;
   return max_min_step(bounds, edge(cell.level + 1)).value;
