@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/triangle_bvh.h"
@@ -12,13 +13,14 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kSpheresPerTask = 64;
+constexpr std::size_t kSpheresPerTask = 64, kColumnsPerTask = 4;
 
-double largest(const std::vector<double>& values) {
-  return values.empty() ? -std::numeric_limits<double>::infinity()
-                        : *std::max_element(values.begin(), values.end());
+double largest(const std::vector<double>& values, double at_least) {
+  return values.empty() ? at_least
+                        : std::max(at_least, *std::max_element(values.begin(), values.end()));
 }
 
+// Largest radius less signed distance to the mesh.
 double protrusion(const Solid& solid, const std::vector<Sphere>& spheres) {
   const TriangleBvh bvh(solid.vertices, solid.triangles);
   const WindingNumber winding(bvh);
@@ -30,34 +32,76 @@ double protrusion(const Solid& solid, const std::vector<Sphere>& spheres) {
       beyond[i] = s.radius + (winding.inside(s.center) ? -distance : distance);
     }
   });
-  return largest(beyond);
+  return largest(beyond, -HUGE_VAL);
 }
 
-// Sweep along x: every pair whose x intervals meet, and each sphere's next one along the sweep, so
-// that there is a gap to tell where nothing overlaps.
-double overlap(const std::vector<Sphere>& spheres) {
-  std::vector<Sphere> sorted = spheres;
-  std::sort(sorted.begin(), sorted.end(), [](const Sphere& a, const Sphere& b) {
-    return a.center.x - a.radius < b.center.x - b.radius;
-  });
-  std::vector<double> common(sorted.size(), -std::numeric_limits<double>::infinity());
-  parallel_for(sorted.size(), kSpheresPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Sphere& s = sorted[i];
-      for (std::size_t j = i + 1; j < sorted.size(); ++j) {
-        const Sphere& t = sorted[j];
-        if (t.center.x - t.radius > s.center.x + s.radius && j > i + 1) break;
-        common[i] = std::max(common[i], s.radius + t.radius - norm(s.center - t.center));
+// Columns along x over a grid in y and z; a sphere is listed in all that it comes near.
+class Columns {
+ public:
+  Columns(const std::vector<Sphere>& spheres, double margin) : margin_(margin) {
+    low_ = HUGE_VAL;
+    double high = -HUGE_VAL;
+    for (const Sphere& s : spheres) {
+      low_ = std::min({low_, s.center.y - s.radius, s.center.z - s.radius});
+      high = std::max({high, s.center.y + s.radius, s.center.z + s.radius});
+    }
+    // A few dozen spheres per column, whatever their sizes.
+    count_ = std::clamp(std::size_t(std::sqrt(double(spheres.size()) / 32)), std::size_t{1},
+                        std::size_t{1000});
+    width_ = (high - low_) / static_cast<double>(count_);
+    lists_.resize(count_ * count_);
+    for (const Sphere& s : spheres) {
+      for (std::size_t z = of(s.center.z - s.radius - margin);
+           z <= of(s.center.z + s.radius + margin); ++z)
+        for (std::size_t y = of(s.center.y - s.radius - margin);
+             y <= of(s.center.y + s.radius + margin); ++y)
+          lists_[z * count_ + y].push_back(s);
+    }
+  }
+  std::size_t size() const { return lists_.size(); }
+
+  // Largest overlap of two spheres of the column, by a sweep along x; no less than -margin.
+  double overlap(std::size_t column) {
+    std::vector<Sphere>& list = lists_[column];
+    std::sort(list.begin(), list.end(), [](const Sphere& a, const Sphere& b) {
+      return a.center.x - a.radius < b.center.x - b.radius;
+    });
+    double worst = -margin_;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Sphere& s = list[i];
+      for (std::size_t j = i + 1; j < list.size(); ++j) {
+        const Sphere& t = list[j];
+        if (t.center.x - t.radius > s.center.x + s.radius + margin_) break;
+        worst = std::max(worst, s.radius + t.radius - norm(s.center - t.center));
       }
     }
+    return worst;
+  }
+
+ private:
+  std::size_t of(double coordinate) const {
+    const double column = (coordinate - low_) / width_;
+    return static_cast<std::size_t>(std::clamp(column, 0.0, static_cast<double>(count_ - 1)));
+  }
+  double margin_, low_ = 0, width_ = 0;
+  std::size_t count_ = 1;
+  std::vector<std::vector<Sphere>> lists_;
+};
+
+double overlap(const std::vector<Sphere>& spheres, double margin) {
+  if (spheres.size() < 2) return -margin;
+  Columns columns(spheres, margin);
+  std::vector<double> worst(columns.size());
+  parallel_for(columns.size(), kColumnsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) worst[i] = columns.overlap(i);
   });
-  return largest(common);
+  return largest(worst, -margin);
 }
 
 }  // namespace
 
 Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres) {
-  double extent = 0, farthest = 0;
+  double farthest = 0;
   const Vec3 first = solid.vertices.empty() ? Vec3{} : solid.vertices.front();
   Vec3 low = first, high = first;
   for (const Vec3 p : solid.vertices) {
@@ -65,12 +109,20 @@ Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres) {
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
-  extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   Certificate certificate;
   certificate.tolerance = std::max(kCertificateTolerance * extent,
                                    16 * std::numeric_limits<double>::epsilon() * farthest);
-  certificate.max_protrusion = protrusion(solid, spheres);
-  certificate.max_overlap = overlap(spheres);
+  const auto sound = [](const Sphere& s) {
+    return is_finite(s.center) && std::isfinite(s.radius) && s.radius > 0;
+  };
+  if (!std::all_of(spheres.begin(), spheres.end(), sound)) {
+    certificate.max_protrusion = certificate.max_overlap = HUGE_VAL;
+    return certificate;
+  }
+  const double margin = certificate.tolerance;
+  certificate.max_protrusion = std::max(protrusion(solid, spheres), -margin);
+  certificate.max_overlap = overlap(spheres, margin);
   certificate.holds = certificate.max_protrusion <= certificate.tolerance &&
                       certificate.max_overlap <= certificate.tolerance;
   return certificate;

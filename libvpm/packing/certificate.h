@@ -8,7 +8,9 @@
 
 namespace vpm {
 
-// Metres. Violations are positive; negative values are the clearance that was left.
+// Metres. Violations are positive. Clearances are negative, and said up to the tolerance only: with
+// no sphere, or none near another, the value is -tolerance. A sphere that is none (not finite,
+// radius not positive) makes both infinite.
 struct Certificate {
   double max_protrusion = 0;  // largest radius - distance to the mesh; + for centres outside
   double max_overlap = 0;     // largest r_i + r_j - |c_i - c_j|

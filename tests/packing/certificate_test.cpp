@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "brute_force.h"
 #include "test_solids.h"
 
@@ -46,13 +49,26 @@ TEST(Certificate, ToleranceIsABillionthOfTheSolid) {
   EXPECT_TRUE(certify(kCube, {}).holds);
 }
 
+TEST(Certificate, ValuesAreFiniteWithoutNeighbours) {
+  EXPECT_DOUBLE_EQ(certify(kCube, {}).max_protrusion, -2e-9);
+  EXPECT_DOUBLE_EQ(certify(kCube, {{{0, 0, 0}, .1}}).max_overlap, -2e-9);
+  EXPECT_DOUBLE_EQ(certify(kCube, {{{.5, 0, 0}, .1}, {{-.5, 0, 0}, .1}}).max_overlap, -2e-9);
+}
+
+TEST(Certificate, SpheresThatAreNoneFail) {
+  for (const double radius : {0.0, -0.1, std::nan(""), HUGE_VAL})
+    EXPECT_FALSE(certify(kCube, {{{0, 0, 0}, radius}}).holds) << radius;
+  EXPECT_FALSE(certify(kCube, {{{std::nan(""), 0, 0}, .1}}).holds);
+}
+
 TEST(Certificate, FindsEveryOverlapThatBruteForceFinds) {
   Random random(3);
   for (int round = 0; round < 20; ++round) {
     std::vector<Sphere> spheres;
     for (int i = 0; i < 200; ++i)
       spheres.push_back({random.in_box({-1, -1, -1}, {1, 1, 1}), random.uniform(1e-4, 0.05)});
-    EXPECT_NEAR(certify(kCube, spheres).max_overlap, worst_overlap(spheres), 1e-15);
+    EXPECT_NEAR(certify(kCube, spheres).max_overlap, std::max(worst_overlap(spheres), -2e-9),
+                1e-15);
     EXPECT_NEAR(certify(kCube, spheres).max_protrusion, worst_protrusion(kCube, spheres), 1e-15);
   }
 }
