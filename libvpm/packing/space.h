@@ -39,9 +39,9 @@ class Space {
   std::vector<std::uint32_t> promising(double radius) const;
   bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
 
-  // The largest spheres found in one block: local maxima of the clearance with at least `radius`,
-  // no two of them overlapping, capped at `cap`. Only touches what belongs to the block, so that
-  // blocks may be searched in parallel. Sets found only if the block is left promising.
+  // Appends local maxima of the clearance above the block with at least `radius`, cut to `cap`;
+  // they may overlap. The block stays promising while one of them may still be placed. Changes only
+  // what belongs to the block, so that different blocks may be searched in parallel.
   void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
 
   // Clearance of a point in the solid where it is below `within`. kind == none and value == the
