@@ -46,7 +46,8 @@ struct DepthSurface {
 
   // Inverse depth of the surface in the direction of x (x.z > 0).
   VPM_HD Pixel look_up(Vec3 x) const {
-    const double u = k.fx * (x.x / x.z) + k.cx, v = k.fy * (x.y / x.z) + k.cy;
+    const double per_depth = 1 / x.z;
+    const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     if (!(u >= -0.5 && v >= -0.5 && u < width - 0.5 && v < height - 0.5)) return {};
     const std::int32_t un = static_cast<std::int32_t>(u + 0.5),
                        vn = static_cast<std::int32_t>(v + 0.5);
@@ -75,14 +76,13 @@ struct DepthSurface {
     const double to_foot = 1 / (x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
     reading.foot = to_foot * x;
     reading.normal = widen(normals[pixel.nearest]);
-    const double length = norm(x), along = dot(reading.normal, x);
-    if (along >
-        -kGrazing *
-            length) {  // no normal, or one that cannot be right: take the surface to face the ray
+    const double along = dot(reading.normal, x), squared_length = squared_norm(x);
+    if (along < 0 && along * along >= (kGrazing * kGrazing) * squared_length) {
+      reading.distance = along * (1 - to_foot);
+    } else {  // no normal, or one that cannot be right: take the surface to face the ray
+      const double length = std::sqrt(squared_length);
       reading.normal = -1 / length * x;
       reading.distance = length * (to_foot - 1);
-    } else {
-      reading.distance = along * (1 - to_foot);
     }
     return reading;
   }
