@@ -65,21 +65,18 @@ def draw(folder, results, truth):
     curve.legend()
 
     data = read_spheres(folder / "spheres.ply")
-    for state, (name, colour) in enumerate(STATES):
-        some = data[data[:, 4] == state]
-        # From the side: the camera is above, the bowl below.
-        spheres.scatter(some[:, 0], -some[:, 2], s=(some[:, 3] * 5500) ** 2, c=colour,
-                        edgecolors="k", linewidths=0.2, label=name)
+    # From the side, the nearest last: the camera is above, the bowl below.
+    for x, _, z, radius, state in data[np.argsort(-data[:, 1])]:
+        spheres.add_patch(plt.Circle((x, -z), radius, fc=STATES[int(state)][1], ec="k", lw=0.2))
+    for name, colour in STATES:
+        spheres.plot([], [], "o", color=colour, label=name)
     angle = np.linspace(-0.6, 0.6, 200)
     spheres.plot(0.3 * np.sin(angle), -(0.7 + 0.3 * np.cos(angle)), "k--", lw=1, label="bowl")
     spheres.set_aspect("equal")
     spheres.set_xlabel("x, m")
     spheres.set_ylabel("-z, m")
     spheres.set_title("the spheres at the last pose")
-    legend = spheres.legend(loc="upper right", fontsize=8)
-    for handle in legend.legendHandles:
-        if hasattr(handle, "set_sizes"):
-            handle.set_sizes([30])
+    spheres.legend(loc="upper right", fontsize=8)
     figure.tight_layout()
     figure.savefig(folder / "demo.png", dpi=110)
     print(f"\nThe picture is {folder / 'demo.png'}; the other files lie beside it.")

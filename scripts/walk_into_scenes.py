@@ -4,13 +4,14 @@
 usage: walk_into_scenes.py VPM_QUERY FOLDER
 
 FOLDER holds tools (NAME.vpmg with NAME.pack.csv and NAME.graph.json) and scenes (NAME.vpmc with
-NAME.ply, its points and normals). Each tool goes along the normal of a flat place near the middle
+NAME.ply, its points and normals, and NAME.normals.json). Each tool goes along the normal of a flat place near the middle
 of the image, from clear of everything to deep inside. Of `refined` it is required that
   - every number is finite,
   - the volume is 0 while the tool is clear of every point,
   - it grows: it never falls by more than NOISE of the tool's volume,
   - it does not jump: no step is larger than twice the largest step into a plane, plus NOISE,
-  - it ends where a plane through that place would make it end, within what is not flat there,
+  - it ends where a plane through that place would make it end, less what the camera has seen to be
+    free (under a table top, say), within what is not flat or not seen there,
   - force and motion oppose each other at the end.
 `paper` goes the same way for comparison. Writes real.png, real.json and the poses.
 """
@@ -26,6 +27,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 POSES = 121
+SPARSE = 7  # every so many points are enough to find a flat place
 NOISE = 0.01  # of the tool's volume: sensor noise moves single spheres across the surface
 CLEAR = 0.02  # metres between tool and surface at the start
 FLAT = 0.015  # metres: points this near to the plane count as flat
@@ -50,27 +52,72 @@ def read_ply(path):
     return column("x", "y", "z"), column("nx", "ny", "nz")
 
 
-def choose_contact(points, normals, reach):
-    """A flat place near the optical axis: (point, normal, fraction of its surroundings that is flat,
-    greatest height of a point near the tool's way)."""
-    angle = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), points[:, 2]))
-    central = np.flatnonzero(angle < 12)
+class View:
+    """Which directions the camera, at the origin, has measured. Looks along +z or -z, whichever way
+    the points lie."""
+
+    def __init__(self, points, report):
+        self.fx, self.fy, self.cx, self.cy = report["intrinsics"]
+        self.depth = np.zeros((report["height"], report["width"]))  # 0: nothing measured
+        u, v, inside = self.project(points)
+        self.depth[v[inside], u[inside]] = np.abs(points[inside, 2])
+
+    def project(self, points):
+        away = np.maximum(np.abs(points[:, 2]), 1e-9)
+        u = np.round(self.fx * points[:, 0] / away + self.cx).astype(int)
+        v = np.round(self.fy * points[:, 1] / away + self.cy).astype(int)
+        return u, v, (u >= 0) & (v >= 0) & (u < self.depth.shape[1]) & (v < self.depth.shape[0])
+
+    def measured(self, places):
+        """The depth measured in the direction of each place; 0 where none is."""
+        u, v, inside = self.project(places)
+        return np.where(inside, self.depth[v * inside, u * inside], 0)
+
+    def fraction_flat(self, places, origin, normal):
+        """How many of the places on a plane have a measured point near the plane in their direction."""
+        measured = self.measured(places)
+        points = places * (measured / np.abs(places[:, 2]))[:, None]
+        return np.mean((measured > 0) & (np.abs((points - origin) @ normal) < FLAT))
+
+    def fraction_clear(self, places):
+        """How many of the places lie before what the camera has measured."""
+        return np.mean(np.abs(places[:, 2]) < self.measured(places))
+
+    def is_free(self, centers, radii):
+        """Whether the camera saw past a sphere: it lies wholly before the measured depth."""
+        return np.abs(centers[:, 2]) + radii < self.measured(centers)
+
+
+def disc(origin, normal, radius):
+    """About 500 places spread over a disc."""
+    side = np.cross(normal, [1, 0, 0] if abs(normal[0]) < 0.7 else [0, 1, 0])
+    side /= np.linalg.norm(side)
+    k = np.arange(500)
+    r, a = radius * np.sqrt((k + 0.5) / 500), k * 2.399963  # golden angle
+    return origin + np.outer(r * np.cos(a), side) + np.outer(r * np.sin(a), np.cross(normal, side))
+
+
+def choose_contact(points, normals, reach, view):
+    """A flat place near the optical axis whose surroundings, and the way to it, the camera sees:
+    (point, normal, fraction that is flat and seen, greatest height of a point near the way)."""
+    angle = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), np.abs(points[:, 2])))
+    central = np.flatnonzero(angle < 20)
     random = np.random.RandomState(1)
     best = None
-    for k in random.choice(central, min(150, len(central)), replace=False):
+    for k in random.choice(central, min(300, len(central)), replace=False):
         near = np.linalg.norm(points - points[k], axis=1) < 0.05
         normal = normals[near].mean(axis=0)
         normal /= np.linalg.norm(normal)
         origin = np.median(points[near], axis=0)
         height = (points - origin) @ normal
         aside = np.linalg.norm(points - origin - np.outer(height, normal), axis=1)
-        around = (aside < reach) & (np.abs(height) < 2 * reach)
-        flat = np.mean(np.abs(height[around]) < FLAT)
-        on_way = around & (height > 0)
+        on_way = (aside < reach) & (height > 0) & (height < 2 * reach)
         top = height[on_way].max() if on_way.any() else 0.0
-        score = flat - 0.005 * angle[k] - 2 * max(top - FLAT, 0)
+        flat = view.fraction_flat(disc(origin, normal, reach), origin, normal)
+        clear = view.fraction_clear(disc(origin + (top + reach) * normal, normal, reach))
+        score = flat * clear - 0.005 * angle[k] - 2 * max(top - FLAT, 0)
         if best is None or score > best[0]:
-            best = (score, origin, normal, flat, top)
+            best = (score, origin, normal, flat * clear, top)
     return best[1:]
 
 
@@ -84,12 +131,12 @@ def make_poses(tool, contact):
     return [origin - aside + h * normal for h in np.linspace(start, end, POSES)]
 
 
-def plane_volume(tool, contact, position):
-    """Fraction of the tool behind the plane: caps of its spheres."""
+def expected_volume(tool, contact, view, position):
+    """Fraction of the tool behind the plane and not seen to be free: caps of its spheres."""
     origin, normal = contact[:2]
-    radius = tool["spheres"][:, 3]
-    distance = (tool["spheres"][:, :3] + position - origin) @ normal
-    cap = np.clip(radius - distance, 0, 2 * radius)
+    centers, radius = tool["spheres"][:, :3] + position, tool["spheres"][:, 3]
+    distance = (centers - origin) @ normal
+    cap = np.clip(radius - distance, 0, 2 * radius) * ~view.is_free(centers, radius)
     return (cap ** 2 * (3 * radius - cap)).sum() / (4 * radius ** 3).sum()
 
 
@@ -100,7 +147,7 @@ def query(executable, folder, tool, scene, poses_file, measure):
     return [json.loads(line) for line in output.splitlines()]
 
 
-def check(results, contact, planes):
+def check(results, contact, expected):
     """The complaints about one path."""
     numbers = np.array([[r["volume"], r["volume_fraction"], *r["force"], *r["torque"]] for r in results])
     fraction = numbers[:, 1]
@@ -112,11 +159,11 @@ def check(results, contact, planes):
         complaints.append(f"{fraction[0]:.4f} before contact")
     if step.min() < -NOISE:
         complaints.append(f"falls by {-step.min():.3f}")
-    if step.max() > 2 * np.diff(planes).max() + NOISE:
+    if step.max() > 2 * np.diff(expected).max() + NOISE:
         complaints.append(f"jumps by {step.max():.3f}")
     allowed = 0.05 + (1 - contact[2])
-    if abs(fraction[-1] - planes[-1]) > allowed:
-        complaints.append(f"ends at {fraction[-1]:.3f}, a plane at {planes[-1]:.3f}")
+    if abs(fraction[-1] - expected[-1]) > allowed:
+        complaints.append(f"ends at {fraction[-1]:.3f}, expected {expected[-1]:.3f}")
     if np.dot(results[-1]["force"], contact[1]) <= 0:
         complaints.append("the force pulls inwards")
     return complaints
@@ -138,8 +185,8 @@ def draw(folder, curves):
                 if name != tool:
                     continue
                 line, = axis.plot(curve["below"], curve[measure], lw=1, label=scene)
-                axis.plot(curve["below"], curve["plane"], "--", lw=0.5, color=line.get_color())
-            axis.set_title(f"{tool}, {measure} (dashed: into a plane)")
+                axis.plot(curve["below"], curve["expected"], "--", lw=0.5, color=line.get_color())
+            axis.set_title(f"{tool}, {measure} (dashed: expected)")
             axis.set_xlabel("lowest point below the surface, mm")
             axis.set_ylabel("volume, fraction of the tool")
             axis.set_ylim(-0.05, 1.05)
@@ -152,30 +199,31 @@ def main():
     executable, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     tools = {p.stem: read_tool(folder, p.stem) for p in sorted(folder.glob("*.vpmg"))}
     curves, report, failed = {}, [], 0
-    print(f"{'tool':18} {'scene':20} {'flat':>5} {'end':>6} {'plane':>6} {'paper end':>9} {'jump':>6} {'paper':>6}")
+    print(f"{'tool':18} {'scene':20} {'flat':>5} {'end':>6} {'expected':>8} {'paper end':>9} {'jump':>6} {'paper':>6}")
     for scene in sorted(p.stem for p in folder.glob("*.vpmc")):
         points, normals = read_ply(folder / f"{scene}.ply")
+        view = View(points, json.loads((folder / f"{scene}.normals.json").read_text()))
         for name, tool in tools.items():
             reach = np.max(np.linalg.norm(tool["spheres"][:, :3] - tool["center"], axis=1))
-            contact = choose_contact(points, normals, reach)
+            contact = choose_contact(points[::SPARSE], normals[::SPARSE], reach, view)
             positions = make_poses(tool, contact)
             poses_file = folder / f"{name}.{scene}.poses.jsonl"
             poses_file.write_text("".join(
                 json.dumps([*map(float, p), 0, 0, 0, 1]) + "\n" for p in positions))
-            planes = np.array([plane_volume(tool, contact, p) for p in positions])
+            expected = np.array([expected_volume(tool, contact, view, p) for p in positions])
             found = {m: query(executable, folder, name, scene, poses_file, m) for m in ("refined", "paper")}
-            complaints = check(found["refined"], contact, planes)
+            complaints = check(found["refined"], contact, expected)
             failed += bool(complaints)
             fraction = {m: np.array([r["volume_fraction"] for r in found[m]]) for m in found}
             jump = {m: np.abs(np.diff(fraction[m])).max() for m in found}
             low = (tool["spheres"][:, :3] @ contact[1] - tool["spheres"][:, 3]).min()
             curves[name, scene] = {"below": [-1000 * (low + (p - contact[0]) @ contact[1]) for p in positions],
-                                   "plane": planes, **fraction}
+                                   "expected": expected, **fraction}
             report.append({"tool": name, "scene": scene, "contact": list(contact[0]),
                            "normal": list(contact[1]), "flat": contact[2], "end": fraction["refined"][-1],
-                           "plane_end": planes[-1], "jump": jump["refined"], "paper_end": fraction["paper"][-1],
+                           "expected_end": expected[-1], "jump": jump["refined"], "paper_end": fraction["paper"][-1],
                            "paper_jump": jump["paper"], "complaints": complaints})
-            print(f"{name:18} {scene:20} {contact[2]:5.2f} {fraction['refined'][-1]:6.3f} {planes[-1]:6.3f}"
+            print(f"{name:18} {scene:20} {contact[2]:5.2f} {fraction['refined'][-1]:6.3f} {expected[-1]:8.3f}"
                   f" {fraction['paper'][-1]:9.3f} {jump['refined']:6.3f} {jump['paper']:6.3f}"
                   f"  {'; '.join(complaints) or 'good'}", flush=True)
     (folder / "real.json").write_text(json.dumps(report, indent=2) + "\n")
