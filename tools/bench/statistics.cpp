@@ -20,7 +20,7 @@ void MeanAndWorst::add(double value) {
   sum_ += value;
   ++count_;
   // A value that is not a number must not pass for a good one.
-  if (!(value <= worst_)) worst_ = value;
+  if (std::isnan(value) || value > worst_) worst_ = value;
 }
 
 }  // namespace vpm::bench

@@ -131,7 +131,7 @@ class Timing {
     };
     time_query("query refined", Measure::refined, PointLocation::grid);
     time_query("query paper", Measure::paper, PointLocation::grid);
-    time_query("query paper, hierarchy", Measure::paper, PointLocation::hierarchy);
+    time_query("query paper (hierarchy)", Measure::paper, PointLocation::hierarchy);
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
