@@ -42,7 +42,8 @@ std::string to_organised_pcd(const Cloud& cloud) {
     normals[cloud.pixels[k]] = narrow(to_camera * widen(cloud.normals[k]));
   std::string bytes = pcd_header(depth.width, depth.height, camera.to_world);
   for (std::size_t i = 0; i < depth.depth.size(); ++i) {
-    const double u = static_cast<double>(i % depth.width), v = static_cast<double>(i / depth.width);
+    const std::size_t column = i % depth.width, row = i / depth.width;
+    const double u = static_cast<double>(column), v = static_cast<double>(row);
     append(bytes, is_measured(depth.depth[i])
                       ? narrow(unproject(camera.intrinsics, u, v, depth.depth[i]))
                       : Vec3f{kNaN, kNaN, kNaN});

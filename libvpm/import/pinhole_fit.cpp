@@ -39,8 +39,9 @@ Residual largest_residual(const PointSet& points, const Intrinsics& k) {
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3 p = points.positions[i];
     if (!is_seen(p)) continue;
-    const double u = k.fx * p.x / p.z + k.cx - static_cast<double>(i % points.width);
-    const double v = k.fy * p.y / p.z + k.cy - static_cast<double>(i / points.width);
+    const std::size_t column = i % points.width, row = i / points.width;
+    const double u = k.fx * p.x / p.z + k.cx - static_cast<double>(column);
+    const double v = k.fy * p.y / p.z + k.cy - static_cast<double>(row);
     const double off = std::max(std::abs(u), std::abs(v));
     if (off > worst.largest) worst = {off, i};
   }
@@ -64,8 +65,9 @@ Intrinsics fit_pinhole(const PointSet& points, const std::string& name) {
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3 p = points.positions[i];
     if (!is_seen(p)) continue;
-    across.add(p.x / p.z, static_cast<double>(i % points.width));
-    down.add(p.y / p.z, static_cast<double>(i / points.width));
+    const std::size_t column = i % points.width, row = i / points.width;
+    across.add(p.x / p.z, static_cast<double>(column));
+    down.add(p.y / p.z, static_cast<double>(row));
   }
   if (!across.solvable() || !down.solvable()) {
     refuse(name + ": too few points with z > 0 to tell the camera; give --intrinsics fx,fy,cx,cy");

@@ -30,7 +30,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--intrinsics", a.intrinsics,
                  "fx,fy,cx,cy of the camera, pixels; an organised PCD tells its own")
       ->delimiter(',')
-      ->expected(4);
+      ->expected(4)
+      ->allow_extra_args(false);
   app.add_option("--depth-scale", a.depth_scale, "Units of the file per metre (PNG: 1000, else 1)");
   app.add_option("--method", a.method, "Normals by: inverse-depth, or pca as printed in 2017")
       ->check(CLI::IsMember({"inverse-depth", "pca"}))
