@@ -113,28 +113,17 @@ class CellMeasure {
     const Side side = surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
     if (side == Side::free) return false;
     if (side != Side::mixed) {
-      DeepNormal deep;
-      return add_piece(cell_.masses[b].centroid, 0, cell_.masses[b].weight, pass, deep, result);
+      return add_piece(cell_.masses[b].centroid, 0, cell_.masses[b].weight, pass, result);
     }
     bool any_hidden = false;
-    DeepNormal deep;
     for (std::uint32_t s = block.begin; s < block.end; ++s) {
       const CellSample& sample = cell_.samples[s];
-      any_hidden |=
-          add_piece(widen(sample.center), sample.radius, sample.weight, pass, deep, result);
+      any_hidden |= add_piece(widen(sample.center), sample.radius, sample.weight, pass, result);
     }
     return any_hidden;
   }
 
-  // The direction to the nearest surface point, found once for the pieces of a block that lie
-  // wholly behind it: it turns little over a block.
-  struct DeepNormal {
-    bool known = false;
-    Vec3 normal;
-  };
-
-  VPM_HD bool add_piece(Vec3 at, double radius, double weight, Pass pass, DeepNormal& deep,
-                        CellResult& result) {
+  VPM_HD bool add_piece(Vec3 at, double radius, double weight, Pass pass, CellResult& result) {
     const Vec3 x = to_surface_ * at;
     const Reading reading = surface_.read(x);
     if (!reading.known || reading.distance >= radius) return false;
@@ -147,8 +136,7 @@ class CellMeasure {
       fraction = ball_fraction_inside(reading.distance / radius);
       if (!hidden) result.plane.add(normal, relative(reading.foot));
     } else {
-      if (!deep.known) deep = {true, surface_.closest_normal(x, reading)};
-      normal = deep.normal;
+      normal = surface_.closest_normal(x, reading);
     }
     result.sum.add(weight * fraction, normal, arm(at));
     return false;

@@ -25,6 +25,7 @@ struct DepthSurface {
   // Below this cosine between normal and ray the normal is not trusted to scale a distance.
   static constexpr double kGrazing = 0.05;
   static constexpr int kFootSteps = 5;        // of the search for the nearest surface point
+  static constexpr double kFootPixels = 0.5;  // a step shorter than this ends the search
   static constexpr double kCreasePixels = 2;  // a foot further aside than this lies on a crease
 
   Intrinsics k;
@@ -94,7 +95,8 @@ struct DepthSurface {
     Vec3 foot = reading.foot, normal = reading.normal;
     double squared = squared_norm(x - foot);
     Vec3 target = x - reading.distance * normal;
-    for (int step = 0; step < kFootSteps; ++step) {
+    const double pixel = foot.z / k.fx, near = kFootPixels * pixel;
+    for (int step = 0; step < kFootSteps && squared_norm(target - foot) > near * near; ++step) {
       const Reading next = read(target);
       if (!next.known) break;
       const double next_squared = squared_norm(x - next.foot);
@@ -110,7 +112,7 @@ struct DepthSurface {
     // Where the foot is not below x on its own tangent plane, it lies on a crease: there the
     // gradient fans out.
     const Vec3 towards = foot - x;
-    const double above = dot(normal, towards), pixel = foot.z / k.fx;
+    const double above = dot(normal, towards);
     const double aside = squared_norm(towards - above * normal);
     return above > 0 && aside <= (kCreasePixels * pixel) * (kCreasePixels * pixel)
                ? normal

@@ -5,11 +5,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <tuple>
 
+#include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 
 namespace vpm {
 namespace {
@@ -97,8 +100,8 @@ std::vector<float> filled_inverse_depth(const DepthImage& depth) {
   const int width = static_cast<int>(depth.width), height = static_cast<int>(depth.height);
   std::vector<float> image(depth.depth.size());
   for (std::size_t i = 0; i < image.size(); ++i) {
-    image[i] =
-        is_measured(depth.depth[i]) ? static_cast<float>(1.0 / double{depth.depth[i]}) : 0.0f;
+    const float z = depth.depth[i];
+    image[i] = z >= kMinDepth && z <= kMaxDepth ? static_cast<float>(1.0 / double{z}) : 0.0f;
   }
   for (int pass = 0; pass < kFillPasses; ++pass) {
     std::vector<std::pair<std::size_t, float>> filled;
@@ -135,6 +138,17 @@ std::vector<InverseDepthRange> coarser(const std::vector<InverseDepthRange>& fin
   return tiles;
 }
 
+// What validate() leaves to those who compute with a cloud.
+void check_extent(const Cloud& cloud) {
+  if (!is_in_range(cloud.origin) ||
+      (cloud.sensor && !is_in_range(cloud.sensor->camera.to_world.translation)))
+    refuse("the cloud's origin or its camera is further than 2^100 m from the world's origin");
+  constexpr std::uint64_t kMaxPixels = std::numeric_limits<std::int32_t>::max();
+  if (cloud.sensor &&
+      std::uint64_t{cloud.sensor->camera.width} * cloud.sensor->camera.height > kMaxPixels)
+    refuse("the cloud's image has more than 2^31 - 1 pixels; crop it, or take every second one");
+}
+
 }  // namespace
 
 PreparedCloud::PreparedCloud(const Cloud& cloud) : origin_(cloud.origin) {
@@ -143,6 +157,7 @@ PreparedCloud::PreparedCloud(const Cloud& cloud) : origin_(cloud.origin) {
            std::to_string(kMaxPoints) + " can be counted exactly: thin it out, or split it");
   }
   validate(cloud, "the cloud");
+  check_extent(cloud);
   for (const float radius : cloud.radii)
     largest_radius_ = std::max(largest_radius_, double{radius});
   if (cloud.sensor) {

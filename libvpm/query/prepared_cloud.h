@@ -17,10 +17,12 @@ namespace vpm {
 class PreparedCloud {
  public:
   // The most points a cloud may have: what the fixed-point sums of a sphere can count (see
-  // measure_paper.cpp).
+  // measure_paper.h).
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
 
-  // Throws Error(refused): more than kMaxPoints, or what validate(cloud) refuses.
+  // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels, an origin
+  // or camera beyond kLargestLength, or what validate(cloud) refuses. Depths outside of
+  // [kMinDepth, kMaxDepth] (normals.h) count as not measured.
   explicit PreparedCloud(const Cloud& cloud);
 
   Vec3 origin() const { return origin_; }

@@ -1,11 +1,31 @@
 #include "libvpm/query/query.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/query/points_inside.h"
 
 namespace vpm {
+namespace {
+
+void check_pose(const Pose& pose) {
+  if (!is_in_range(pose.translation)) {
+    refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
+  }
+  const Rotation& r = pose.rotation;
+  const Rotation gram = r * transpose(r);
+  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
+                     norm(gram.row2 - Vec3{0, 0, 1});
+  if (!(off <= kRotationRounding) || !(dot(r.row0, cross(r.row1, r.row2)) > 0)) {
+    refuse(
+        "pose: its rotation is not finite, not orthonormal or mirrors; make it with "
+        "rotation_from_matrix or rotation_from_quaternion");
+  }
+}
+
+}  // namespace
 
 Query::Query(const ToolModel& tool, const QueryOptions& options)
     : tool_(tool),
@@ -15,6 +35,9 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   if (!(options.stiffness > 0 && std::isfinite(options.stiffness))) {
     throw Error(ErrorKind::usage, "the stiffness must be a positive number");
   }
+  if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach))) {
+    throw Error(ErrorKind::usage, "the stiffness is so large that forces overflow");
+  }
   if (options.measure == Measure::paper) {
     paper_ = std::make_unique<PaperMeasure>(tool, level_, options.location);
   } else {
@@ -23,6 +46,7 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
 }
 
 Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
+  check_pose(pose);
   Result result;
   if (paper_) {
     result = paper_->run(cloud, pose, states_);

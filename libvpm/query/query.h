@@ -29,10 +29,12 @@ struct QueryOptions {
 
 class Query {
  public:
-  // Throws Error(usage) where the model has no such level or the stiffness is not positive.
+  // Throws Error(usage) where the model has no such level, or the stiffness is not positive or so
+  // large that forces overflow. The model must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
-  // `pose` maps tool to world coordinates and must be finite.
+  // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
+  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   const Level& level() const { return level_; }
