@@ -6,6 +6,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/mesh/outer_surface.h"
+#include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/solid_distance.h"
 #include "libvpm/packing/space.h"
 
@@ -22,16 +24,7 @@ constexpr double kUnchanged = 1 - 1e-9;
 // brings more than this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
 constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
-// Radii shrink by this share, so that rounding makes no overlap.
-constexpr double kMargin = 1e-12;
 constexpr std::size_t kBlocksPerTask = 4;
-
-bool larger(const Sphere& a, const Sphere& b) {
-  if (a.radius != b.radius) return a.radius > b.radius;
-  if (a.center.x != b.center.x) return a.center.x < b.center.x;
-  if (a.center.y != b.center.y) return a.center.y < b.center.y;
-  return a.center.z < b.center.z;
-}
 
 void check(const PackOptions& options) {
   const auto wrong = [](const std::string& what) { throw Error(ErrorKind::usage, what); };
@@ -71,7 +64,7 @@ void fill_band(Space& space, double radius, double cap, std::size_t most) {
       });
       std::vector<Sphere> candidates;
       for (const auto& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
-      std::sort(candidates.begin(), candidates.end(), larger);
+      std::sort(candidates.begin(), candidates.end(), largest_first);
       for (const Sphere& s : candidates) {
         if (space.spheres().size() == most) return;
         const double room = space.clearance(s.center).value;
@@ -91,7 +84,7 @@ class Packer {
       : options_(options),
         distance_(solid),
         frame_(distance_.frame()),
-        volume_(mass_properties(solid).volume),
+        volume_(enclosed_mass(solid).volume),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
         cap_(options.max_radius / frame_.scale),
         most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
@@ -108,17 +101,13 @@ class Packer {
       const std::size_t before = space_.spheres().size();
       fill_band(space_, radius, cap_, most_);
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
-        filled_ += volume(in_metres(space_.spheres()[i]));
+        filled_ += volume(frame_.to_solid(space_.spheres()[i]));
       if (options_.progress) options_.progress(fraction());
     }
     return result();
   }
 
  private:
-  // The rounding of the way back to metres comes off the radius.
-  Sphere in_metres(const Sphere& s) const {
-    return {frame_.to_solid(s.center), (1 - kMargin) * s.radius * frame_.scale - frame_.rounding};
-  }
   double fraction() const {
     return std::min(1.0, std::max(double(space_.spheres().size()) / double(options_.spheres),
                                   filled_ / (volume_ * options_.coverage)));
@@ -131,8 +120,8 @@ class Packer {
   PackResult result() const {
     std::vector<Sphere> all;
     for (const Sphere& s : space_.spheres())
-      if (const Sphere m = in_metres(s); m.radius > 0) all.push_back(m);
-    std::sort(all.begin(), all.end(), larger);
+      if (const Sphere m = frame_.to_solid(s); m.radius > 0) all.push_back(m);
+    std::sort(all.begin(), all.end(), largest_first);
     PackResult result;
     result.stop = options_.min_radius / frame_.scale >= kNumericalFloor
                       ? StopReason::min_radius

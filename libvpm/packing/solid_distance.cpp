@@ -15,6 +15,9 @@ namespace {
 constexpr double kFrameRoundings = 8;
 constexpr double kDistanceRoundings = 64;
 
+// Radii shrink by this share on the way back to metres.
+constexpr double kMargin = 1e-12;
+
 UnitFrame unit_frame(const Solid& solid) {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const Vec3 p : solid.vertices) {
@@ -47,6 +50,10 @@ std::vector<Vec3> in_unit_frame(const Solid& solid, const UnitFrame& frame) {
 }
 
 }  // namespace
+
+Sphere UnitFrame::to_solid(const Sphere& s) const {
+  return {to_solid(s.center), (1 - kMargin) * s.radius * scale - rounding};
+}
 
 SolidDistance::SolidDistance(const Solid& solid)
     : frame_(unit_frame(solid)),

@@ -17,6 +17,8 @@ struct UnitFrame {
   double rounding = 0;  // metres: bound of what the frame and distances in it lose
   Vec3 to_unit(Vec3 p) const { return (p - center) / scale + Vec3{0.5, 0.5, 0.5}; }
   Vec3 to_solid(Vec3 p) const { return center + scale * (p - Vec3{0.5, 0.5, 0.5}); }
+  // Radii shrink, so that rounding makes no overlap.
+  Sphere to_solid(const Sphere& s) const;
 };
 
 class SolidDistance {

@@ -1,0 +1,87 @@
+#include "libvpm/packing/linear_programme.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/packing/max_min_step.h"
+#include "test_solids.h"
+
+namespace vpm::test {
+namespace {
+
+using Four = LinearProgramme::Four;
+constexpr auto kNone = LinearProgramme::kNone;
+constexpr double kGap = 1e-3, kLeast = 1e-6;  // promised, of the gain and of its bound
+
+double product(const Four& a, const Four& x) {
+  return a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3];
+}
+
+double gain(const LinearProgramme& p, const std::vector<Four>& x) {
+  double sum = 0;
+  for (std::size_t k = 0; k < x.size(); ++k) sum += product(p.gain[k], x[k]);
+  return sum;
+}
+
+double worst_violation(const LinearProgramme& p, const std::vector<Four>& x) {
+  double worst = 0;
+  for (const auto& row : p.rows) {
+    const double second = row.j == kNone ? 0 : product(row.b, x[row.j]);
+    worst = std::max(worst, product(row.a, x[row.i]) + second - row.limit);
+  }
+  for (const Four& block : x)
+    for (const double v : block) worst = std::max(worst, std::abs(v) - 1);
+  return worst;
+}
+
+TEST(LinearProgramme, WithoutRowsEveryUnknownGoesToItsBound) {
+  const LinearProgramme p{{{1, -2, 0.5, 0}, {0, 0, 3, -4}}, {}};
+  EXPECT_NEAR(gain(p, solve(p)), 10.5, 10.5 * kGap);
+  const LinearProgramme nothing{{{0, 0, 0, 0}}, {}};
+  EXPECT_EQ(solve(nothing)[0], (Four{0, 0, 0, 0}));
+}
+
+TEST(LinearProgramme, NothingIsGainedWhereRowsForbidIt) {
+  const LinearProgramme p{{{0, 0, 0, 1}, {0, 0, 0, 1}},
+                          {{0, 1, {0, 0, 0, 1}, {0, 0, 0, 1}, 0}}};  // both sum to at most 0
+  const auto x = solve(p);
+  EXPECT_NEAR(gain(p, x), 0, 2 * kLeast);
+  EXPECT_LT(worst_violation(p, x), 1e-6);
+}
+
+TEST(LinearProgramme, RowsShareTheirLimitAmongBlocks) {
+  // The second block gains twice as much from the limit that they share.
+  const LinearProgramme p{{{1, 0, 0, 0}, {0, 2, 0, 0}}, {{1, 0, {0, 1, 0, 0}, {1, 0, 0, 0}, 0.25}}};
+  const auto x = solve(p);
+  EXPECT_NEAR(x[1][1], 1, 2 * kGap);
+  EXPECT_NEAR(x[0][0], -0.75, 2 * kGap);
+}
+
+TEST(LinearProgramme, AgreesWithTheSimplexOfOneSphere) {
+  Random random(5);
+  for (int round = 0; round < 200; ++round) {
+    // Maximise s where s - g . delta <= v: by the simplex, and in a programme of many such blocks.
+    LinearProgramme p;
+    double expected = 0;
+    const auto blocks = static_cast<std::uint32_t>(1 + round % 7);
+    for (std::uint32_t i = 0; i < blocks; ++i) {
+      p.gain.push_back({0, 0, 0, 1});
+      std::vector<LinearBound> bounds;
+      for (int k = 0; k < 3 + round % 11; ++k) {
+        const Vec3 g = normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1}));
+        const double v = random.uniform(0, 0.3);
+        bounds.push_back({g, v});
+        p.rows.push_back({i, kNone, {-g.x, -g.y, -g.z, 1}, {}, v});
+      }
+      expected += std::min(1.0, max_min_step(bounds, 1).value);
+    }
+    const auto x = solve(p);
+    EXPECT_NEAR(gain(p, x), expected, 1.1 * (kGap * expected + kLeast * blocks)) << round;
+    EXPECT_LT(worst_violation(p, x), 1e-6) << round;
+  }
+}
+
+}  // namespace
+}  // namespace vpm::test
