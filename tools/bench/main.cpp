@@ -8,17 +8,18 @@ int main(int argc, char** argv) {
   vpm::tools::Tool tool("vpm-bench",
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output";
-  bool quick = false;
+  bool quick = false, all = false;
   tool.app().add_option("suite", suite, "accuracy or timing");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
   tool.app().add_flag("--quick", quick, "A small version that takes seconds");
+  tool.app().add_flag("--all", all, "accuracy: every tool, scene and kind of cloud");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report =
-        vpm::bench::run_suite(suite, {quick, [&](double fraction) { progress.update(fraction); }});
-    vpm::bench::write(report, "vpm-bench " + suite + (quick ? " --quick" : ""), folder);
+        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }});
+    vpm::bench::write(report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
   });
 }

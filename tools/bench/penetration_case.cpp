@@ -23,19 +23,34 @@ Extent extent_along_z(const Solid& solid, const Rotation& rotation) {
   return extent;
 }
 
-// z of the tool's origin at the first contact, by bisection: deeper poses penetrate more.
-double contact_z(const synthetic::TrueSolid& tool, const Rotation& rotation,
-                 const synthetic::Surface& surface) {
+// The least z of the tool's origin between two at which more than `part` of the tool is inside, by
+// bisection: deeper poses penetrate more. `deep` where none is.
+double z_of_volume(const synthetic::TrueSolid& tool, const Pose& start,
+                   const synthetic::Surface& surface, double part, double clear, double deep) {
   constexpr int kHalvings = 30;
-  constexpr double kCoarse = 1e-4;  // tolerance: only whether there is contact matters here
-  double clear = 1 - 3 * tool.reach(), deep = 1 + tool.reach();
+  constexpr double kCoarse = 1e-4;  // tolerance: the place of a pose need not be exact
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (clear + deep);
-    const Pose pose{rotation, {0, 0, middle}};
-    (tool.penetration(pose, surface, kCoarse).volume > 1e-9 * tool.mass().volume ? deep : clear) =
+    const Pose pose{start.rotation, {start.translation.x, start.translation.y, middle}};
+    (tool.penetration(pose, surface, kCoarse).volume > part * tool.mass().volume ? deep : clear) =
         middle;
   }
   return deep;
+}
+
+double contact_z(const synthetic::TrueSolid& tool, const Pose& start,
+                 const synthetic::Surface& surface) {
+  return z_of_volume(tool, start, surface, 1e-9, 1 - 3 * tool.reach(), 1 + tool.reach());
+}
+
+std::vector<Pose> between(const Pose& start, double first, double last, int poses) {
+  std::vector<Pose> path;
+  for (int k = 0; k < poses; ++k) {
+    const double s = static_cast<double>(k) / (poses - 1);
+    path.push_back({start.rotation,
+                    {start.translation.x, start.translation.y, first + s * (last - first)}});
+  }
+  return path;
 }
 
 }  // namespace
@@ -46,28 +61,36 @@ Solid make_shape(const std::string& name) {
   if (name == "tetrahedron") return synthetic::make_tetrahedron(kSize);
   if (name == "octahedron") return synthetic::make_octahedron(kSize);
   if (name == "torus") return synthetic::make_torus(0.35 * kSize, 0.15 * kSize, 64, 32);
+  if (name == "twisted-torus") return synthetic::make_twisted_torus(0.35 * kSize, 0.2 * kSize, 3, 96);
   throw Error(ErrorKind::usage, "there is no shape '" + name + "'");
 }
 
-ToolModel make_tool(const Solid& solid, std::size_t spheres) {
+ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels) {
   PackOptions options;
-  options.spheres = spheres;
+  options.spheres = *std::max_element(levels.begin(), levels.end());
   Packing packing;
   packing.spheres = pack(solid, options).spheres;
   packing.solid = solid;
-  return build_tool_model(packing, GraphOptions{});
+  GraphOptions graph_options;
+  graph_options.levels = levels;
+  return build_tool_model(packing, graph_options);
 }
 
 std::vector<Pose> make_path(const synthetic::TrueSolid& tool, const Rotation& rotation,
                             const synthetic::Surface& surface, int poses) {
   const Extent extent = extent_along_z(tool.solid(), rotation);
-  const double height = extent.high - extent.low, contact = contact_z(tool, rotation, surface);
-  std::vector<Pose> path;
-  for (int k = 0; k < poses; ++k) {
-    const double s = static_cast<double>(k) / (poses - 1);
-    path.push_back({rotation, {0, 0, contact + height * (s * (kDeepest + kClear) - kClear)}});
-  }
-  return path;
+  const double height = extent.high - extent.low;
+  const double contact = contact_z(tool, {rotation, {}}, surface);
+  return between({rotation, {}}, contact - kClear * height, contact + kDeepest * height, poses);
+}
+
+std::vector<Pose> make_sweep(const synthetic::TrueSolid& tool, const Pose& start,
+                             const synthetic::Surface& surface, int poses) {
+  const Extent extent = extent_along_z(tool.solid(), start.rotation);
+  const double contact = contact_z(tool, start, surface);
+  const double deepest = contact + kDeepest * (extent.high - extent.low);
+  return between(start, contact, z_of_volume(tool, start, surface, kFullest, contact, deepest),
+                 poses);
 }
 
 std::vector<synthetic::Penetration> truth_along(const synthetic::TrueSolid& tool,

@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "libvpm/model/tool_model.h"
-#include "libvpm/synthetic/scenes.h"
+#include "libvpm/synthetic/surface.h"
 #include "libvpm/synthetic/truth.h"
 
 namespace vpm::bench {
 
-// Solids of about 0.2 m: cube, tetrahedron, octahedron, torus. Throws Error(usage) for others.
+// Solids of about 0.2 m: cube, tetrahedron, octahedron, torus, twisted-torus. Throws Error(usage)
+// for others.
 Solid make_shape(const std::string& name);
 
-// Packed with `spheres` spheres, one level.
-ToolModel make_tool(const Solid& solid, std::size_t spheres);
+// Packed with as many spheres as the largest level has.
+ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels);
 
 // From just clear of the surface to kDeepest of the tool's height behind the first contact; the
 // first two poses or more are clear. `poses` >= 3.
@@ -22,6 +23,12 @@ inline constexpr double kDeepest = 0.8;
 inline constexpr double kClear = 0.05;  // of the tool's height, before the contact
 std::vector<Pose> make_path(const synthetic::TrueSolid& tool, const Rotation& rotation,
                             const synthetic::Surface& surface, int poses);
+
+// From the first contact until kFullest of the tool's volume is inside, or to kDeepest where that
+// never comes (a thin plate). The tool's origin keeps its place aside of the optical axis.
+inline constexpr double kFullest = 0.6;
+std::vector<Pose> make_sweep(const synthetic::TrueSolid& tool, const Pose& start,
+                             const synthetic::Surface& surface, int poses);
 
 std::vector<synthetic::Penetration> truth_along(const synthetic::TrueSolid& tool,
                                                 const std::vector<Pose>& path,

@@ -18,6 +18,7 @@ class MeanAndWorst {
   void add(double value);
   double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
   double worst() const { return worst_; }
+  int count() const { return count_; }
 
  private:
   double sum_ = 0, worst_ = 0;

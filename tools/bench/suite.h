@@ -10,6 +10,7 @@ namespace vpm::bench {
 
 struct SuiteOptions {
   bool quick = false;  // fewer spheres, poses and runs: seconds instead of minutes
+  bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes
   std::function<void(double fraction)> progress;
 };
 

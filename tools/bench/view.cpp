@@ -1,0 +1,57 @@
+#include "tools/bench/view.h"
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/synthetic/kinect_noise.h"
+
+namespace vpm::bench {
+namespace {
+
+// At `eye`, upright, with the optical axis through `target`.
+Camera looking_at(Vec3 eye, Vec3 target, Vec3 down) {
+  const Vec3 z = normalized_or_zero(target - eye), x = normalized_or_zero(cross(down, z));
+  Camera camera = synthetic::default_camera();
+  camera.to_world = {transpose({x, cross(z, x), z}), eye};
+  return camera;
+}
+
+std::vector<Camera> cameras_of(const synthetic::Scene& scene, CloudKind kind) {
+  std::vector<Camera> cameras{scene.camera};
+  if (kind == CloudKind::points && scene.name == "step")
+    cameras.push_back(looking_at({0.6, 0, 0.25}, {0, 0, 1}, {0, 1, 0}));
+  if (kind == CloudKind::points && scene.name == "plate")
+    cameras.push_back(looking_at({0, 0, 2}, {0, 0, 1}, {0, 1, 0}));
+  return cameras;
+}
+
+void append(const Cloud& part, Cloud& whole) {
+  for (const Vec3f& p : part.positions)
+    whole.positions.push_back(narrow(part.origin + widen(p)));
+  whole.normals.insert(whole.normals.end(), part.normals.begin(), part.normals.end());
+  whole.radii.insert(whole.radii.end(), part.radii.begin(), part.radii.end());
+}
+
+}  // namespace
+
+std::string to_text(CloudKind kind) {
+  return kind == CloudKind::camera ? "camera" : "points";
+}
+std::string to_text(Noise noise) {
+  return noise == Noise::none ? "none" : "kinect";
+}
+
+View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise) {
+  const std::vector<Camera> cameras = cameras_of(scene, kind);
+  Cloud points;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    const DepthImage depth =
+        noise == Noise::none
+            ? synthetic::render(*scene.surface, cameras[k])
+            : synthetic::render_with_kinect_noise(*scene.surface, cameras[k], kNoiseSeed + k);
+    const Cloud seen = make_cloud(depth, cameras[k], NormalOptions{});
+    if (kind == CloudKind::camera) return {cameras, PreparedCloud(seen)};
+    append(seen, points);
+  }
+  return {cameras, PreparedCloud(points)};
+}
+
+}  // namespace vpm::bench
