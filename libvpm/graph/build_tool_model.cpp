@@ -9,6 +9,7 @@
 #include "libvpm/graph/edges.h"
 #include "libvpm/graph/hierarchy.h"
 #include "libvpm/graph/point_location_grid.h"
+#include "libvpm/mesh/outer_surface.h"
 
 namespace vpm {
 namespace {
@@ -116,7 +117,7 @@ ShareQuality fill_shares(const Normalized& n, const SphereBvh& bvh, Level& level
 
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<ShareQuality>* quality) {
-  const MassProperties mass = mass_properties(packing.solid);
+  const MassProperties mass = enclosed_mass(packing.solid);
   check(packing, mass, options);
   const Normalized n = normalize(packing, mass);
 

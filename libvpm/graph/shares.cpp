@@ -124,7 +124,7 @@ Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereB
   shares.quality.volume_error = (sampled - gap_volume) / mass.volume;
   shares.quality.centroid_error = norm(deficit) / mass.volume / std::cbrt(mass.volume);
   // A common shift of the gap makes the first moment exact. It is sampling error and smaller than a
-  // piece, unless the mesh counts a volume twice: then nothing is to be mended here.
+  // piece, unless `mass` is of another solid: then nothing is to be mended here.
   const Vec3 shift = gap_volume > 0 ? deficit / gap_volume : Vec3{};
   if (norm(shift) < spacing) {
     for (GapSegment& s : shares.gap.segments) s.center += shift;

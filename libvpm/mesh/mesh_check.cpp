@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
@@ -91,7 +92,9 @@ class Check {
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
     look_for_self_intersections();
-    scale_and_measure();
+    for (Vec3& p : vertices()) p = options_.scale * p;
+    drop_inner_shells();
+    measure();
     return std::move(result_);
   }
 
@@ -214,11 +217,6 @@ class Check {
                              : ": " + std::to_string(done.turned) + " of " +
                                    std::to_string(shell_count) + " shells"));
     }
-    if (done.nested_outward > 0 && consistent) {
-      warn(counted(done.nested_outward, "shell lies", "shells lie") +
-           " within another and faces outward too: it is taken as solid, and its volume is counted "
-           "twice; turn it over if it is a cavity");
-    }
   }
 
   void look_for_self_intersections() {
@@ -226,21 +224,50 @@ class Check {
       facts().zero_area_triangles +=
           !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
     }
-    const SelfIntersections found = find_self_intersections(vertices(), triangles());
-    facts().self_intersections = found.pairs;
-    if (found.pairs == 0) return;
+    const std::vector<TrianglePair> pairs = find_self_intersections(vertices(), triangles());
+    facts().self_intersections = pairs.size();
+    if (pairs.empty()) return;
+    std::vector<std::uint32_t> first;
+    for (const TrianglePair& pair : pairs) {
+      if (first.empty() || first.back() != pair.first) first.push_back(pair.first);
+    }
     const auto place = [&](std::uint32_t triangle) {
       const Triangle& t = triangles()[triangle];
       return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / 3);
     };
-    warn("the mesh intersects itself: " + counted(found.pairs, "pair", "pairs") + " of triangles" +
-         places(found.first_triangles, place) +
-         "; what it encloses once or more is taken as inside, and the volume counts overlaps more "
-         "than once");
+    warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
+         places(first, place) +
+         "; what it encloses at least once is the solid, overlaps count once, and spheres cross no "
+         "triangle, not even those inside");
   }
 
-  void scale_and_measure() {
-    for (Vec3& p : vertices()) p = options_.scale * p;
+  // Shells that lie wholly within the solid would only be in the way of the spheres.
+  void drop_inner_shells() {
+    const OuterSurface outer(result_.solid);
+    std::size_t shell_count = 0;
+    const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
+    std::vector<char> bounds(shell_count, 0);
+    for (std::uint32_t t = 0; t < triangles().size(); ++t) {
+      if (!outer.bounds_nothing(t)) bounds[shell[t]] = 1;
+    }
+    facts().volume = outer.mass().volume;
+    const auto inner = static_cast<std::size_t>(std::count(bounds.begin(), bounds.end(), 0));
+    if (inner == 0 || inner == shell_count) return;
+    facts().inner_shells = inner;
+    note(
+        counted(facts().inner_shells, "shell", "shells") +
+        " inside of the solid dropped: nothing but solid lies on both sides; turn it over if it is "
+        "a cavity");
+    std::vector<Triangle> kept;
+    for (std::uint32_t t = 0; t < triangles().size(); ++t) {
+      if (bounds[shell[t]] != 0) kept.push_back(triangles()[t]);
+    }
+    triangles() = std::move(kept);
+    drop_unused(vertices(), triangles());
+    facts().shells -= facts().inner_shells;
+  }
+
+  void measure() {
     const Box box = box_of(vertices(), triangles());
     facts().low = box.low;
     facts().high = box.high;
@@ -250,7 +277,6 @@ class Check {
     facts().euler = static_cast<std::int64_t>(vertices().size()) -
                     static_cast<std::int64_t>(triangles().size() / 2);
     facts().area = area_of(result_.solid);
-    facts().volume = mass_properties(result_.solid).volume;
     if (!(facts().volume > kFlat * facts().area * norm(box.high - box.low))) {
       refuse(mesh_.name + ": the mesh is degenerate: it is closed, but encloses no volume (" +
              std::to_string(facts().volume) + " m^3)");

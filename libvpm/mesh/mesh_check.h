@@ -31,9 +31,10 @@ struct MeshFacts {
   std::size_t vertices = 0, triangles = 0;  // of the solid
   std::size_t shells = 0, cavities = 0;
   std::int64_t euler = 0;  // vertices - edges + triangles: 2 - 2 genus for one shell
-  double area = 0;
-  double volume = 0;
+  double area = 0;         // of the triangles, also of parts that lie inside
+  double volume = 0;       // of what is enclosed at least once
   Vec3 low, high;
+  std::size_t inner_shells = 0;  // dropped: they had solid on both sides
   std::size_t joined_vertices = 0;
   std::size_t unused_vertices = 0;
   std::size_t collapsed_triangles = 0;

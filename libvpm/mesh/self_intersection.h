@@ -2,24 +2,26 @@
 // share.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libvpm/model/solid.h"
 
 namespace vpm {
 
-struct SelfIntersections {
-  std::size_t pairs = 0;
-  // The first triangles, ascending, that meet a later one; at most kListed.
-  static constexpr std::size_t kListed = 8;
-  std::vector<std::uint32_t> first_triangles;
-};
+// Two triangles, the lower index first.
+using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
-// Decided by exact predicates. Triangles without area are left out. A group of a few triangles
-// stops at 100 partners each, so that a mesh of coinciding triangles costs no quadratic memory.
-SelfIntersections find_self_intersections(const std::vector<Vec3>& vertices,
-                                          const std::vector<Triangle>& triangles);
+// Ascending. Decided by exact predicates. Triangles without area are left out. A group of a few
+// triangles stops at 100 partners each, so that a mesh of coinciding triangles costs no quadratic
+// memory.
+std::vector<TrianglePair> find_self_intersections(const std::vector<Vec3>& vertices,
+                                                  const std::vector<Triangle>& triangles);
+
+// These, and pairs that overlap in one plane as far as `tolerance` (metres) tells: parts that were
+// made to meet are a rounding apart.
+std::vector<TrianglePair> find_contacts(const std::vector<Vec3>& vertices,
+                                        const std::vector<Triangle>& triangles, double tolerance);
 
 }  // namespace vpm

@@ -10,11 +10,14 @@
 namespace vpm {
 namespace {
 
+// Shells that cross each other are not one within the other unless most of these are.
+constexpr std::size_t kSamples = 15;
+
 struct Shell {
   std::vector<std::uint32_t> triangles;
   Vec3 low, high;
-  Vec3 sample;        // a vertex of it
-  double volume = 0;  // signed
+  std::vector<Vec3> samples;  // vertices of it
+  double volume = 0;          // signed
 };
 
 std::vector<Shell> collect(const std::vector<Vec3>& vertices,
@@ -24,7 +27,11 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
     shells[shell_of_triangle[t]].triangles.push_back(t);
   for (Shell& shell : shells) {
-    shell.sample = shell.low = shell.high = vertices[triangles[shell.triangles.front()][0]];
+    shell.low = shell.high = vertices[triangles[shell.triangles.front()][0]];
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const std::size_t at = k * shell.triangles.size() / kSamples;
+      shell.samples.push_back(vertices[triangles[shell.triangles[at]][k % 3]]);
+    }
     for (const std::uint32_t t : shell.triangles) {
       for (const std::uint32_t corner : triangles[t]) {
         const Vec3 p = vertices[corner];
@@ -64,7 +71,18 @@ bool box_holds(const Shell& shell, Vec3 p) {
          p.z > shell.low.z && p.z < shell.high.z;
 }
 
-// For each shell, the shells that enclose a vertex of it.
+bool encloses(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+              const Shell& outer, const Shell& inner) {
+  std::size_t enclosed = 0, left = kSamples;
+  for (const Vec3 p : inner.samples) {
+    if (enclosed + left-- <= kSamples / 2) return false;
+    enclosed +=
+        box_holds(outer, p) && std::abs(winding_number(vertices, triangles, outer, p)) > 0.5;
+  }
+  return enclosed > kSamples / 2;
+}
+
+// For each shell, the shells that enclose most of its samples.
 std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& vertices,
                                                        const std::vector<Triangle>& triangles,
                                                        const std::vector<Shell>& shells) {
@@ -72,8 +90,7 @@ std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& 
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       for (std::uint32_t other = 0; other < shells.size(); ++other) {
-        if (other == k || !box_holds(shells[other], shells[k].sample)) continue;
-        if (std::abs(winding_number(vertices, triangles, shells[other], shells[k].sample)) > 0.5)
+        if (other != k && encloses(vertices, triangles, shells[other], shells[k]))
           enclosing[k].push_back(other);
       }
     }
@@ -119,7 +136,7 @@ ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
       for (const std::uint32_t t : shells[k].triangles) std::swap(triangles[t][1], triangles[t][2]);
     }
     const bool outward = (shells[k].volume < 0) == wrong;
-    if (nested) ++(outward ? done.nested_outward : done.cavities);
+    done.cavities += nested && !outward;
   }
   return done;
 }

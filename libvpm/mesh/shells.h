@@ -10,7 +10,7 @@
 namespace vpm {
 
 struct ShellPlace {
-  std::size_t depth = 0;  // shells around it
+  std::size_t depth = 0;  // shells around it: each encloses most of its vertices
   bool outward = true;    // as its triangles face
 };
 
@@ -21,9 +21,8 @@ std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
                                      const std::vector<Triangle>& triangles);
 
 struct ShellOrientation {
-  std::size_t turned = 0;          // shells whose triangles were turned over
-  std::size_t cavities = 0;        // shells that face inward within another one
-  std::size_t nested_outward = 0;  // shells that face outward within another one
+  std::size_t turned = 0;    // shells whose triangles were turned over
+  std::size_t cavities = 0;  // shells that face inward within another one
 };
 
 // Turns shells so that the mesh bounds a solid from outside. Shells that lie within no other one

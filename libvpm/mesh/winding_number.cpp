@@ -74,7 +74,8 @@ WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * b
   }
 }
 
-double WindingNumber::at(Vec3 x) const {
+template <class Counts>
+double WindingNumber::enclosures(Vec3 x, Counts counts) const {
   const auto& nodes = bvh_.nodes();
   std::array<std::uint32_t, 64> stack;  // see TriangleBvh::closest
   std::size_t top = 0;
@@ -95,12 +96,23 @@ double WindingNumber::at(Vec3 x) const {
       } else {
         for (std::uint32_t i = child; i < child + count; ++i) {
           const TriangleBvh::Corners& t = bvh_.corners()[i];
-          sum += solid_angle(t.a - x, t.b - x, t.c - x);
+          if (counts(t.triangle)) sum += solid_angle(t.a - x, t.b - x, t.c - x);
         }
       }
     }
   }
   return sum / kFullSolidAngle;
+}
+
+double WindingNumber::at(Vec3 x) const {
+  return enclosures(x, [](std::uint32_t) { return true; });
+}
+
+double WindingNumber::at(Vec3 x, std::span<const std::uint32_t> without) const {
+  // No group that holds x counts as a dipole, so that each of these triangles is met.
+  return enclosures(x, [&](std::uint32_t t) {
+    return std::find(without.begin(), without.end(), t) == without.end();
+  });
 }
 
 }  // namespace vpm

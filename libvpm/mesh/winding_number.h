@@ -6,6 +6,8 @@
 // decides, whether or not the mesh intersects itself.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -21,8 +23,11 @@ class WindingNumber {
   // +1 inside of an outward oriented closed mesh, 0 outside. Thread-safe.
   double at(Vec3 x) const;
 
-  // Inside of the solid: enclosed a number of times other than zero.
-  bool inside(Vec3 x) const { return std::abs(at(x)) > 0.5; }
+  // The same without some triangles that x may lie on: half-way between the numbers on both sides.
+  double at(Vec3 x, std::span<const std::uint32_t> without) const;
+
+  // Inside of the solid: enclosed at least once.
+  bool inside(Vec3 x) const { return at(x) > 0.5; }
 
  private:
   struct Dipole {
@@ -30,6 +35,9 @@ class WindingNumber {
     Vec3 center;
     double far2 = 0;  // squared distance from the centre beyond which the dipole stands for all
   };
+
+  template <class Counts>
+  double enclosures(Vec3 x, Counts counts) const;
 
   const TriangleBvh& bvh_;
   std::vector<Dipole> dipoles_;  // four per node

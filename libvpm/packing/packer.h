@@ -41,7 +41,7 @@ struct PackResult {
 // max_radius does not cut it). A sphere is placed before another that is more than about one
 // hundredth larger only where a local search has missed the larger one.
 //
-// Inside is what the mesh encloses a number of times other than zero; spheres respect every
+// Inside is what the mesh encloses at least once, and volumes are of that; spheres respect every
 // triangle, also those of a self-intersecting mesh that lie inside of its union.
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the

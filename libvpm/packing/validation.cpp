@@ -136,7 +136,7 @@ class Probe {
       if (distance < 0) enclosed += groups_[k].sign;
       nearest = std::min(nearest, std::abs(distance));
     }
-    return enclosed != 0 ? -nearest : nearest;
+    return enclosed > 0 ? -nearest : nearest;
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/graph/test_packing.h"
 
@@ -112,11 +113,13 @@ TEST(Shares, CavitiesHoldNothing) {
   EXPECT_NEAR(shares.volume[0], shares.volume[1], 1e-3);
 }
 
-TEST(Shares, SelfIntersectionsAreCountedOnceAndSumToTheVolume) {
+TEST(Shares, OverlapsAreCountedOnce) {
   const Solid cross = joined(synthetic::make_box(1, 0.5, 0.5), synthetic::make_box(0.5, 1, 0.5));
-  const Shares shares = shares_of(cross, {{{0, 0, 0}, 0.25}});
-  EXPECT_NEAR(shares.volume[0], mass_properties(cross).volume, 1e-12);
-  EXPECT_NEAR(shares.quality.volume_error, -0.125 / 0.5, 2e-3);
+  const std::vector<Sphere> spheres{{{0, 0, 0}, 0.25}};
+  const SphereBvh bvh(spheres);
+  const Shares shares = find_shares(cross, enclosed_mass(cross), bvh, kSpacing);
+  EXPECT_NEAR(shares.volume[0], 0.375, 1e-12);
+  EXPECT_LT(std::abs(shares.quality.volume_error), 2e-3);
 }
 
 TEST(Shares, ThinSheetsAndNeedlesAreFound) {

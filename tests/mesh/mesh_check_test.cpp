@@ -79,10 +79,21 @@ TEST(MeshCheck, WithoutConsistencyNestedShellsAlternate) {
   EXPECT_DOUBLE_EQ(solid_of(nested).facts.volume, 64 - 8 + 1);
 }
 
-TEST(MeshCheck, ASolidWithinASolidIsAcceptedWithAWarning) {
+TEST(MeshCheck, ASolidWithinASolidIsDropped) {
   const CheckedSolid checked = solid_of(together(make_cube(2), make_cube(1)));
-  EXPECT_DOUBLE_EQ(checked.facts.volume, 9);
-  EXPECT_TRUE(says(checked.warnings, "within another"));
+  EXPECT_EQ(checked.solid.triangles, make_cube(2).triangles);
+  EXPECT_EQ(checked.solid.vertices, make_cube(2).vertices);
+  EXPECT_DOUBLE_EQ(checked.facts.volume, 8);
+  EXPECT_EQ(checked.facts.inner_shells, 1U);
+  EXPECT_EQ(checked.facts.shells, 1U);
+  EXPECT_TRUE(says(checked.notes, "1 shell inside of the solid dropped"));
+  // A hole within what is dropped is filled too; a hole through both stays.
+  const Solid filled = together(together(make_cube(3), make_cube(2)), turned_over(make_cube(1)));
+  EXPECT_DOUBLE_EQ(solid_of(filled).facts.volume, 27);
+  const CheckedSolid hollow =
+      solid_of(together(filled, turned_over(moved(make_cube(0.5), {0.1, 0, 0}))));
+  EXPECT_DOUBLE_EQ(hollow.facts.volume, 27 - 0.125);
+  EXPECT_EQ(hollow.facts.inner_shells, 2U);
 }
 
 TEST(MeshCheck, EachOfSeveralBodiesFacesOutward) {
@@ -92,11 +103,16 @@ TEST(MeshCheck, EachOfSeveralBodiesFacesOutward) {
   EXPECT_TRUE(says(checked.notes, "1 of 2 shells"));
 }
 
-TEST(MeshCheck, OverlappingBodiesAreAcceptedWithAWarning) {
+TEST(MeshCheck, OverlapsOfBodiesCountOnce) {
   const Solid pair = together(make_cube(2), moved(make_cube(2), {1, 0.9, 0.8}));
   const CheckedSolid checked = solid_of(pair);
   EXPECT_GT(checked.facts.self_intersections, 0U);
   EXPECT_TRUE(says(checked.warnings, "intersects itself"));
+  EXPECT_NEAR(checked.facts.volume, 16 - 1 * 1.1 * 1.2, 1e-13);
+  // Bodies, whichever way they face.
+  EXPECT_NEAR(solid_of(together(make_cube(2), turned_over(moved(make_cube(2), {1, 0.9, 0.8}))))
+                  .facts.volume,
+              16 - 1 * 1.1 * 1.2, 1e-13);
 }
 
 TEST(MeshCheck, RefusesAnOpenMeshWithCountAndPlace) {

@@ -1,0 +1,246 @@
+#include "libvpm/mesh/outer_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/self_intersection.h"
+#include "libvpm/mesh/topology.h"
+#include "libvpm/mesh/triangle_bvh.h"
+#include "libvpm/mesh/triangle_cells.h"
+#include "libvpm/mesh/winding_number.h"
+
+namespace vpm {
+namespace {
+
+// Triangles nearer to one plane than this share of the extent lie in it: parts that were made to
+// meet, and rounded since.
+constexpr double kCoplanar = 1e-12;
+
+struct Box {
+  Vec3 low, high;
+};
+
+Box box_of(const std::vector<Vec3>& points) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  for (const Vec3& p : points) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+// Six times the volume of tetrahedra over the origin, and four times its moment.
+struct Integral {
+  double six_volumes = 0;
+  Vec3 moment;
+  void add(double sign, Vec3 a, Vec3 b, Vec3 c) {
+    const double six_volume = sign * dot(a, cross(b, c));
+    six_volumes += six_volume;
+    moment += six_volume * (a + b + c);
+  }
+};
+
+// A triangle with coordinates in its own plane.
+struct Flat {
+  Vec3 a, ab, ac, normal;  // of unit length
+  Vec3 dual_b, dual_c;     // dot(dual_b, p - a) is the coordinate along ab
+
+  Flat(Vec3 from, Vec3 b, Vec3 c) : a(from), ab(b - from), ac(c - from) {
+    const Vec3 n = cross(ab, ac);
+    normal = normalized_or_zero(n);
+    dual_b = cross(ac, n) / squared_norm(n);
+    dual_c = cross(n, ab) / squared_norm(n);
+  }
+  double height(Vec3 p) const { return dot(normal, p - a); }
+  Vec2 flatten(Vec3 p) const { return {dot(dual_b, p - a), dot(dual_c, p - a)}; }
+  Vec3 lift(Vec2 p) const { return a + p.x * ab + p.y * ac; }
+  bool covers(Vec3 p) const {
+    const Vec2 q = flatten(p);
+    return q.x >= 0 && q.y >= 0 && q.x + q.y <= 1;
+  }
+};
+
+}  // namespace
+
+// Cuts the triangles that meet others, and asks for winding numbers.
+struct OuterSurface::Cells {
+  explicit Cells(const Solid& s)
+      : solid(s), bvh(s.vertices, s.triangles), winding(bvh), begin(s.triangles.size() + 1) {
+    const Box box = box_of(solid.vertices);
+    const Vec3 side = box.high - box.low;
+    origin = box.low + 0.5 * side;
+    const double farthest = std::max(norm(box.low), norm(box.high));
+    coplanar = kCoplanar * norm(side) + 8 * std::numeric_limits<double>::epsilon() * farthest;
+    const std::vector<TrianglePair> pairs =
+        find_contacts(solid.vertices, solid.triangles, coplanar);
+    partners.resize(2 * pairs.size());
+    for (const auto& [one, other] : pairs) ++begin[one + 1], ++begin[other + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (const auto& [one, other] : pairs) {
+      partners[next[one]++] = other;
+      partners[next[other]++] = one;
+    }
+  }
+
+  bool is_cut(std::uint32_t t) const { return begin[t] != begin[t + 1]; }
+  Vec3 corner(std::uint32_t t, std::size_t k) const {
+    return solid.vertices[solid.triangles[t][k]];
+  }
+  Flat flat(std::uint32_t t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
+
+  // `number` is the mean of the winding numbers on both sides, `step` what the inner has more.
+  static Side side_of(double number, double step) {
+    const bool in_front = number - 0.5 * step > 0.5, behind = number + 0.5 * step > 0.5;
+    if (in_front == behind) return Side::none;
+    return behind ? Side::outward : Side::turned;
+  }
+
+  Side side_of_whole(std::uint32_t t) const {
+    const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+    return side_of(winding.at(middle, std::array{t}), 1);
+  }
+
+  // Of a cell whose middle is x. Where several triangles coincide the first stands for all.
+  Side side_of_cell(std::uint32_t t, const Flat& plane, Vec3 x,
+                    const std::vector<std::uint32_t>& in_plane) const {
+    std::vector<std::uint32_t> here{t};
+    double step = 1;
+    for (const std::uint32_t other : in_plane) {
+      const Flat its = flat(other);
+      if (!its.covers(x)) continue;
+      if (other < t) return Side::none;
+      here.push_back(other);
+      step += dot(its.normal, plane.normal) > 0 ? 1 : -1;
+    }
+    return side_of(winding.at(x, here), step);
+  }
+
+  // Heights of the corners over the plane, 0 for those that lie in it.
+  std::array<double, 3> heights(const Flat& plane, std::uint32_t t) const {
+    std::array<double, 3> height{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      height[k] = plane.height(corner(t, k));
+      if (std::abs(height[k]) <= coplanar) height[k] = 0;
+    }
+    return height;
+  }
+
+  // Where another triangle meets the plane of this one; false where it lies in it.
+  bool add_segments(std::uint32_t t, const Flat& plane, std::uint32_t other,
+                    std::vector<TriangleSegment>& segments) const {
+    const std::array<Vec3, 3> p{corner(other, 0), corner(other, 1), corner(other, 2)};
+    const std::array<double, 3> height = heights(plane, other), flat_height{};
+    // Asked both ways, so that both say the same.
+    if (height == flat_height || heights(flat(other), t) == flat_height) {
+      for (std::size_t k = 0; k < 3; ++k)
+        segments.push_back({plane.flatten(p[k]), plane.flatten(p[(k + 1) % 3])});
+      return false;
+    }
+    std::vector<Vec2> ends;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3;
+      if (height[k] == 0) ends.push_back(plane.flatten(p[k]));
+      if (height[k] * height[l] < 0)
+        ends.push_back(plane.flatten(p[k] + height[k] / (height[k] - height[l]) * (p[l] - p[k])));
+    }
+    if (ends.size() == 2) segments.push_back({ends[0], ends[1]});
+    return true;
+  }
+
+  Integral integral_of_cut(std::uint32_t t) const {
+    const Flat plane = flat(t);
+    std::vector<TriangleSegment> segments;
+    std::vector<std::uint32_t> in_plane;
+    for (std::size_t k = begin[t]; k < begin[t + 1]; ++k) {
+      if (!add_segments(t, plane, partners[k], segments)) in_plane.push_back(partners[k]);
+    }
+    Integral integral;
+    for (const std::vector<Vec2>& cell : triangle_cells(segments)) {
+      if (cell.size() < 3) continue;
+      Vec2 middle;
+      for (const Vec2& p : cell) middle = {middle.x + p.x, middle.y + p.y};
+      const auto corners = static_cast<double>(cell.size());
+      const Side side =
+          side_of_cell(t, plane, plane.lift({middle.x / corners, middle.y / corners}), in_plane);
+      if (side == Side::none) continue;
+      const Vec3 first = plane.lift(cell[0]) - origin;
+      for (std::size_t k = 2; k < cell.size(); ++k) {
+        integral.add(side == Side::outward ? 1 : -1, first, plane.lift(cell[k - 1]) - origin,
+                     plane.lift(cell[k]) - origin);
+      }
+    }
+    return integral;
+  }
+
+  const Solid& solid;
+  TriangleBvh bvh;
+  WindingNumber winding;
+  std::vector<std::size_t> begin;  // rows of `partners`
+  std::vector<std::uint32_t> partners;
+  Vec3 origin;
+  double coplanar = 0;  // m
+};
+
+OuterSurface::OuterSurface(const Solid& solid) : side_(solid.triangles.size(), Side::unknown) {
+  const Cells cells(solid);
+  const auto count = static_cast<std::uint32_t>(solid.triangles.size());
+  const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
+  // Between triangles that meet no other both sides go on: one answer for each connected part.
+  std::vector<std::uint32_t> part;
+  for (std::uint32_t seed = 0; seed < count; ++seed) {
+    if (cells.is_cut(seed)) side_[seed] = Side::cut;
+    if (side_[seed] != Side::unknown) continue;
+    part.assign(1, seed);
+    side_[seed] = Side::none;
+    double largest = 0;
+    std::uint32_t widest = seed;
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      const std::uint32_t t = part[k];
+      const Vec3 a = cells.corner(t, 0);
+      const double area2 = squared_norm(cross(cells.corner(t, 1) - a, cells.corner(t, 2) - a));
+      if (area2 > largest) largest = area2, widest = t;
+      for (const std::uint32_t other : topology.neighbor[t]) {
+        if (other == Topology::kNone || cells.is_cut(other) || side_[other] != Side::unknown)
+          continue;
+        side_[other] = Side::none;
+        part.push_back(other);
+      }
+    }
+    const Side side = cells.side_of_whole(widest);
+    for (const std::uint32_t t : part) side_[t] = side;
+  }
+
+  std::vector<Integral> of_triangle(count);
+  constexpr std::size_t kTogether = 16;
+  parallel_for(count, kTogether, [&](std::size_t begin, std::size_t end) {
+    for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
+      if (side_[t] == Side::cut) {
+        of_triangle[t] = cells.integral_of_cut(t);
+      } else if (side_[t] != Side::none) {
+        of_triangle[t].add(side_[t] == Side::outward ? 1 : -1, cells.corner(t, 0) - cells.origin,
+                           cells.corner(t, 1) - cells.origin, cells.corner(t, 2) - cells.origin);
+      }
+    }
+  });
+  Integral sum;
+  for (const Integral& integral : of_triangle) {
+    sum.six_volumes += integral.six_volumes;
+    sum.moment += integral.moment;
+  }
+  mass_ = {sum.six_volumes / 6, cells.origin};
+  if (sum.six_volumes != 0) mass_.center_of_mass += sum.moment / (4 * sum.six_volumes);
+}
+
+MassProperties enclosed_mass(const Solid& solid) {
+  if (solid.triangles.empty()) return mass_properties(solid);
+  return OuterSurface(solid).mass();
+}
+
+}  // namespace vpm

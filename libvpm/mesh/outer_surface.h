@@ -1,0 +1,38 @@
+// Which parts of a closed mesh bound the solid that its winding number describes.
+//
+// Inside is what the mesh encloses at least once (winding number > 0): bodies that overlap make one
+// body, a shell that faces inward takes away. What lies wholly inside bounds nothing. Triangles
+// that meet others are cut along them into cells, and each cell asks for the winding number on its
+// two sides, so that volumes are exact up to rounding.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/model/solid.h"
+
+namespace vpm {
+
+class OuterSurface {
+ public:
+  // The solid is closed and consistently oriented, with at least one triangle.
+  explicit OuterSurface(const Solid& solid);
+
+  // Whether the triangle meets no other and has the inside, or the outside, on both of its sides.
+  bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }
+  const MassProperties& mass() const { return mass_; }
+
+ private:
+  // `turned` bounds the solid with the side that its triangle calls the inner one.
+  enum class Side : char { unknown, outward, turned, none, cut };
+  struct Cells;
+
+  std::vector<Side> side_;
+  MassProperties mass_;
+};
+
+// Volume and centre of mass of what the mesh encloses, overlaps counted once. Equals
+// mass_properties to the bit where the surface neither meets itself nor lies within itself.
+MassProperties enclosed_mass(const Solid& solid);
+
+}  // namespace vpm
