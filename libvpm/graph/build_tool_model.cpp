@@ -105,8 +105,9 @@ ShareQuality fill_shares(const Normalized& n, const SphereBvh& bvh, Level& level
     level.share_centroid.push_back(n.frame.from(shares.centroid[i]));
     level.share_reach.push_back(n.frame.unit * shares.reach[i]);
   }
-  Cells cells = build_cells(bvh.spheres(), shares, std::cbrt(n.mass.volume) / kSamplesPerLength,
-                            n.mass.center_of_mass, n.frame.unit, n.mass.volume);
+  const double size = std::cbrt(n.mass.volume) / samples_per_length(level.sphere_count);
+  Cells cells =
+      build_cells(bvh.spheres(), shares, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
   level.block_begin = std::move(cells.block_begin);
   level.blocks = std::move(cells.blocks);
   level.samples = std::move(cells.samples);
@@ -114,6 +115,12 @@ ShareQuality fill_shares(const Normalized& n, const SphereBvh& bvh, Level& level
 }
 
 }  // namespace
+
+double samples_per_length(std::uint32_t spheres) {
+  constexpr double kSpheresOfFinest = 1000;
+  return std::clamp(kMostSamplesPerLength * std::cbrt(spheres / kSpheresOfFinest),
+                    kLeastSamplesPerLength, kMostSamplesPerLength);
+}
 
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<ShareQuality>* quality) {

@@ -11,10 +11,14 @@
 
 namespace vpm {
 
-// Size of the cell samples: this many fit along cbrt(volume). With 1000 spheres and 32, the volume
-// that a plane or a ball cuts off is within 0.03 % of the solid's; up to 0.2 % for a plane within a
-// sample's size of a parallel face, because the samples are balls that smooth the face.
-inline constexpr double kSamplesPerLength = 32;
+// Size of the cell samples: this many fit along cbrt(volume), so that a level has about 64 samples
+// per sphere, up to those of 1000 spheres: beyond, samples of the spheres' own size follow anyway.
+// A level of few spheres thus costs little, and its error is that of its own size: the volume that
+// a plane or a ball cuts off is within 0.03 % of the solid's with 1000 spheres; up to 0.2 % for a
+// plane within a sample's size of a parallel face, because the samples are balls that smooth the
+// face.
+double samples_per_length(std::uint32_t spheres);
+inline constexpr double kMostSamplesPerLength = 32, kLeastSamplesPerLength = 6;
 
 struct GraphOptions {
   double epsilon = 0;                 // m; 0 takes a tenth of each level's smallest radius

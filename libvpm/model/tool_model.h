@@ -74,6 +74,11 @@ struct Level {
   std::vector<CellSample> samples;  // weights sum to 1
 };
 
+// |volume - truth| / volume of the solid, over cuts by planes and balls at all depths.
+struct LevelError {
+  double mean = 0, p95 = 0, worst = 0;
+};
+
 struct ToolModel {
   double volume = 0;            // of the solid
   Vec3 center_of_mass;          // of the solid; blocks and samples are stored about it
@@ -81,6 +86,7 @@ struct ToolModel {
   std::string solid_hash;       // content_hash of the solid
   std::vector<Sphere> spheres;  // largest first
   std::vector<Level> levels;    // ascending sphere_count, at least one
+  std::vector<LevelError> calibration;  // of each level; empty where it has not been measured
   nlohmann::json provenance;
 
   // The level with this many spheres; the finest for 0. Throws Error(usage) listing the levels

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/model/sphere_check.h"
 #include "libvpm/model/tool_model.h"
 
@@ -11,10 +12,21 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-// Checks one level; `where` is "<name>: level k".
+// Sums over the parts of a tool are off by rounding only.
+constexpr double kSumTolerance = 1e-6;
+// Parts further than this many reaches from the centre of mass do not belong to the tool. The fixed
+// point of libvpm/query/tool_sum.h holds arms up to 8.
+constexpr double kFarthestPart = 2;
+// What libvpm/query/cell.h counts exactly.
+constexpr std::size_t kMostSamplesOfACell = std::size_t{1} << 20;
+// Traversals of a hierarchy recurse; one that halves its spheres at every node needs 32.
+constexpr std::uint32_t kDeepestHierarchy = 1000;
+
+// Checks one level of a model; `where` is "<name>: level k".
 class LevelCheck {
  public:
-  LevelCheck(const Level& level, std::string where) : level_(level), where_(std::move(where)) {}
+  LevelCheck(const ToolModel& model, const Level& level, std::string where)
+      : model_(model), level_(level), where_(std::move(where)) {}
 
   void run() const {
     if (!(level_.epsilon >= 0 && std::isfinite(level_.epsilon)))
@@ -24,6 +36,7 @@ class LevelCheck {
     grid();
     shares();
     cells();
+    sums();
   }
 
  private:
@@ -75,6 +88,7 @@ class LevelCheck {
     if (nodes.size() > std::numeric_limits<std::uint32_t>::max())
       fail("its hierarchy has more than 2^32 - 1 nodes");
     std::vector<char> node_met(nodes.size()), leaf_met(leaves.size());
+    std::vector<std::uint32_t> depth(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const HierarchyNode& node = nodes[i];
       const auto fail_node = [&](const std::string& defect) {
@@ -91,7 +105,10 @@ class LevelCheck {
       for (std::uint32_t child = node.begin; child < node.end; ++child) {
         if (met[child] != 0) fail_node("shares a child with another");
         met[child] = 1;
+        if (!of_leaves) depth[child] = depth[i] + 1;
       }
+      if (depth[i] > kDeepestHierarchy)
+        fail_node("is deeper than " + std::to_string(kDeepestHierarchy));
     }
     if (std::count(node_met.begin(), node_met.end(), 1) + 1 != std::ssize(nodes) ||
         std::count(leaf_met.begin(), leaf_met.end(), 1) != std::ssize(leaves))
@@ -123,9 +140,9 @@ class LevelCheck {
       fail("its shares are not as many as its spheres");
     for (std::size_t i = 0; i < n; ++i) {
       if (!(level_.share_volume[i] >= 0) || !std::isfinite(level_.share_volume[i]) ||
-          !is_finite(level_.share_centroid[i]) || !(level_.share_reach[i] >= 0) ||
+          !is_finite(level_.share_centroid[i]) || !(level_.share_reach[i] > 0) ||
           !std::isfinite(level_.share_reach[i]))
-        fail("share " + std::to_string(i) + " is negative or not finite");
+        fail("share " + std::to_string(i) + " is negative or not finite, or has no reach");
     }
   }
 
@@ -142,6 +159,12 @@ class LevelCheck {
       end = block.end;
     }
     if (end != level_.samples.size()) fail("samples belong to no block");
+    for (std::size_t i = 0; i < level_.sphere_count; ++i) {
+      const std::uint32_t first = level_.block_begin[i], last = level_.block_begin[i + 1];
+      if (first < last &&
+          level_.blocks[last - 1].end - level_.blocks[first].begin > kMostSamplesOfACell)
+        fail("the share of sphere " + std::to_string(i) + " has more than 2^20 samples");
+    }
     for (std::size_t i = 0; i < level_.samples.size(); ++i) {
       const CellSample& sample = level_.samples[i];
       if (!is_finite(sample.center) || !(sample.radius >= 0) || !std::isfinite(sample.radius) ||
@@ -150,16 +173,70 @@ class LevelCheck {
     }
   }
 
+  // What the fixed-point sums of a query rely on: no part lies beyond the tool, and the parts
+  // together are no more than the whole.
+  void sums() const {
+    const double farthest = kFarthestPart * model_.reach;
+    double balls = 0, shares = 0, weights = 0;
+    for (std::size_t i = 0; i < level_.sphere_count; ++i) {
+      const Sphere& sphere = model_.spheres[i];
+      if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= farthest) ||
+          !(level_.share_reach[i] <= 2 * farthest))
+        fail("sphere " + std::to_string(i) + " or its share lies beyond the tool's reach");
+      balls += volume(sphere);
+      shares += level_.share_volume[i];
+    }
+    for (std::size_t i = 0; i < level_.blocks.size(); ++i) {
+      if (!(norm(widen(level_.blocks[i].center)) <= farthest))
+        fail("block " + std::to_string(i) + " lies beyond the tool's reach");
+    }
+    for (std::size_t i = 0; i < level_.samples.size(); ++i) {
+      const CellSample& sample = level_.samples[i];
+      if (!(norm(widen(sample.center)) <= farthest) || !(sample.radius <= farthest))
+        fail("sample " + std::to_string(i) + " lies beyond the tool's reach");
+      weights += sample.weight;
+    }
+    const auto differ = [](double sum, double whole) {
+      return !(std::abs(sum - whole) <= kSumTolerance * whole);
+    };
+    if (!(balls <= (1 + kSumTolerance) * model_.volume))
+      fail("its spheres hold " + std::to_string(balls / model_.volume) +
+           " times the tool's volume, so they overlap");
+    if (differ(shares, model_.volume))
+      fail("its shares sum to " + std::to_string(shares / model_.volume) +
+           " times the tool's volume");
+    if (differ(weights, 1))
+      fail("the weights of its samples sum to " + std::to_string(weights) + " instead of 1");
+  }
+
+  const ToolModel& model_;
   const Level& level_;
   std::string where_;
 };
 
+void check_calibration(const ToolModel& model, const std::string& name) {
+  if (model.calibration.empty()) return;
+  if (model.calibration.size() != model.levels.size())
+    refuse(name + ": its calibration has " + std::to_string(model.calibration.size()) +
+           " entries for " + std::to_string(model.levels.size()) + " levels");
+  for (const LevelError& error : model.calibration) {
+    if (!(error.mean >= 0 && error.p95 >= 0 && error.mean <= error.worst &&
+          error.p95 <= error.worst && std::isfinite(error.worst)))
+      refuse(name + ": its calibration is negative, not finite or exceeds its own worst case");
+  }
+}
+
 }  // namespace
 
 void validate(const ToolModel& model, const std::string& name) {
-  if (!(model.volume > 0) || !std::isfinite(model.volume) || !is_finite(model.center_of_mass) ||
-      !(model.reach >= 0) || !std::isfinite(model.reach))
+  if (!(model.volume > 0) || !std::isnormal(model.volume) || !is_finite(model.center_of_mass) ||
+      !std::isfinite(model.reach))
     refuse(name + ": volume, centre of mass and reach must be finite, and the volume positive");
+  if (!(model.reach >= kSmallestLength && model.reach <= kLargestLength) ||
+      !is_in_range(model.center_of_mass))
+    refuse(name +
+           ": the tool is smaller than 2^-100 m, larger than 2^100 m or further than that from its "
+           "origin; scale it");
   check_spheres(model.spheres, name);
   if (model.levels.empty()) refuse(name + ": the tool model has no levels");
   std::uint32_t previous = 0;
@@ -171,9 +248,10 @@ void validate(const ToolModel& model, const std::string& name) {
              " spheres; levels must ascend and not exceed the model's " +
              std::to_string(model.spheres.size()));
     }
-    LevelCheck(model.levels[k], where).run();
+    LevelCheck(model, model.levels[k], where).run();
     previous = count;
   }
+  check_calibration(model, name);
 }
 
 }  // namespace vpm

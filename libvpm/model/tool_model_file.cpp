@@ -11,6 +11,7 @@ constexpr file::ChunkId kEdgeBegin("EDGB"), kNeighbors("EDGN"), kNodes("NODE"), 
 constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
 constexpr file::ChunkId kShareVolume("SHRV"), kShareCentroid("SHRC"), kShareReach("SHRR");
 constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
+constexpr file::ChunkId kCalibration("CALB");
 
 struct ToolRecord {
   double volume;
@@ -26,7 +27,8 @@ struct LevelRecord {
 };
 static_assert(sizeof(ToolRecord) == 40 && sizeof(LevelRecord) == 64 &&
                   sizeof(HierarchyNode) == 48 && sizeof(CellBlock) == 24 &&
-                  sizeof(CellSample) == 24 && sizeof(Sphere) == 32 && sizeof(Vec3) == 24,
+                  sizeof(CellSample) == 24 && sizeof(Sphere) == 32 && sizeof(Vec3) == 24 &&
+                  sizeof(LevelError) == 24,
               "chunks hold these types as they lie in memory");
 
 LevelRecord record_of(const Level& level) {
@@ -90,6 +92,7 @@ ToolModel model_of(const file::Reader& reader) {
   const std::vector<LevelRecord> records = reader.read<LevelRecord>(kLevels, 0);
   for (std::uint32_t k = 0; k < records.size(); ++k)
     model.levels.push_back(level_of(records[k], reader, k));
+  if (reader.has(kCalibration, 0)) model.calibration = reader.read<LevelError>(kCalibration, 0);
   validate(model, reader.name());
   return model;
 }
@@ -116,6 +119,7 @@ void write_tool_model(const std::string& path, const ToolModel& model) {
   for (const Level& level : model.levels) records.push_back(record_of(level));
   writer.add(kLevels, 0, std::span(std::as_const(records)));
   for (std::uint32_t k = 0; k < model.levels.size(); ++k) add_level(writer, model.levels[k], k);
+  if (!model.calibration.empty()) writer.add(kCalibration, 0, std::span(model.calibration));
   writer.write(path);
 }
 

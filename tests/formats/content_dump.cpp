@@ -31,6 +31,10 @@ json of(const CellSample& s) {
   return {{"center", of(s.center)}, {"radius", double{s.radius}}, {"weight", s.weight}};
 }
 
+json of(const LevelError& e) {
+  return {{"mean", e.mean}, {"p95", e.p95}, {"worst", e.worst}};
+}
+
 json of(const Level& level);
 
 template <class T>
@@ -73,10 +77,12 @@ json dump(const Packing& packing) {
 }
 
 json dump(const ToolModel& model) {
-  return {{"volume", model.volume},         {"center_of_mass", of(model.center_of_mass)},
-          {"reach", model.reach},           {"solid_hash", model.solid_hash},
-          {"spheres", list(model.spheres)}, {"levels", list(model.levels)},
-          {"provenance", model.provenance}};
+  json all{{"volume", model.volume},         {"center_of_mass", of(model.center_of_mass)},
+           {"reach", model.reach},           {"solid_hash", model.solid_hash},
+           {"spheres", list(model.spheres)}, {"levels", list(model.levels)},
+           {"provenance", model.provenance}};
+  if (!model.calibration.empty()) all["calibration"] = list(model.calibration);
+  return all;
 }
 
 json dump(const Cloud& cloud) {

@@ -113,6 +113,12 @@ ToolModel cube_model() {
   return model;
 }
 
+ToolModel calibrated_cube_model() {
+  ToolModel model = cube_model();
+  model.calibration = {{0.01, 0.03, 0.05}, {0.005, 0.0125, 0.02}};
+  return model;
+}
+
 Cloud wall_cloud() {
   CloudSensor sensor;
   sensor.camera.intrinsics = {4, 4, 1.5, 1};

@@ -40,6 +40,9 @@ TEST(Golden, Packing) {
 TEST(Golden, ToolModel) {
   expect_golden("cube.vpmg", read_tool_model, write_tool_model, cube_model());
 }
+TEST(Golden, CalibratedToolModel) {
+  expect_golden("calibrated.vpmg", read_tool_model, write_tool_model, calibrated_cube_model());
+}
 TEST(Golden, CloudWithSensor) {
   expect_golden("wall.vpmc", read_cloud, write_cloud, wall_cloud());
 }

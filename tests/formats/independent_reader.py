@@ -73,11 +73,15 @@ def read_level(record, chunks, k):
 def read_tool_model(header, chunks):
     (volume, x, y, z, reach), = records(chunks["TOOL", 0], "5d")
     levels = records(chunks["LEVL", 0], "5d6I")
-    return {"volume": volume, "center_of_mass": [x, y, z], "reach": reach,
-            "solid_hash": header["solid_hash"],
-            "spheres": records(chunks["SPHR", 0], "4d"),
-            "levels": [read_level(record, chunks, k) for k, record in enumerate(levels)],
-            "provenance": header["provenance"]}
+    model = {"volume": volume, "center_of_mass": [x, y, z], "reach": reach,
+             "solid_hash": header["solid_hash"],
+             "spheres": records(chunks["SPHR", 0], "4d"),
+             "levels": [read_level(record, chunks, k) for k, record in enumerate(levels)],
+             "provenance": header["provenance"]}
+    if ("CALB", 0) in chunks:
+        model["calibration"] = [{"mean": e[0], "p95": e[1], "worst": e[2]}
+                                for e in records(chunks["CALB", 0], "3d")]
+    return model
 
 
 def read_cloud(header, chunks):

@@ -40,6 +40,7 @@ void write_refused(const fs::path& golden, const fs::path& folder) {
   for (const golden::RefusedFile& file :
        golden::refused_files(file::read_all((golden / "cube.vpmp").string()),
                              file::read_all((golden / "cube.vpmg").string()),
+                             file::read_all((golden / "calibrated.vpmg").string()),
                              file::read_all((golden / "wall.vpmc").string()))) {
     file::write_all((folder / file.name).string(), std::span<const std::byte>(file.bytes));
     manifest.push_back(
@@ -62,6 +63,7 @@ int main(int argc, char** argv) {
     fs::create_directories(refused);
     write_pair(golden / "cube.vpmp", golden::cube_packing(), write_packing);
     write_pair(golden / "cube.vpmg", golden::cube_model(), write_tool_model);
+    write_pair(golden / "calibrated.vpmg", golden::calibrated_cube_model(), write_tool_model);
     write_pair(golden / "wall.vpmc", golden::wall_cloud(), write_cloud);
     write_pair(golden / "scattered.vpmc", golden::scattered_cloud(), write_cloud);
     write_refused(golden, refused);

@@ -199,6 +199,16 @@ void add_models(std::vector<RefusedFile>& all, const std::vector<std::byte>& goo
       Spoiled(good).set("SMPL", 0, 16, kInfinity));
 }
 
+void add_calibrations(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
+  const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
+    all.push_back({std::string(name) + ".vpmg", Kind::tool_model, message, spoiled.bytes()});
+  };
+  add("calibration_negative", "calibration is negative", Spoiled(good).set("CALB", 0, 24, -0.5));
+  add("calibration_not_finite", "calibration is negative, not finite",
+      Spoiled(good).set("CALB", 0, 16, kNan));
+  add("calibration_above_worst", "exceeds its own worst", Spoiled(good).set("CALB", 0, 8, 0.5));
+}
+
 void add_clouds(std::vector<RefusedFile>& all, const std::vector<std::byte>& good) {
   const auto add = [&](const char* name, const char* message, Spoiled& spoiled) {
     all.push_back({std::string(name) + ".vpmc", Kind::cloud, message, spoiled.bytes()});
@@ -223,6 +233,7 @@ std::vector<std::byte> resealed(std::vector<std::byte> bytes) {
 
 std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
+                                       const std::vector<std::byte>& calibrated_model,
                                        const std::vector<std::byte>& cloud) {
   std::vector<RefusedFile> all;
   add_containers(all, packing);
@@ -231,6 +242,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                  cloud});
   add_packings(all, packing);
   add_models(all, model);
+  add_calibrations(all, calibrated_model);
   add_clouds(all, cloud);
   return all;
 }

@@ -22,6 +22,7 @@ struct RefusedFile {
 // Made from sound files, one defect each; apart from checksum_*, all checksums are right.
 std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
+                                       const std::vector<std::byte>& calibrated_model,
                                        const std::vector<std::byte>& cloud);
 
 }  // namespace vpm::golden

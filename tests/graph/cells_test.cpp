@@ -33,7 +33,7 @@ struct Error {
 
 class Cells : public testing::TestWithParam<test::Shape (*)()> {};
 
-// The promise of kSamplesPerLength.
+// The promise of samples_per_length.
 TEST_P(Cells, CutByPlanesAndBallsAsTheSolid) {
   const test::Shape shape = GetParam()();
   const Packing packing = test::greedy_packing(shape, 1000);

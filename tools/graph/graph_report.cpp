@@ -36,6 +36,11 @@ nlohmann::ordered_json graph_report(const ToolModel& model,
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < model.levels.size(); ++k) {
     levels.push_back(level_report(model.levels[k], quality[k]));
+    if (!model.calibration.empty()) {
+      const LevelError& error = model.calibration[k];
+      levels.back()["calibration"] = {
+          {"mean", error.mean}, {"p95", error.p95}, {"worst", error.worst}};
+    }
   }
   nlohmann::ordered_json report = levels.back();
   report["volume"] = model.volume;

@@ -5,6 +5,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/graph/build_tool_model.h"
+#include "libvpm/graph/calibration.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing_file.h"
@@ -18,6 +19,7 @@ namespace {
 struct Arguments {
   std::string packing, output, mesh, report;
   GraphOptions options;
+  bool calibrate = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -31,6 +33,9 @@ void declare(CLI::App& app, Arguments& a) {
                  "Sphere counts of further levels of detail, e.g. 250,1000,4000")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
+  app.add_flag("--calibrate", a.calibrate,
+               "Measure each level's error against the solid and keep it with the model, for "
+               "vpm-query --max-error");
   app.add_option("--report", a.report, "What was made, as JSON");
 }
 
@@ -71,6 +76,7 @@ void run(const Tool& tool, Arguments& a) {
   std::vector<ShareQuality> quality;
   const auto start = std::chrono::steady_clock::now();
   ToolModel model = build_tool_model(packing, a.options, &quality);
+  if (a.calibrate) model.calibration = calibrate(model, packing.solid);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   model.provenance = {{"tool", tool.name()},
                       {"version", VPM_VERSION},

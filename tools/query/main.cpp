@@ -11,6 +11,7 @@
 #include "libvpm/model/tool_model_file.h"
 #include "libvpm/query/query.h"
 #include "tools/common/tool.h"
+#include "tools/query/level_query.h"
 #include "tools/query/pose_reader.h"
 #include "tools/query/query_report.h"
 #include "tools/query/spheres_out.h"
@@ -21,6 +22,9 @@ namespace {
 struct Arguments {
   std::string tool, cloud, pose, poses, measure = "refined", output = "-", spheres_out, stats;
   std::uint32_t level = 0;
+  std::string max_error;
+  std::optional<double> deadline_us;
+  bool for_scene = false;
   double stiffness = 1;
 };
 
@@ -34,6 +38,14 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--level", a.level, "Spheres to use: one of the model's levels; 0 is the finest")
       ->capture_default_str();
+  app.add_option("--max-error", a.max_error,
+                 "Use the coarsest level with at most this error by its calibration: 0.5% or "
+                 "0.005 of the tool's volume");
+  app.add_option("--deadline-us", a.deadline_us,
+                 "Use the finest level that answers in this many microseconds here; results then "
+                 "depend on the machine's speed. Wins over --max-error and --for-scene");
+  app.add_flag("--for-scene", a.for_scene,
+               "Use the finest level without spheres that the cloud's points cannot resolve");
   app.add_option("--stiffness", a.stiffness,
                  "N/m^3: scales force and torque; 1 leaves them in m^3 and m^4")
       ->capture_default_str();
@@ -51,6 +63,12 @@ void check(const Arguments& a, const CommonOptions& common) {
   if ((a.tool == "-") + (a.cloud == "-") + (a.poses == "-") > 1) {
     wrong("only one of --tool, --cloud and --poses can be standard input");
   }
+  if ((a.level != 0) + !a.max_error.empty() + a.for_scene > 1 || (a.level != 0 && a.deadline_us))
+    wrong(
+        "--level, --max-error and --for-scene choose the level: give one of them; --deadline-us "
+        "goes with the last two only");
+  if (a.deadline_us && !(*a.deadline_us > 0))
+    wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
   check_output(a.output, common);
   check_output(a.spheres_out, common);
@@ -78,21 +96,47 @@ class ResultSink {
   std::string path_, held_;
 };
 
+LevelRequest level_request(const Arguments& a) {
+  LevelRequest request;
+  if (!a.max_error.empty()) request.max_error = fraction_from_text(a.max_error, "--max-error");
+  if (a.deadline_us) request.deadline_seconds = 1e-6 * *a.deadline_us;
+  request.for_scene = a.for_scene;
+  return request;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void note_deviation(const Tool& tool, double deviation) {
+  if (!(deviation > kRotationRounding)) return;
+  char text[96];
+  std::snprintf(text, sizeof text,
+                "rotations were up to %.2g away from orthonormal and have been normalised",
+                deviation);
+  tool.note(text);
+}
+
+void note_scale(const Tool& tool, const SceneScale& scale, const Level& level) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the scene resolves spheres from %.3g m (points %.3g m apart, noise %.3g m): "
+                "at most %u spheres are used",
+                scale.smallest_radius(), scale.spacing, scale.noise, level.sphere_count);
+  tool.note(text);
+}
+
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
+  const LevelRequest request = level_request(a);
   double pose_deviation = 0;
   std::optional<Pose> single;
   if (!a.pose.empty()) single = pose_from_text(a.pose, &pose_deviation);
   const ToolModel model = read_tool_model(a.tool);
   QueryOptions options;
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
-  options.level = a.level;
+  options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
-  Query query(model, options);
   const Cloud cloud = read_cloud(a.cloud);
   const auto start = std::chrono::steady_clock::now();
   const PreparedCloud prepared(cloud);
@@ -100,40 +144,36 @@ void run(const Tool& tool, const Arguments& a) {
 
   std::optional<PoseReader> reader;
   if (!single) reader.emplace(a.poses);
+  std::optional<Pose> pose = single ? single : reader->next();
+  if (!pose) refuse(a.poses + ": no pose in it");
+  LevelQuery query(model, options, request, prepared, *pose);
+  if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   ResultSink sink(a.output);
   std::vector<double> seconds;
-  std::optional<Pose> last;
-  for (std::size_t index = 0;; ++index) {
-    const std::optional<Pose> pose = reader ? reader->next() : (index == 0 ? single : std::nullopt);
-    if (!pose) break;
-    const auto begin = std::chrono::steady_clock::now();
+  Pose last;
+  while (pose) {
     const Result result = query.run(prepared, *pose);
-    seconds.push_back(seconds_since(begin));
-    sink.line(result_line(index, result, query.level(), options.measure));
-    last = pose;
+    sink.line(result_line(seconds.size(), result, query.query().level(), options.measure,
+                          query.reason()));
+    seconds.push_back(query.seconds());
+    last = *pose;
+    pose = reader ? reader->next() : std::nullopt;
   }
-  if (!last) refuse(a.poses + ": no pose in it");
   sink.finish();
-
-  if (reader) pose_deviation = reader->largest_deviation();
-  if (pose_deviation > kRotationRounding) {
-    char text[96];
-    std::snprintf(text, sizeof text,
-                  "rotations were up to %.2g away from orthonormal and have been normalised",
-                  pose_deviation);
-    tool.note(text);
-  }
+  note_deviation(tool, reader ? reader->largest_deviation() : pose_deviation);
+  const Level& level = query.query().level();
   if (!a.spheres_out.empty()) {
-    write_spheres(a.spheres_out, {model.spheres.data(), query.level().sphere_count}, query.states(),
-                  *last);
+    write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
+                  last);
   }
   if (!a.stats.empty()) {
-    nlohmann::json stats = query_stats(std::move(seconds), prepare_seconds);
+    nlohmann::json stats = query_stats(std::move(seconds), prepare_seconds, a.deadline_us);
     stats["device"] = "cpu";
     stats["threads"] = thread_count();
     stats["cloud_points"] = prepared.positions().size();
-    stats["level"] = query.level().sphere_count;
+    stats["level"] = level.sphere_count;
     stats["measure"] = a.measure;
+    if (query.scale()) stats["scene"] = scene_report(*query.scale());
     file::write_all(a.stats, stats.dump(2) + "\n");
   }
 }

@@ -6,7 +6,7 @@
 namespace vpm::tools {
 
 std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
-                        Measure measure) {
+                        Measure measure, const std::string& level_reason) {
   nlohmann::ordered_json line;
   line["pose"] = pose_index;
   line["volume"] = r.volume;
@@ -18,24 +18,42 @@ std::string result_line(std::size_t pose_index, const Result& r, const Level& le
   line["points"] = r.points;
   line["level"] = level.sphere_count;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
+  if (!level_reason.empty()) line["level_reason"] = level_reason;
   return line.dump() + "\n";
 }
 
-nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds) {
+nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,
+                           std::optional<double> deadline_us) {
   std::sort(seconds.begin(), seconds.end());
   const auto microseconds = [&](double quantile) {
     if (seconds.empty()) return 0.0;
     const double rank = std::ceil(quantile * static_cast<double>(seconds.size()));
     return 1e6 * seconds[static_cast<std::size_t>(std::max(rank - 1, 0.0))];
   };
-  return {{"poses", seconds.size()},
-          {"prepare_seconds", prepare_seconds},
-          {"query_us",
-           {{"min", microseconds(0)},
-            {"median", microseconds(0.5)},
-            {"p95", microseconds(0.95)},
-            {"p99", microseconds(0.99)},
-            {"max", microseconds(1)}}}};
+  nlohmann::json stats{{"poses", seconds.size()},
+                       {"prepare_seconds", prepare_seconds},
+                       {"query_us",
+                        {{"min", microseconds(0)},
+                         {"median", microseconds(0.5)},
+                         {"p95", microseconds(0.95)},
+                         {"p99", microseconds(0.99)},
+                         {"max", microseconds(1)}}}};
+  if (deadline_us) {
+    const auto kept =
+        std::upper_bound(seconds.begin(), seconds.end(), 1e-6 * *deadline_us) - seconds.begin();
+    stats["deadline"] = {{"us", *deadline_us},
+                         {"kept", static_cast<double>(kept) / static_cast<double>(seconds.size())}};
+  }
+  return stats;
+}
+
+nlohmann::json scene_report(const SceneScale& scale) {
+  nlohmann::json report{{"spacing", scale.spacing},
+                        {"noise", scale.noise},
+                        {"curvature", scale.curvature},
+                        {"smallest_radius", scale.smallest_radius()}};
+  if (std::isfinite(scale.largest_radius())) report["largest_radius"] = scale.largest_radius();
+  return report;
 }
 
 }  // namespace vpm::tools

@@ -1,0 +1,151 @@
+#include "libvpm/graph/calibration.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/cut_volume.h"
+#include "libvpm/query/ball_fraction.h"
+
+namespace vpm {
+namespace {
+
+// Volumes of the solid and of the model may differ by rounding only.
+constexpr double kVolumeTolerance = 1e-9;
+constexpr double kHigh = 0.95;  // the quantile that LevelError::p95 holds
+
+// Numbers that look random and are the same everywhere (SplitMix64).
+class Numbers {
+ public:
+  double uniform() {  // 0 <= x < 1
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebULL;
+    return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+  }
+  Vec3 direction() {
+    for (;;) {
+      const double x = 2 * uniform() - 1, y = 2 * uniform() - 1, z = 2 * uniform() - 1;
+      const double squared = x * x + y * y + z * z;
+      if (squared > 0.01 && squared <= 1) return 1 / std::sqrt(squared) * Vec3{x, y, z};
+    }
+  }
+
+ private:
+  std::uint64_t state_ = 0;
+};
+
+// The normal of a triangle that is chosen by its area.
+class FaceNormals {
+ public:
+  explicit FaceNormals(const Solid& solid) {
+    double area = 0;
+    for (const Triangle& t : solid.triangles) {
+      const Vec3 a = solid.vertices[t[0]];
+      normals_.push_back(cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a));
+      area_.push_back(area += norm(normals_.back()));
+    }
+  }
+  Vec3 pick(double part) const {
+    const auto found = std::upper_bound(area_.begin(), area_.end(), part * area_.back());
+    return normalized_or_zero(normals_[static_cast<std::size_t>(found - area_.begin())]);
+  }
+
+ private:
+  std::vector<Vec3> normals_;
+  std::vector<double> area_;  // of the triangles so far
+};
+
+// About the centre of mass: a plane with the cut-off part below it, or a ball that holds it.
+struct Cut {
+  Vec3 normal;
+  double offset = 0;
+  Sphere ball;  // radius 0: a plane
+  double truth = 0;
+
+  double distance(Vec3 x) const {
+    return ball.radius > 0 ? norm(x - ball.center) - ball.radius : dot(normal, x) - offset;
+  }
+};
+
+double longest_side(const Solid& solid) {
+  Vec3 low = solid.vertices.front(), high = low;
+  for (const Vec3& v : solid.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+std::vector<Cut> make_cuts(const Solid& solid) {
+  const FaceNormals faces(solid);
+  const double radius = kCalibrationBall * longest_side(solid);
+  Numbers numbers;
+  std::vector<Cut> cuts(2 * kCalibrationCuts);
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    const Vec3 normal = k % 2 == 0 ? numbers.direction() : faces.pick(numbers.uniform());
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Vec3& v : solid.vertices) {
+      low = std::min(low, dot(normal, v));
+      high = std::max(high, dot(normal, v));
+    }
+    cuts[k].normal = normal;
+    cuts[k].offset = low + numbers.uniform() * (high - low);
+    if (k >= kCalibrationCuts) cuts[k].ball = {(cuts[k].offset - radius) * normal, radius};
+  }
+  return cuts;
+}
+
+double fraction_inside(const Level& level, const Cut& cut) {
+  double sum = 0;
+  for (const CellSample& s : level.samples) {
+    const double distance = cut.distance(widen(s.center)), radius = s.radius;
+    if (distance < radius)
+      sum += distance > -radius ? s.weight * ball_fraction_inside(distance / radius) : s.weight;
+  }
+  return sum;
+}
+
+LevelError summarise(std::vector<double> errors) {
+  std::sort(errors.begin(), errors.end());
+  LevelError all;
+  for (const double error : errors) all.mean += error / static_cast<double>(errors.size());
+  all.p95 = errors[static_cast<std::size_t>(kHigh * static_cast<double>(errors.size()))];
+  all.worst = errors.back();
+  return all;
+}
+
+}  // namespace
+
+std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
+  if (content_hash(solid) != model.solid_hash) {
+    refuse("the tool model was not made of this solid; calibrate it with its own packing");
+  }
+  Solid centered = solid;
+  for (Vec3& v : centered.vertices) v -= model.center_of_mass;
+  const double whole = volume_below_plane(centered, {0, 0, 1}, 2 * model.reach);
+  if (!(std::abs(whole - model.volume) <= kVolumeTolerance * model.volume)) {
+    refuse(
+        "parts of the solid overlap, so it cannot be cut exactly: unite them in a mesh editor "
+        "to calibrate");
+  }
+  std::vector<Cut> cuts = make_cuts(centered);
+  std::vector<std::vector<double>> errors(model.levels.size(), std::vector<double>(cuts.size()));
+  parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Cut& cut = cuts[k];
+      cut.truth = cut.ball.radius > 0 ? volume_in_ball(centered, cut.ball)
+                                      : volume_below_plane(centered, cut.normal, cut.offset);
+      for (std::size_t l = 0; l < model.levels.size(); ++l) {
+        errors[l][k] = std::abs(fraction_inside(model.levels[l], cut) - cut.truth / model.volume);
+      }
+    }
+  });
+  std::vector<LevelError> calibration;
+  for (std::vector<double>& of_level : errors)
+    calibration.push_back(summarise(std::move(of_level)));
+  return calibration;
+}
+
+}  // namespace vpm

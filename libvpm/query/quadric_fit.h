@@ -1,0 +1,21 @@
+// Least-squares paraboloid through scattered points: the local shape of a surface.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+struct QuadricFit {
+  double residual = 0;   // root mean square, corrected for the six parameters
+  double curvature = 0;  // larger principal curvature at the place, absolute
+};
+
+// Of the height over the plane through `place` with the unit normal `normal`. None where the points
+// do not determine it.
+std::optional<QuadricFit> fit_quadric(std::span<const Vec3> points, Vec3 place, Vec3 normal);
+
+}  // namespace vpm

@@ -1,0 +1,39 @@
+// How small and how large the spheres of a tool should be for a scene: scene-scale.md derives the
+// rule.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/prepared_cloud.h"
+
+namespace vpm {
+
+// Metres; medians over the surface, but for the curvature.
+struct SceneScale {
+  double spacing = 0;    // of neighbouring points
+  double noise = 0;      // standard deviation of the points about a smooth surface
+  double curvature = 0;  // 1/m: larger principal curvature, which nine tenths of the surface keep
+
+  // The smallest sphere that the points resolve: centred on the surface it holds a point, and
+  // centred its radius behind it, it is on the right side of the points in 19 of 20 cases.
+  double smallest_radius() const;
+  // The largest sphere within which the surface is a plane but for what the points do not resolve;
+  // infinite for a plane.
+  double largest_radius() const;
+};
+
+// Of the surface within kNear reaches of `place` (world), or of the whole cloud where that holds
+// too few points or no place is given. `reach` is that of the tool, m. Same bits for any thread
+// count and order of the points. Throws Error(refused) for clouds of fewer than kFewestPoints
+// points.
+inline constexpr double kNear = 1.5;
+inline constexpr std::size_t kFewestPoints = 32;
+SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place);
+
+// Index of the finest level without spheres below scale.smallest_radius(); the coarsest level where
+// all have such.
+std::size_t level_for_scene(const ToolModel& tool, const SceneScale& scale);
+
+}  // namespace vpm
