@@ -7,6 +7,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/outer_surface.h"
+#include "libvpm/packing/inertia.h"
 #include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/solid_distance.h"
 #include "libvpm/packing/space.h"
@@ -25,11 +26,14 @@ constexpr double kUnchanged = 1 - 1e-9;
 constexpr std::size_t kFinishedBand = 1000;
 constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
 constexpr std::size_t kBlocksPerTask = 4;
+// The uncovered volume falls with the number of spheres to the power of -1 / this.
+constexpr double kApollonianPower = 4.7;
 
 void check(const PackOptions& options) {
   const auto wrong = [](const std::string& what) { throw Error(ErrorKind::usage, what); };
   if (!(options.coverage > 0 && options.coverage <= 1))
     wrong("the coverage to reach must be above 0 and at most 1");
+  if (!(options.inertia_error >= 0)) wrong("the inertia error must be 0 or a positive number");
   if (!(options.min_radius >= 0) || !std::isfinite(options.min_radius))
     wrong("the smallest radius must be 0 or a positive number");
   if (!(options.max_radius > 0)) wrong("the largest radius must be a positive number");
@@ -85,6 +89,7 @@ class Packer {
         distance_(solid),
         frame_(distance_.frame()),
         volume_(enclosed_mass(solid).volume),
+        no_inertia_(solid),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
         cap_(options.max_radius / frame_.scale),
         most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
@@ -108,12 +113,16 @@ class Packer {
   }
 
  private:
+  // Of the work: as much for every sphere. What is left uncovered falls with their number.
   double fraction() const {
-    return std::min(1.0, std::max(double(space_.spheres().size()) / double(options_.spheres),
-                                  filled_ / (volume_ * options_.coverage)));
+    const double number =
+        static_cast<double>(space_.spheres().size()) / static_cast<double>(options_.spheres);
+    const double left = (1 - options_.coverage) / (1 - std::min(filled_ / volume_, 0.999999));
+    return std::min(1.0, std::max(number, std::pow(left, kApollonianPower)));
   }
   bool enough() const {
-    return space_.spheres().size() >= options_.spheres || filled_ >= options_.coverage * volume_;
+    return space_.spheres().size() >= options_.spheres || filled_ >= options_.coverage * volume_ ||
+           (options_.inertia_error > 0 && result().stop == StopReason::inertia_error);
   }
 
   // The bands are complete, so the largest spheres come out the same however many are asked for.
@@ -127,17 +136,22 @@ class Packer {
                       ? StopReason::min_radius
                       : StopReason::numerical_floor;
     double filled = 0;
+    InertiaError inertia = no_inertia_;
     for (const Sphere& s : all) {
-      if (result.spheres.size() == options_.spheres) break;
       filled += volume(s);
+      inertia.add(s);
       result.spheres.push_back(s);
       if (filled >= options_.coverage * volume_) {
         result.stop = StopReason::coverage;
-        break;
+      } else if (inertia.value() <= options_.inertia_error) {
+        result.stop = StopReason::inertia_error;
+      } else if (result.spheres.size() == options_.spheres) {
+        result.stop = StopReason::spheres;
+      } else {
+        continue;
       }
+      break;
     }
-    if (result.stop != StopReason::coverage && result.spheres.size() == options_.spheres)
-      result.stop = StopReason::spheres;
     result.coverage = filled / volume_;
     return result;
   }
@@ -145,9 +159,10 @@ class Packer {
   const PackOptions& options_;
   SolidDistance distance_;
   UnitFrame frame_;
-  double volume_;          // m^3
-  double smallest_, cap_;  // in the unit frame
-  std::size_t most_;       // spheres at which even a band is broken off
+  double volume_;            // m^3
+  InertiaError no_inertia_;  // of no spheres
+  double smallest_, cap_;    // in the unit frame
+  std::size_t most_;         // spheres at which even a band is broken off
   Space space_;
   double filled_ = 0;  // m^3
 };

@@ -17,6 +17,7 @@ inline constexpr double kNumericalFloor = 0x1p-18;
 struct PackOptions {
   std::size_t spheres = 1000;  // as many are delivered unless another limit comes first
   double coverage = 1;         // stop where the spheres fill this share of the solid's volume
+  double inertia_error = 0;    // stop where the spheres' InertiaError is at most this; 0: never
   double min_radius = 0;       // m; no smaller sphere
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
   std::function<void(double fraction)> progress =
@@ -26,6 +27,7 @@ struct PackOptions {
 enum class StopReason {
   spheres,          // as many as asked for
   coverage,         // the coverage asked for is reached
+  inertia_error,    // the inertia tensor is as near as asked for
   min_radius,       // no sphere of the smallest radius fits any more
   numerical_floor,  // what is left is below kNumericalFloor of the longest side
 };

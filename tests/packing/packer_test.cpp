@@ -157,6 +157,7 @@ TEST(Packer, RefusesWhatCannotBePacked) {
   const Solid cube = synthetic::make_cube(1);
   EXPECT_EQ(kind(cube, {.coverage = 0}), 2);
   EXPECT_EQ(kind(cube, {.coverage = 1.1}), 2);
+  EXPECT_EQ(kind(cube, {.inertia_error = -1}), 2);
   EXPECT_EQ(kind(cube, {.min_radius = -1}), 2);
   EXPECT_EQ(kind(cube, {.min_radius = std::nan("")}), 2);
   EXPECT_EQ(kind(cube, {.max_radius = 0}), 2);

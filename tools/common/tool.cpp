@@ -35,6 +35,9 @@ void set_signals() {
   }
 }
 
+// Earlier a guess of the time that is left would jump about.
+constexpr double kSecondsToEstimate = 2;
+
 bool is_asked(int argc, char** argv, const std::string& flag) {
   return std::find(argv, argv + argc, flag) != argv + argc;
 }
@@ -156,7 +159,11 @@ void Progress::update(double fraction) {
   const int percent = static_cast<int>(std::floor(100 * std::min(fraction, 1.0)));
   if (percent == percent_) return;
   percent_ = percent;
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
   std::fprintf(stderr, "\r%s %3d %%", what_.c_str(), percent);
+  if (taken.count() > kSecondsToEstimate && fraction > 0) {
+    std::fprintf(stderr, ", about %.0f s left\033[K", taken.count() * (1 / fraction - 1));
+  }
 }
 
 }  // namespace vpm::tools

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -51,7 +52,8 @@ class Tool {
 void check_output(const std::string& path, file::Kind kind, const CommonOptions& common);
 void check_output(const std::string& path, const CommonOptions& common);
 
-// Shows a line of progress on standard error, if that is a terminal and --quiet is not given.
+// Shows a line of progress and the time it may still take on standard error, if that is a terminal
+// and --quiet is not given.
 class Progress {
  public:
   Progress(std::string what, const CommonOptions& common);
@@ -64,6 +66,7 @@ class Progress {
   std::string what_;
   bool shown_;
   int percent_ = -1;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace vpm::tools

@@ -11,6 +11,7 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/packing/certificate.h"
+#include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
@@ -24,9 +25,9 @@ struct Arguments {
   std::string mesh, output, report, export_path;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
-  std::optional<double> max_radius, weld;
+  std::optional<double> inertia_error, max_radius, weld;
   double scale = 1;
-  bool validate = false;
+  bool grow = false, validate = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -35,8 +36,15 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")->capture_default_str();
   app.add_option("--coverage", a.coverage, "Stop at this share of the solid's volume, 0 to 1")
       ->capture_default_str();
+  app.add_option(
+         "--inertia-error", a.inertia_error,
+         "Stop where the inertia tensor (of equal mass, about the solid's centre of mass) is "
+         "this near to the solid's, e.g. 0.01")
+      ->check(CLI::PositiveNumber);
   app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, m")->capture_default_str();
   app.add_option("--max-radius", a.max_radius, "Place no larger sphere, m");
+  app.add_flag("--grow", a.grow,
+               "Let all spheres grow together afterwards: more coverage with as many spheres");
   app.add_flag("--validate", a.validate,
                "Count voxels (OpenVDB) as a second opinion on coverage, protrusion and overlap");
   app.add_option("--report", a.report, "Facts and figures (JSON)");
@@ -68,11 +76,20 @@ std::string link_name(const std::string& mesh) {
   return mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
+// The inertia tensor is an integral over the triangles, which counts overlaps twice.
+void check_inertia(const Arguments& a, const MeshFacts& facts) {
+  if (!a.inertia_error || facts.self_intersections == 0) return;
+  refuse(a.mesh + ": --inertia-error needs a mesh that does not intersect itself (" +
+         std::to_string(facts.self_intersections) +
+         " pairs of triangles do); mend the mesh or leave the option out");
+}
+
 PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid) {
   Progress progress("packing", tool.common());
   PackOptions options;
   options.spheres = a.spheres;
   options.coverage = a.coverage;
+  options.inertia_error = a.inertia_error.value_or(0);
   options.min_radius = a.min_radius;
   options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
   options.progress = [&](double fraction) { progress.update(fraction); };
@@ -82,6 +99,17 @@ PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid
            "); give a smaller --min-radius");
   }
   return result;
+}
+
+void grow_together(const Tool& tool, const Arguments& a, const Solid& solid, PackResult& result) {
+  Progress progress("growing", tool.common());
+  GrowOptions options;
+  options.min_radius = a.min_radius;
+  options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
+  options.progress = [&](double fraction) { progress.update(fraction); };
+  const double before = volume_of(result.spheres);
+  result.spheres = grow(solid, result.spheres, options);
+  result.coverage *= volume_of(result.spheres) / before;
 }
 
 void say_result(const Tool& tool, const Arguments& a, const PackResult& result) {
@@ -127,7 +155,9 @@ void run(const Tool& tool, const Arguments& a) {
   for (const std::string& note : checked.notes) tool.note(name + ": " + note);
   for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
 
-  const PackResult result = pack_checked(tool, a, checked.solid);
+  check_inertia(a, checked.facts);
+  PackResult result = pack_checked(tool, a, checked.solid);
+  if (a.grow) grow_together(tool, a, checked.solid, result);
   const Certificate certificate = certify(checked.solid, result.spheres);
   refuse_uncertified(a, certificate);
   const double seconds =

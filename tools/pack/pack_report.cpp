@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "libvpm/packing/inertia.h"
+
 namespace vpm::tools {
 namespace {
 
@@ -50,6 +52,8 @@ const char* name_of(StopReason reason) {
       return "spheres";
     case StopReason::coverage:
       return "coverage";
+    case StopReason::inertia_error:
+      return "inertia_error";
     case StopReason::min_radius:
       return "min_radius";
     case StopReason::numerical_floor:
@@ -58,15 +62,19 @@ const char* name_of(StopReason reason) {
   return "";
 }
 
+double volume_of(const std::vector<Sphere>& spheres) {
+  double sum = 0;
+  for (const Sphere& s : spheres) sum += volume(s);
+  return sum;
+}
+
 json pack_report(const CheckedSolid& checked, const PackResult& result,
                  const Certificate& certificate, const std::optional<Validation>& validation,
                  double seconds) {
-  double volume_spheres = 0;
-  for (const Sphere& s : result.spheres) volume_spheres += volume(s);
   json report = {{"spheres", result.spheres.size()},
                  {"coverage", result.coverage},
                  {"volume_mesh", checked.facts.volume},
-                 {"volume_spheres", volume_spheres},
+                 {"volume_spheres", volume_of(result.spheres)},
                  {"max_protrusion", std::max(certificate.max_protrusion, 0.0)},
                  {"max_overlap", std::max(certificate.max_overlap, 0.0)},
                  {"certified", certificate.holds},
@@ -78,6 +86,11 @@ json pack_report(const CheckedSolid& checked, const PackResult& result,
                  {"mesh", as_json(checked.facts)},
                  {"notes", checked.notes},
                  {"warnings", checked.warnings}};
+  if (checked.facts.self_intersections == 0) {
+    InertiaError inertia(checked.solid);
+    for (const Sphere& s : result.spheres) inertia.add(s);
+    report["inertia_error"] = inertia.value();
+  }
   if (validation) report["validation"] = as_json(*validation);
   return report;
 }

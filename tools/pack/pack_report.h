@@ -12,6 +12,8 @@ namespace vpm::tools {
 
 const char* name_of(StopReason reason);
 
+double volume_of(const std::vector<Sphere>& spheres);  // m^3
+
 // What --report says; formats/schemas describe it. Metres, m^3.
 nlohmann::json pack_report(const CheckedSolid& checked, const PackResult& result,
                            const Certificate& certificate,

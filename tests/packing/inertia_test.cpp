@@ -1,0 +1,71 @@
+#include "libvpm/packing/inertia.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/packing/packer.h"
+#include "test_solids.h"
+
+namespace vpm::test {
+namespace {
+
+double error_of(const Solid& solid, const std::vector<Sphere>& spheres) {
+  InertiaError error(solid);
+  for (const Sphere& s : spheres) error.add(s);
+  return error.value();
+}
+
+TEST(Inertia, SecondMomentsOfABox) {
+  const double a = 1, b = 2, c = 3, volume = a * b * c;
+  const SecondMoments m = second_moments(moved(synthetic::make_box(a, b, c), {}, {5, -7, 9}));
+  EXPECT_NEAR(m[0], volume * a * a / 12, 1e-12);
+  EXPECT_NEAR(m[1], volume * b * b / 12, 1e-12);
+  EXPECT_NEAR(m[2], volume * c * c / 12, 1e-12);
+  for (int k = 3; k < 6; ++k) EXPECT_NEAR(m[k], 0, 1e-12);
+}
+
+TEST(Inertia, SecondMomentsTurnWithTheSolid) {
+  // A box turned by 45 degrees about z: xx = yy = mean of both, xy = half of their difference.
+  const double h = std::sqrt(0.5);
+  const Rotation turn = rotation_from_quaternion({0, 0, std::sin(kPi / 8), std::cos(kPi / 8)});
+  const SecondMoments m = second_moments(moved(synthetic::make_box(2, 1, 1), turn, {1, 1, 1}));
+  EXPECT_NEAR((turn * Vec3{1, 0, 0}).y, h, 1e-15);
+  EXPECT_NEAR(m[0], 2 * (4 + 1) / 24.0, 1e-12);
+  EXPECT_NEAR(m[1], m[0], 1e-12);
+  EXPECT_NEAR(m[3], 2 * (4 - 1) / 24.0, 1e-12);
+}
+
+TEST(Inertia, ErrorOfOneSphereInACube) {
+  // Per volume: 2/5 r^2 against a^2/6, the same for all axes.
+  const Solid cube = synthetic::make_cube(2);
+  EXPECT_NEAR(error_of(cube, {{{0, 0, 0}, 1}}), 1 - 0.4 / (4.0 / 6), 1e-12);
+  // A shifted sphere has d^2 more about two axes: where it is too small, that can only mend two.
+  const double ixx = 0.4 * 0.25 - 4.0 / 6, iyy = ixx + 0.25;
+  EXPECT_NEAR(error_of(cube, {{{.5, 0, 0}, .5}}),
+              std::sqrt(ixx * ixx + 2 * iyy * iyy) / (std::sqrt(3.0) * 4.0 / 6), 1e-12);
+  EXPECT_EQ(error_of(cube, {}), 1);
+}
+
+TEST(Inertia, ErrorOfABallIsThatOfItsFacets) {
+  EXPECT_LT(error_of(synthetic::make_icosphere(1, 5), {{{0, 0, 0}, 1}}), 2e-3);
+}
+
+TEST(Inertia, ErrorFallsAndStopsThePacker) {
+  const Solid solid = random_solid(4, 3);
+  const PackResult result = pack(solid, {.spheres = 10000, .inertia_error = 0.01});
+  EXPECT_EQ(result.stop, StopReason::inertia_error);
+  std::vector<Sphere> spheres = result.spheres;
+  EXPECT_LE(error_of(solid, spheres), 0.01);
+  spheres.pop_back();
+  EXPECT_GT(error_of(solid, spheres), 0.01);
+}
+
+TEST(Inertia, OtherLimitsComeFirst) {
+  const Solid solid = random_solid(4, 3);
+  EXPECT_EQ(pack(solid, {.spheres = 5, .inertia_error = 1e-6}).stop, StopReason::spheres);
+  EXPECT_EQ(pack(solid, {.coverage = .1, .inertia_error = 1e-6}).stop, StopReason::coverage);
+}
+
+}  // namespace
+}  // namespace vpm::test
