@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"
+#include "libvpm/synthetic/scenes.h"
 
 namespace vpm::bench {
 namespace {
