@@ -6,18 +6,22 @@
 
 namespace vpm {
 
-RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
-    : tool_(tool), level_(level) {
-  masses_.resize(level.blocks.size());
-  for (std::size_t b = 0; b < masses_.size(); ++b) {
+std::vector<BlockMass> block_masses(const Level& level) {
+  std::vector<BlockMass> masses(level.blocks.size());
+  for (std::size_t b = 0; b < masses.size(); ++b) {
     Vec3 moment;
     for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
-      masses_[b].weight += level.samples[s].weight;
+      masses[b].weight += level.samples[s].weight;
       moment += level.samples[s].weight * widen(level.samples[s].center);
     }
-    masses_[b].centroid =
-        masses_[b].weight > 0 ? moment / masses_[b].weight : widen(level.blocks[b].center);
+    masses[b].centroid =
+        masses[b].weight > 0 ? moment / masses[b].weight : widen(level.blocks[b].center);
   }
+  return masses;
+}
+
+RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
+    : tool_(tool), level_(level), masses_(block_masses(level)) {
   cells_.resize(level.sphere_count);
   results_.resize(level.sphere_count);
   reached_.resize(level.sphere_count);

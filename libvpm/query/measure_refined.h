@@ -10,6 +10,8 @@
 
 namespace vpm {
 
+std::vector<BlockMass> block_masses(const Level& level);
+
 class RefinedMeasure {
  public:
   RefinedMeasure(const ToolModel& tool, const Level& level);

@@ -1,0 +1,58 @@
+// One definition of the math for host and device: every cell of a tool comes to the same bits on
+// both.
+
+#include <gtest/gtest.h>
+
+#include "tests/cuda/device_cells.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::CellAnswer;
+
+void expect_same_bits(const ToolSum& a, const ToolSum& b) {
+  EXPECT_EQ(a.volume.value, b.volume.value);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(a.force[k].value, b.force[k].value);
+    EXPECT_EQ(a.torque[k].value, b.torque[k].value);
+  }
+}
+
+class SameMath : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
+
+TEST_P(SameMath, OnHostAndDevice) {
+  if (!testing::has_device()) GTEST_SKIP() << "no CUDA device here";
+  const auto& [scene, camera] = GetParam();
+  const Cloud seen = testing::see(synthetic::make_scene(scene));
+  const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+  const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
+  const Level& level = tool.levels[0];
+  int cut = 0;
+  for (int pose = 0; pose < 8; ++pose) {
+    const Pose to_surface{testing::generic_rotation(), {0.011, -0.02, 0.86 + 0.02 * pose}};
+    const std::vector<CellAnswer> host = testing::cells_on_host(cloud, tool, level, to_surface);
+    const std::vector<CellAnswer> device = testing::cells_on_device(cloud, tool, level, to_surface);
+    ASSERT_EQ(host.size(), device.size());
+    for (std::size_t i = 0; i < host.size(); ++i) {
+      EXPECT_EQ(host[i].side, device[i].side);
+      expect_same_bits(host[i].cut.sum, device[i].cut.sum);
+      expect_same_bits(host[i].whole, device[i].whole);
+      EXPECT_EQ(host[i].cut.plane.count, device[i].cut.plane.count);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(host[i].cut.plane.normal[k].value, device[i].cut.plane.normal[k].value);
+        EXPECT_EQ(host[i].cut.plane.foot[k].value, device[i].cut.plane.foot[k].value);
+      }
+      cut += host[i].cut.plane.count > 0;
+    }
+  }
+  EXPECT_GT(cut, 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SameMath,
+                         ::testing::Combine(::testing::Values("wall", "groove", "block",
+                                                              "inverted-ball"),
+                                            ::testing::Bool()));
+
+}  // namespace
+}  // namespace vpm
