@@ -6,6 +6,7 @@
 #pragma once
 
 #include "libvpm/cloud/camera.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/query/surface.h"
 
 namespace vpm {
@@ -69,7 +70,7 @@ struct DepthSurface {
   }
 
   VPM_HD Reading read(Vec3 x) const {
-    if (!(x.z > 0)) return {};
+    if (!(x.z >= kSmallestLength)) return {};  // squares of less would vanish
     const Pixel pixel = look_up(x);
     if (!(pixel.inverse_depth > 0)) return {};
     Reading reading;

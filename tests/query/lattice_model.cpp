@@ -52,6 +52,7 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
   Level& level = model.levels[0];
   level.sphere_count = n * n * n;
   const double share = edge / n, piece = share / m;
+  const double per_edge = 1.0 / (n * m), weight = per_edge * per_edge * per_edge;
   level.grid = {{-edge / 2, -edge / 2, -edge / 2}, share, n, n, n, {}, {}};
   level.block_begin = {0};
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
@@ -69,9 +70,8 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
       const Vec3 sample =
           center + piece * (at + Vec3{0.5, 0.5, 0.5}) - Vec3{share / 2, share / 2, share / 2};
       const double mean_squared_distance = piece * piece / 4;
-      level.samples.push_back({narrow(sample),
-                               static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)),
-                               std::pow(1.0 / (n * m), 3)});
+      level.samples.push_back(
+          {narrow(sample), static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)), weight});
     }
     level.blocks.push_back({narrow(center), static_cast<float>(level.share_reach.back()), begin,
                             static_cast<std::uint32_t>(level.samples.size())});
