@@ -140,6 +140,27 @@ Solid make_twisted_torus(double ring_radius, double edge, int quarter_turns, int
   return s;
 }
 
+Solid make_torus_knot(int p, int q, double ring_radius, double coil_radius, double tube_radius,
+                      int around, int across) {
+  Solid s;
+  for (int i = 0; i < around; ++i) {
+    const double t = 2 * kPi * i / around, a = p * t, b = q * t;
+    const double r = ring_radius + coil_radius * std::cos(b), dr = -coil_radius * q * std::sin(b);
+    const Vec3 center{r * std::cos(a), r * std::sin(a), coil_radius * std::sin(b)};
+    const Vec3 along{dr * std::cos(a) - r * p * std::sin(a), dr * std::sin(a) + r * p * std::cos(a),
+                     coil_radius * q * std::cos(b)};
+    // The knot lies on a torus, whose normal comes back to itself after one round.
+    const Vec3 out{std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b)};
+    const Vec3 side = normalized_or_zero(cross(out, along));
+    for (int j = 0; j < across; ++j) {
+      const double c = 2 * kPi * j / across;
+      s.vertices.push_back(center + tube_radius * (std::cos(c) * out + std::sin(c) * side));
+    }
+  }
+  connect_ring(s, static_cast<Index>(around), static_cast<Index>(across), 0);
+  return s;
+}
+
 void write_off(const std::string& path, const Solid& solid) {
   std::string text = "OFF\n" + std::to_string(solid.vertices.size()) + " " +
                      std::to_string(solid.triangles.size()) + " 0\n";

@@ -24,6 +24,11 @@ Solid make_torus(double ring_radius, double tube_radius, int around, int across)
 // around the ring.
 Solid make_twisted_torus(double ring_radius, double edge, int quarter_turns, int around);
 
+// A tube about the (p, q) torus knot, which winds p times around the z axis and q times around the
+// ring's core; p and q have no common divisor. The tube must be thin enough not to meet itself.
+Solid make_torus_knot(int p, int q, double ring_radius, double coil_radius, double tube_radius,
+                      int around, int across);
+
 // Writes the solid as OFF with 17 digits, which is lossless. Throws Error(cannot_write).
 void write_off(const std::string& path, const Solid& solid);
 

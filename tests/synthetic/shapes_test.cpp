@@ -31,6 +31,16 @@ struct Shape {
   double volume, tolerance;  // relative
 };
 
+double trefoil_length(double ring, double coil) {
+  constexpr int kSteps = 10000;
+  double length = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double around = 2 * (ring + coil * std::cos(3 * 2 * kPi * i / kSteps));
+    length += 2 * kPi / kSteps * std::sqrt(9 * coil * coil + around * around);
+  }
+  return length;
+}
+
 std::vector<Shape> shapes() {
   const double torus = 2 * kPi * kPi * 0.3 * 0.01, tube = 2 * kPi * 0.3 * 0.01;
   return {{"cube", make_cube(2), 8, 1e-14},
@@ -40,6 +50,9 @@ std::vector<Shape> shapes() {
           {"icosphere", make_icosphere(0.5, 4), kPi / 6, 5e-3},
           {"torus", make_torus(0.3, 0.1, 128, 64), torus, 5e-3},
           {"twisted torus", make_twisted_torus(0.3, 0.1, 3, 256), tube, 1e-2},
+          // A tube holds the area of its section times the length of its core.
+          {"trefoil", make_torus_knot(2, 3, 0.3, 0.1, 0.03, 512, 64),
+           kPi * 0.03 * 0.03 * trefoil_length(0.3, 0.1), 5e-3},
           {"untwisted torus", make_twisted_torus(0.3, 0.1, 0, 256), tube, 5e-3}};
 }
 

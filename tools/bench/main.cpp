@@ -7,18 +7,20 @@
 int main(int argc, char** argv) {
   vpm::tools::Tool tool("vpm-bench",
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
-  std::string suite, folder = "bench-output";
+  std::string suite, folder = "bench-output", meshes;
   bool quick = false, all = false;
-  tool.app().add_option("suite", suite, "accuracy or timing");
+  tool.app().add_option("suite", suite, "accuracy, packing or timing");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
   tool.app().add_flag("--quick", quick, "A small version that takes seconds");
-  tool.app().add_flag("--all", all, "accuracy: every tool, scene and kind of cloud");
+  tool.app().add_flag("--all", all, "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
+  tool.app().add_option("--meshes", meshes,
+                        "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report =
-        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }});
+        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes});
     vpm::bench::write(report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
   });

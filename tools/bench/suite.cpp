@@ -7,9 +7,10 @@ namespace vpm::bench {
 Report run_suite(const std::string& name, const SuiteOptions& options) {
   if (name == "accuracy") return run_accuracy(options);
   if (name == "timing") return run_timing(options);
+  if (name == "packing") return run_packing(options);
   throw Error(ErrorKind::usage,
               (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
-                  "; the suites are accuracy, timing");
+                  "; the suites are accuracy, packing, timing");
 }
 
 }  // namespace vpm::bench

@@ -12,6 +12,7 @@ struct SuiteOptions {
   bool quick = false;  // fewer spheres, poses and runs: seconds instead of minutes
   bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes
   std::function<void(double fraction)> progress;
+  std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
 };
 
 // Throws Error(usage) naming the suites there are.
@@ -22,5 +23,9 @@ Report run_accuracy(const SuiteOptions& options);
 
 // Times of every stage from the mesh to the wrench, with 1 and 2 threads.
 Report run_timing(const SuiteOptions& options);
+
+// Packings beside greedy packers on voxels, growth, and the cost from 10^2 to 10^5 spheres (10^6
+// with `all`).
+Report run_packing(const SuiteOptions& options);
 
 }  // namespace vpm::bench

@@ -1,0 +1,276 @@
+// Packings: coverage, time and memory beside two greedy packers on voxels, what growing adds, and
+// the cost per sphere from a hundred spheres to a million.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+
+#include "libvpm/file/stream.h"
+#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/grow.h"
+#include "libvpm/packing/packer.h"
+#include "libvpm/synthetic/shapes.h"
+#include "tools/bench/peak_memory.h"
+#include "tools/bench/suite.h"
+#include "tools/bench/voxel_greedy.h"
+
+namespace vpm::bench {
+namespace {
+
+struct Shape {
+  std::string name;
+  Solid solid;
+  double volume = 0;
+};
+
+struct Cost {
+  double seconds = 0, cpu_seconds = 0, memory_mb = 0;
+};
+
+Cost cost_of(const std::function<void()>& work) {
+  reset_peak_memory();
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu = std::clock();
+  work();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return {taken.count(), static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC,
+          peak_memory_mb()};
+}
+
+double filled(const std::vector<Sphere>& spheres) {
+  double sum = 0;
+  for (const Sphere& s : spheres) sum += volume(s);
+  return sum;
+}
+
+// 1, 2, 5, 10, 20 ... up to `most`.
+std::vector<std::size_t> counts_up_to(std::size_t most) {
+  std::vector<std::size_t> counts;
+  for (std::size_t decade = 1; decade <= most; decade *= 10)
+    for (const std::size_t n : {decade, 2 * decade, 5 * decade})
+      if (n <= most) counts.push_back(n);
+  return counts;
+}
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+class Packings {
+ public:
+  explicit Packings(const SuiteOptions& options)
+      : options_(options), most_(options.quick ? 1000 : 10000), voxels_(options.quick ? 64 : 256) {
+    report_.suite = "packing";
+    report_.settings = {
+        {"quick", options.quick}, {"all", options.all}, {"spheres", most_}, {"voxels", voxels_}};
+    report_.table.columns = {"part",     "shape",   "method",      "spheres",
+                             "coverage", "seconds", "cpu_seconds", "memory_mb"};
+    make_shapes();
+  }
+
+  Report run() {
+    compare();
+    grow_together();
+    count_what_is_needed();
+    scale_up();
+    return std::move(report_);
+  }
+
+ private:
+  void add_shape(const std::string& name, Solid solid) {
+    const double volume = mass_properties(solid).volume;
+    shapes_.push_back({name, std::move(solid), volume});
+  }
+
+  void make_shapes() {
+    using namespace synthetic;
+    add_shape("cube", make_cube(1));
+    add_shape("tetrahedron", make_tetrahedron(1));
+    add_shape("octahedron", make_octahedron(1));
+    // Proportions such that the first sphere fills .0146, as in the literature's (2,3) knot.
+    add_shape("torus knot", make_torus_knot(2, 3, 1, 0.5, 0.177, 240, 24));
+    for (const auto& [name, file] : {std::pair{"bunny", "bunny.off"},
+                                     {"armadillo", "armadillo.obj"},
+                                     {"fandisk", "fandisk.obj"},
+                                     {"knot.ply", "knot.ply"}}) {
+      const std::string path = options_.meshes + "/" + file;
+      if (options_.meshes.empty() || !std::filesystem::exists(path)) continue;
+      add_shape(name, make_solid(parse_mesh(file::read_all(path), path), {}).solid);
+    }
+    nlohmann::json names = nlohmann::json::array();
+    for (const Shape& s : shapes_) names.push_back(s.name);
+    report_.settings["shapes"] = names;
+  }
+
+  void add(const std::string& part, const std::string& shape, const std::string& method,
+           std::size_t spheres, double coverage, const Cost& cost) {
+    const auto count = static_cast<double>(spheres);
+    report_.table.rows.push_back(
+        {part, shape, method, count, coverage, cost.seconds, cost.cpu_seconds, cost.memory_mb});
+    report_.results.push_back({{"part", part},
+                               {"shape", shape},
+                               {"method", method},
+                               {"spheres", spheres},
+                               {"coverage", coverage},
+                               {"seconds", cost.seconds},
+                               {"cpu_seconds", cost.cpu_seconds},
+                               {"memory_mb", cost.memory_mb}});
+  }
+
+  void progress(double share) const {
+    if (options_.progress) options_.progress(share);
+  }
+
+  // One line of the comparison: the coverage of every prefix.
+  void add_prefixes(const Shape& shape, const std::string& method,
+                    const std::vector<Sphere>& spheres, const Cost& cost) {
+    std::string line = "| " + shape.name + " | " + method + " |";
+    double sum = 0;
+    const std::vector<std::size_t> counts = counts_up_to(most_);
+    auto next = counts.begin();
+    for (std::size_t i = 0; i < spheres.size() && next != counts.end(); ++i) {
+      sum += volume(spheres[i]);
+      if (i + 1 != *next) continue;
+      add("coverage", shape.name, method, *next, sum / shape.volume, cost);
+      if (std::to_string(*next).front() == '1') line += format(" %.4f |", sum / shape.volume);
+      ++next;
+    }
+    if (spheres.size() < most_) line += format(" (%zu spheres) |", spheres.size());
+    report_.summary +=
+        line + format(" %.2f | %.2f | %.0f |\n", cost.seconds, cost.cpu_seconds, cost.memory_mb);
+  }
+
+  void compare() {
+    report_.summary += "| shape | packer |";
+    std::string rule = "|---|---|";
+    for (std::size_t n = 1; n <= most_; n *= 10) {
+      report_.summary += " " + std::to_string(n) + " |";
+      rule += "---|";
+    }
+    report_.summary += " s | CPU s | MB |\n" + rule + "---|---|---|\n";
+    for (const Shape& shape : shapes_) {
+      std::vector<Sphere> spheres;
+      PackOptions pack_options;
+      pack_options.spheres = most_;
+      Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
+      add_prefixes(shape, "vpm-pack", spheres, cost);
+      cost = cost_of(
+          [&] { spheres = pack_on_voxels(shape.solid, most_, voxels_, Refine::local_maximum); });
+      add_prefixes(shape, "refined voxels", spheres, cost);
+      cost = cost_of([&] { spheres = pack_on_voxels(shape.solid, most_, voxels_, Refine::none); });
+      add_prefixes(shape, "voxel centres", spheres, cost);
+      progress(0.6 * ++done_ / static_cast<double>(shapes_.size()));
+    }
+  }
+
+  std::vector<Sphere> greedy(const Shape& shape, std::size_t spheres) const {
+    PackOptions pack_options;
+    pack_options.spheres = spheres;
+    return pack(shape.solid, pack_options).spheres;
+  }
+
+  void grow_together() {
+    report_.summary +=
+        "\n| shape | spheres | greedy | --grow | points | CPU s |\n"
+        "|---|---|---|---|---|---|\n";
+    for (const Shape& shape : shapes_) {
+      for (const std::size_t n : {std::size_t{10}, std::size_t{100}, std::size_t{1000}}) {
+        if (n > most_ / 10) continue;
+        std::vector<Sphere> spheres = greedy(shape, n);
+        const double before = filled(spheres) / shape.volume;
+        const Cost cost = cost_of([&] { spheres = grow(shape.solid, spheres, {}); });
+        const double after = filled(spheres) / shape.volume;
+        add("growth", shape.name, "greedy", n, before, {});
+        add("growth", shape.name, "grown", n, after, cost);
+        report_.summary += format("| %s | %zu | %.4f | %.4f | %+.2f | %.2f |\n", shape.name.c_str(),
+                                  n, before, after, 100 * (after - before), cost.cpu_seconds);
+      }
+    }
+    progress(0.7);
+  }
+
+  // Fewest spheres that cover a share of the volume, greedy and grown.
+  void count_what_is_needed() {
+    report_.summary +=
+        "\n| shape | coverage | spheres, greedy | spheres, --grow |\n"
+        "|---|---|---|---|\n";
+    for (const Shape& shape : shapes_) {
+      const std::vector<Sphere> many = greedy(shape, kMostNeeded);
+      for (const double share : {0.5, 0.6, 0.65, 0.7}) {
+        std::size_t spheres = 0;
+        for (double sum = 0; spheres < many.size() && sum < share * shape.volume; ++spheres)
+          sum += volume(many[spheres]);
+        if (spheres == many.size() || spheres < 2) continue;
+        const std::size_t grown = needed_with_growth(shape, many, spheres, share);
+        add("needed", shape.name, "greedy", spheres, share, {});
+        add("needed", shape.name, "grown", grown, share, {});
+        report_.summary += format("| %s | %.0f %% | %zu | %zu |\n", shape.name.c_str(), 100 * share,
+                                  spheres, grown);
+      }
+    }
+    progress(0.8);
+  }
+
+  // By bisection: coverage rises with the number of spheres, but for the odd one.
+  static std::size_t needed_with_growth(const Shape& shape, const std::vector<Sphere>& greedy,
+                                        std::size_t enough, double share) {
+    std::size_t too_few = 0;
+    while (enough - too_few > 1) {
+      const std::size_t n = (enough + too_few) / 2;
+      const auto end = greedy.begin() + static_cast<std::ptrdiff_t>(n);
+      const double grown = filled(grow(shape.solid, {greedy.begin(), end}, {}));
+      (grown >= share * shape.volume ? enough : too_few) = n;
+    }
+    return enough;
+  }
+
+  // The bunny where its mesh is at hand, else the torus knot.
+  void scale_up() {
+    const auto found = std::find_if(shapes_.begin(), shapes_.end(),
+                                    [](const Shape& s) { return s.name == "bunny"; });
+    const Shape& shape = found != shapes_.end() ? *found : shapes_[3];
+    const std::size_t most = options_.quick ? 10000 : options_.all ? 1000000 : 100000;
+    report_.summary += "\n| " + shape.name +
+                       ": spheres | coverage | s | CPU s | CPU µs per sphere | MB | certified |\n"
+                       "|---|---|---|---|---|---|---|\n";
+    for (const std::size_t n : counts_up_to(most)) {
+      if (n < 100 || std::to_string(n).front() == '2') continue;
+      PackResult result;
+      PackOptions pack_options;
+      pack_options.spheres = n;
+      const Cost cost = cost_of([&] { result = pack(shape.solid, pack_options); });
+      const bool holds = certify(shape.solid, result.spheres).holds;
+      add("scaling", shape.name, "vpm-pack", result.spheres.size(), result.coverage, cost);
+      report_.summary += format("| %zu | %.4f | %.2f | %.2f | %.0f | %.0f | %s |\n",
+                                result.spheres.size(), result.coverage, cost.seconds,
+                                cost.cpu_seconds, 1e6 * cost.cpu_seconds / static_cast<double>(n),
+                                cost.memory_mb, holds ? "yes" : "NO");
+    }
+    progress(1);
+  }
+
+  static constexpr std::size_t kMostNeeded = 400;
+
+  const SuiteOptions& options_;
+  std::size_t most_;
+  int voxels_;  // along the longest side
+  std::vector<Shape> shapes_;
+  Report report_;
+  int done_ = 0;
+};
+
+}  // namespace
+
+Report run_packing(const SuiteOptions& options) {
+  return Packings(options).run();
+}
+
+}  // namespace vpm::bench

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace vpm::bench {
+
+// The largest amount of memory that the process has held since reset_peak_memory(), MB; 0 where the
+// system does not tell (Linux does).
+void reset_peak_memory();
+double peak_memory_mb();
+
+}  // namespace vpm::bench
