@@ -20,7 +20,7 @@ constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
 // Rounding leaves a flat closed mesh a volume of about 1e-16 of area times diagonal; the thinnest
 // plate worth packing has far more.
 constexpr double kFlat = 1e-12;
-constexpr std::size_t kPlacesShown = 3;
+constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
 
 std::string text_of(Vec3 p) {
   char text[96];
@@ -83,8 +83,10 @@ class Check {
     join_vertices();
     report_dropped();
     if (triangles().empty()) refuse_empty();
+    if (options_.repair == Repair::voxel) remesh();
     topology_ = topology_of(vertices().size(), triangles());
     close_by_welding();
+    if (options_.repair == Repair::holes) repair_holes();
     refuse_defects();
     // Joined vertices are unused too, but were not so in the file.
     facts().unused_vertices = drop_unused(vertices(), triangles()) - facts().joined_vertices;
@@ -119,7 +121,7 @@ class Check {
   }
 
   void join_vertices() {
-    const bool is_soup = mesh_.format == MeshFormat::stl;
+    const bool is_soup = mesh_.format == MeshFormat::stl || options_.repair != Repair::none;
     if (!is_soup && !options_.weld.has_value()) return;
     const Weld done =
         weld(vertices(), options_.weld.value_or(kDefaultWeld) * diagonal_, triangles());
@@ -154,6 +156,65 @@ class Check {
     topology_ = std::move(topology);
   }
 
+  void remesh() {
+    VoxelRepair done;
+    result_.solid = repair_by_voxels(result_.solid, options_.repair_voxels, done);
+    if (triangles().empty()) {
+      refuse(
+          mesh_.name + ": no voxel of 1/" + std::to_string(options_.repair_voxels) +
+          " of the longest side lies inside of the mesh; give more voxels (--repair voxel=N), or "
+          "turn triangles that face inward");
+    }
+    done.voxel *= options_.scale;
+    done.solid_to_mesh *= options_.scale;
+    done.mesh_to_solid *= options_.scale;
+    facts().voxel_repair = done;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "a new surface from voxels of %.3g m: at most %.3g m from the mesh, and the mesh "
+                  "at most %.3g m from it",
+                  done.voxel, done.solid_to_mesh, done.mesh_to_solid);
+    note(text);
+  }
+
+  void repair_holes() {
+    facts().repeated_triangles = drop_repeated(triangles());
+    if (facts().repeated_triangles > 0) {
+      note(counted(facts().repeated_triangles, "repeated triangle", "repeated triangles") +
+           " dropped");
+      topology_ = topology_of(vertices().size(), triangles());
+    }
+    if (topology_.boundary.empty()) return;
+    orient_consistently(topology_, triangles());
+    HoleFilling done = fill_holes(topology_, diagonal_, vertices(), triangles());
+    for (FilledHole& hole : done.filled) {
+      note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +
+           counted(hole.edges, "edge", "edges") + " about " + text_of(hole.center));
+      hole.center = options_.scale * hole.center;
+      hole.size *= options_.scale;
+    }
+    facts().filled_holes = std::move(done.filled);
+    topology_ = topology_of(vertices().size(), triangles());
+  }
+
+  // "around 2 holes: a loop of 8 edges through A, B, C, ...; ..."
+  std::string text_of_holes() const {
+    const std::vector<BoundaryLoop> loops = boundary_loops(topology_, result_.solid.triangles);
+    std::string text = ", around " + counted(loops.size(), "hole", "holes") + ": ";
+    for (std::size_t k = 0; k < std::min(loops.size(), kPlacesShown); ++k) {
+      const BoundaryLoop& loop = loops[k];
+      const std::size_t edges = loop.vertices.size() - (loop.closed ? 0 : 1);
+      text += (k > 0 ? "; " : "") + std::string(loop.closed ? "a loop of " : "a rim of ") +
+              counted(edges, "edge", "edges") + " through ";
+      for (std::size_t v = 0; v < std::min(loop.vertices.size(), kRimPlacesShown); ++v)
+        text += (v > 0 ? ", " : "") + text_of(result_.solid.vertices[loop.vertices[v]]);
+      if (loop.vertices.size() > kRimPlacesShown) text += ", ...";
+    }
+    if (loops.size() > kPlacesShown)
+      text += "; and " + std::to_string(loops.size() - kPlacesShown) + " more";
+    return text;
+  }
+
   void refuse_defects() {
     const auto edge_place = [&](const Edge& e) {
       return text_of(vertices()[e.a]) + "-" + text_of(vertices()[e.b]);
@@ -166,7 +227,7 @@ class Check {
     if (!topology_.boundary.empty()) {
       add("the mesh is open: " +
           counted(topology_.boundary.size(), "edge belongs", "edges belong") +
-          " to one triangle only" + places(topology_.boundary, edge_place));
+          " to one triangle only" + text_of_holes());
     }
     if (!topology_.non_manifold.empty()) {
       add("the mesh is non-manifold: " +
@@ -183,9 +244,12 @@ class Check {
       add(counted(topology_.duplicate_triangles, "triangle is", "triangles are") +
           " listed more than once");
     }
-    refuse(mesh_.name + ": " + defects +
-           ". Only a closed surface has an inside: close the holes and remove extra faces in a "
-           "mesh editor, or give --weld if parts should meet and do not");
+    const char* const advice =
+        options_.repair == Repair::none
+            ? "give --repair to fill planar and small holes, --repair voxel for a new surface, or "
+              "--weld if parts should meet and do not"
+            : "give --repair voxel for a new surface, or mend it in a mesh editor";
+    refuse(mesh_.name + ": " + defects + ". Only a closed surface has an inside: " + advice);
   }
 
   void orient() {

@@ -8,16 +8,26 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/mesh/fill_holes.h"
 #include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/voxel_repair.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
+
+enum class Repair {
+  none,   // refuse what is not a solid
+  holes,  // drop repeated triangles; fill holes that are planar or small (fill_holes.h)
+  voxel,  // a new surface about the voxels that the mesh encloses (voxel_repair.h)
+};
 
 struct SolidOptions {
   double scale = 1;  // the file's unit in metres
   // Vertices nearer than this share of the box's diagonal are one. Unset: kDefaultWeld for STL;
   // for formats with indices only if the mesh is open as its indices have it and closed after.
   std::optional<double> weld = std::nullopt;
+  Repair repair = Repair::none;
+  int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel
 };
 
 // CAD exporters write one coordinate as 0 here and as -2.7e-16 there.
@@ -41,6 +51,9 @@ struct MeshFacts {
   std::size_t turned_triangles = 0;
   std::size_t zero_area_triangles = 0;
   std::size_t self_intersections = 0;  // pairs of triangles
+  std::size_t repeated_triangles = 0;  // dropped by Repair::holes
+  std::vector<FilledHole> filled_holes;
+  std::optional<VoxelRepair> voxel_repair;
 };
 
 struct CheckedSolid {
@@ -50,7 +63,8 @@ struct CheckedSolid {
   std::vector<std::string> warnings;  // what was accepted though it may surprise
 };
 
-// Throws Error(refused) for meshes that are empty, open, non-manifold, one-sided, that enclose no
+// Throws Error(refused) for meshes that are empty, that are open, non-manifold or one-sided beyond
+// the repair that was asked for (naming the rims of holes by their first vertices), that enclose no
 // volume, or whose extent leaves 1e-30 .. 1e30 m; Error(usage) for options out of range.
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
 

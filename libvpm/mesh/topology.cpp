@@ -158,6 +158,7 @@ std::size_t orient_consistently(const Topology& topology, std::vector<Triangle>&
       stack.pop_back();
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t other = topology.neighbor[t][k];
+        if (other == kNone) continue;
         const State wanted = agree(t, k, other) == (state[t] == kept) ? kept : turned;
         if (state[other] == unseen) {
           state[other] = wanted;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <set>
 #include <unordered_map>
 
 namespace vpm {
@@ -107,6 +108,14 @@ std::vector<std::uint32_t> join_equal(const std::vector<Vec3>& vertices) {
 std::size_t drop_collapsed(std::vector<Triangle>& triangles) {
   return std::erase_if(
       triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+}
+
+std::size_t drop_repeated(std::vector<Triangle>& triangles) {
+  std::set<Triangle> seen;
+  return std::erase_if(triangles, [&](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return !seen.insert(t).second;
+  });
 }
 
 Weld weld(const std::vector<Vec3>& vertices, double tolerance, std::vector<Triangle>& triangles) {

@@ -21,6 +21,9 @@ Weld weld(const std::vector<Vec3>& vertices, double tolerance, std::vector<Trian
 // Drops triangles that name a vertex twice; returns how many.
 std::size_t drop_collapsed(std::vector<Triangle>& triangles);
 
+// Drops triangles that name the vertices of an earlier one; returns how many.
+std::size_t drop_repeated(std::vector<Triangle>& triangles);
+
 // Drops vertices that no triangle uses, keeping the order of the others; returns how many.
 std::size_t drop_unused(std::vector<Vec3>& vertices, std::vector<Triangle>& triangles);
 

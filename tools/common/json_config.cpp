@@ -46,7 +46,9 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
     if (!option->get_configurable() || key.empty()) continue;
     if (option->count() > 0) {
       config[key] = value_of(*option);
-    } else if (default_also && !option->get_default_str().empty()) {
+      // An option whose value may be left out has that value as its default, but is not given.
+    } else if (default_also && option->get_expected_min() > 0 &&
+               !option->get_default_str().empty()) {
       const json parsed = json::parse(option->get_default_str(), nullptr, false);
       config[key] = parsed.is_array() ? parsed : number_or_text(*option, option->get_default_str());
     }

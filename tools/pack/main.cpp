@@ -1,5 +1,7 @@
 // vpm-pack: fills a mesh with spheres that neither overlap nor protrude.
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -22,7 +24,7 @@ namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string mesh, output, report, export_path;
+  std::string mesh, repair, output, report, export_path;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld;
@@ -54,10 +56,31 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--weld", a.weld,
                  "Join vertices nearer than this share of the mesh's diagonal (STL: 1e-9)");
+  app.add_option("--repair", a.repair,
+                 "holes (when no value follows): fill planar and small holes. voxel[=RES]: a new "
+                 "surface from RES voxels (128) along the longest side")
+      ->expected(0, 1)
+      ->default_str("holes");
+}
+
+SolidOptions solid_options(const Arguments& a) {
+  SolidOptions options{.scale = a.scale, .weld = a.weld};
+  constexpr std::string_view kVoxel = "voxel=";
+  if (a.repair.empty()) return options;
+  options.repair = a.repair == "holes" ? Repair::holes : Repair::voxel;
+  if (a.repair == "holes" || a.repair == "voxel") return options;
+  const char* const digits = a.repair.data() + std::min(kVoxel.size(), a.repair.size());
+  const char* const end = a.repair.data() + a.repair.size();
+  const auto [last, fault] = std::from_chars(digits, end, options.repair_voxels);
+  if (a.repair.starts_with(kVoxel) && fault == std::errc() && last == end) return options;
+  throw Error(ErrorKind::usage, "--repair: '" + a.repair +
+                                    "' is none of holes, voxel and voxel=RES; where it is the "
+                                    "mesh, name that before the option");
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  solid_options(a);
   if (a.mesh.empty()) wrong("no mesh is given: name an OBJ, OFF, PLY or STL file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
     wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
@@ -151,7 +174,7 @@ void run(const Tool& tool, const Arguments& a) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = make_solid(parse_mesh(bytes, name), {a.scale, a.weld});
+  CheckedSolid checked = make_solid(parse_mesh(bytes, name), solid_options(a));
   for (const std::string& note : checked.notes) tool.note(name + ": " + note);
   for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
 

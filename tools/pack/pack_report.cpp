@@ -13,23 +13,43 @@ json as_json(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
+json as_json(const FilledHole& hole) {
+  return {{"edges", hole.edges},
+          {"center", as_json(hole.center)},
+          {"size", hole.size},
+          {"planar", hole.planar}};
+}
+
+json as_json(const VoxelRepair& repair) {
+  return {{"voxel", repair.voxel},
+          {"hausdorff_distance", std::max(repair.solid_to_mesh, repair.mesh_to_solid)},
+          {"solid_to_mesh", repair.solid_to_mesh},
+          {"mesh_to_solid", repair.mesh_to_solid}};
+}
+
 json as_json(const MeshFacts& facts) {
-  return {{"format", name_of(facts.format)},
-          {"vertices", facts.vertices},
-          {"triangles", facts.triangles},
-          {"shells", facts.shells},
-          {"cavities", facts.cavities},
-          {"euler_characteristic", facts.euler},
-          {"area", facts.area},
-          {"volume", facts.volume},
-          {"box_low", as_json(facts.low)},
-          {"box_high", as_json(facts.high)},
-          {"joined_vertices", facts.joined_vertices},
-          {"unused_vertices", facts.unused_vertices},
-          {"collapsed_triangles", facts.collapsed_triangles},
-          {"turned_triangles", facts.turned_triangles},
-          {"zero_area_triangles", facts.zero_area_triangles},
-          {"self_intersections", facts.self_intersections}};
+  json mesh = {{"format", name_of(facts.format)},
+               {"vertices", facts.vertices},
+               {"triangles", facts.triangles},
+               {"shells", facts.shells},
+               {"cavities", facts.cavities},
+               {"euler_characteristic", facts.euler},
+               {"area", facts.area},
+               {"volume", facts.volume},
+               {"box_low", as_json(facts.low)},
+               {"box_high", as_json(facts.high)},
+               {"inner_shells", facts.inner_shells},
+               {"joined_vertices", facts.joined_vertices},
+               {"unused_vertices", facts.unused_vertices},
+               {"collapsed_triangles", facts.collapsed_triangles},
+               {"turned_triangles", facts.turned_triangles},
+               {"zero_area_triangles", facts.zero_area_triangles},
+               {"self_intersections", facts.self_intersections},
+               {"repeated_triangles", facts.repeated_triangles},
+               {"filled_holes", json::array()}};
+  for (const FilledHole& hole : facts.filled_holes) mesh["filled_holes"].push_back(as_json(hole));
+  if (facts.voxel_repair) mesh["voxel_repair"] = as_json(*facts.voxel_repair);
+  return mesh;
 }
 
 json as_json(const Validation& validation) {

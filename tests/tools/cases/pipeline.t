@@ -49,7 +49,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o cube.vpmg
 2> vpm-query: error: cube.vpmg exists and is a tool model (.vpmg); name another output, or give --force to overwrite it
 [2]
 $ vpm-pack open.off -o new.vpmp
-2> vpm-pack: error: open.off: the mesh is open: 3 edges belong to one triangle only, at (0.1, -0.1, -0.1)-(0.1, -0.1, 0.1), (0.1, -0.1, -0.1)-(0.1, 0.1, 0.1), (0.1, -0.1, 0.1)-(0.1, 0.1, 0.1). Only a closed surface has an inside: close the holes and remove extra faces in a mesh editor, or give --weld if parts should meet and do not
+2> vpm-pack: error: open.off: the mesh is open: 3 edges belong to one triangle only, around 1 hole: a loop of 3 edges through (0.1, 0.1, 0.1), (0.1, -0.1, 0.1), (0.1, -0.1, -0.1). * (glob)
 [1]
 $ vpm-query --tool missing.vpmg --cloud wall.vpmc --poses path.txt
 2> vpm-query: error: cannot read missing.vpmg: No such file or directory

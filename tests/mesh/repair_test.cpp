@@ -1,0 +1,271 @@
+// Repairs: holes filled where that is safe, or a new surface from voxels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/boundary_loops.h"
+#include "libvpm/mesh/surface_distance.h"
+#include "libvpm/mesh/voxel_repair.h"
+#include "libvpm/model/sphere.h"
+#include "libvpm/synthetic/shapes.h"
+#include "tests/mesh/mesh_files.h"
+
+namespace vpm::test {
+namespace {
+
+using synthetic::make_cube;
+using synthetic::make_icosphere;
+using synthetic::make_torus;
+
+bool contains(const std::string& message, const std::string& part) {
+  return message.find(part) != std::string::npos;
+}
+
+// Without the triangles whose corners all lie above the height.
+Solid cut_open(Solid solid, double height) {
+  std::erase_if(solid.triangles, [&](const Triangle& t) {
+    return solid.vertices[t[0]].z > height && solid.vertices[t[1]].z > height &&
+           solid.vertices[t[2]].z > height;
+  });
+  return solid;
+}
+
+SolidOptions repair(Repair how, int voxels = 48) {
+  SolidOptions options;
+  options.repair = how;
+  options.repair_voxels = voxels;
+  return options;
+}
+
+TEST(BoundaryLoops, GoAroundEachHole) {
+  Solid cube = make_cube(2);  // without top and bottom
+  std::erase_if(cube.triangles, [&](const Triangle& t) {
+    const double z = cube.vertices[t[0]].z;
+    return cube.vertices[t[1]].z == z && cube.vertices[t[2]].z == z;
+  });
+  const Topology topology = topology_of(cube.vertices.size(), cube.triangles);
+  const auto loops = boundary_loops(topology, cube.triangles);
+  ASSERT_EQ(loops.size(), 2U);
+  for (const BoundaryLoop& loop : loops) {
+    EXPECT_TRUE(loop.closed);
+    ASSERT_EQ(loop.vertices.size(), 4U);
+    Vec3 normal;  // of the face that is missing
+    const double z = cube.vertices[loop.vertices[0]].z;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3 p = cube.vertices[loop.vertices[k]], q = cube.vertices[loop.vertices[(k + 1) % 4]];
+      EXPECT_EQ(p.z, z);
+      normal += cross(p - Vec3{0, 0, z}, q - Vec3{0, 0, z});
+    }
+    EXPECT_GT(normal.z * z, 0);
+  }
+}
+
+TEST(BoundaryLoops, HolesThatTouchInAVertexAreTwo) {
+  // A flat sheet of 4 x 4 squares without two that meet in a corner.
+  Solid sheet;
+  for (std::uint32_t i = 0; i < 25; ++i) sheet.vertices.push_back({i % 5 * 1.0, i / 5 * 1.0, 0});
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    for (std::uint32_t j = 0; j < 4; ++j) {
+      if (i == j && (i == 1 || i == 2)) continue;
+      const std::uint32_t a = 5 * i + j;
+      sheet.triangles.push_back({a, a + 1, a + 6});
+      sheet.triangles.push_back({a, a + 6, a + 5});
+    }
+  }
+  const Topology topology = topology_of(sheet.vertices.size(), sheet.triangles);
+  const auto loops = boundary_loops(topology, sheet.triangles);
+  std::size_t edges = 0;
+  for (const BoundaryLoop& loop : loops) edges += loop.vertices.size();
+  EXPECT_EQ(edges, topology.boundary.size());
+  ASSERT_EQ(loops.size(), 3U);
+  EXPECT_EQ(loops[0].vertices.size(), 16U);
+}
+
+TEST(MeshRefusal, NamesTheLoopOfEachHole) {
+  Solid cube = make_cube(2);
+  cube.triangles.erase(cube.triangles.begin());
+  const std::string one = refusal_of(cube);
+  EXPECT_TRUE(contains(one,
+                       "open: 3 edges belong to one triangle only, around 1 hole: a loop of "
+                       "3 edges through ("))
+      << one;
+  Solid five = make_cube(2);
+  for (int k = 1; k < 5; ++k) five = together(five, moved(make_cube(2), {3.0 * k, 0, 0}));
+  for (std::size_t k = 0; k < 5; ++k)
+    five.triangles.erase(five.triangles.begin() + static_cast<std::ptrdiff_t>(11 * k));
+  EXPECT_TRUE(contains(refusal_of(five), "around 5 holes: ")) << refusal_of(five);
+  EXPECT_TRUE(contains(refusal_of(five), "; and 2 more")) << refusal_of(five);
+}
+
+TEST(RepairHoles, PlanarOnesGiveTheBodyBack) {
+  Solid box = synthetic::make_box(1, 2, 3);  // without its top
+  std::erase_if(box.triangles, [&](const Triangle& t) {
+    return box.vertices[t[0]].z > 0 && box.vertices[t[1]].z > 0 && box.vertices[t[2]].z > 0;
+  });
+  const CheckedSolid checked = solid_of(box, repair(Repair::holes));
+  EXPECT_NEAR(checked.facts.volume, 6, 1e-14);
+  EXPECT_EQ(checked.solid.triangles.size(), 12U);
+  ASSERT_EQ(checked.facts.filled_holes.size(), 1U);
+  EXPECT_TRUE(checked.facts.filled_holes[0].planar);
+  EXPECT_EQ(checked.facts.filled_holes[0].edges, 4U);
+  EXPECT_EQ(checked.facts.filled_holes[0].center, (Vec3{0, 0, 1.5}));
+  ASSERT_EQ(checked.notes.size(), 1U);
+  EXPECT_TRUE(contains(checked.notes[0], "planar hole of 4 edges about (0, 0, 1.5)"));
+}
+
+TEST(RepairHoles, ARingIsFilledByItsTwoRims) {
+  // A tube without the ring that closes it on top: two planar rims, one within the other.
+  const auto tube = [](double inner, double outer, int around) {
+    Solid solid;
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * kPi * k / around;
+      for (const double r : {inner, outer}) {
+        for (const double z : {0.0, 1.0})
+          solid.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
+      }
+    }
+    const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+      solid.triangles.push_back({a, b, c});
+      solid.triangles.push_back({a, c, d});
+    };
+    const auto n = static_cast<std::uint32_t>(around);
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const std::uint32_t a = 4 * k, b = 4 * ((k + 1) % n);
+      quad(a + 2, b + 2, b + 3, a + 3);  // outside
+      quad(b, a, a + 1, b + 1);          // bore
+      quad(a, b, b + 2, a + 2);          // bottom
+    }
+    return solid;
+  };
+  const CheckedSolid checked = solid_of(tube(0.3, 0.6, 40), repair(Repair::holes));
+  EXPECT_EQ(checked.facts.filled_holes.size(), 2U);
+  const double polygon = 20 * std::sin(2 * kPi / 40);  // area of a regular polygon in a unit circle
+  EXPECT_NEAR(checked.facts.volume, polygon * (0.36 - 0.09), 1e-9);
+}
+
+TEST(RepairHoles, SmallOnesAreClosedAndLargeOnesRefused) {
+  const Solid ball = make_icosphere(1, 3);
+  const CheckedSolid checked = solid_of(cut_open(ball, 0.97), repair(Repair::holes));
+  ASSERT_EQ(checked.facts.filled_holes.size(), 1U);
+  EXPECT_NEAR(checked.facts.volume, mass_properties(ball).volume, 0.01);
+  EXPECT_EQ(checked.facts.euler, 2);
+
+  Solid bent = cut_open(make_icosphere(1, 3), 0.3);
+  for (Vec3& p : bent.vertices) p.z += 0.4 * p.x * p.x;
+  const std::string message = refusal_of(as_off(bent), "a.off", repair(Repair::holes));
+  EXPECT_TRUE(contains(message, "around 1 hole")) << message;
+  EXPECT_TRUE(contains(message, "--repair voxel")) << message;
+}
+
+TEST(RepairHoles, RepeatedTrianglesAreDropped) {
+  Solid cube = make_cube(2);
+  cube.triangles.push_back(cube.triangles[3]);
+  cube.triangles.push_back(turned_over(cube).triangles[5]);
+  const CheckedSolid checked = solid_of(cube, repair(Repair::holes));
+  EXPECT_EQ(checked.facts.repeated_triangles, 2U);
+  EXPECT_DOUBLE_EQ(checked.facts.volume, 8);
+}
+
+TEST(SurfaceDistance, OfSpheresIsThatOfTheirRadii) {
+  const Solid one = make_icosphere(1, 4), two = make_icosphere(1.25, 4);
+  EXPECT_NEAR(farthest_from_surface(two, one, 0.05), 0.25, 5e-3);
+  EXPECT_NEAR(farthest_from_surface(one, two, 0.05), 0.25, 5e-3);
+  // One-sided: a part is near the whole, the whole is not near its part.
+  const Solid part = cut_open(one, 0);
+  EXPECT_EQ(farthest_from_surface(part, one, 0.1), 0);
+  EXPECT_GT(farthest_from_surface(one, part, 0.1), 0.9);
+}
+
+TEST(RepairByVoxels, AClosedMeshComesBackWithinAVoxel) {
+  const Solid torus = make_torus(1, 0.35, 48, 24);
+  const CheckedSolid checked = solid_of(torus, repair(Repair::voxel));
+  ASSERT_TRUE(checked.facts.voxel_repair);
+  const VoxelRepair& done = *checked.facts.voxel_repair;
+  EXPECT_NEAR(done.voxel, 2.7 / 48, 1e-3);
+  EXPECT_LT(done.solid_to_mesh, done.voxel);
+  EXPECT_LT(done.mesh_to_solid, done.voxel);
+  EXPECT_EQ(checked.facts.euler, 0);
+  EXPECT_EQ(checked.facts.self_intersections, 0U);
+  EXPECT_NEAR(checked.facts.volume, mass_properties(torus).volume, 0.03);
+}
+
+TEST(RepairByVoxels, ClosesWideHolesWhateverTheOrientation) {
+  const Solid ball = make_icosphere(1, 4), open = cut_open(ball, 0.8);
+  for (Solid mesh : {open, turned_over(open)}) {
+    std::swap(mesh.triangles[100][0], mesh.triangles[100][1]);  // one that disagrees
+    const CheckedSolid checked = solid_of(mesh, repair(Repair::voxel));
+    EXPECT_EQ(checked.facts.euler, 2);
+    const double cap = kPi * 0.04 * (3 - 0.2) / 3;
+    EXPECT_GT(checked.facts.volume, mass_properties(ball).volume - 1.3 * cap);
+    EXPECT_LT(checked.facts.volume, mass_properties(ball).volume);
+    EXPECT_GT(checked.facts.voxel_repair->solid_to_mesh, 0.1);
+    EXPECT_LT(checked.facts.voxel_repair->mesh_to_solid, checked.facts.voxel_repair->voxel);
+  }
+}
+
+TEST(RepairByVoxels, FinsVanishAndOverlapsBecomeOneSurface) {
+  Solid pair = together(make_cube(2), moved(make_cube(2), {1, 0.9, 0.8}));
+  pair.triangles.push_back({0, 1, static_cast<std::uint32_t>(pair.vertices.size())});
+  pair.vertices.push_back({-3, -3, -1});  // a fin of one triangle
+  const CheckedSolid checked = solid_of(pair, repair(Repair::voxel));
+  EXPECT_EQ(checked.facts.shells, 1U);
+  EXPECT_EQ(checked.facts.self_intersections, 0U);
+  EXPECT_NEAR(checked.facts.volume, 16 - 1.32, 0.2);
+  EXPECT_GT(checked.facts.voxel_repair->mesh_to_solid, 1);
+}
+
+TEST(RepairByVoxels, LengthsAreScaled) {
+  SolidOptions options = repair(Repair::voxel, 24);
+  const CheckedSolid metres = solid_of(make_cube(2), options);
+  options.scale = 0x1p-10;
+  const CheckedSolid scaled = solid_of(make_cube(2), options);
+  EXPECT_EQ(scaled.facts.voxel_repair->voxel, 0x1p-10 * metres.facts.voxel_repair->voxel);
+  EXPECT_EQ(scaled.facts.voxel_repair->mesh_to_solid,
+            0x1p-10 * metres.facts.voxel_repair->mesh_to_solid);
+  EXPECT_EQ(scaled.facts.volume, 0x1p-30 * metres.facts.volume);
+}
+
+TEST(RepairByVoxels, IsTheSameForAnyThreads) {
+  const Solid open = cut_open(make_icosphere(1, 3), 0.8);
+  VoxelRepair done;
+  set_thread_count(1);
+  const Solid one = repair_by_voxels(open, 40, done);
+  set_thread_count(8);
+  const Solid eight = repair_by_voxels(open, 40, done);
+  set_thread_count(0);
+  EXPECT_EQ(one.vertices, eight.vertices);
+  EXPECT_EQ(one.triangles, eight.triangles);
+}
+
+TEST(RepairByVoxels, RefusesWhatHoldsNoVoxelAndWrongResolutions) {
+  const std::string message =
+      refusal_of(as_off(synthetic::make_box(1, 1, 1e-3)), "a.off", repair(Repair::voxel, 16));
+  EXPECT_TRUE(contains(message, "a.off: no voxel of 1/16")) << message;
+  for (const int voxels : {0, -5, 7, 1025}) {
+    try {
+      solid_of(make_cube(1), repair(Repair::voxel, voxels));
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::usage);
+    }
+  }
+}
+
+TEST(RealMeshes, BadBunniesAreRepaired) {
+  if (shared_mesh("bad_bunny_open.obj").empty()) GTEST_SKIP() << "the shared data is not here";
+  const double bunny = 0.00075393;  // of the sound one, with other fillings below
+  const CheckedSolid filled =
+      make_solid(read_mesh(shared_mesh("bad_bunny_open.obj")), repair(Repair::holes));
+  EXPECT_EQ(filled.facts.filled_holes.size(), 5U);
+  EXPECT_NEAR(filled.facts.volume, bunny, 0.01 * bunny);
+  for (const char* const name : {"bad_bunny_open.obj", "bad_bunny_nonmanifold.ply"}) {
+    const CheckedSolid remeshed = make_solid(read_mesh(shared_mesh(name)), repair(Repair::voxel));
+    EXPECT_EQ(remeshed.facts.euler, 2);
+    EXPECT_NEAR(remeshed.facts.volume, bunny, 0.02 * bunny);
+  }
+}
+
+}  // namespace
+}  // namespace vpm::test
