@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -36,48 +37,103 @@ std::array<std::uint8_t, 3> rainbow(double t) {
   return {channel(3), channel(2), channel(1)};
 }
 
+// "x<between>y<between>z"
+std::string text_of(Vec3 p, const char* between) {
+  return digits(p.x) + between + digits(p.y) + between + digits(p.z);
+}
+
+// Colours by radius within a packing.
+class RadiusColors {
+ public:
+  explicit RadiusColors(const std::vector<Sphere>& spheres) {
+    for (const Sphere& s : spheres) {
+      smallest_ = std::min(smallest_, s.radius);
+      largest_ = std::max(largest_, s.radius);
+    }
+  }
+  std::array<std::uint8_t, 3> of(const Sphere& s) const {
+    return rainbow(
+        largest_ > smallest_ ? std::log(s.radius / smallest_) / std::log(largest_ / smallest_) : 1);
+  }
+
+ private:
+  double smallest_ = HUGE_VAL, largest_ = 0;
+};
+
+constexpr const char* kPlyHeader =
+    "ply\nformat binary_little_endian 1.0\ncomment spheres of a packing, coloured by radius\n"
+    "element vertex ";
+constexpr const char* kPlyCorners =
+    "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+    "property uchar green\nproperty uchar blue\n";
+
+// A name between quotes of XML.
+std::string xml_text(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '"':
+        text += "&quot;";
+        break;
+      default:  // XML has no way to write control characters
+        text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 ExportFormat export_format(const std::string& path) {
   const auto ends = [&](const char* extension) { return path.ends_with(extension); };
   if (ends(".csv")) return ExportFormat::csv;
+  if (ends(".json")) return ExportFormat::json;
+  if (ends(".points.ply")) return ExportFormat::points;
   if (ends(".ply")) return ExportFormat::ply;
+  if (ends(".vtk")) return ExportFormat::vtk;
   if (ends(".yml") || ends(".yaml")) return ExportFormat::yml;
-  throw Error(ErrorKind::usage,
-              "export: the name '" + path + "' must end with .csv, .ply or .yml (.yaml)");
+  if (ends(".urdf")) return ExportFormat::urdf;
+  if (ends(".srdf")) return ExportFormat::srdf;
+  throw Error(ErrorKind::usage, "export: the name '" + path +
+                                    "' must end with .csv, .json, .ply (.points.ply), .vtk, .yml "
+                                    "(.yaml), .urdf or .srdf");
 }
 
 std::string packing_as_csv(const std::vector<Sphere>& spheres) {
   std::string text = "x,y,z,r\n";
   for (const Sphere& s : spheres) {
-    text += digits(s.center.x) + ',' + digits(s.center.y) + ',' + digits(s.center.z) + ',' +
-            digits(s.radius) + '\n';
+    text += text_of(s.center, ",") + ',' + digits(s.radius) + '\n';
   }
   return text;
+}
+
+std::string packing_as_json(const std::vector<Sphere>& spheres) {
+  nlohmann::json centers = nlohmann::json::array(), radii = nlohmann::json::array();
+  for (const Sphere& s : spheres) {
+    centers.push_back({s.center.x, s.center.y, s.center.z});
+    radii.push_back(s.radius);
+  }
+  return nlohmann::json{{"centers", centers}, {"radii", radii}}.dump() + "\n";
 }
 
 std::string packing_as_ply(const std::vector<Sphere>& spheres) {
   const Solid ball = synthetic::make_icosphere(1, 1);
   const std::size_t corners = ball.vertices.size(), faces = ball.triangles.size();
-  std::string bytes =
-      "ply\nformat binary_little_endian 1.0\ncomment spheres of a packing, coloured by radius\n"
-      "element vertex " +
-      std::to_string(corners * spheres.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-      "property uchar green\nproperty uchar blue\nelement face " +
-      std::to_string(faces * spheres.size()) +
-      "\nproperty list uchar uint vertex_indices\nend_header\n";
-  if (corners * spheres.size() > 0xffffffff)
-    refuse("export: too many spheres for the 32-bit indices of a PLY file; use .csv");
-  double smallest = HUGE_VAL, largest = 0;
-  for (const Sphere& s : spheres) {
-    smallest = std::min(smallest, s.radius);
-    largest = std::max(largest, s.radius);
+  if (corners * spheres.size() > 0xffffffff) {
+    refuse("export: too many spheres for the 32-bit indices of a PLY file; use .points.ply");
   }
+  std::string bytes = kPlyHeader + std::to_string(corners * spheres.size()) + kPlyCorners +
+                      "element face " + std::to_string(faces * spheres.size()) +
+                      "\nproperty list uchar uint vertex_indices\nend_header\n";
+  const RadiusColors colors(spheres);
   for (const Sphere& s : spheres) {
-    const double t =
-        largest > smallest ? std::log(s.radius / smallest) / std::log(largest / smallest) : 1;
-    const auto color = rainbow(t);
+    const auto color = colors.of(s);
     for (const Vec3& direction : ball.vertices) {
       append(bytes, narrow(s.center + s.radius * direction));
       append(bytes, color);
@@ -93,25 +149,90 @@ std::string packing_as_ply(const std::vector<Sphere>& spheres) {
   return bytes;
 }
 
-std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link) {
-  std::string text = "collision_spheres:\n  \"" + link + "\":\n";
+std::string packing_as_points(const std::vector<Sphere>& spheres) {
+  std::string bytes = kPlyHeader + std::to_string(spheres.size()) + kPlyCorners +
+                      "property float radius\nend_header\n";
+  const RadiusColors colors(spheres);
   for (const Sphere& s : spheres) {
-    text += "    - \"center\": [" + digits(s.center.x) + ", " + digits(s.center.y) + ", " +
-            digits(s.center.z) + "]\n      \"radius\": " + digits(s.radius) + '\n';
+    append(bytes, narrow(s.center));
+    append(bytes, colors.of(s));
+    append(bytes, static_cast<float>(s.radius));
+  }
+  return bytes;
+}
+
+std::string packing_as_vtk(const std::vector<Sphere>& spheres) {
+  const std::string count = std::to_string(spheres.size());
+  std::string text =
+      "# vtk DataFile Version 3.0\nspheres of a packing\nASCII\nDATASET POLYDATA\nPOINTS " + count +
+      " double\n";
+  for (const Sphere& s : spheres) text += text_of(s.center, " ") + '\n';
+  text += "VERTICES " + count + ' ' + std::to_string(2 * spheres.size()) + '\n';
+  for (std::size_t k = 0; k < spheres.size(); ++k) text += "1 " + std::to_string(k) + '\n';
+  text += "POINT_DATA " + count + "\nSCALARS radius double 1\nLOOKUP_TABLE default\n";
+  for (const Sphere& s : spheres) text += digits(s.radius) + '\n';
+  return text;
+}
+
+std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link) {
+  // Strings of JSON are strings of YAML.
+  const std::string name =
+      nlohmann::json(link).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string text = "collision_spheres:\n  " + name + ":\n";
+  for (const Sphere& s : spheres) {
+    text += "    - \"center\": [" + text_of(s.center, ", ") +
+            "]\n      \"radius\": " + digits(s.radius) + '\n';
   }
   return text;
 }
 
+std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link) {
+  const std::string name = xml_text(link);
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<robot name=\"" + name + "\">\n  <link name=\"" + name + "\">\n";
+  for (const Sphere& s : spheres) {
+    text += "    <collision>\n      <origin xyz=\"" + text_of(s.center, " ") +
+            "\" rpy=\"0 0 0\"/>\n      <geometry><sphere radius=\"" + digits(s.radius) +
+            "\"/></geometry>\n    </collision>\n";
+  }
+  return text + "  </link>\n</robot>\n";
+}
+
+std::string packing_as_srdf(const std::vector<Sphere>& spheres, const std::string& link) {
+  const std::string name = xml_text(link);
+  std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"" + name +
+                     "\">\n  <link_sphere_approximation link=\"" + name + "\">\n";
+  for (const Sphere& s : spheres) {
+    text += "    <sphere center=\"" + text_of(s.center, " ") + "\" radius=\"" + digits(s.radius) +
+            "\"/>\n";
+  }
+  return text + "  </link_sphere_approximation>\n</robot>\n";
+}
+
 void export_packing(const std::string& path, const std::vector<Sphere>& spheres,
                     const std::string& link) {
-  switch (export_format(path)) {
-    case ExportFormat::csv:
-      return file::write_all(path, packing_as_csv(spheres));
-    case ExportFormat::ply:
-      return file::write_all(path, packing_as_ply(spheres));
-    case ExportFormat::yml:
-      return file::write_all(path, packing_as_yml(spheres, link));
-  }
+  const auto content = [&]() -> std::string {
+    switch (export_format(path)) {
+      case ExportFormat::csv:
+        return packing_as_csv(spheres);
+      case ExportFormat::json:
+        return packing_as_json(spheres);
+      case ExportFormat::ply:
+        return packing_as_ply(spheres);
+      case ExportFormat::points:
+        return packing_as_points(spheres);
+      case ExportFormat::vtk:
+        return packing_as_vtk(spheres);
+      case ExportFormat::yml:
+        return packing_as_yml(spheres, link);
+      case ExportFormat::urdf:
+        return packing_as_urdf(spheres, link);
+      case ExportFormat::srdf:
+        return packing_as_srdf(spheres, link);
+    }
+    return "";
+  };
+  file::write_all(path, content());
 }
 
 }  // namespace vpm

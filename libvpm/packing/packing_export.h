@@ -8,18 +8,29 @@
 
 namespace vpm {
 
-// By the extension of the path:
-//   .csv  a line "x,y,z,r", then one line of 9 significant digits per sphere, metres
-//   .ply  every sphere as an icosphere of 80 triangles, coloured by its radius from blue (smallest)
-//         to red (largest, logarithmic); binary, for viewers
-//   .yml  collision_spheres of a robot description of cuRobo; `link` names the link
-// Any other name throws Error(usage).
-enum class ExportFormat { csv, ply, yml };
+// By the extension of the path; metres.
+//   .csv         a line "x,y,z,r", then one line per sphere
+//   .json        {"centers": [[x, y, z], ...], "radii": [r, ...]}, to the last bit
+//   .ply         every sphere as an icosphere of 80 triangles, binary, for viewers
+//   .points.ply  every sphere as a point with its radius, binary
+//   .vtk         legacy VTK: points with their radii
+//   .yml .yaml   cuRobo's robot description: collision_spheres of a link
+//   .urdf        a robot of one link whose collision geometry is the spheres
+//   .srdf        link_sphere_approximation of a link
+// Text has 9 significant digits (JSON: as many as it takes). PLY is coloured by radius, from blue
+// (smallest) over green to red (largest, logarithmic). `link` names the link in YAML, URDF and
+// SRDF. Any other name throws Error(usage).
+enum class ExportFormat { csv, json, ply, points, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 
 std::string packing_as_csv(const std::vector<Sphere>& spheres);
+std::string packing_as_json(const std::vector<Sphere>& spheres);
 std::string packing_as_ply(const std::vector<Sphere>& spheres);
+std::string packing_as_points(const std::vector<Sphere>& spheres);
+std::string packing_as_vtk(const std::vector<Sphere>& spheres);
 std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link);
+std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link);
+std::string packing_as_srdf(const std::vector<Sphere>& spheres, const std::string& link);
 
 // Atomic; throws Error(cannot_write).
 void export_packing(const std::string& path, const std::vector<Sphere>& spheres,

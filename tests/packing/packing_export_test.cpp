@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <regex>
 #include <span>
+#include <sstream>
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_check.h"
@@ -18,6 +21,11 @@ const std::vector<Sphere> kSpheres{{{0.1, -2.0 / 3, 3e-7}, 0.5}, {{10, 20, 30}, 
 TEST(PackingExport, ExtensionsChooseTheFormat) {
   EXPECT_EQ(export_format("a/b.csv"), ExportFormat::csv);
   EXPECT_EQ(export_format("b.ply"), ExportFormat::ply);
+  EXPECT_EQ(export_format("b.points.ply"), ExportFormat::points);
+  EXPECT_EQ(export_format("b.json"), ExportFormat::json);
+  EXPECT_EQ(export_format("b.vtk"), ExportFormat::vtk);
+  EXPECT_EQ(export_format("b.urdf"), ExportFormat::urdf);
+  EXPECT_EQ(export_format("b.srdf"), ExportFormat::srdf);
   EXPECT_EQ(export_format("b.yml"), ExportFormat::yml);
   EXPECT_EQ(export_format("b.yaml"), ExportFormat::yml);
   for (const char* const name : {"b", "b.CSV.txt", "csv", "-", ""}) {
@@ -39,6 +47,100 @@ TEST(PackingExport, YmlListsTheSpheresOfALink) {
   EXPECT_EQ(packing_as_yml({kSpheres[0]}, "hand"),
             "collision_spheres:\n  \"hand\":\n"
             "    - \"center\": [0.1, -0.666666667, 3e-07]\n      \"radius\": 0.5\n");
+}
+
+// Spheres whose numbers come in the order x, y, z, r, as often as `pattern` is found.
+std::vector<Sphere> found_by(const std::regex& pattern, const std::string& text) {
+  std::vector<Sphere> spheres;
+  for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) {
+    spheres.push_back(
+        {{std::stod((*at)[1]), std::stod((*at)[2]), std::stod((*at)[3])}, std::stod((*at)[4])});
+  }
+  return spheres;
+}
+
+void expect_nine_digits(const std::vector<Sphere>& read) {
+  ASSERT_EQ(read.size(), kSpheres.size());
+  for (std::size_t k = 0; k < read.size(); ++k) {
+    const Sphere& truth = kSpheres[k];
+    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, 5e-9 * std::abs(b)); };
+    near(read[k].center.x, truth.center.x);
+    near(read[k].center.y, truth.center.y);
+    near(read[k].center.z, truth.center.z);
+    near(read[k].radius, truth.radius);
+  }
+}
+
+TEST(PackingExport, TextIsReadBackToNineDigits) {
+  const std::string number = "([-+.e0-9]+)";
+  const std::string xyz = number + " " + number + " " + number;
+  expect_nine_digits(found_by(std::regex(number + "," + number + "," + number + "," + number),
+                              packing_as_csv(kSpheres)));
+  expect_nine_digits(found_by(std::regex("\"center\": \\[" + number + ", " + number + ", " +
+                                         number + "\\]\\s+\"radius\": " + number),
+                              packing_as_yml(kSpheres, "hand")));
+  expect_nine_digits(found_by(std::regex("<collision>\\s*<origin xyz=\"" + xyz +
+                                         "\" rpy=\"0 0 0\"/>\\s*<geometry><sphere radius=\"" +
+                                         number + "\"/></geometry>\\s*</collision>"),
+                              packing_as_urdf(kSpheres, "hand")));
+  expect_nine_digits(
+      found_by(std::regex("<sphere center=\"" + xyz + "\" radius=\"" + number + "\"/>"),
+               packing_as_srdf(kSpheres, "hand")));
+}
+
+TEST(PackingExport, VtkListsPointsThenRadii) {
+  std::istringstream in(packing_as_vtk(kSpheres));
+  std::string line, word;
+  std::getline(in, line);
+  EXPECT_EQ(line, "# vtk DataFile Version 3.0");
+  std::vector<Sphere> read(kSpheres.size());
+  while (in >> word && word != "POINTS") continue;
+  in >> word >> word;
+  for (Sphere& s : read) in >> s.center.x >> s.center.y >> s.center.z;
+  in >> word;
+  EXPECT_EQ(word, "VERTICES");
+  while (in >> word && word != "default") continue;
+  for (Sphere& s : read) in >> s.radius;
+  EXPECT_TRUE(in);
+  expect_nine_digits(read);
+}
+
+TEST(PackingExport, JsonIsReadBackToTheBit) {
+  const nlohmann::json read = nlohmann::json::parse(packing_as_json(kSpheres));
+  ASSERT_EQ(read["centers"].size(), kSpheres.size());
+  for (std::size_t k = 0; k < kSpheres.size(); ++k) {
+    EXPECT_EQ(
+        read["centers"][k].get<std::vector<double>>(),
+        (std::vector<double>{kSpheres[k].center.x, kSpheres[k].center.y, kSpheres[k].center.z}));
+    EXPECT_EQ(read["radii"][k].get<double>(), kSpheres[k].radius);
+  }
+}
+
+TEST(PackingExport, LinkNamesAreQuoted) {
+  const std::string link = "a \"b\" <c> & d\\";
+  EXPECT_NE(packing_as_yml(kSpheres, link).find("\n  \"a \\\"b\\\" <c> & d\\\\\":\n"),
+            std::string::npos);
+  for (const std::string& text : {packing_as_urdf(kSpheres, link), packing_as_srdf(kSpheres, link)})
+    EXPECT_NE(text.find("=\"a &quot;b&quot; &lt;c> &amp; d\\\""), std::string::npos);
+}
+
+TEST(PackingExport, PointsCarryColourAndRadius) {
+  const std::string bytes = packing_as_points(kSpheres);
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  constexpr std::size_t kStride = 19;  // x, y, z, red, green, blue, radius
+  ASSERT_EQ(bytes.size(), body + kStride * kSpheres.size());
+  for (std::size_t k = 0; k < kSpheres.size(); ++k) {
+    Vec3f center;
+    float radius = 0;
+    std::memcpy(&center, bytes.data() + body + kStride * k, sizeof center);
+    std::memcpy(&radius, bytes.data() + body + kStride * k + 15, sizeof radius);
+    EXPECT_EQ(center, narrow(kSpheres[k].center));
+    EXPECT_EQ(radius, static_cast<float>(kSpheres[k].radius));
+  }
+  const auto red = static_cast<unsigned char>(bytes[body + 12]),
+             blue = static_cast<unsigned char>(bytes[body + kStride + 14]);
+  EXPECT_GT(red, 100);   // the larger one
+  EXPECT_GT(blue, 100);  // the smaller one
 }
 
 TEST(PackingExport, PlyIsAMeshOfOneClosedBallPerSphere) {

@@ -24,7 +24,7 @@ namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string mesh, repair, output, report, export_path;
+  std::string mesh, repair, output, report, export_path, link;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld;
@@ -51,7 +51,10 @@ void declare(CLI::App& app, Arguments& a) {
                "Count voxels (OpenVDB) as a second opinion on coverage, protrusion and overlap");
   app.add_option("--report", a.report, "Facts and figures (JSON)");
   app.add_option("--export", a.export_path,
-                 "Also write the spheres as .csv, .ply or .yml (cuRobo)");
+                 "Also write the spheres: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
+                 "(cuRobo), .urdf or .srdf");
+  app.add_option("--link", a.link,
+                 "Name of the link in .yml, .urdf and .srdf; otherwise that of the mesh");
   app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
       ->capture_default_str();
   app.add_option("--weld", a.weld,
@@ -93,10 +96,12 @@ void check(const Arguments& a, const CommonOptions& common) {
   check_output(a.export_path, common);
 }
 
-// What the robot description calls the part: the mesh's name without folder and extension.
-std::string link_name(const std::string& mesh) {
-  const std::string name = mesh.substr(mesh.rfind('/') + 1);
-  return mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
+// What a robot description calls the part: without --link the mesh's name without folder and
+// extension.
+std::string link_name(const Arguments& a) {
+  if (!a.link.empty()) return a.link;
+  const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
+  return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
 // The inertia tensor is an integral over the triangles, which counts overlaps twice.
@@ -157,7 +162,7 @@ void refuse_uncertified(const Arguments& a, const Certificate& certificate) {
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
   nlohmann::json parameters = tool.parameters();
-  parameters.erase("validate");  // looks at the packing, changes nothing
+  for (const char* const name : {"validate", "link"}) parameters.erase(name);  // change nothing
   Packing packing;
   packing.spheres = std::move(spheres);
   packing.provenance = {{"tool", tool.name()},
@@ -193,7 +198,7 @@ void run(const Tool& tool, const Arguments& a) {
     const auto report = pack_report(checked, result, certificate, validation, seconds);
     file::write_all(a.report, report.dump(2) + "\n");
   }
-  if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a.mesh));
+  if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
   if (!a.output.empty()) {
     write_packing(a.output, make_packing(tool, file::content_hash({bytes}), std::move(checked),
                                          result.spheres));

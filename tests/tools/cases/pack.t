@@ -54,7 +54,7 @@ $ vpm-pack cube.off
 2> vpm-pack: error: nothing would be written: give -o OUT.vpmp, --export or --report
 [2]
 $ vpm-pack cube.off --export cube.xyz
-2> vpm-pack: error: export: the name 'cube.xyz' must end with .csv, .ply or .yml (.yaml)
+2> vpm-pack: error: export: the name 'cube.xyz' must end with .csv, .json, .ply (.points.ply), .vtk, .yml (.yaml), .urdf or .srdf
 [2]
 $ vpm-pack cube.off --spheres 0 -o zero.vpmp
 2> vpm-pack: error: --spheres must be at least 1
