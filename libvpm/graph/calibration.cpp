@@ -84,14 +84,17 @@ std::vector<Cut> make_cuts(const Solid& solid) {
   Numbers numbers;
   std::vector<Cut> cuts(2 * kCalibrationCuts);
   for (std::size_t k = 0; k < cuts.size(); ++k) {
-    const Vec3 normal = k % 2 == 0 ? numbers.direction() : faces.pick(numbers.uniform());
+    const bool along_face = k % 2 == 1;
+    const Vec3 normal = along_face ? faces.pick(numbers.uniform()) : numbers.direction();
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const Vec3& v : solid.vertices) {
       low = std::min(low, dot(normal, v));
       high = std::max(high, dot(normal, v));
     }
+    const double depth = numbers.uniform();
     cuts[k].normal = normal;
-    cuts[k].offset = low + numbers.uniform() * (high - low);
+    cuts[k].offset =
+        along_face ? high - depth * depth * depth * (high - low) : low + depth * (high - low);
     if (k >= kCalibrationCuts) cuts[k].ball = {(cuts[k].offset - radius) * normal, radius};
   }
   return cuts;

@@ -15,9 +15,10 @@ inline constexpr double kCalibrationBall = 1.5;
 
 // Cuts the solid by planes and balls at all depths and compares each level's samples with the exact
 // volume: one entry per level, for ToolModel::calibration. Half of the directions are random, half
-// are normals of the solid's own faces, where errors of neighbouring samples add up. A ball may be
-// the obstacle or the free space: the error is the same. The distance to the cut is exact here, so
-// what a camera adds by its pixels and its noise is not in it.
+// are normals of the solid's own faces, most of them near the face, where the errors of
+// neighbouring samples add up. A ball may be the obstacle or the free space: the error is the same.
+// The distance to the cut is exact here, so what a camera adds by its pixels and its noise is not
+// in it.
 //
 // `solid` must be the one that the model was made of. Refuses (Error(refused)) another one, and a
 // solid whose parts overlap, of which exact cuts are not known. Same bytes for any thread count.

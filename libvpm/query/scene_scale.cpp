@@ -138,6 +138,11 @@ std::size_t level_for_scene(const ToolModel& tool, const SceneScale& scale) {
     const Sphere& smallest = tool.spheres[tool.levels[k].sphere_count - 1];
     if (smallest.radius >= scale.smallest_radius()) level = k;
   }
+  if (tool.calibration.size() != tool.levels.size()) return level;
+  const double reached = tool.calibration[level].mean;
+  for (std::size_t k = 0; k < level; ++k) {
+    if (tool.calibration[k].mean <= kNoBetter * reached) return k;
+  }
   return level;
 }
 

@@ -32,8 +32,10 @@ inline constexpr double kNear = 1.5;
 inline constexpr std::size_t kFewestPoints = 32;
 SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place);
 
-// Index of the finest level without spheres below scale.smallest_radius(); the coarsest level where
-// all have such.
+// Index of the finest level without spheres below scale.smallest_radius(), or the coarsest level
+// where all have such; where the model is calibrated, of the coarsest one whose mean error is that
+// of the former within kNoBetter.
+inline constexpr double kNoBetter = 1.25;
 std::size_t level_for_scene(const ToolModel& tool, const SceneScale& scale);
 
 }  // namespace vpm

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes;
   bool quick = false, all = false;
-  tool.app().add_option("suite", suite, "accuracy, packing or timing");
+  tool.app().add_option("suite", suite, "accuracy, packing, timing or tradeoff");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();

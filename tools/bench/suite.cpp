@@ -8,9 +8,10 @@ Report run_suite(const std::string& name, const SuiteOptions& options) {
   if (name == "accuracy") return run_accuracy(options);
   if (name == "timing") return run_timing(options);
   if (name == "packing") return run_packing(options);
+  if (name == "tradeoff") return run_tradeoff(options);
   throw Error(ErrorKind::usage,
               (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
-                  "; the suites are accuracy, packing, timing");
+                  "; the suites are accuracy, packing, timing, tradeoff");
 }
 
 }  // namespace vpm::bench

@@ -28,4 +28,8 @@ Report run_timing(const SuiteOptions& options);
 // with `all`).
 Report run_packing(const SuiteOptions& options);
 
+// Time against error over everything that a user can turn, and what --max-error and --for-scene
+// choose.
+Report run_tradeoff(const SuiteOptions& options);
+
 }  // namespace vpm::bench

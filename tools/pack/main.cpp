@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 
+#include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
@@ -17,6 +19,7 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
+#include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/pack/pack_report.h"
 
@@ -24,7 +27,7 @@ namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string mesh, repair, output, report, export_path, link;
+  std::string mesh, repair, output, report, export_path, link, for_scene;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld;
@@ -47,6 +50,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--max-radius", a.max_radius, "Place no larger sphere, m");
   app.add_flag("--grow", a.grow,
                "Let all spheres grow together afterwards: more coverage with as many spheres");
+  app.add_option("--for-scene", a.for_scene,
+                 "Cloud (.vpmc): no spheres that its points cannot resolve, and none so large that "
+                 "the surface bends within");
   app.add_flag("--validate", a.validate,
                "Count voxels (OpenVDB) as a second opinion on coverage, protrusion and overlap");
   app.add_option("--report", a.report, "Facts and figures (JSON)");
@@ -90,6 +96,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.spheres == 0) wrong("--spheres must be at least 1");
   if ((a.output == "-") + (a.report == "-") + (a.export_path == "-") > 1)
     wrong("only one output can be standard output");
+  if (a.mesh == "-" && a.for_scene == "-")
+    wrong("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
   check_output(a.output, file::Kind::packing, common);
   check_output(a.report, common);
@@ -110,6 +118,22 @@ void check_inertia(const Arguments& a, const MeshFacts& facts) {
   refuse(a.mesh + ": --inertia-error needs a mesh that does not intersect itself (" +
          std::to_string(facts.self_intersections) +
          " pairs of triangles do); mend the mesh or leave the option out");
+}
+
+// Narrows the radii to what the scene asks for.
+SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
+  const PreparedCloud cloud(read_cloud(a.for_scene));
+  const double size = reach(solid, mass_properties(solid).center_of_mass);
+  const SceneScale scale = scene_scale(cloud, size, std::nullopt);
+  a.min_radius = std::max(a.min_radius, scale.smallest_radius());
+  const double largest = std::min(a.max_radius.value_or(HUGE_VAL), scale.largest_radius());
+  if (std::isfinite(largest)) a.max_radius = largest;
+  if (a.max_radius && *a.max_radius < a.min_radius) {
+    refuse(a.for_scene + ": its points resolve spheres from " + std::to_string(a.min_radius) +
+           " m, and --max-radius is smaller; allow larger ones, or scan more closely");
+  }
+  tool.note("the scene asks for " + words_of(scale));
+  return scale;
 }
 
 PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid) {
@@ -174,7 +198,7 @@ Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSol
   return packing;
 }
 
-void run(const Tool& tool, const Arguments& a) {
+void run(const Tool& tool, Arguments a) {
   check(a, tool.common());
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
@@ -184,6 +208,8 @@ void run(const Tool& tool, const Arguments& a) {
   for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
 
   check_inertia(a, checked.facts);
+  std::optional<SceneScale> scene;
+  if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
   PackResult result = pack_checked(tool, a, checked.solid);
   if (a.grow) grow_together(tool, a, checked.solid, result);
   const Certificate certificate = certify(checked.solid, result.spheres);
@@ -195,13 +221,16 @@ void run(const Tool& tool, const Arguments& a) {
   std::optional<Validation> validation;
   if (a.validate) validation = validate_packing(checked.solid, result.spheres);
   if (!a.report.empty()) {
-    const auto report = pack_report(checked, result, certificate, validation, seconds);
+    auto report = pack_report(checked, result, certificate, validation, seconds);
+    if (scene) report["scene"] = scene_report(*scene);
     file::write_all(a.report, report.dump(2) + "\n");
   }
   if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
   if (!a.output.empty()) {
-    write_packing(a.output, make_packing(tool, file::content_hash({bytes}), std::move(checked),
-                                         result.spheres));
+    Packing packing =
+        make_packing(tool, file::content_hash({bytes}), std::move(checked), result.spheres);
+    if (scene) packing.provenance["scene"] = scene_report(*scene);
+    write_packing(a.output, packing);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model_file.h"
 #include "libvpm/query/query.h"
+#include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/level_query.h"
 #include "tools/query/pose_reader.h"
@@ -118,12 +119,8 @@ void note_deviation(const Tool& tool, double deviation) {
 }
 
 void note_scale(const Tool& tool, const SceneScale& scale, const Level& level) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the scene resolves spheres from %.3g m (points %.3g m apart, noise %.3g m): "
-                "at most %u spheres are used",
-                scale.smallest_radius(), scale.spacing, scale.noise, level.sphere_count);
-  tool.note(text);
+  tool.note("the scene resolves " + words_of(scale) + ": the level of " +
+            std::to_string(level.sphere_count) + " is enough");
 }
 
 void run(const Tool& tool, const Arguments& a) {

@@ -47,13 +47,4 @@ nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,
   return stats;
 }
 
-nlohmann::json scene_report(const SceneScale& scale) {
-  nlohmann::json report{{"spacing", scale.spacing},
-                        {"noise", scale.noise},
-                        {"curvature", scale.curvature},
-                        {"smallest_radius", scale.smallest_radius()}};
-  if (std::isfinite(scale.largest_radius())) report["largest_radius"] = scale.largest_radius();
-  return report;
-}
-
 }  // namespace vpm::tools

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "libvpm/query/query.h"
-#include "libvpm/query/scene_scale.h"
 
 namespace vpm::tools {
 
@@ -21,8 +20,5 @@ std::string result_line(std::size_t pose_index, const Result& result, const Leve
 // that kept it.
 nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_seconds,
                            std::optional<double> deadline_us);
-
-// What the cloud's points resolve.
-nlohmann::json scene_report(const SceneScale& scale);
 
 }  // namespace vpm::tools

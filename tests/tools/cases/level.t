@@ -1,0 +1,67 @@
+# Which level is queried: chosen by error, by deadline, by the scene.
+
+$ cp $SOURCE/tests/tools/inputs/* .
+$ vpm-pack cube.off -o cube.vpmp --spheres 300 --quiet
+$ vpm-graph cube.vpmp -o cube.vpmg --levels 10,60 --calibrate --report graph.json && $VALIDATE graph-report graph.json
+$ vpm-graph cube.vpmp -o plain.vpmg --levels 10,60
+$ vpm-graph cube.vpmp -o single.vpmg --calibrate
+$ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --quiet
+$ printf '%s\n' '0 0 0 0.8 0 0 0 1' '1 0 0 0.95 0 0 0 1' '2 0 0 1 0 0 0 1' > path.txt
+
+# The error falls from level to level; other threads give the same bytes.
+$ python3 -c "import json; w = [l['calibration']['worst'] for l in json.load(open('graph.json'))['levels']]; print(w[0] > w[1] > w[2] > 0)"
+True
+$ vpm-graph cube.vpmp -o - --levels 10,60 --calibrate --threads 1 | cmp - cube.vpmg
+
+# The coarsest level that keeps an error; the line says which and why.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5% -o e.jsonl && $VALIDATE query-result e.jsonl
+$ python3 -c "import json; print([(r['level'], r['level_reason']) for r in map(json.loads, open('e.jsonl'))])"
+[(10, 'max-error'), (10, 'max-error'), (10, 'max-error')]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 0.05 | cmp - e.jsonl
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level 10 | cmp - <(sed 's/,"level_reason":"max-error"//' e.jsonl)
+
+# A generous deadline changes nothing but the reason; an impossible one takes the coarsest level and says so.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 1e7 -o d.jsonl --stats stats.json && $VALIDATE query-result d.jsonl && $VALIDATE query-stats stats.json
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt | cmp - <(sed 's/,"level_reason":"deadline"//' d.jsonl)
+$ python3 -c "import json; print(json.load(open('stats.json'))['deadline'])"
+{'kept': 1.0, 'us': 10000000.0}
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 1% --deadline-us 0.001 | python3 -c "import json, sys; print([(r['level'], r['level_reason']) for r in map(json.loads, sys.stdin)])"
+[(10, 'deadline missed'), (10, 'deadline missed'), (10, 'deadline missed')]
+
+# As fine as the points resolve: they are 17 mm apart.
+$ vpm-query --tool plain.vpmg --cloud wall.vpmc --poses path.txt --for-scene -o s.jsonl --stats stats.json && $VALIDATE query-result s.jsonl && $VALIDATE query-stats stats.json
+2> vpm-query: note: the scene resolves spheres from 0.01* m (points 0.01* m apart, noise * m) to *: the level of 60 is enough (glob)
+$ vpm-pack cube.off -o scene.vpmp --for-scene wall.vpmc --report pack.json && $VALIDATE pack-report pack.json
+2> vpm-pack: note: the scene asks for spheres from 0.01* m (points 0.01* m apart, noise * m) to * (glob)
+2> vpm-pack: note: delivered * of 1000 spheres: no other of --min-radius fits (glob)
+$ python3 -c "import json; r = json.load(open('pack.json')); print(r['r_min'] >= r['scene']['smallest_radius'] > 0.01)"
+True
+
+# What cannot be chosen.
+$ vpm-query --tool plain.vpmg --cloud wall.vpmc --poses path.txt --max-error 1%
+2> vpm-query: error: the tool model has no calibration; make it again with vpm-graph --calibrate
+[1]
+$ vpm-query --tool single.vpmg --cloud wall.vpmc --poses path.txt --max-error 1%
+2> vpm-query: error: the tool model has one level only; make it again with vpm-graph --levels
+[1]
+$ vpm-query --tool single.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 100
+2> vpm-query: error: the tool model has one level only, so that a deadline cannot choose; make it again with vpm-graph --levels
+[1]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 0.0001%
+2> vpm-query: error: no level of the tool model keeps an error of 0.0001 %; the best has * %: allow more, or pack more spheres (glob)
+[1]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5%%
+2> vpm-query: error: --max-error 5%%: give a share of the tool's volume like 0.5% or 0.005
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 120%
+2> vpm-query: error: the error must lie between 0 and 1 (0 % and 100 %)
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 1% --measure paper
+2> vpm-query: error: --max-error is about the refined measure, which calibrations measure; leave --measure paper out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level 10 --for-scene
+2> vpm-query: error: --level, --max-error and --for-scene choose the level: give one of them; --deadline-us goes with the last two only
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 0
+2> vpm-query: error: --deadline-us must be a positive number of microseconds
+[2]
