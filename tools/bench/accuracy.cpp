@@ -1,174 +1,266 @@
-// Both measures against the truth. The six cases of the paper (cube, tetrahedron, octahedron into a
-// wall and into an inverted sphere, moved along z) and turned tools in four other scenes; with
-// --all every tool, scene, kind of cloud and number of spheres, and more (accuracy_suites.h).
+// Errors of both measures against the truth, and whether the refined one keeps its bounds.
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
-#include <map>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/query.h"
-#include "tools/bench/errors.h"
-#include "tools/bench/penetration_case.h"
+#include "tools/bench/random_poses.h"
+#include "tools/bench/real_frames.h"
+#include "tools/bench/silhouettes.h"
 #include "tools/bench/suite.h"
-#include "tools/bench/view.h"
+#include "tools/bench/sweeps.h"
 
 namespace vpm::bench {
 namespace {
 
-constexpr std::size_t kPlaces = 8192;  // of a tool, to count what cameras cannot know
-
-struct Case {
-  std::string group, shape, scene;
-  Rotation rotation;
+// What is promised of --measure refined; README.md. Volumes in parts of the tool's, angles in
+// degrees, torques in parts of volume times reach.
+struct Bounds {
+  const char *noise, *spheres;
+  double mean, worst, jump;
 };
+constexpr Bounds kBounds[] = {{"none", "1000", 0.0015, 0.01, 0.002},
+                              {"none", "10000", 0.0006, 0.004, 0.002},
+                              {"kinect", "1000", 0.002, 0.015, 0.006}};
+constexpr double kDirectionBound = 1, kTorqueBound = 0.01, kFrameBound = 0.05;
 
-// What a case is run with: every combination.
-struct Settings {
-  std::vector<std::uint32_t> spheres;
-  std::vector<CloudKind> kinds;
-  int poses;
-};
+constexpr int kRandomPoses = 10000;
+// Spheres of the tools among random poses: few, so that points can be fifty times closer than the
+// smallest is large.
+constexpr std::uint32_t kFew = 20;
+constexpr double kSpacings[] = {1, 0.2, 0.02};  // of the smallest sphere's radius
 
-Rotation turned() {
-  return rotation_from_quaternion({0.18, -0.37, 0.29, std::sqrt(1 - 0.2534)});
-}
-
-std::vector<Case> usual_cases(bool quick) {
-  std::vector<Case> cases;
-  for (const char* scene : {"wall", "inverted-ball"})
-    for (const char* shape : {"cube", "tetrahedron", "octahedron"})
-      cases.push_back({"paper", shape, scene, {}});
-  if (quick) return cases;
-  for (const char* scene : {"tilted-wall", "inverted-ball", "ball", "groove"})
-    for (const char* shape : {"cube", "tetrahedron", "octahedron", "torus"})
-      cases.push_back({"turned", shape, scene, turned()});
-  return cases;
-}
-
-std::vector<Case> sweep_cases() {
-  std::vector<Case> cases;
-  for (const char* scene : {"tilted-wall", "inverted-ball", "ball", "groove", "step", "plate"}) {
-    for (const char* shape : {"cube", "tetrahedron", "octahedron", "torus", "twisted-torus"}) {
-      cases.push_back({"sweep", shape, scene, {}});
-      cases.push_back({"sweep", shape, scene, turned()});
-    }
-  }
-  return cases;
-}
+const std::vector<std::string> kShapes{"cube", "tetrahedron", "octahedron", "torus",
+                                       "twisted-torus"};
 
 class Accuracy {
  public:
-  Accuracy(const SuiteOptions& options)
-      : options_(options) {
+  explicit Accuracy(const SuiteOptions& options)
+      : options_(options),
+        sweeps_([&](const std::string& shape) -> const PackedSolid& { return tool(shape); },
+                report_) {
     report_.suite = "accuracy";
     report_.settings = {{"quick", options.quick},
                         {"all", options.all},
                         {"noise_seed", kNoiseSeed},
                         {"normals", to_text(NormalOptions{}.method)},
                         {"window", NormalOptions{}.window}};
-    report_.table.columns = {
-        "group",    "shape",       "scene",   "noise",         "measure",       "pose",
-        "z",        "volume_true", "volume",  "force_true_x",  "force_true_y",  "force_true_z",
-        "force_x",  "force_y",     "force_z", "torque_true_x", "torque_true_y", "torque_true_z",
-        "torque_x", "torque_y",    "torque_z"};
   }
 
   Report run() {
     if (options_.all) {
-      levels_ = {1000, 10000};
-      run_cases(sweep_cases(), {{1000, 10000}, {CloudKind::camera, CloudKind::points}, 51});
+      levels_ = {kFew, 1000, 10000};
     } else {
-    levels_ = {options_.quick ? 250u : 1000u};
-    run_cases(usual_cases(options_.quick), {levels_, {CloudKind::camera}, options_.quick ? 15 : 60});
+      levels_ = {options_.quick ? 250u : 1000u};
     }
-    summarise();
+    std::vector<SweepCase> usual = paper_cases();
+    if (!options_.quick) {
+      const std::vector<SweepCase> more = turned_cases();
+      usual.insert(usual.end(), more.begin(), more.end());
+    }
+    const std::vector<SweepCase> all = options_.all ? all_cases() : std::vector<SweepCase>{};
+    steps_ = usual.size() + all.size() + (options_.all ? 20 : 0);
+    const std::uint32_t spheres = options_.quick ? 250 : 1000;
+    for (const SweepCase& c : usual) {
+      sweeps_.run(c, {{spheres}, {CloudKind::camera}, options_.quick ? 15 : 60});
+      step();
+    }
+    for (const SweepCase& c : all) {
+      sweeps_.run(c, {{1000, 10000}, {CloudKind::camera, CloudKind::points}, 51});
+      step();
+    }
+    summarise_sweeps();
+    if (options_.all) {
+      run_poses();
+      run_edges();
+      if (!options_.data.empty()) run_frames();
+      check_sweeps();
+      summarise_bounds();
+    }
     return std::move(report_);
   }
 
  private:
-  struct Tool {
-    synthetic::TrueSolid solid;
-    ToolModel model;
-    std::vector<Vec3> places;
-  };
-  const Tool& tool(const std::string& shape) {
+  const PackedSolid& tool(const std::string& shape) {
     const auto found = tools_.find(shape);
     if (found != tools_.end()) return found->second;
-    const Solid solid = make_shape(shape);
-    return tools_
-        .try_emplace(shape, Tool{synthetic::TrueSolid(solid), make_tool(solid, levels_),
-                                 places_in(solid, kPlaces)})
-        .first->second;
+    return tools_.try_emplace(shape, make_packed(shape, levels_)).first->second;
   }
 
-  const View& view(const synthetic::Scene& scene, CloudKind kind, Noise noise) {
-    const std::array<std::string, 3> key{scene.name, to_text(kind), to_text(noise)};
-    const auto found = views_.find(key);
-    if (found != views_.end()) return found->second;
-    return views_.try_emplace(key, make_view(scene, kind, noise)).first->second;
+  void step() {
+    if (options_.progress)
+      options_.progress(static_cast<double>(++done_) / static_cast<double>(steps_));
   }
 
-  void run_cases(const std::vector<Case>& cases, const Settings& settings) {
-    for (std::size_t k = 0; k < cases.size(); ++k) {
-      if (options_.progress)
-        options_.progress(static_cast<double>(k) / static_cast<double>(cases.size()));
-      run_case(cases[k], settings);
+  void run_poses() {
+    double smallest = HUGE_VAL;
+    std::vector<const PackedSolid*> tools;
+    for (const std::string& shape : kShapes) {
+      tools.push_back(&tool(shape));
+      smallest = std::min(smallest, tools.back()->model.spheres[kFew - 1].radius);
+    }
+    report_.summary += "\nRandom poses, " + std::to_string(kFew) + " spheres, smallest radius " +
+                       text("%.1f mm", 1e3 * smallest) +
+                       ": leaks (error above 2 %) and worst error\n"
+                       "scene            spacing      poses    refined             paper\n";
+    int leaks = 0;
+    for (const char* name : {"tilted-wall", "inverted-ball", "ball", "groove", "step", "plate"}) {
+      for (const double spacing : kSpacings) {
+        synthetic::Scene scene = synthetic::make_scene(name);
+        scene.camera = camera_of_spacing(spacing * smallest);
+        const RandomPoses found = run_random_poses(scene, tools, kFew, kRandomPoses, kNoiseSeed);
+        leaks += found.leaks[0];
+        report_.results.push_back({{"group", "random poses"},
+                                   {"scene", name},
+                                   {"spacing_per_radius", spacing},
+                                   {"spheres", kFew},
+                                   {"poses", found.poses},
+                                   {"leaks", found.leaks[0]},
+                                   {"volume_mean", found.error[0].mean()},
+                                   {"volume_worst", found.error[0].worst()},
+                                   {"paper_leaks", found.leaks[1]},
+                                   {"paper_volume_mean", found.error[1].mean()},
+                                   {"paper_volume_worst", found.error[1].worst()}});
+        report_.summary += text("%-13s %6.2f radii %8d %6d %8.2f %% %8d %8.2f %%\n", name, spacing,
+                                found.poses, found.leaks[0], 100 * found.error[0].worst(),
+                                found.leaks[1], 100 * found.error[1].worst());
+        step();
+      }
+    }
+    check("leaks among random poses", leaks, 0);
+  }
+
+  void run_edges() {
+    constexpr int kPoses = 121;
+    report_.summary +=
+        "\nSilhouettes and holes, in % of the tool\n"
+        "path                       worst    jump   counted in free space   paper worst    jump\n";
+    int counted = 0;
+    MeanAndWorst jump;
+    for (const char* shape : {"cube", "torus"}) {
+      for (const SilhouetteResult& r : run_silhouettes(tool(shape), 1000, kPoses)) {
+        report_.results.push_back({{"group", "silhouettes"},
+                                   {"shape", shape},
+                                   {"path", r.path},
+                                   {"volume_worst", r.volume_worst[0]},
+                                   {"jump_worst", r.jump_worst[0]},
+                                   {"counted_in_free_space", r.counted_in_free_space},
+                                   {"paper_volume_worst", r.volume_worst[1]},
+                                   {"paper_jump_worst", r.jump_worst[1]}});
+        report_.summary +=
+            text("%-6s %-24s %6.2f %7.2f %12d %18.1f %7.1f\n", shape, r.path.c_str(),
+                 100 * r.volume_worst[0], 100 * r.jump_worst[0], r.counted_in_free_space,
+                 100 * r.volume_worst[1], 100 * r.jump_worst[1]);
+        counted += r.counted_in_free_space;
+        jump.add(r.jump_worst[0]);
+      }
+    }
+    check("spheres counted in seen free space, silhouettes and holes", counted, 0);
+    check("jump at silhouettes and holes", jump.worst(), kBounds[0].jump);
+    step();
+  }
+
+  void run_frames() {
+    constexpr int kPoses = 500;
+    report_.summary +=
+        "\nRecorded images, shallow poses: difference from the projective count, % of the tool\n"
+        "frame                                    poses   mean   worst   in free space   paper mean"
+        "   worst\n";
+    int counted = 0;
+    MeanAndWorst difference;
+    for (const FrameResult& r :
+         run_real_frames(options_.data, tool("twisted-torus"), 1000, kPoses)) {
+      report_.results.push_back({{"group", "recorded images"},
+                                 {"frame", r.frame},
+                                 {"poses", r.poses},
+                                 {"volume_mean", r.difference[0].mean()},
+                                 {"volume_worst", r.difference[0].worst()},
+                                 {"counted_in_free_space", r.counted_in_free_space},
+                                 {"paper_volume_mean", r.difference[1].mean()},
+                                 {"paper_volume_worst", r.difference[1].worst()}});
+      report_.summary +=
+          text("%-40s %5d %6.2f %7.2f %10d %14.2f %9.2f\n", r.frame.c_str(), r.poses,
+               100 * r.difference[0].mean(), 100 * r.difference[0].worst(), r.counted_in_free_space,
+               100 * r.difference[1].mean(), 100 * r.difference[1].worst());
+      counted += r.counted_in_free_space;
+      difference.add(r.difference[0].worst());
+    }
+    check("spheres counted in seen free space, recorded images", counted, 0);
+    check("difference from the projective count, recorded images", difference.worst(), kFrameBound);
+    step();
+  }
+
+  void summarise_sweeps() {
+    report_.summary =
+        "Errors in % of the tool's volume (torque: of volume times reach)\n"
+        "group   cloud   noise   measure  spheres   volume mean    worst     jump"
+        "   torque mean   worst   direction mean   worst\n";
+    for (const auto& [key, e] : sweeps_.groups()) {
+      const auto& [group, cloud, noise, measure, spheres] = key;
+      report_.summary += text(
+          "%-7s %-7s %-7s %-8s %7s %13.3f %8.2f %8.2f %13.3f %7.2f %16.2f %7.2f\n", group.c_str(),
+          cloud.c_str(), noise.c_str(), measure.c_str(), spheres.c_str(), 100 * e.volume.mean(),
+          100 * e.volume_worst.worst(), 100 * e.jump.worst(), 100 * e.torque.mean(),
+          100 * e.torque_worst.worst(), e.direction.mean(), e.direction_worst.worst());
+      report_.settings["summary"].push_back(
+          {{"group", group},
+           {"cloud", cloud},
+           {"noise", noise},
+           {"measure", measure},
+           {"spheres", std::stoi(spheres)},
+           {"volume_mean", e.volume.mean()},
+           {"volume_worst", e.volume_worst.worst()},
+           {"jump_worst", e.jump.worst()},
+           {"torque_mean", e.torque.mean()},
+           {"torque_worst", e.torque_worst.worst()},
+           {"direction_mean_degrees", e.direction.mean()},
+           {"direction_worst_degrees", e.direction_worst.worst()}});
     }
   }
 
-  void run_case(const Case& c, const Settings& settings) {
-    const synthetic::Scene scene = synthetic::make_scene(c.scene);
-    const Tool& t = tool(c.shape);
-    const std::vector<Pose> path = c.group == "sweep" ? make_sweep(t.solid, {c.rotation, {0.012, -0.007, 0}}, *scene.surface, settings.poses)
-    : make_path(t.solid, c.rotation, *scene.surface, settings.poses);
-    const auto truth = truth_along(t.solid, path, *scene.surface);
-    for (const CloudKind kind : settings.kinds) {
-      const auto unseen = unseen_along(t, path, scene, kind);
-      for (const Noise noise : {Noise::none, Noise::kinect}) {
-        for (const std::uint32_t spheres : settings.spheres) {
-      for (const Measure measure : {Measure::paper, Measure::refined}) {
-        QueryOptions query_options;
-        query_options.measure = measure;
-        query_options.level = spheres;
-        Query query(t.model, query_options);
-        std::vector<Result> measured;
-        for (const Pose& pose : path) measured.push_back(query.run(view(scene, kind, noise).cloud, pose));
-        const Errors errors = compare(measured, truth, unseen, t.solid);
-        std::printf("%s %s %s %d %s %s %s %u | %.4f %.3f jump %.3f  dir %.2f %.2f (%d) tq %.3f %.3f\n", c.group.c_str(), c.shape.c_str(), c.scene.c_str(), c.rotation.row0.x!=1, to_text(kind).c_str(), to_text(noise).c_str(), measure==Measure::paper?"paper":"refined", spheres, 100*errors.volume.mean(), 100*errors.volume.worst(), 100*errors.jump.worst(), errors.direction.mean(), errors.direction.worst(), errors.direction.count(), 100*errors.torque.mean(), 100*errors.torque.worst());
-        groups_[{c.group, to_text(kind), to_text(noise), measure==Measure::paper?"paper":"refined", std::to_string(spheres)}].add(errors);
-      }
-      }
+  void check_sweeps() {
+    for (const char* cloud : {"camera", "points"}) {
+      for (const Bounds& b : kBounds) {
+        const auto found = sweeps_.groups().find({"all", cloud, b.noise, "refined", b.spheres});
+        const GroupErrors& e = found->second;
+        const std::string which =
+            std::string(", ") + cloud + ", noise " + b.noise + ", " + b.spheres + " spheres";
+        check("volume mean" + which, e.volume.mean(), b.mean);
+        check("volume worst" + which, e.volume_worst.worst(), b.worst);
+        check("jump" + which, e.jump.worst(), b.jump);
+        check("torque worst" + which, e.torque_worst.worst(), kTorqueBound);
+        check("direction worst" + which, e.direction_worst.worst(), kDirectionBound);
       }
     }
   }
 
-  std::vector<Unseen> unseen_along(const Tool& t, const std::vector<Pose>& path, const synthetic::Scene& scene, CloudKind kind) {
-    std::vector<Sight> sights;
-    for (const Camera& camera : view(scene, kind, Noise::none).cameras) sights.emplace_back(*scene.surface, camera);
-    std::vector<Unseen> unseen;
-    for (const Pose& pose : path) unseen.push_back(unseen_parts(t.places, pose, *scene.surface, sights));
-    return unseen;
+  void check(const std::string& what, double value, double bound) {
+    report_.settings["bounds"].push_back(
+        {{"what", what}, {"value", value}, {"bound", bound}, {"holds", value <= bound}});
   }
 
-  void summarise() {
-    for (const auto& [key, e] : groups_) {
-      char line[300];
-      std::snprintf(
-          line, sizeof line, "%-7s %-7s %-7s %-9s %6s %10.4f %% %6.3f %% %6.3f %% %7.3f %6.3f %% %8.3f %8.2f deg\n",
-          key[0].c_str(), key[1].c_str(), key[2].c_str(), key[3].c_str(), key[4].c_str(), 100 * e.volume.mean(),
-          100 * e.volume_worst.worst(), 100 * e.jump.worst(), 100 * e.torque.mean(), 100*e.torque_worst.worst(), e.direction.mean(), e.direction_worst.worst());
-      report_.summary += line;
+  void summarise_bounds() {
+    report_.summary += "\nBounds of the refined measure\n";
+    for (const nlohmann::json& b : report_.settings["bounds"]) {
+      report_.summary += text("%-62s %9.5f <= %-8.4g %s\n", b["what"].get<std::string>().c_str(),
+                              b["value"].get<double>(), b["bound"].get<double>(),
+                              b["holds"].get<bool>() ? "holds" : "FAILS");
     }
+  }
+
+  template <class... Values>
+  static std::string text(const char* format, Values... values) {
+    char line[240];
+    std::snprintf(line, sizeof line, format, values...);
+    return line;
   }
 
   const SuiteOptions& options_;
   std::vector<std::uint32_t> levels_;
+  std::map<std::string, PackedSolid> tools_;
   Report report_;
-  std::map<std::string, Tool> tools_;
-  std::map<std::array<std::string, 3>, View> views_;
-  std::map<std::array<std::string, 5>, GroupErrors> groups_;
+  Sweeps sweeps_;
+  std::size_t done_ = 0, steps_ = 0;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   vpm::tools::Tool tool("vpm-bench",
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
-  std::string suite, folder = "bench-output", meshes;
+  std::string suite, folder = "bench-output", meshes, data;
   bool quick = false, all = false;
   tool.app().add_option("suite", suite, "accuracy, packing, timing or tradeoff");
   tool.app()
@@ -17,10 +17,12 @@ int main(int argc, char** argv) {
   tool.app().add_flag("--all", all, "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
   tool.app().add_option("--meshes", meshes,
                         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
+  tool.app().add_option("--data", data,
+                        "accuracy --all: folder whose depth/ holds recorded depth images");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report =
-        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes});
+        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data});
     vpm::bench::write(report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
   });

@@ -6,6 +6,7 @@
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/synthetic/shapes.h"
+#include "tools/bench/sight.h"
 
 namespace vpm::bench {
 namespace {
@@ -47,8 +48,8 @@ std::vector<Pose> between(const Pose& start, double first, double last, int pose
   std::vector<Pose> path;
   for (int k = 0; k < poses; ++k) {
     const double s = static_cast<double>(k) / (poses - 1);
-    path.push_back({start.rotation,
-                    {start.translation.x, start.translation.y, first + s * (last - first)}});
+    path.push_back(
+        {start.rotation, {start.translation.x, start.translation.y, first + s * (last - first)}});
   }
   return path;
 }
@@ -61,7 +62,8 @@ Solid make_shape(const std::string& name) {
   if (name == "tetrahedron") return synthetic::make_tetrahedron(kSize);
   if (name == "octahedron") return synthetic::make_octahedron(kSize);
   if (name == "torus") return synthetic::make_torus(0.35 * kSize, 0.15 * kSize, 64, 32);
-  if (name == "twisted-torus") return synthetic::make_twisted_torus(0.35 * kSize, 0.2 * kSize, 3, 96);
+  if (name == "twisted-torus")
+    return synthetic::make_twisted_torus(0.35 * kSize, 0.2 * kSize, 3, 96);
   throw Error(ErrorKind::usage, "there is no shape '" + name + "'");
 }
 
@@ -74,6 +76,15 @@ ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels
   GraphOptions graph_options;
   graph_options.levels = levels;
   return build_tool_model(packing, graph_options);
+}
+
+PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels) {
+  const Solid solid = make_shape(shape);
+  return {synthetic::TrueSolid(solid), make_tool(solid, levels), places_in(solid, kCountedPlaces)};
+}
+
+Rotation turned() {
+  return rotation_from_quaternion({0.18, -0.37, 0.29, std::sqrt(1 - 0.2534)});
 }
 
 std::vector<Pose> make_path(const synthetic::TrueSolid& tool, const Rotation& rotation,

@@ -17,6 +17,18 @@ Solid make_shape(const std::string& name);
 // Packed with as many spheres as the largest level has.
 ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels);
 
+// A packed solid, its truth, and places in it to count.
+struct PackedSolid {
+  synthetic::TrueSolid solid;
+  ToolModel model;
+  std::vector<Vec3> places;
+};
+inline constexpr std::size_t kCountedPlaces = 8192;
+PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels);
+
+// A rotation along no axis of any solid or scene.
+Rotation turned();
+
 // From just clear of the surface to kDeepest of the tool's height behind the first contact; the
 // first two poses or more are clear. `poses` >= 3.
 inline constexpr double kDeepest = 0.8;

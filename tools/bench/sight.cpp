@@ -101,8 +101,7 @@ Sight::Place Sight::at(Vec3 world) const {
 
 bool Sight::sees_well(Vec3 on_surface, Vec3 normal) const {
   constexpr double kBefore = 1e-5;  // m: just off the surface
-  const Vec3 at =
-      relative_to(camera_.to_world, {{}, on_surface + kBefore * normal}).translation;
+  const Vec3 at = relative_to(camera_.to_world, {{}, on_surface + kBefore * normal}).translation;
   if (!(at.z > 0)) return false;
   const Vec3 towards = camera_.to_world.translation - on_surface;
   return dot(towards, normal) > kGrazingCosine * norm(towards) && ray(at).sees;

@@ -13,6 +13,7 @@ struct SuiteOptions {
   bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes
   std::function<void(double fraction)> progress;
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
+  std::string data = {};    // accuracy --all: folder of recorded depth images; empty: none
 };
 
 // Throws Error(usage) naming the suites there are.

@@ -24,8 +24,7 @@ std::vector<Camera> cameras_of(const synthetic::Scene& scene, CloudKind kind) {
 }
 
 void append(const Cloud& part, Cloud& whole) {
-  for (const Vec3f& p : part.positions)
-    whole.positions.push_back(narrow(part.origin + widen(p)));
+  for (const Vec3f& p : part.positions) whole.positions.push_back(narrow(part.origin + widen(p)));
   whole.normals.insert(whole.normals.end(), part.normals.begin(), part.normals.end());
   whole.radii.insert(whole.radii.end(), part.radii.begin(), part.radii.end());
 }
@@ -43,10 +42,9 @@ View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise) {
   const std::vector<Camera> cameras = cameras_of(scene, kind);
   Cloud points;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
-    const DepthImage depth =
-        noise == Noise::none
-            ? synthetic::render(*scene.surface, cameras[k])
-            : synthetic::render_with_kinect_noise(*scene.surface, cameras[k], kNoiseSeed + k);
+    const DepthImage depth = noise == Noise::none ? synthetic::render(*scene.surface, cameras[k])
+                                                  : synthetic::render_with_kinect_noise(
+                                                        *scene.surface, cameras[k], kNoiseSeed + k);
     const Cloud seen = make_cloud(depth, cameras[k], NormalOptions{});
     if (kind == CloudKind::camera) return {cameras, PreparedCloud(seen)};
     append(seen, points);

@@ -1,0 +1,82 @@
+#include "tools/bench/random_poses.h"
+
+#include <algorithm>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "tools/bench/errors.h"
+#include "tools/bench/penetration_case.h"
+#include "tools/bench/sight.h"
+
+namespace vpm::bench {
+namespace {
+
+constexpr double kAside = 0.03;       // m from the optical axis: scenes change in the middle
+constexpr double kFieldOfView = 0.6;  // m at a depth of 1 m: room for every pose
+
+// A bell-shaped place around the scene's middle, any rotation.
+Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
+  synthetic::NormalNumbers numbers(seed, k);
+  const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  const double x = kAside * numbers.next(), y = kAside * numbers.next();
+  const double z = 1 + 0.5 * reach * (numbers.next() - 0.5);
+  return {rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length}),
+          {std::clamp(x, -2 * kAside, 2 * kAside), std::clamp(y, -2 * kAside, 2 * kAside), z}};
+}
+
+double counted(const PackedSolid& tool, const Pose& pose, const synthetic::Surface& surface) {
+  std::size_t inside = 0;
+  for (const Vec3& place : tool.places) inside += surface.distance(pose * place) < 0;
+  return static_cast<double>(inside) / static_cast<double>(tool.places.size());
+}
+
+}  // namespace
+
+Camera camera_of_spacing(double spacing) {
+  const double f = 1 / spacing, pixels = std::ceil(kFieldOfView * f);
+  Camera camera = synthetic::default_camera();
+  camera.width = camera.height = static_cast<std::uint32_t>(pixels);
+  camera.intrinsics = {f, f, 0.5 * (pixels - 1), 0.5 * (pixels - 1)};
+  return camera;
+}
+
+RandomPoses run_random_poses(const synthetic::Scene& scene,
+                             const std::vector<const PackedSolid*>& tools, std::uint32_t level,
+                             int poses, std::uint64_t seed) {
+  const PreparedCloud cloud(
+      make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
+  const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
+  RandomPoses found;
+  std::uint64_t tried = 0;
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const PackedSolid& tool = *tools[t];
+    Query queries[2] = {Query(tool.model, {.measure = Measure::refined, .level = level}),
+                        Query(tool.model, {.measure = Measure::paper, .level = level})};
+    const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
+    while (found.poses < last) {
+      const Pose pose = random_pose(seed, tried++, tool.model.reach);
+      const double truth = counted(tool, pose, *scene.surface);
+      if (truth > kFullest) continue;
+      ++found.poses;
+      Unseen unseen;
+      bool looked = false;
+      for (const Measure measure : {Measure::refined, Measure::paper}) {
+        const auto m = static_cast<std::size_t>(measure);
+        const double volume = queries[m].run(cloud, pose).volume_fraction;
+        double error = volume_error(volume, truth, unseen);
+        if (!(error <= kLeak / 2)) {  // worth asking what the camera can know
+          if (!looked) unseen = unseen_parts(tool.places, pose, *scene.surface, sights);
+          looked = true;
+          error = volume_error(volume, truth, unseen);
+        }
+        found.error[m].add(error);
+        found.leaks[m] += !(error <= kLeak);
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace vpm::bench
