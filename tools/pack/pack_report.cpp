@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libvpm/packing/inertia.h"
+#include "libvpm/packing/surface_gap.h"
 
 namespace vpm::tools {
 namespace {
@@ -64,6 +65,14 @@ json as_json(const Validation& validation) {
           {"detection_limit", validation.detection_limit}};
 }
 
+// In the words of cuRobo's sphere fits. What protrudes is not certified, and not reported.
+json quality(const CheckedSolid& checked, const PackResult& result) {
+  const SurfaceGap gap = surface_gap(checked.solid, result.spheres);
+  return {{"coverage", result.coverage},      {"protrusion", 0},
+          {"surface_gap_mean", gap.mean},     {"surface_gap_p95", gap.p95},
+          {"max_uncovered_gap", gap.largest}, {"volume_ratio", result.coverage}};
+}
+
 }  // namespace
 
 const char* name_of(StopReason reason) {
@@ -103,6 +112,7 @@ json pack_report(const CheckedSolid& checked, const PackResult& result,
                  {"r_max", result.spheres.front().radius},
                  {"stop_reason", name_of(result.stop)},
                  {"seconds", seconds},
+                 {"quality", quality(checked, result)},
                  {"mesh", as_json(checked.facts)},
                  {"notes", checked.notes},
                  {"warnings", checked.warnings}};
