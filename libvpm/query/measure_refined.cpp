@@ -25,6 +25,7 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
   cells_.resize(level.sphere_count);
   results_.resize(level.sphere_count);
   reached_.resize(level.sphere_count);
+  source_.resize(level.sphere_count);
   inside_.reserve(level.sphere_count);
 }
 
@@ -105,30 +106,49 @@ void RefinedMeasure::classify(const Surface& surface, const Pose& to_surface) {
 }
 
 // The surface enters the tool through cut cells; from there every cell behind it that the graph
-// reaches is inside.
+// reaches is inside. Front by front, so that each sphere's source does not depend on the traversal.
 template <class Surface>
 void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
   const SphereGraph& graph = level_.graph;
-  std::fill(reached_.begin(), reached_.end(), std::uint8_t{0});
+  std::fill(reached_.begin(), reached_.end(), Reached::no);
   inside_.clear();
-  const auto reach = [&](std::uint32_t j) {
-    reached_[j] = 1;
-    inside_.push_back(j);
-  };
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
     if (cells_[i] != Cell::cut) continue;
     for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
       const std::uint32_t j = graph.neighbors[k];
-      if (!reached_[j] && is_candidate(surface, to_surface, j) && enters(surface, to_surface, i, j))
-        reach(j);
+      if (reached_[j] != Reached::no || !is_candidate(surface, to_surface, j)) continue;
+      const double near = kSheetReach * (level_.share_reach[i] + level_.share_reach[j]);
+      if (!is_before(surface, to_surface, i, j, near)) {
+        reached_[j] = Reached::yes;
+        source_[j] = i;
+        inside_.push_back(j);
+      }
     }
   }
-  for (std::size_t next = 0; next < inside_.size(); ++next) {
-    const std::uint32_t i = inside_[next];
-    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
-      const std::uint32_t j = graph.neighbors[k];
-      if (!reached_[j] && is_candidate(surface, to_surface, j)) reach(j);
+  for (std::size_t front = 0; front < inside_.size();) {
+    const std::size_t end = inside_.size();
+    for (; front < end; ++front) discover_neighbors(surface, to_surface, inside_[front]);
+    std::size_t kept = end;
+    for (std::size_t k = end; k < inside_.size(); ++k) {
+      const std::uint32_t j = inside_[k];
+      const bool before = is_before(surface, to_surface, source_[j], j, tool_.reach);
+      reached_[j] = before ? Reached::no : Reached::yes;
+      if (!before) inside_[kept++] = j;
     }
+    inside_.resize(kept);
+  }
+}
+
+template <class Surface>
+void RefinedMeasure::discover_neighbors(const Surface& surface, const Pose& to_surface,
+                                        std::uint32_t i) {
+  const SphereGraph& graph = level_.graph;
+  for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+    const std::uint32_t j = graph.neighbors[k];
+    if (reached_[j] == Reached::yes || !is_candidate(surface, to_surface, j)) continue;
+    if (reached_[j] == Reached::no) inside_.push_back(j);
+    source_[j] = reached_[j] == Reached::no ? source_[i] : std::min(source_[j], source_[i]);
+    reached_[j] = Reached::in_this_front;
   }
 }
 
@@ -142,18 +162,19 @@ bool RefinedMeasure::is_candidate(const Surface& surface, const Pose& to_surface
   return cells_[j] == Cell::whole || cells_[j] == Cell::partial;
 }
 
-// From a cut cell to an uncut one behind the surface: unless the surface before the latter is
-// another one than that which cuts the former, and the former's own plane has it in front.
+// A sphere may be behind a surface that is not the tool's business: one further away than `near`
+// only hides it. Then the plane of the cut cell from which the flood came decides: before it, the
+// sphere is out of sight, not inside.
 template <class Surface>
-bool RefinedMeasure::enters(const Surface& surface, const Pose& to_surface, std::uint32_t i,
-                            std::uint32_t j) const {
-  const Vec3 at = to_surface * (tool_.spheres[j].center - tool_.center_of_mass);
-  const double near = kSheetReach * (level_.share_reach[i] + level_.share_reach[j]);
+bool RefinedMeasure::is_before(const Surface& surface, const Pose& to_surface, std::uint32_t source,
+                               std::uint32_t sphere, double near) const {
+  const Vec3 at = to_surface * (tool_.spheres[sphere].center - tool_.center_of_mass);
   const Reading reading = surface.read(at);
-  if (reading.known && reading.distance < 0 && squared_norm(reading.foot - at) <= near * near)
-    return true;
-  const Vec3 from = to_surface * (tool_.spheres[i].center - tool_.center_of_mass);
-  return results_[i].plane.is_behind((at - from) / level_.share_reach[i]);
+  if (reading.known && reading.distance < 0 && squared_norm(reading.foot - at) <= near * near) {
+    return false;
+  }
+  const Vec3 from = to_surface * (tool_.spheres[source].center - tool_.center_of_mass);
+  return !results_[source].plane.is_behind((at - from) / level_.share_reach[source]);
 }
 
 }  // namespace vpm

@@ -29,6 +29,8 @@ class RefinedMeasure {
     open,     // no surface near; its centre decides when the flood comes
   };
 
+  enum class Reached : std::uint8_t { no, in_this_front, yes };
+
   template <class Surface>
   Result run_on(const Surface& surface, const Pose& to_surface, const Rotation& to_world,
                 std::vector<SphereState>& states);
@@ -37,8 +39,10 @@ class RefinedMeasure {
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
-  bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t from,
-              std::uint32_t to) const;
+  void discover_neighbors(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  template <class Surface>
+  bool is_before(const Surface& surface, const Pose& to_surface, std::uint32_t source,
+                 std::uint32_t sphere, double near) const;
   template <class Surface>
   bool is_candidate(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
   CellView cell(std::uint32_t sphere) const;
@@ -48,7 +52,8 @@ class RefinedMeasure {
   std::vector<BlockMass> masses_;
   std::vector<Cell> cells_;
   std::vector<CellResult> results_;
-  std::vector<std::uint8_t> reached_;
+  std::vector<Reached> reached_;
+  std::vector<std::uint32_t> source_;  // of a reached sphere: the cut cell that the flood came from
   std::vector<std::uint32_t>
       inside_;  // spheres that the flood has reached, in the order of the flood
 };

@@ -107,6 +107,24 @@ TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   }
 }
 
+TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
+  // Half of the tool touches the wall in sight, the other half is hidden by the block in front.
+  const synthetic::Scene scene = synthetic::make_scene("block");
+  const PreparedCloud cloud(see(scene));
+  const ToolModel tool = lattice_cube(kEdge, 10, 2);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  Query query(tool, {});
+  for (int k = 0; k <= 20; ++k) {
+    const Pose pose{generic_rotation(), {0.15, 0.01, 1.36 + 0.005 * k}};
+    const double truth = solid.penetration(pose, *scene.surface).volume;
+    const double error = (query.run(cloud, pose).volume - truth) / tool.volume;
+    EXPECT_LE(error, 0.02) << k << " of " << truth / tool.volume;
+    if (truth > 0.1 * tool.volume) {  // by now in sight too; what is hidden may be missing
+      EXPECT_GE(error, -0.6 * truth / tool.volume) << k;
+    }
+  }
+}
+
 TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   // Into a wall the energy is E(d) = integral of V; the force must be V along the normal at every
   // pose.
