@@ -88,7 +88,7 @@ class Packer {
       : options_(options),
         distance_(solid),
         frame_(distance_.frame()),
-        volume_(enclosed_mass(solid).volume),
+        volume_(options.volume > 0 ? options.volume : enclosed_mass(solid).volume),
         no_inertia_(solid),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
         cap_(options.max_radius / frame_.scale),

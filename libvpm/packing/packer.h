@@ -20,6 +20,7 @@ struct PackOptions {
   double inertia_error = 0;    // stop where the spheres' InertiaError is at most this; 0: never
   double min_radius = 0;       // m; no smaller sphere
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
+  double volume = 0;  // m^3, of the solid, where it is known; 0: it is measured
   std::function<void(double fraction)> progress =
       nullptr;  // called between rounds, on the calling thread
 };

@@ -62,8 +62,11 @@ Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
 
 Space::Space(const SolidDistance& solid, double smallest)
     : solid_(solid), smallest_(static_cast<float>(smallest)) {
-  Cell root{0.5f, 0.5f, 0.5f, 0, 0, 0, 0, Side::unknown};
-  measure(root, 0, {});
+  Cell root{};
+  root.x = root.y = root.z = 0.5f;
+  root.triangle = SurfacePoint::kNone;
+  estimate(root, {});
+  measure(root);
   blocks_.push_back({{}, {root}, {}});
   bounds_ = {root.bound};
   index_.assign({{0, 0, 0}});
@@ -84,32 +87,57 @@ std::vector<std::uint32_t> Space::promising(double radius) const {
   return blocks;
 }
 
-// Sets d, mesh and bound. `mesh_bound`: the mesh is known to be at least that far.
-void Space::measure(Cell& cell, float mesh_bound, const std::vector<std::uint32_t>& near) const {
+// The surface point nearest to the cell's centre where it is nearer than `within`. What was nearest
+// to a parent's centre is near here, so that the search has little to look at.
+SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
   const Vec3 x = cell.center();
-  double d = reach_;
-  Sphere nearest;
-  for (const std::uint32_t i : near) {
-    const Sphere& s = spheres_[i];
-    if (const double beside = norm(x - s.center) - s.radius; beside < d) d = beside, nearest = s;
-  }
-  double bound = d < reach_ ? farthest(cell, nearest) : d + half_diagonal(cell.level);
-  cell.mesh = mesh_bound;
-  if (d > mesh_bound && bound > smallest_) {
-    const SurfacePoint p = solid_.closest(x, d);
-    if (p.triangle != SurfacePoint::kNone) {
-      d = p.distance;
-      bound = farthest(cell, {p.point, 0});
-    }
-    cell.mesh = round_down(d);
-  }
+  if (cell.triangle == SurfacePoint::kNone) return solid_.closest(x, within);
+  const Vec3 p = solid_.closest_on(cell.triangle, x);
+  const SurfacePoint known{p, norm(x - p), cell.triangle};
+  if (cell.exact) return known.distance < within ? known : SurfacePoint{};
+  if (known.distance >= within) return solid_.closest(x, within);
+  const SurfacePoint nearer = solid_.closest(x, known.distance);
+  return nearer.triangle == SurfacePoint::kNone ? known : nearer;
+}
+
+// Sets d and bound by the spheres and by the triangle nearest to a parent. The cell's `mesh` is
+// known.
+void Space::estimate(Cell& cell, const std::vector<std::uint32_t>& near) const {
+  const Vec3 x = cell.center();
+  double d = reach_, bound = d + half_diagonal(cell.level);
+  const auto take = [&](const Sphere& s) {
+    const double beside = norm(x - s.center) - s.radius;
+    if (beside >= d) return;
+    d = beside;
+    bound = farthest(cell, s);
+  };
+  for (const std::uint32_t i : near) take(spheres_[i]);
+  cell.measured = d <= cell.mesh;
+  if (!cell.measured && cell.triangle != SurfacePoint::kNone)
+    take({solid_.closest_on(cell.triangle, x), 0});
   cell.d = static_cast<float>(d);
   cell.bound = round_up(bound);
 }
 
+// Looks for the nearest triangle where the estimate does not exclude a sphere.
+void Space::measure(Cell& cell) const {
+  cell.measured = true;
+  const SurfacePoint p = nearest_on_mesh(cell, cell.d);
+  if (p.triangle != SurfacePoint::kNone) {
+    cell.triangle = p.triangle;
+    cell.exact = true;
+    cell.d = static_cast<float>(p.distance);
+    cell.bound = std::min(cell.bound, round_up(farthest(cell, {p.point, 0})));
+  }
+  cell.mesh = std::max(cell.mesh, round_down(cell.d));
+  // This centre and the parent's may lie in a ball that the mesh does not meet.
+  const bool same = cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level);
+  settle(cell, same ? cell.parent : cell.side);
+}
+
 // Bounds the clearance over a cell by all that is near at once: distances are convex and curved by
 // at most 1 / distance, so that planes lie above them within the cell.
-double Space::joint_bound(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
   const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
   std::vector<LinearBound> bounds;
@@ -121,8 +149,13 @@ double Space::joint_bound(const Cell& cell, const std::vector<std::uint32_t>& ne
   };
   for (const std::uint32_t i : near) add(x - spheres_[i].center, spheres_[i].radius, false);
   if (cell.mesh < horizon) {
-    if (const SurfacePoint p = solid_.closest(x, horizon); p.triangle != SurfacePoint::kNone)
+    const SurfacePoint p = nearest_on_mesh(cell, horizon);
+    if (p.triangle != SurfacePoint::kNone) {
+      cell.triangle = p.triangle;
+      cell.exact = true;
       add(x - p.point, 0, solid_.holds_disk(p.triangle, p.point, half));
+    }
+    cell.mesh = std::max(cell.mesh, round_down(std::min(p.distance, horizon)));
   }
   if (bounds.empty()) return HUGE_VAL;
   return max_min_step(bounds, edge(cell.level + 1)).value;
@@ -138,7 +171,8 @@ double Space::farthest(const Cell& cell, const Sphere& from) {
 // Sets the side of the centre, which bounds the cell if it is the wrong one.
 void Space::settle(Cell& cell, Side side) {
   cell.side = side;
-  if (side == Side::outside) cell.bound = std::min(cell.bound, half_diagonal(cell.level) - cell.d);
+  if (side == Side::outside)
+    cell.bound = std::min(cell.bound, half_diagonal(cell.level) - cell.mesh);
 }
 
 void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
@@ -147,17 +181,16 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
   const auto offset = static_cast<float>(edge(level + 1));
   const float half = half_diagonal(level);  // distance of the parts' centres from the cell's
   for (int octant = 0; octant < 8; ++octant) {
-    Cell part{cell.x + (octant & 1 ? offset : -offset),
-              cell.y + (octant & 2 ? offset : -offset),
-              cell.z + (octant & 4 ? offset : -offset),
-              0,
-              0,
-              0,
-              level,
-              Side::unknown};
-    measure(part, cell.mesh - half, near);
-    // Both centres lie in a ball that the mesh does not meet.
-    if (cell.mesh > half || part.d > half) settle(part, cell.side);
+    Cell part{};
+    part.x = cell.x + (octant & 1 ? offset : -offset);
+    part.y = cell.y + (octant & 2 ? offset : -offset);
+    part.z = cell.z + (octant & 4 ? offset : -offset);
+    part.mesh = cell.mesh - half;
+    part.level = level;
+    part.parent = cell.side;
+    part.triangle = cell.triangle;
+    estimate(part, near);
+    if (cell.mesh > half) settle(part, cell.side);  // both centres in a ball without triangles
     if (part.bound > smallest_) parts.push_back(part);
   }
 }
@@ -234,8 +267,9 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
     Cell cell = pending.back();
     pending.pop_back();
     const float half = half_diagonal(cell.level);
+    if (cell.bound >= radius && !cell.measured) measure(cell);
     if (cell.bound < radius) {
-      rest.push_back(cell);
+      if (cell.bound > smallest_) rest.push_back(cell);
       continue;
     }
     if (cell.side == Side::unknown)

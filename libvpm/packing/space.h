@@ -61,11 +61,15 @@ class Space {
   enum class Side : std::uint8_t { unknown, inside, outside };
   struct Cell {
     float x, y, z;       // centre: exact, a multiple of 2^-24
-    float d;             // clearance of the centre were it inside; a bound of it beyond the reach
+    float d;             // at least the clearance of the centre were it inside
     float mesh;          // the mesh is at least this far from the centre
     float bound;         // no larger sphere is centred in the cell
     std::uint8_t level;  // edge length 2^-level
     Side side;           // of the centre
+    Side parent;         // of the centre of the cell that this one was cut from
+    bool measured;       // d is exact, up to the reach
+    bool exact;          // `triangle` is nearest to the centre; otherwise it was to a parent's
+    std::uint32_t triangle;
     Vec3 center() const { return {x, y, z}; }
   };
   struct Block {
@@ -77,11 +81,13 @@ class Space {
   void split_blocks();
   void split(const Cell& cell, const std::vector<std::uint32_t>& near,
              std::vector<Cell>& parts) const;
-  void measure(Cell& cell, float mesh_bound, const std::vector<std::uint32_t>& near) const;
+  SurfacePoint nearest_on_mesh(const Cell& cell, double within) const;
+  void estimate(Cell& cell, const std::vector<std::uint32_t>& near) const;
+  void measure(Cell& cell) const;
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
-  double joint_bound(const Cell& cell, const std::vector<std::uint32_t>& near) const;
+  double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const;
   static void settle(Cell& cell, Side side);
   static double farthest(const Cell& cell, const Sphere& from);
   void take_from(Block& block, const Sphere& sphere) const;

@@ -136,12 +136,13 @@ SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   return scale;
 }
 
-PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid) {
+PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid, double volume) {
   Progress progress("packing", tool.common());
   PackOptions options;
   options.spheres = a.spheres;
   options.coverage = a.coverage;
   options.inertia_error = a.inertia_error.value_or(0);
+  options.volume = volume;
   options.min_radius = a.min_radius;
   options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
   options.progress = [&](double fraction) { progress.update(fraction); };
@@ -210,7 +211,7 @@ void run(const Tool& tool, Arguments a) {
   check_inertia(a, checked.facts);
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
-  PackResult result = pack_checked(tool, a, checked.solid);
+  PackResult result = pack_checked(tool, a, checked.solid, checked.facts.volume);
   if (a.grow) grow_together(tool, a, checked.solid, result);
   const Certificate certificate = certify(checked.solid, result.spheres);
   refuse_uncertified(a, certificate);
