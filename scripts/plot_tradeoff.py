@@ -44,7 +44,7 @@ def main():
     axis.set_xlabel("time of a query, 1 thread, µs")
     axis.set_ylabel("mean volume error, % of the tool")
     axis.grid(True, which="both", alpha=0.2)
-    axis.legend(fontsize=8)
+    axis.legend(fontsize=8, loc="center right")
     axis.set_title("Spheres of the level beside the points; circled: the knee", fontsize=9)
     figure.tight_layout()
     figure.savefig(folder / "tradeoff.png", dpi=110)
