@@ -1,6 +1,7 @@
 // vpm-bench SUITE [--out DIR] [--quick]
 #include <iostream>
 
+#include "libvpm/core/error.h"
 #include "tools/bench/suite.h"
 #include "tools/common/tool.h"
 
@@ -9,21 +10,25 @@ int main(int argc, char** argv) {
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes, data;
   bool quick = false, all = false;
-  tool.app().add_option("suite", suite, "accuracy, packing, timing or tradeoff");
+  tool.app().add_option("suite", suite, "accuracy, extremes, packing, timing or tradeoff");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
   tool.app().add_flag("--quick", quick, "A small version that takes seconds");
-  tool.app().add_flag("--all", all, "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
+  tool.app().add_flag("--all", all,
+                      "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
   tool.app().add_option("--meshes", meshes,
                         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
   tool.app().add_option("--data", data,
                         "accuracy --all: folder whose depth/ holds recorded depth images");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
-    const vpm::bench::Report report =
-        vpm::bench::run_suite(suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data});
-    vpm::bench::write(report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
+    const vpm::bench::Report report = vpm::bench::run_suite(
+        suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data});
+    vpm::bench::write(
+        report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
+    if (!report.failure.empty())
+      vpm::refuse(report.failure + "; " + folder + "/" + suite + ".json names them");
   });
 }

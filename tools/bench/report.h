@@ -20,6 +20,7 @@ struct Report {
   nlohmann::json results = nlohmann::json::array();
   Table table;
   std::string summary;  // for the terminal
+  std::string failure;  // what broke a promise; empty: nothing. The program then ends with 1.
 };
 
 // Comma-separated with a header line; numbers with 9 digits, text without commas.

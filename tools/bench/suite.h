@@ -22,15 +22,18 @@ Report run_suite(const std::string& name, const SuiteOptions& options);
 // Errors of volume, force and torque against the truth, for `paper` and `refined`.
 Report run_accuracy(const SuiteOptions& options);
 
+// Inputs at the edge of what is possible: right, or refused in words; else `failure` is set.
+Report run_extremes(const SuiteOptions& options);
+
 // Times of every stage from the mesh to the wrench, with 1 and 2 threads.
 Report run_timing(const SuiteOptions& options);
-
-// Packings beside greedy packers on voxels, growth, and the cost from 10^2 to 10^5 spheres (10^6
-// with `all`).
-Report run_packing(const SuiteOptions& options);
 
 // Time against error over everything that a user can turn, and what --max-error and --for-scene
 // choose.
 Report run_tradeoff(const SuiteOptions& options);
+
+// Packings beside greedy packers on voxels, growth, and the cost from 10^2 to 10^5 spheres (10^6
+// with `all`).
+Report run_packing(const SuiteOptions& options);
 
 }  // namespace vpm::bench
