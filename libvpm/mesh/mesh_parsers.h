@@ -10,10 +10,13 @@ namespace vpm {
 
 RawMesh parse_obj(std::string_view text, const std::string& name);
 RawMesh parse_off(std::string_view text, const std::string& name);
+RawMesh parse_off_binary(std::string_view body, const std::string& name);  // after its first line
+RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
 
 bool looks_like_off(std::string_view text);
+bool looks_like_om(std::string_view bytes);
 bool looks_like_ply(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 

@@ -41,6 +41,8 @@ const char* name_of(MeshFormat format) {
       return "PLY";
     case MeshFormat::stl:
       return "STL";
+    case MeshFormat::om:
+      return "OM";
   }
   return "";
 }
@@ -60,12 +62,14 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (looks_like_ply(text)) return parse_ply(text, name);
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
+  if (looks_like_om(text)) return parse_om(text, name);
   if (extension == "obj") return parse_obj(text, name);
   if (extension == "off") return parse_off(text, name);
   if (extension == "ply") return parse_ply(text, name);
   if (extension == "stl") return parse_stl(text, name);
+  if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
-  refuse(name + ": this is no mesh in a format that is read here: OBJ, OFF, PLY or STL");
+  refuse(name + ": this is no mesh in a format that is read here: OBJ, OFF, PLY, STL or OM");
 }
 
 RawMesh read_mesh(const std::string& path) {

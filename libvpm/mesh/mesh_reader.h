@@ -1,8 +1,10 @@
-// Reads triangle and polygon meshes: OBJ, OFF, PLY (ascii, binary of either byte order), STL
-// (ascii, binary).
+// Reads triangle and polygon meshes: OBJ, OFF and PLY (text, binary of either byte order), STL
+// (text, binary), and OM by OpenMesh.
 //
-// The parsers are our own for two reasons: coordinates keep their double precision, and every
+// The other parsers are our own for two reasons: coordinates keep their double precision, and every
 // polygon is kept, also those that no half-edge structure takes, so that a defect can be named.
+// OpenMesh's readers round to floats and drop such faces; for OM, which only half-edge structures
+// write, faces are taken from its reader before that.
 #pragma once
 
 #include <cstddef>

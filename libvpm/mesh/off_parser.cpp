@@ -1,4 +1,4 @@
-// Object file format: an optional keyword, three counts, one vertex and one face per line.
+// Object file format, text: a keyword, three counts, one vertex and one face per line.
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/text_lines.h"
@@ -56,10 +56,13 @@ RawMesh parse_off(std::string_view text, const std::string& name) {
   TextLines lines(text, name, '#');
   lines.require_line("the keyword OFF");
   const std::string_view keyword = lines.word();
-  if (!is_plain_keyword(keyword))
-    lines.refuse_here("expected the keyword OFF (three coordinates, text)");
-  std::string_view first = lines.word();
-  if (first == "BINARY") lines.refuse_here("binary OFF is not read; save it as text");
+  if (!is_plain_keyword(keyword)) lines.refuse_here("expected the keyword OFF (three coordinates)");
+  const std::string_view first = lines.word();
+  if (first == "BINARY") {
+    if (keyword != "OFF")
+      lines.refuse_here("binary OFF is read with three coordinates only; save it as text");
+    return parse_off_binary(text.substr(lines.offset()), name);
+  }
   if (!first.empty()) lines.refuse_here("the counts must follow on a line of their own");
   lines.require_line("the counts of vertices and faces");
   const std::int64_t vertices = lines.integer("the number of vertices");

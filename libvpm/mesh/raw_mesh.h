@@ -11,7 +11,7 @@
 
 namespace vpm {
 
-enum class MeshFormat { obj, off, ply, stl };
+enum class MeshFormat { obj, off, ply, stl, om };
 
 // Polygons as the file lists them. Corners are vertex indices, all below vertices.size();
 // coordinates are finite.

@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
+#include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <cstring>
+#include <random>
 #include <sstream>
 
+#include "libvpm/core/error.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/mesh/mesh_files.h"
 
@@ -71,6 +76,82 @@ TEST(OpenMeshAgrees, OnWhatTheFilesSay) {
   expect_same_mesh(as_ascii_ply(ball), "ply");
   expect_same_mesh(as_binary_ply(ball, false), "ply");
   expect_same_mesh(as_binary_ply(ball, true), "ply");
+}
+
+// A mesh with triangles and quadrilaterals, as OpenMesh writes it.
+std::string written_by_openmesh(const std::string& extension) {
+  OpenMesh::PolyMesh_ArrayKernelT<> mesh;
+  std::vector<OpenMesh::VertexHandle> v;
+  for (const auto& p : {OpenMesh::Vec3f{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5F, 0.3F, 1}})
+    v.push_back(mesh.add_vertex(p));
+  mesh.add_face({v[3], v[2], v[1], v[0]});
+  for (std::size_t k = 0; k < 4; ++k) mesh.add_face({v[k], v[(k + 1) % 4], v[4]});
+  OpenMesh::IO::Options options(OpenMesh::IO::Options::Binary);
+  std::ostringstream stream;
+  EXPECT_TRUE(OpenMesh::IO::write_mesh(mesh, stream, extension, options));
+  return stream.str();
+}
+
+void expect_the_pyramid(const RawMesh& mesh) {
+  ASSERT_EQ(mesh.vertices.size(), 5U);
+  EXPECT_EQ(mesh.vertices[4], widen({0.5F, 0.3F, 1}));
+  ASSERT_EQ(mesh.polygon_count(), 5U);
+  EXPECT_NEAR(make_solid(mesh).facts.volume, 1.0 / 3, 1e-15);
+}
+
+TEST(OpenMeshWrites, WhatIsReadHere) {
+  for (const std::string name : {"a.om", "standard input"})
+    expect_the_pyramid(parse(written_by_openmesh(".om"), name));
+  EXPECT_EQ(parse(written_by_openmesh(".om"), "a.om").format, MeshFormat::om);
+  expect_the_pyramid(parse(written_by_openmesh(".off"), "a.off"));
+}
+
+TEST(BinaryOff, OfEitherByteOrderWithAndWithoutColours) {
+  const Solid cube = synthetic::make_cube(0.5);
+  for (const bool big_endian : {false, true}) {
+    for (const bool has_colors : {false, true}) {
+      std::string content = "OFF BINARY\n";
+      const auto add = [&](auto value) {
+        char bytes[4];
+        std::memcpy(bytes, &value, 4);
+        if (big_endian) std::reverse(bytes, bytes + 4);
+        content.append(bytes, 4);
+      };
+      for (const std::uint32_t count : {8U, 12U, 18U}) add(count);
+      for (const Vec3& p : cube.vertices) {
+        for (const double c : {p.x, p.y, p.z}) add(static_cast<float>(c));
+      }
+      for (const Triangle& t : cube.triangles) {
+        for (const std::uint32_t word : {3U, t[0], t[1], t[2]}) add(word);
+        if (!has_colors) continue;
+        add(3U);
+        for (int k = 0; k < 3; ++k) add(0.5F);
+      }
+      const RawMesh mesh = parse(content, "a.off");
+      EXPECT_EQ(mesh.vertices, cube.vertices);
+      EXPECT_EQ(triangulate(mesh), cube.triangles);
+      for (std::size_t size = 0; size < content.size(); ++size)
+        EXPECT_NE(refusal_of(content.substr(0, size), "a.off"), "") << size;
+    }
+  }
+}
+
+TEST(DamagedOm, NeverDoesMoreThanRefuse) {
+  const std::string sound = written_by_openmesh(".om");
+  for (std::size_t size = 0; size < sound.size() - 2; ++size)
+    EXPECT_NE(refusal_of(sound.substr(0, size), "a.om"), "") << size;
+  std::mt19937 random(5);
+  for (int round = 0; round < 20000; ++round) {
+    std::string damaged = sound;
+    for (int flips = 0; flips < 1 + round % 4; ++flips)
+      damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+    try {
+      const RawMesh mesh = parse(damaged, "a.om");
+      for (const std::uint32_t corner : mesh.corners) ASSERT_LT(corner, mesh.vertices.size());
+    } catch (const Error& error) {
+      ASSERT_EQ(error.kind(), ErrorKind::refused);
+    }
+  }
 }
 
 }  // namespace

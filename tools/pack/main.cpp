@@ -36,7 +36,7 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("mesh", a.mesh, "Closed mesh: OBJ, OFF, PLY or STL; - is standard input");
+  app.add_option("mesh", a.mesh, "Closed mesh: OBJ, OFF, PLY, STL or OM; - is standard input");
   app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")->capture_default_str();
   app.add_option("--coverage", a.coverage, "Stop at this share of the solid's volume, 0 to 1")
@@ -90,7 +90,8 @@ SolidOptions solid_options(const Arguments& a) {
 void check(const Arguments& a, const CommonOptions& common) {
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
   solid_options(a);
-  if (a.mesh.empty()) wrong("no mesh is given: name an OBJ, OFF, PLY or STL file, or - for a pipe");
+  if (a.mesh.empty())
+    wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
     wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
   if (a.spheres == 0) wrong("--spheres must be at least 1");

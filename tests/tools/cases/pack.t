@@ -48,7 +48,7 @@ $ vpm-pack missing.off -o missing.vpmp
 
 # Wrong usage.
 $ vpm-pack
-2> vpm-pack: error: no mesh is given: name an OBJ, OFF, PLY or STL file, or - for a pipe
+2> vpm-pack: error: no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe
 [2]
 $ vpm-pack cube.off
 2> vpm-pack: error: nothing would be written: give -o OUT.vpmp, --export or --report
