@@ -170,9 +170,7 @@ bool RefinedMeasure::is_before(const Surface& surface, const Pose& to_surface, s
                                std::uint32_t sphere, double near) const {
   const Vec3 at = to_surface * (tool_.spheres[sphere].center - tool_.center_of_mass);
   const Reading reading = surface.read(at);
-  if (reading.known && reading.distance < 0 && squared_norm(reading.foot - at) <= near * near) {
-    return false;
-  }
+  if (reading.known && squared_norm(reading.foot - at) <= near * near) return false;
   const Vec3 from = to_surface * (tool_.spheres[source].center - tool_.center_of_mass);
   return !results_[source].plane.is_behind((at - from) / level_.share_reach[source]);
 }
