@@ -206,12 +206,13 @@ void Space::split_blocks() {
       Block& block = blocks_[b];
       const Vec3 center = cube_center(index_[static_cast<std::uint32_t>(b)], level_);
       cells.clear();
-      for (const Cell& cell : block.cells) {
-        if (cell.level == level_) {
-          split(cell, block.spheres, cells);
-        } else {
+      for (Cell& cell : block.cells) {
+        if (cell.level != level_) {
           cells.push_back(cell);
+          continue;
         }
+        if (!cell.measured) measure(cell);  // estimates of estimates would exclude nothing
+        if (cell.bound > smallest_) split(cell, block.spheres, cells);
       }
       for (const Cell& cell : cells) {
         parts[b][(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +

@@ -1,6 +1,7 @@
 // Solids that packers find hard, made from a seed.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -52,9 +53,11 @@ inline Solid joined(Solid a, const Solid& b) {
   return a;
 }
 
-inline constexpr int kFamilies = 6;
+inline constexpr int kFamilies = 8;
 
-// family 0: self-intersecting union, 1: plate, 2: needle, 3: cavity, 4: torus, 5: two components.
+// family 0: self-intersecting union, 1: plate, 2: needle, 3: cavity, 4: torus, 5: two components,
+// 6: nested shells (a ball in the cavity of a box), 7: genus 2 (two tori that meet) or a torus
+// knot.
 inline Solid random_solid(int family, std::uint64_t seed) {
   Random random(seed * kFamilies + static_cast<std::uint64_t>(family));
   const auto length = [&] { return random.uniform(0.3, 1); };
@@ -71,8 +74,10 @@ inline Solid random_solid(int family, std::uint64_t seed) {
     case 1:
       return moved(synthetic::make_box(length(), length(), random.uniform(0.02, 0.05)), turn,
                    shift);
-    case 2:
-      return moved(synthetic::make_box(length(), 1e-3 * length(), 1e-3 * length()), turn, shift);
+    case 2: {
+      const double thin = std::pow(10, random.uniform(-3, -1.5));
+      return moved(synthetic::make_box(length(), thin * length(), thin * length()), turn, shift);
+    }
     case 3: {
       const double edge = length();
       const Solid hole =
@@ -81,6 +86,20 @@ inline Solid random_solid(int family, std::uint64_t seed) {
     }
     case 4:
       return moved(synthetic::make_torus(0.5, random.uniform(0.05, 0.2), 24, 9), turn, shift);
+    case 6: {
+      const double edge = length();
+      const Solid hole = reversed(synthetic::make_icosphere(0.45 * edge, 1));
+      const Solid core = synthetic::make_icosphere(random.uniform(0.1, 0.3) * edge, 1);
+      return moved(joined(joined(synthetic::make_cube(edge), hole), core), turn, shift);
+    }
+    case 7: {
+      if (seed % 2 == 0) {
+        return moved(synthetic::make_torus_knot(2, 3, 0.5, 0.2, random.uniform(0.02, 0.08), 60, 5),
+                     turn, shift);
+      }
+      const Solid ring = synthetic::make_torus(0.4, random.uniform(0.08, 0.2), 20, 7);
+      return moved(joined(ring, moved(ring, random.rotation(), {0.4, 0, 0})), turn, shift);
+    }
     default:
       return moved(joined(box(), moved(box(), random.rotation(), {3, 1, 0})), turn, shift);
   }
