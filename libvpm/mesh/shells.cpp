@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/model/sphere.h"
@@ -10,8 +10,12 @@
 namespace vpm {
 namespace {
 
-// Shells that cross each other are not one within the other unless most of these are.
-constexpr std::size_t kSamples = 15;
+// Vertices that say whether a shell lies within another one.
+constexpr std::size_t kSamples = 16;
+// A closed shell winds around a point an integer number of times; otherwise the point lies on it.
+constexpr double kOnSurface = 0.1;
+// A triangle that shows this nearly half of the full solid angle has the point in its plane.
+constexpr double kFlat = 1e-9;
 
 struct Shell {
   std::vector<std::uint32_t> triangles;
@@ -19,6 +23,22 @@ struct Shell {
   std::vector<Vec3> samples;  // vertices of it
   double volume = 0;          // signed
 };
+
+// Some of the vertices, spread over the list of triangles.
+std::vector<Vec3> samples_of(const std::vector<Vec3>& vertices,
+                             const std::vector<Triangle>& triangles,
+                             const std::vector<std::uint32_t>& shell) {
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t t : shell)
+    used.insert(used.end(), triangles[t].begin(), triangles[t].end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Vec3> samples;
+  const std::size_t count = std::min(used.size(), kSamples);
+  for (std::size_t k = 0; k < count; ++k)
+    samples.push_back(vertices[used[k * used.size() / count]]);
+  return samples;
+}
 
 std::vector<Shell> collect(const std::vector<Vec3>& vertices,
                            const std::vector<std::uint32_t>& shell_of_triangle, std::size_t count,
@@ -28,10 +48,7 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
     shells[shell_of_triangle[t]].triangles.push_back(t);
   for (Shell& shell : shells) {
     shell.low = shell.high = vertices[triangles[shell.triangles.front()][0]];
-    for (std::size_t k = 0; k < kSamples; ++k) {
-      const std::size_t at = k * shell.triangles.size() / kSamples;
-      shell.samples.push_back(vertices[triangles[shell.triangles[at]][k % 3]]);
-    }
+    shell.samples = samples_of(vertices, triangles, shell.triangles);
     for (const std::uint32_t t : shell.triangles) {
       for (const std::uint32_t corner : triangles[t]) {
         const Vec3 p = vertices[corner];
@@ -52,45 +69,59 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
 }
 
 // How often the shell encloses p, by the solid angles of its triangles (van Oosterom and Strackee
-// 1983); near an integer for a closed shell.
-double winding_number(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                      const Shell& shell, Vec3 p) {
+// 1983); none where p lies on the shell.
+std::optional<double> winding_number(const std::vector<Vec3>& vertices,
+                                     const std::vector<Triangle>& triangles, const Shell& shell,
+                                     Vec3 p) {
   double angle = 0;
   for (const std::uint32_t t : shell.triangles) {
     const Vec3 a = vertices[triangles[t][0]] - p, b = vertices[triangles[t][1]] - p,
                c = vertices[triangles[t][2]] - p;
     const double la = norm(a), lb = norm(b), lc = norm(c);
     const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    angle += 2 * std::atan2(dot(a, cross(b, c)), below);
+    const double half = std::atan2(dot(a, cross(b, c)), below);
+    if (std::abs(half) > (1 - kFlat) * kPi) return std::nullopt;
+    angle += 2 * half;
   }
-  return angle / (4 * kPi);
+  const double number = angle / (4 * kPi);
+  if (std::abs(number - std::round(number)) > kOnSurface) return std::nullopt;
+  return number;
 }
 
 bool box_holds(const Shell& shell, Vec3 p) {
-  return p.x > shell.low.x && p.x < shell.high.x && p.y > shell.low.y && p.y < shell.high.y &&
-         p.z > shell.low.z && p.z < shell.high.z;
+  return p.x >= shell.low.x && p.x <= shell.high.x && p.y >= shell.low.y && p.y <= shell.high.y &&
+         p.z >= shell.low.z && p.z <= shell.high.z;
 }
 
-bool encloses(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-              const Shell& outer, const Shell& inner) {
-  std::size_t enclosed = 0, left = kSamples;
+enum class Enclosure { none, half, whole };
+
+// Vertices on the other shell's surface do not count: parts may meet.
+Enclosure enclosure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                    const Shell& outer, const Shell& inner) {
+  std::size_t inside = 0, outside = 0;
   for (const Vec3 p : inner.samples) {
-    if (enclosed + left-- <= kSamples / 2) return false;
-    enclosed +=
-        box_holds(outer, p) && std::abs(winding_number(vertices, triangles, outer, p)) > 0.5;
+    if (!box_holds(outer, p)) {
+      ++outside;
+    } else {
+      const std::optional<double> number = winding_number(vertices, triangles, outer, p);
+      if (number) ++(std::abs(*number) > 0.5 ? inside : outside);
+    }
+    if (2 * outside > inner.samples.size()) return Enclosure::none;
   }
-  return enclosed > kSamples / 2;
+  if (inside == 0 || outside > inside) return Enclosure::none;
+  return outside == 0 ? Enclosure::whole : Enclosure::half;
 }
 
-// For each shell, the shells that enclose most of its samples.
+// For each shell, the shells that enclose at least so much of it.
 std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& vertices,
                                                        const std::vector<Triangle>& triangles,
-                                                       const std::vector<Shell>& shells) {
+                                                       const std::vector<Shell>& shells,
+                                                       Enclosure least) {
   std::vector<std::vector<std::uint32_t>> enclosing(shells.size());
   parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       for (std::uint32_t other = 0; other < shells.size(); ++other) {
-        if (other != k && encloses(vertices, triangles, shells[other], shells[k]))
+        if (other != k && enclosure(vertices, triangles, shells[other], shells[k]) >= least)
           enclosing[k].push_back(other);
       }
     }
@@ -105,7 +136,7 @@ std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
                                      std::size_t shell_count,
                                      const std::vector<Triangle>& triangles) {
   const std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
-  const auto enclosing = find_enclosing(vertices, triangles, shells);
+  const auto enclosing = find_enclosing(vertices, triangles, shells, Enclosure::half);
   std::vector<ShellPlace> places;
   for (std::size_t k = 0; k < shells.size(); ++k)
     places.push_back({enclosing[k].size(), shells[k].volume >= 0});
@@ -117,7 +148,9 @@ ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                std::size_t shell_count, bool given_consistent,
                                std::vector<Triangle>& triangles) {
   std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
-  const auto enclosing = find_enclosing(vertices, triangles, shells);
+  // Where the file does not say which way a shell faces, one that crosses another is a body.
+  const auto enclosing = find_enclosing(vertices, triangles, shells,
+                                        given_consistent ? Enclosure::half : Enclosure::whole);
   // Shells around one another turn together: as the outermost one has to.
   const auto faces_wrong = [&](std::size_t k) {
     if (given_consistent) {

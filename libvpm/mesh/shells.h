@@ -10,7 +10,7 @@
 namespace vpm {
 
 struct ShellPlace {
-  std::size_t depth = 0;  // shells around it: each encloses most of its vertices
+  std::size_t depth = 0;  // shells around it: each encloses half of its vertices or more
   bool outward = true;    // as its triangles face
 };
 
@@ -28,7 +28,7 @@ struct ShellOrientation {
 // Turns shells so that the mesh bounds a solid from outside. Shells that lie within no other one
 // face outward. Shells within others: where the file is consistent they are left as they are (but
 // turn with the shell around them); where not (`given_consistent` false) they alternate, a shell
-// within an odd number of others being a cavity.
+// wholly within an odd number of others being a cavity.
 ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& shell_of_triangle,
                                std::size_t shell_count, bool given_consistent,

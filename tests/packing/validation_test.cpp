@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/mesh/outer_surface.h"
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/packer.h"
 #include "libvpm/synthetic/shapes.h"
+#include "tests/packing/test_solids.h"
 
 namespace vpm {
 namespace {
@@ -71,6 +76,33 @@ TEST(Validation, ACavityIsOutside) {
   EXPECT_NEAR(sound.volume_mesh, 7, 7 * sound.coverage_error);
   expect_clean(sound);
   EXPECT_GT(validate_packing(hollow, {{{0, 0, 0}, 0.4}}, kVoxels).protruding_voxels, 0U);
+}
+
+TEST(Validation, AgreesWithTheCertificateWithinItsBound) {
+  constexpr int kNeedles = 2;  // thinner than a voxel
+  for (int family = 0; family < test::kFamilies; ++family) {
+    if (family == kNeedles) continue;
+    SCOPED_TRACE(family);
+    const Solid solid = test::random_solid(family, 1);
+    std::vector<Sphere> spheres = pack(solid, {.spheres = 20}).spheres;
+    const double volume_mesh = enclosed_mass(solid).volume;
+    double filled = 0;
+    for (const Sphere& s : spheres) filled += volume(s);
+    ASSERT_TRUE(certify(solid, spheres).holds);
+    const Validation sound = validate_packing(solid, spheres, 2 * kVoxels);
+    EXPECT_NEAR(sound.coverage, filled / volume_mesh, sound.coverage_error);
+    expect_clean(sound);
+
+    // What is deeper than the limit that is stated is seen by both.
+    spheres[0].radius += 2 * sound.detection_limit;
+    const Certificate broken = certify(solid, spheres);
+    const Validation seen = validate_packing(solid, spheres, 2 * kVoxels);
+    EXPECT_FALSE(broken.holds);
+    EXPECT_GT(seen.protruding_voxels, 0U);
+    // Distances of voxels are floats.
+    EXPECT_LE(seen.max_protrusion, broken.max_protrusion + 1e-5);
+    EXPECT_LE(seen.max_overlap, std::max(broken.max_overlap, 0.0) + 1e-12);
+  }
 }
 
 TEST(Validation, DoesNotDependOnThreads) {
