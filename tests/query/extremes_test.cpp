@@ -235,7 +235,13 @@ TEST(ExtremeTools, AHierarchyThatIsAChainIsRefused) {
 
 TEST(ExtremeTools, AMillionSpheresCountAsTheWholeDoes) {
   const ToolModel tool = lattice_cube(2, 100, 1);
-  const Result r = ask(tool, points({{0, 0, 0}}, {{0, 0, 1}}), Measure::refined);
+  std::vector<Vec3f> floor;  // every share that it cuts has points nearby
+  for (int x = -75; x < 75; ++x) {
+    for (int y = -75; y < 75; ++y)
+      floor.push_back({0.02f * (float(x) + 0.5f), 0.02f * (float(y) + 0.5f), 0});
+  }
+  const Cloud cloud = points(floor, std::vector<Vec3f>(floor.size(), Vec3f{0, 0, 1}), 0.02f);
+  const Result r = ask(tool, cloud, Measure::refined);
   EXPECT_NEAR(r.volume_fraction, 0.5, 1e-9);
   EXPECT_NEAR(r.wrench.force.z, r.volume, 1e-9);
 }
