@@ -40,13 +40,30 @@ struct ContactPlane {
     foot[0].add(relative_foot.x), foot[1].add(relative_foot.y), foot[2].add(relative_foot.z);
     ++count;
   }
-  // Whether a place, relative to the cell's centre and reach, lies behind the plane.
-  VPM_HD bool is_behind(Vec3 relative) const {
+  // Height of a place above the plane, both relative to the cell's centre and reach; negative
+  // behind it.
+  VPM_HD double height(Vec3 relative) const {
     const double per = 1 / static_cast<double>(count);
     const Vec3 n{normal[0].real(), normal[1].real(), normal[2].real()};
     const Vec3 p{per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
-    return dot(n, relative - p) < 0;
+    return dot(normalized_or_zero(n), relative - p);
   }
+  // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
+  // object more than `near` in front of it.
+  VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
+    return height(relative) < 0 && height(hiding) <= near;
+  }
+};
+
+// A cut share, in the surface's frame: its plane speaks for what is too far behind the surface, or
+// out of sight.
+struct CutShare {
+  ContactPlane plane;
+  Vec3 center;
+  double reach = 0;
+
+  VPM_HD Vec3 relative(Vec3 x) const { return (x - center) / reach; }
+  VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
 };
 
 struct CellResult {
@@ -54,8 +71,9 @@ struct CellResult {
   ContactPlane plane;  // plane.count > 0: the surface cuts the cell
 };
 
-// A surface further than this many reaches from the cell is not the one that cuts the cell: a place
-// behind it is merely hidden by it (a silhouette before a background).
+// A surface further than this many reaches from the cell's centre, or than the tool's reach from
+// the cell, may be another one than that which cuts the cell: a place behind it is merely hidden by
+// it (a silhouette before a background), unless the cell's own plane vouches for both.
 inline constexpr double kSheetReach = 3;
 
 template <class Surface>
@@ -82,15 +100,25 @@ class CellMeasure {
     return result;
   }
 
-  // The whole share, known to be inside.
-  VPM_HD ToolSum whole() const {
+  // What of a share that the flood has reached is inside. `whole`: all of it is behind some
+  // surface; `nearest` gives the nearest cut share, where it is needed.
+  template <class Nearest>
+  VPM_HD ToolSum reached(bool whole, const Nearest& nearest) const {
     ToolSum sum;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
-      const Vec3 x = to_surface_ * cell_.masses[b].centroid;
-      const Reading reading = surface_.read(x);
-      const Vec3 normal =
-          reading.known && reading.distance < 0 ? surface_.closest_normal(x, reading) : Vec3{};
-      sum.add(cell_.masses[b].weight, normal, arm(cell_.masses[b].centroid));
+      const CellBlock& block = cell_.blocks[b];
+      const Side side =
+          whole ? Side::behind
+                : surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+      if (side == Side::free) continue;
+      if (side != Side::mixed) {
+        add_reached(nearest, cell_.masses[b].centroid, 0, cell_.masses[b].weight, sum);
+        continue;
+      }
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const CellSample& sample = cell_.samples[s];
+        add_reached(nearest, widen(sample.center), sample.radius, sample.weight, sum);
+      }
     }
     return sum;
   }
@@ -103,8 +131,9 @@ class CellMeasure {
   }
   VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
   VPM_HD bool is_hidden(const Reading& reading) const {
-    return squared_norm(reading.foot - center_) >
-           (kSheetReach * kSheetReach) * (cell_.reach * cell_.reach);
+    const double beyond = (kSheetReach - 1) * cell_.reach;
+    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
+    return squared_norm(reading.foot - center_) > near * near;
   }
 
   // Returns whether something was left for the pass of the hidden.
@@ -129,7 +158,10 @@ class CellMeasure {
     if (!reading.known || reading.distance >= radius) return false;
     const bool hidden = is_hidden(reading);
     if (hidden != (pass == Pass::hidden)) return hidden;
-    if (hidden && result.plane.count > 0 && !result.plane.is_behind(relative(x))) return false;
+    if (hidden && result.plane.count > 0 &&
+        !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
+      return false;
+    }
     double fraction = 1;
     Vec3 normal = reading.normal;
     if (reading.distance > -radius) {
@@ -140,6 +172,24 @@ class CellMeasure {
     }
     result.sum.add(weight * fraction, normal, arm(at));
     return false;
+  }
+
+  template <class Nearest>
+  VPM_HD void add_reached(const Nearest& nearest, Vec3 at, double radius, double weight,
+                          ToolSum& sum) const {
+    const Vec3 x = to_surface_ * at;
+    const Reading reading = surface_.read(x);
+    if (!reading.known || reading.distance >= radius) return;
+    if (squared_norm(reading.foot - x) > tool_reach_ * tool_reach_) {
+      const CutShare cut = nearest();
+      if (!cut.plane.vouches_for(cut.relative(x), cut.relative(reading.foot),
+                                 tool_reach_ / cut.reach))
+        return;
+    }
+    const bool inner = reading.distance <= -radius;
+    const double fraction = inner ? 1 : ball_fraction_inside(reading.distance / radius);
+    sum.add(weight * fraction, inner ? surface_.closest_normal(x, reading) : reading.normal,
+            arm(at));
   }
 
   const Surface& surface_;

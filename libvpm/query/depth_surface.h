@@ -28,6 +28,9 @@ struct DepthSurface {
   static constexpr int kFootSteps = 5;        // of the search for the nearest surface point
   static constexpr double kFootPixels = 0.5;  // a step shorter than this ends the search
   static constexpr double kCreasePixels = 2;  // a foot further aside than this lies on a crease
+  // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
+  // or curved; those of a crease differ by more.
+  static constexpr double kSmoothCosine = 0.9;
 
   Intrinsics k;
   std::int32_t width = 0, height = 0;
@@ -91,7 +94,8 @@ struct DepthSurface {
 
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
   // point. Starts from the point on x's ray (`reading` is that of x), steps to the foot on its
-  // tangent plane and, where that overshoots a crease, back by halves.
+  // tangent plane and, where that overshoots a crease, back by halves. A step that leads away
+  // without a crease has met noise: there the normals tell the direction, not single pixels.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
     Vec3 foot = reading.foot, normal = reading.normal;
     double squared = squared_norm(x - foot);
@@ -106,6 +110,8 @@ struct DepthSurface {
         normal = next.normal;
         squared = next_squared;
         target = x - dot(normal, x - foot) * normal;
+      } else if (dot(normal, next.normal) > kSmoothCosine) {
+        return normalized_or_zero(normal + next.normal);
       } else {
         target = 0.5 * (foot + next.foot);
       }

@@ -24,8 +24,9 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
     : tool_(tool), level_(level), masses_(block_masses(level)) {
   cells_.resize(level.sphere_count);
   results_.resize(level.sphere_count);
-  reached_.resize(level.sphere_count);
-  source_.resize(level.sphere_count);
+  passages_.resize(level.sphere_count);
+  squared_gaps_.resize(level.sphere_count);
+  cut_.reserve(level.sphere_count);
   inside_.reserve(level.sphere_count);
 }
 
@@ -53,32 +54,22 @@ Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
                               const Rotation& to_world, std::vector<SphereState>& states) {
   classify(surface, to_surface);
   flood(surface, to_surface);
-
-  constexpr std::size_t kGrain = 64;
-  parallel_for(inside_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = inside_[k];
-      if (cells_[i] != Cell::partial) {
-        results_[i].sum = CellMeasure(surface, to_surface, tool_.reach, cell(i)).whole();
-      }
-    }
-  });
+  count_inside(surface, to_surface);
 
   ToolSum sum;
   Result result;
   std::fill(states.begin(), states.end(), SphereState::outside);
-  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
-    if (cells_[i] == Cell::cut) {
-      states[i] = SphereState::boundary;
-      sum.add(results_[i].sum);
-      ++result.boundary;
-    }
-  }
-  for (const std::uint32_t i : inside_) {
-    states[i] = SphereState::inside;
+  for (const std::uint32_t i : cut_) {
+    states[i] = SphereState::boundary;
     sum.add(results_[i].sum);
   }
-  result.inside = static_cast<std::uint32_t>(inside_.size());
+  result.boundary = static_cast<std::uint32_t>(cut_.size());
+  for (const std::uint32_t i : inside_) {
+    if (results_[i].sum.volume.value == 0) continue;  // the flood passed through the hidden
+    states[i] = SphereState::inside;
+    sum.add(results_[i].sum);
+    ++result.inside;
+  }
   sum.write(tool_, to_world, result);
   return result;
 }
@@ -105,74 +96,91 @@ void RefinedMeasure::classify(const Surface& surface, const Pose& to_surface) {
   });
 }
 
-// The surface enters the tool through cut cells; from there every cell behind it that the graph
-// reaches is inside. Front by front, so that each sphere's source does not depend on the traversal.
+// The surface enters the tool through cut shares; from there every share behind it that the graph
+// reaches is inside. Which ones does not depend on the order of the traversal.
 template <class Surface>
 void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
   const SphereGraph& graph = level_.graph;
-  std::fill(reached_.begin(), reached_.end(), Reached::no);
+  std::fill(passages_.begin(), passages_.end(), Passage::unknown);
+  cut_.clear();
   inside_.clear();
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
-    if (cells_[i] != Cell::cut) continue;
+    if (cells_[i] == Cell::cut) cut_.push_back(i);
+  }
+  const auto take = [&](std::uint32_t j) {
+    passages_[j] = Passage::taken;
+    inside_.push_back(j);
+  };
+  for (const std::uint32_t i : cut_) {
     for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
       const std::uint32_t j = graph.neighbors[k];
-      if (reached_[j] != Reached::no || !is_candidate(surface, to_surface, j)) continue;
-      const double near = kSheetReach * (level_.share_reach[i] + level_.share_reach[j]);
-      if (!is_before(surface, to_surface, i, j, near)) {
-        reached_[j] = Reached::yes;
-        source_[j] = i;
-        inside_.push_back(j);
-      }
+      if (is_passable(surface, to_surface, j) && enters(to_surface, i, j)) take(j);
     }
   }
-  for (std::size_t front = 0; front < inside_.size();) {
-    const std::size_t end = inside_.size();
-    for (; front < end; ++front) discover_neighbors(surface, to_surface, inside_[front]);
-    std::size_t kept = end;
-    for (std::size_t k = end; k < inside_.size(); ++k) {
-      const std::uint32_t j = inside_[k];
-      const bool before = is_before(surface, to_surface, source_[j], j, tool_.reach);
-      reached_[j] = before ? Reached::no : Reached::yes;
-      if (!before) inside_[kept++] = j;
+  for (std::size_t next = 0; next < inside_.size(); ++next) {
+    const std::uint32_t i = inside_[next];
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+      const std::uint32_t j = graph.neighbors[k];
+      if (is_passable(surface, to_surface, j)) take(j);
     }
-    inside_.resize(kept);
   }
 }
 
 template <class Surface>
-void RefinedMeasure::discover_neighbors(const Surface& surface, const Pose& to_surface,
-                                        std::uint32_t i) {
-  const SphereGraph& graph = level_.graph;
-  for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
-    const std::uint32_t j = graph.neighbors[k];
-    if (reached_[j] == Reached::yes || !is_candidate(surface, to_surface, j)) continue;
-    if (reached_[j] == Reached::no) inside_.push_back(j);
-    source_[j] = reached_[j] == Reached::no ? source_[i] : std::min(source_[j], source_[i]);
-    reached_[j] = Reached::in_this_front;
-  }
+void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface) {
+  constexpr std::size_t kGrain = 64;
+  parallel_for(inside_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = inside_[k];
+      const auto nearest = [&] { return cut_share(to_surface, nearest_cut(i)); };
+      results_[i].sum = CellMeasure(surface, to_surface, tool_.reach, cell(i))
+                            .reached(cells_[i] == Cell::whole, nearest);
+    }
+  });
 }
 
 template <class Surface>
-bool RefinedMeasure::is_candidate(const Surface& surface, const Pose& to_surface, std::uint32_t j) {
-  if (cells_[j] == Cell::open) {
-    const Reading reading =
-        surface.read(to_surface * (tool_.spheres[j].center - tool_.center_of_mass));
-    cells_[j] = reading.known && reading.distance < 0 ? Cell::whole : Cell::free;
-  }
-  return cells_[j] == Cell::whole || cells_[j] == Cell::partial;
+bool RefinedMeasure::is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t j) {
+  if (cells_[j] == Cell::free || cells_[j] == Cell::cut) return false;
+  if (passages_[j] == Passage::unknown) passages_[j] = find_passage(surface, to_surface, j);
+  return passages_[j] == Passage::open;
 }
 
-// A sphere may be behind a surface that is not the tool's business: one further away than `near`
-// only hides it. Then the plane of the cut cell from which the flood came decides: before it, the
-// sphere is out of sight, not inside.
+// A share may be behind a surface that is not the tool's business: one further away than the tool's
+// reach only hides it. Then the plane of the nearest cut share decides: before it, the share is out
+// of sight, not inside.
 template <class Surface>
-bool RefinedMeasure::is_before(const Surface& surface, const Pose& to_surface, std::uint32_t source,
-                               std::uint32_t sphere, double near) const {
-  const Vec3 at = to_surface * (tool_.spheres[sphere].center - tool_.center_of_mass);
+RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, const Pose& to_surface,
+                                                     std::uint32_t j) {
+  const Vec3 at = to_surface * cell(j).center;
   const Reading reading = surface.read(at);
-  if (reading.known && squared_norm(reading.foot - at) <= near * near) return false;
-  const Vec3 from = to_surface * (tool_.spheres[source].center - tool_.center_of_mass);
-  return !results_[source].plane.is_behind((at - from) / level_.share_reach[source]);
+  if (cells_[j] == Cell::open) {
+    if (!(reading.known && reading.distance < 0)) return Passage::closed;
+    cells_[j] = Cell::whole;
+  }
+  squared_gaps_[j] = reading.known ? squared_norm(reading.foot - at) : HUGE_VAL;
+  if (squared_gaps_[j] <= tool_.reach * tool_.reach) return Passage::open;
+  return cut_share(to_surface, nearest_cut(j)).height(at) < 0 ? Passage::open : Passage::closed;
+}
+
+// Whether the surface that cuts one share is what another lies behind: near it, or by its plane.
+bool RefinedMeasure::enters(const Pose& to_surface, std::uint32_t cut, std::uint32_t sphere) const {
+  const double near = kSheetReach * (level_.share_reach[cut] + level_.share_reach[sphere]);
+  return squared_gaps_[sphere] <= near * near ||
+         cut_share(to_surface, cut).height(to_surface * cell(sphere).center) < 0;
+}
+
+// Equal distances go to the smaller index.
+std::uint32_t RefinedMeasure::nearest_cut(std::uint32_t sphere) const {
+  const Vec3 center = tool_.spheres[sphere].center;
+  return *std::min_element(cut_.begin(), cut_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return squared_norm(tool_.spheres[a].center - center) <
+           squared_norm(tool_.spheres[b].center - center);
+  });
+}
+
+CutShare RefinedMeasure::cut_share(const Pose& to_surface, std::uint32_t cut) const {
+  return {results_[cut].plane, to_surface * cell(cut).center, level_.share_reach[cut]};
 }
 
 }  // namespace vpm

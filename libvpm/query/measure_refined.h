@@ -29,7 +29,8 @@ class RefinedMeasure {
     open,     // no surface near; its centre decides when the flood comes
   };
 
-  enum class Reached : std::uint8_t { no, in_this_front, yes };
+  // Whether the flood may pass a share that is not cut.
+  enum class Passage : std::uint8_t { unknown, closed, open, taken };
 
   template <class Surface>
   Result run_on(const Surface& surface, const Pose& to_surface, const Rotation& to_world,
@@ -39,12 +40,14 @@ class RefinedMeasure {
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
-  void discover_neighbors(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  void count_inside(const Surface& surface, const Pose& to_surface);
   template <class Surface>
-  bool is_before(const Surface& surface, const Pose& to_surface, std::uint32_t source,
-                 std::uint32_t sphere, double near) const;
+  bool is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
   template <class Surface>
-  bool is_candidate(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  Passage find_passage(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  bool enters(const Pose& to_surface, std::uint32_t cut, std::uint32_t sphere) const;
+  std::uint32_t nearest_cut(std::uint32_t sphere) const;
+  CutShare cut_share(const Pose& to_surface, std::uint32_t cut) const;
   CellView cell(std::uint32_t sphere) const;
 
   const ToolModel& tool_;
@@ -52,10 +55,9 @@ class RefinedMeasure {
   std::vector<BlockMass> masses_;
   std::vector<Cell> cells_;
   std::vector<CellResult> results_;
-  std::vector<Reached> reached_;
-  std::vector<std::uint32_t> source_;  // of a reached sphere: the cut cell that the flood came from
-  std::vector<std::uint32_t>
-      inside_;  // spheres that the flood has reached, in the order of the flood
+  std::vector<Passage> passages_;
+  std::vector<double> squared_gaps_;  // to the foot of the centre's reading, where passable; m^2
+  std::vector<std::uint32_t> cut_, inside_;  // spheres that the surface cuts, that the flood took
 };
 
 }  // namespace vpm

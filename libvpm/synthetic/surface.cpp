@@ -92,14 +92,28 @@ class Block : public Surface {
 
 class Prism : public Surface {
  public:
-  explicit Prism(std::vector<std::array<double, 2>> polygon) : polygon_(std::move(polygon)) {}
+  explicit Prism(std::vector<std::array<double, 2>> polygon) : polygon_(std::move(polygon)) {
+    double twice_area = 0;
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const auto [a, b] = edge(i);
+      twice_area += cross_xz(a, b);
+    }
+    turn_ = twice_area < 0 ? -1 : 1;
+  }
 
   double distance(Vec3 p) const override {
-    const double length = norm(to_nearest(p));
+    const double length = norm(nearest(p).offset);
     return is_inside(p) ? -length : length;
   }
+  // Above an edge its normal, which holds on the surface too; beside its ends, away from the
+  // corner.
   Vec3 gradient(Vec3 p) const override {
-    const Vec3 away = normalized_or_zero(-to_nearest(p));
+    const Nearest at = nearest(p);
+    const Vec3 away = normalized_or_zero(-at.offset);
+    if (!at.is_corner || away == Vec3{}) {
+      const auto [a, b] = edge(at.edge);
+      return turn_ * normalized_or_zero({b.z - a.z, 0, a.x - b.x});
+    }
     return is_inside(p) ? -away : away;
   }
   void crossings(Vec3 origin, Vec3 direction, std::vector<double>& t) const override {
@@ -122,18 +136,23 @@ class Prism : public Surface {
     const auto &a = polygon_[i], &b = polygon_[(i + 1) % polygon_.size()];
     return {{a[0], 0, a[1]}, {b[0], 0, b[1]}};
   }
-  Vec3 to_nearest(Vec3 p) const {
+  struct Nearest {
+    Vec3 offset;  // from p
+    std::size_t edge = 0;
+    bool is_corner = false;
+  };
+  Nearest nearest(Vec3 p) const {
     p.y = 0;
-    Vec3 best{HUGE_VAL, 0, 0};
+    Nearest best;
     double least = HUGE_VAL;
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
       const auto [a, b] = edge(i);
       const Vec3 along = b - a;
-      const double s = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
-      const Vec3 offset = a + s * along - p;
+      const double s = dot(p - a, along) / squared_norm(along);
+      const Vec3 offset = a + std::clamp(s, 0.0, 1.0) * along - p;
       if (const double squared = squared_norm(offset); squared < least) {
         least = squared;
-        best = offset;
+        best = {offset, i, !(s > 0 && s < 1)};
       }
     }
     return best;
@@ -149,6 +168,7 @@ class Prism : public Surface {
   }
 
   std::vector<std::array<double, 2>> polygon_;
+  double turn_ = 1;  // -1 where the polygon runs the other way round
 };
 
 class Placed : public Surface {

@@ -43,6 +43,22 @@ TEST_P(SceneTest, NearestPointLiesOnTheSurface) {
   }
 }
 
+// Sensor noise asks for the gradient at places on the surface, within rounding.
+TEST_P(SceneTest, GradientOnTheSurfaceIsThatJustBeforeIt) {
+  const Scene scene = make_scene(GetParam());
+  RayCaster rays(*scene.surface, scene.camera);
+  int alike = 0, seen = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double u = 12.3 + 30.7 * (k % 20), v = 11.1 + 22.9 * (k / 20);
+    const std::optional<double> depth = rays.depth(u, v);
+    if (!depth) continue;
+    const Vec3 before = rays.point(u, v, *depth - 1e-7), on = rays.point(u, v, *depth);
+    ++seen;
+    alike += norm(scene.surface->gradient(on) - scene.surface->gradient(before)) < 1e-5;
+  }
+  EXPECT_GE(alike, seen - 2);  // corners
+}
+
 TEST_P(SceneTest, CrossingsAreWhereTheSignChanges) {
   const SurfacePtr surface = make_scene(GetParam()).surface;
   NormalNumbers numbers(3, 0);

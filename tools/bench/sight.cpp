@@ -72,7 +72,8 @@ Sight::Ray Sight::ray(Vec3 from_camera) const {
   return ray;
 }
 
-// Whether the pixels around the place's own see surfaces at different depths, or nothing.
+// Whether the place lies between the depths that its own pixel and one beside it see, or where
+// nothing is measured.
 bool Sight::is_ambiguous(Vec3 from_camera, double entry) const {
   const Intrinsics& k = camera_.intrinsics;
   const double u = k.fx * from_camera.x / from_camera.z + k.cx;
@@ -84,7 +85,8 @@ bool Sight::is_ambiguous(Vec3 from_camera, double entry) const {
   synthetic::RayCaster rays(surface_, camera_);
   for (const auto& [du, dv] : {std::array{-1.0, 0.0}, {1.0, 0.0}, {0.0, -1.0}, {0.0, 1.0}}) {
     const double beside = rays.depth(u + du, v + dv).value_or(HUGE_VAL);
-    if (std::abs(beside - entry) > kJump * std::max(beside, entry)) return true;
+    const double near = std::min(beside, entry), far = std::max(beside, entry);
+    if (far - near > kJump * far && from_camera.z > near && from_camera.z < far) return true;
   }
   return false;
 }

@@ -3,8 +3,9 @@
 // Rule. A place is *known* to be free if a camera sees it, and known to be inside if a camera's ray
 // enters the obstacle before it and does not leave it again. The part of the tool in free space
 // that no camera sees (behind a thin plate, in the shadow of a block) may or may not be counted; so
-// may the part inside that free space hides (a wall behind a block), and everything whose pixel is
-// a hole or within a pixel of a depth jump. The volume must lie between both.
+// may the part inside that free space hides (a wall behind a block), everything whose pixel is a
+// hole, and what lies between the two depths of a jump within a pixel of it. The volume must lie
+// between both.
 #pragma once
 
 #include <vector>
