@@ -93,8 +93,8 @@ class Check {
     if (facts().unused_vertices > 0)
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
-    look_for_self_intersections();
     for (Vec3& p : vertices()) p = options_.scale * p;
+    look_for_self_intersections();
     drop_inner_shells();
     measure();
     return std::move(result_);
@@ -288,6 +288,8 @@ class Check {
       facts().zero_area_triangles +=
           !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
     }
+    contacts_ = find_contacts(vertices(), triangles());
+    if (contacts_.empty()) return;
     const std::vector<TrianglePair> pairs = find_self_intersections(vertices(), triangles());
     facts().self_intersections = pairs.size();
     if (pairs.empty()) return;
@@ -297,7 +299,9 @@ class Check {
     }
     const auto place = [&](std::uint32_t triangle) {
       const Triangle& t = triangles()[triangle];
-      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / 3);
+      // In the file's unit.
+      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) /
+                     (3 * options_.scale));
     };
     warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
          places(first, place) +
@@ -307,7 +311,7 @@ class Check {
 
   // Shells that lie wholly within the solid would only be in the way of the spheres.
   void drop_inner_shells() {
-    const OuterSurface outer(result_.solid);
+    const OuterSurface outer(result_.solid, contacts_);
     std::size_t shell_count = 0;
     const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
     std::vector<char> bounds(shell_count, 0);
@@ -354,6 +358,7 @@ class Check {
   const SolidOptions& options_;
   CheckedSolid result_;
   Topology topology_;
+  std::vector<TrianglePair> contacts_;
   double diagonal_ = 0;
 };
 

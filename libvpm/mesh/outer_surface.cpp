@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <optional>
 
 #include "libvpm/core/parallel.h"
-#include "libvpm/mesh/self_intersection.h"
-#include "libvpm/mesh/topology.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/triangle_cells.h"
 #include "libvpm/mesh/winding_number.h"
@@ -17,22 +13,13 @@
 namespace vpm {
 namespace {
 
-// Triangles nearer to one plane than this share of the extent lie in it: parts that were made to
-// meet, and rounded since.
-constexpr double kCoplanar = 1e-12;
-
-struct Box {
-  Vec3 low, high;
-};
-
-Box box_of(const std::vector<Vec3>& points) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+Vec3 box_center(const std::vector<Vec3>& points) {
+  Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
-    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  return box;
+  return low + 0.5 * (high - low);
 }
 
 // Six times the volume of tetrahedra over the origin, and four times its moment.
@@ -70,20 +57,18 @@ struct Flat {
 
 // Cuts the triangles that meet others, and asks for winding numbers.
 struct OuterSurface::Cells {
-  explicit Cells(const Solid& s)
-      : solid(s), bvh(s.vertices, s.triangles), winding(bvh), begin(s.triangles.size() + 1) {
-    const Box box = box_of(solid.vertices);
-    const Vec3 side = box.high - box.low;
-    origin = box.low + 0.5 * side;
-    const double farthest = std::max(norm(box.low), norm(box.high));
-    coplanar = kCoplanar * norm(side) + 8 * std::numeric_limits<double>::epsilon() * farthest;
-    const std::vector<TrianglePair> pairs =
-        find_contacts(solid.vertices, solid.triangles, coplanar);
-    partners.resize(2 * pairs.size());
-    for (const auto& [one, other] : pairs) ++begin[one + 1], ++begin[other + 1];
+  Cells(const Solid& s, const std::vector<TrianglePair>& contacts)
+      : solid(s),
+        bvh(s.vertices, s.triangles),
+        winding(bvh),
+        begin(s.triangles.size() + 1),
+        origin(box_center(s.vertices)),
+        coplanar(contact_tolerance(s.vertices)) {
+    partners.resize(2 * contacts.size());
+    for (const auto& [one, other] : contacts) ++begin[one + 1], ++begin[other + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    for (const auto& [one, other] : pairs) {
+    for (const auto& [one, other] : contacts) {
       partners[next[one]++] = other;
       partners[next[other]++] = one;
     }
@@ -179,19 +164,40 @@ struct OuterSurface::Cells {
     return integral;
   }
 
+  MassProperties mass(const std::vector<Side>& side) const {
+    const auto count = static_cast<std::uint32_t>(side.size());
+    std::vector<Integral> of_triangle(count);
+    constexpr std::size_t kTogether = 16;
+    parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
+      for (auto t = static_cast<std::uint32_t>(first); t < last; ++t) {
+        if (side[t] == Side::cut) {
+          of_triangle[t] = integral_of_cut(t);
+        } else if (side[t] != Side::none) {
+          of_triangle[t].add(side[t] == Side::outward ? 1 : -1, corner(t, 0) - origin,
+                             corner(t, 1) - origin, corner(t, 2) - origin);
+        }
+      }
+    });
+    Integral sum;
+    for (const Integral& integral : of_triangle) {
+      sum.six_volumes += integral.six_volumes;
+      sum.moment += integral.moment;
+    }
+    if (sum.six_volumes == 0) return {0, origin};
+    return {sum.six_volumes / 6, origin + sum.moment / (4 * sum.six_volumes)};
+  }
+
   const Solid& solid;
   TriangleBvh bvh;
   WindingNumber winding;
   std::vector<std::size_t> begin;  // rows of `partners`
   std::vector<std::uint32_t> partners;
   Vec3 origin;
-  double coplanar = 0;  // m
+  double coplanar;  // m
 };
 
-OuterSurface::OuterSurface(const Solid& solid) : side_(solid.triangles.size(), Side::unknown) {
-  const Cells cells(solid);
-  const auto count = static_cast<std::uint32_t>(solid.triangles.size());
-  const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
+void OuterSurface::find_sides(const Cells& cells, const Topology& topology) {
+  const auto count = static_cast<std::uint32_t>(side_.size());
   // Between triangles that meet no other both sides go on: one answer for each connected part.
   std::vector<std::uint32_t> part;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
@@ -216,31 +222,25 @@ OuterSurface::OuterSurface(const Solid& solid) : side_(solid.triangles.size(), S
     const Side side = cells.side_of_whole(widest);
     for (const std::uint32_t t : part) side_[t] = side;
   }
+}
 
-  std::vector<Integral> of_triangle(count);
-  constexpr std::size_t kTogether = 16;
-  parallel_for(count, kTogether, [&](std::size_t begin, std::size_t end) {
-    for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
-      if (side_[t] == Side::cut) {
-        of_triangle[t] = cells.integral_of_cut(t);
-      } else if (side_[t] != Side::none) {
-        of_triangle[t].add(side_[t] == Side::outward ? 1 : -1, cells.corner(t, 0) - cells.origin,
-                           cells.corner(t, 1) - cells.origin, cells.corner(t, 2) - cells.origin);
-      }
-    }
-  });
-  Integral sum;
-  for (const Integral& integral : of_triangle) {
-    sum.six_volumes += integral.six_volumes;
-    sum.moment += integral.moment;
-  }
-  mass_ = {sum.six_volumes / 6, cells.origin};
-  if (sum.six_volumes != 0) mass_.center_of_mass += sum.moment / (4 * sum.six_volumes);
+OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts)
+    : side_(solid.triangles.size(), Side::outward), mass_(mass_properties(solid)) {
+  const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
+  std::size_t shell_count = 0;
+  shells_of(topology, shell_count);
+  if (contacts.empty() && shell_count == 1) return;
+
+  side_.assign(side_.size(), Side::unknown);
+  const Cells cells(solid, contacts);
+  find_sides(cells, topology);
+  if (std::all_of(side_.begin(), side_.end(), [](Side s) { return s == Side::outward; })) return;
+  mass_ = cells.mass(side_);
 }
 
 MassProperties enclosed_mass(const Solid& solid) {
   if (solid.triangles.empty()) return mass_properties(solid);
-  return OuterSurface(solid).mass();
+  return OuterSurface(solid, find_contacts(solid.vertices, solid.triangles)).mass();
 }
 
 }  // namespace vpm

@@ -9,14 +9,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/mesh/self_intersection.h"
+#include "libvpm/mesh/topology.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
 
 class OuterSurface {
  public:
-  // The solid is closed and consistently oriented, with at least one triangle.
-  explicit OuterSurface(const Solid& solid);
+  // `contacts` as from find_contacts; the solid is closed and consistently oriented, with at least
+  // one triangle.
+  OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts);
 
   // Whether the triangle meets no other and has the inside, or the outside, on both of its sides.
   bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }
@@ -26,6 +29,8 @@ class OuterSurface {
   // `turned` bounds the solid with the side that its triangle calls the inner one.
   enum class Side : char { unknown, outward, turned, none, cut };
   struct Cells;
+
+  void find_sides(const Cells& cells, const Topology& topology);
 
   std::vector<Side> side_;
   MassProperties mass_;

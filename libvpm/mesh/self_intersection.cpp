@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/triangle_bvh.h"
@@ -12,6 +13,7 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kMostPartners = 100;
+constexpr double kTouching = 1e-12;  // of the mesh's diagonal
 
 struct Leaf {
   const TriangleBvh::Node* node;
@@ -151,10 +153,21 @@ std::vector<TrianglePair> find_self_intersections(const std::vector<Vec3>& verti
   return triangles.empty() ? std::vector<TrianglePair>{} : Search(vertices, triangles, -1).all();
 }
 
+double contact_tolerance(const std::vector<Vec3>& vertices) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  for (const Vec3& p : vertices) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const double farthest = std::max(norm(low), norm(high));
+  return kTouching * norm(high - low) + 8 * std::numeric_limits<double>::epsilon() * farthest;
+}
+
 std::vector<TrianglePair> find_contacts(const std::vector<Vec3>& vertices,
-                                        const std::vector<Triangle>& triangles, double tolerance) {
+                                        const std::vector<Triangle>& triangles) {
   return triangles.empty() ? std::vector<TrianglePair>{}
-                           : Search(vertices, triangles, tolerance).all();
+                           : Search(vertices, triangles, contact_tolerance(vertices)).all();
 }
 
 }  // namespace vpm

@@ -19,9 +19,11 @@ using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 std::vector<TrianglePair> find_self_intersections(const std::vector<Vec3>& vertices,
                                                   const std::vector<Triangle>& triangles);
 
-// These, and pairs that overlap in one plane as far as `tolerance` (metres) tells: parts that were
-// made to meet are a rounding apart.
+// Parts that were made to meet are a rounding apart: what is nearer than this, in metres, touches.
+double contact_tolerance(const std::vector<Vec3>& vertices);
+
+// These, and pairs that overlap in one plane as far as the tolerance tells.
 std::vector<TrianglePair> find_contacts(const std::vector<Vec3>& vertices,
-                                        const std::vector<Triangle>& triangles, double tolerance);
+                                        const std::vector<Triangle>& triangles);
 
 }  // namespace vpm
