@@ -76,9 +76,24 @@ struct CellResult {
 // it (a silhouette before a background), unless the cell's own plane vouches for both.
 inline constexpr double kSheetReach = 3;
 
+// A compact piece of a share: a sample, or a block that is not cut taken whole (radius 0).
+struct SharePiece {
+  Vec3 at;  // centroid, about the tool's centre of mass
+  double radius = 0, weight = 0;
+};
+VPM_HD inline SharePiece piece_of(const BlockMass& block) {
+  return {block.centroid, 0, block.weight};
+}
+VPM_HD inline SharePiece piece_of(const CellSample& sample) {
+  return {widen(sample.center), sample.radius, sample.weight};
+}
+
 template <class Surface>
 class CellMeasure {
  public:
+  // What hides a piece is another surface, maybe: those wait until the cell's plane is known.
+  enum class Pass { seen, hidden };
+
   // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `tool_reach`
   // scales the arms.
   VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, double tool_reach,
@@ -89,7 +104,7 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  VPM_HD CellResult run() {
+  VPM_HD CellResult run() const {
     CellResult result;
     bool any_hidden = false;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
@@ -107,25 +122,66 @@ class CellMeasure {
     ToolSum sum;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
-      const Side side =
-          whole ? Side::behind
-                : surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+      const Side side = whole ? Side::behind : side_of(block);
       if (side == Side::free) continue;
       if (side != Side::mixed) {
-        add_reached(nearest, cell_.masses[b].centroid, 0, cell_.masses[b].weight, sum);
+        add_reached(nearest, piece_of(cell_.masses[b]), sum);
         continue;
       }
-      for (std::uint32_t s = block.begin; s < block.end; ++s) {
-        const CellSample& sample = cell_.samples[s];
-        add_reached(nearest, widen(sample.center), sample.radius, sample.weight, sum);
-      }
+      for (std::uint32_t s = block.begin; s < block.end; ++s)
+        add_reached(nearest, piece_of(cell_.samples[s]), sum);
     }
     return sum;
   }
 
- private:
-  enum class Pass { seen, hidden };
+  // The side of one block of the cell.
+  VPM_HD Side side_of(const CellBlock& block) const {
+    return surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+  }
 
+  // Adds what one piece contributes to run(): first of all pieces that are seen, then, knowing the
+  // plane, of those that are hidden. Returns whether the piece was left for the second pass.
+  VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
+    const Vec3 x = to_surface_ * piece.at;
+    const Reading reading = surface_.read(x);
+    if (!reading.known || reading.distance >= piece.radius) return false;
+    const bool hidden = is_hidden(reading);
+    if (hidden != (pass == Pass::hidden)) return hidden;
+    if (hidden && result.plane.count > 0 &&
+        !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
+      return false;
+    }
+    double fraction = 1;
+    Vec3 normal = reading.normal;
+    if (reading.distance > -piece.radius) {
+      fraction = ball_fraction_inside(reading.distance / piece.radius);
+      if (!hidden) result.plane.add(normal, relative(reading.foot));
+    } else {
+      normal = surface_.closest_normal(x, reading);
+    }
+    result.sum.add(piece.weight * fraction, normal, arm(piece.at));
+    return false;
+  }
+
+  // Adds what one piece contributes to reached().
+  template <class Nearest>
+  VPM_HD void add_reached(const Nearest& nearest, const SharePiece& piece, ToolSum& sum) const {
+    const Vec3 x = to_surface_ * piece.at;
+    const Reading reading = surface_.read(x);
+    if (!reading.known || reading.distance >= piece.radius) return;
+    if (squared_norm(reading.foot - x) > tool_reach_ * tool_reach_) {
+      const CutShare cut = nearest();
+      if (!cut.plane.vouches_for(cut.relative(x), cut.relative(reading.foot),
+                                 tool_reach_ / cut.reach))
+        return;
+    }
+    const bool inner = reading.distance <= -piece.radius;
+    const double fraction = inner ? 1 : ball_fraction_inside(reading.distance / piece.radius);
+    sum.add(piece.weight * fraction, inner ? surface_.closest_normal(x, reading) : reading.normal,
+            arm(piece.at));
+  }
+
+ private:
   VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
     return to_surface_.rotation * about_center_of_mass / tool_reach_;
   }
@@ -137,59 +193,15 @@ class CellMeasure {
   }
 
   // Returns whether something was left for the pass of the hidden.
-  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) {
+  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
-    const Side side = surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+    const Side side = side_of(block);
     if (side == Side::free) return false;
-    if (side != Side::mixed) {
-      return add_piece(cell_.masses[b].centroid, 0, cell_.masses[b].weight, pass, result);
-    }
+    if (side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
     bool any_hidden = false;
-    for (std::uint32_t s = block.begin; s < block.end; ++s) {
-      const CellSample& sample = cell_.samples[s];
-      any_hidden |= add_piece(widen(sample.center), sample.radius, sample.weight, pass, result);
-    }
+    for (std::uint32_t s = block.begin; s < block.end; ++s)
+      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result);
     return any_hidden;
-  }
-
-  VPM_HD bool add_piece(Vec3 at, double radius, double weight, Pass pass, CellResult& result) {
-    const Vec3 x = to_surface_ * at;
-    const Reading reading = surface_.read(x);
-    if (!reading.known || reading.distance >= radius) return false;
-    const bool hidden = is_hidden(reading);
-    if (hidden != (pass == Pass::hidden)) return hidden;
-    if (hidden && result.plane.count > 0 &&
-        !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
-      return false;
-    }
-    double fraction = 1;
-    Vec3 normal = reading.normal;
-    if (reading.distance > -radius) {
-      fraction = ball_fraction_inside(reading.distance / radius);
-      if (!hidden) result.plane.add(normal, relative(reading.foot));
-    } else {
-      normal = surface_.closest_normal(x, reading);
-    }
-    result.sum.add(weight * fraction, normal, arm(at));
-    return false;
-  }
-
-  template <class Nearest>
-  VPM_HD void add_reached(const Nearest& nearest, Vec3 at, double radius, double weight,
-                          ToolSum& sum) const {
-    const Vec3 x = to_surface_ * at;
-    const Reading reading = surface_.read(x);
-    if (!reading.known || reading.distance >= radius) return;
-    if (squared_norm(reading.foot - x) > tool_reach_ * tool_reach_) {
-      const CutShare cut = nearest();
-      if (!cut.plane.vouches_for(cut.relative(x), cut.relative(reading.foot),
-                                 tool_reach_ / cut.reach))
-        return;
-    }
-    const bool inner = reading.distance <= -radius;
-    const double fraction = inner ? 1 : ball_fraction_inside(reading.distance / radius);
-    sum.add(weight * fraction, inner ? surface_.closest_normal(x, reading) : reading.normal,
-            arm(at));
   }
 
   const Surface& surface_;

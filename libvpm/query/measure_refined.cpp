@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/query/passage.h"
 
 namespace vpm {
 
@@ -146,9 +147,6 @@ bool RefinedMeasure::is_passable(const Surface& surface, const Pose& to_surface,
   return passages_[j] == Passage::open;
 }
 
-// A share may be behind a surface that is not the tool's business: one further away than the tool's
-// reach only hides it. Then the plane of the nearest cut share decides: before it, the share is out
-// of sight, not inside.
 template <class Surface>
 RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, const Pose& to_surface,
                                                      std::uint32_t j) {
@@ -158,15 +156,14 @@ RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, con
     if (!(reading.known && reading.distance < 0)) return Passage::closed;
     cells_[j] = Cell::whole;
   }
-  squared_gaps_[j] = reading.known ? squared_norm(reading.foot - at) : HUGE_VAL;
-  if (squared_gaps_[j] <= tool_.reach * tool_.reach) return Passage::open;
+  squared_gaps_[j] = squared_gap(at, reading);
+  if (!is_hidden_share(squared_gaps_[j], tool_.reach)) return Passage::open;
   return cut_share(to_surface, nearest_cut(j)).height(at) < 0 ? Passage::open : Passage::closed;
 }
 
-// Whether the surface that cuts one share is what another lies behind: near it, or by its plane.
 bool RefinedMeasure::enters(const Pose& to_surface, std::uint32_t cut, std::uint32_t sphere) const {
-  const double near = kSheetReach * (level_.share_reach[cut] + level_.share_reach[sphere]);
-  return squared_gaps_[sphere] <= near * near ||
+  return lies_near_sheet(squared_gaps_[sphere], level_.share_reach[cut],
+                         level_.share_reach[sphere]) ||
          cut_share(to_surface, cut).height(to_surface * cell(sphere).center) < 0;
 }
 

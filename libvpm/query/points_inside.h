@@ -29,6 +29,7 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
   cloud.for_ranges_in_ball(center, tool.reach,
                            [&](std::uint32_t b, std::uint32_t e) { ranges.emplace_back(b, e); });
 
+  const GridView grid = view_of(level.grid);
   std::atomic<std::uint32_t> total{0};
   constexpr std::size_t kRangesPerTask = 16;
   parallel_for(ranges.size(), kRangesPerTask, [&](std::size_t begin, std::size_t end) {
@@ -42,7 +43,7 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
           visit(sphere, k, x);
         };
         if (location == PointLocation::grid) {
-          for_spheres_at(level.grid, tool.spheres.data(), x, take);
+          for_spheres_at(grid, tool.spheres.data(), x, take);
         } else {
           for_spheres_at(level.hierarchy, tool.spheres.data(), x, take);
         }

@@ -17,10 +17,6 @@
 namespace vpm {
 namespace {
 
-// A point off its pixel by more than this would be missed by the search over pixels; float32
-// rounding and recovered intrinsics stay far below.
-constexpr double kPixelTolerance = 0.5;
-
 // -0 and 0 are one place: they must sort and merge as one.
 float positive_zero(float x) {
   return x == 0 ? 0.0f : x;
@@ -288,25 +284,10 @@ DiskSurface PreparedCloud::disk_surface() const {
           leaves_,           largest_radius_};
 }
 
-PreparedCloud::PixelRectangle PreparedCloud::rectangle_of_ball(Vec3 center, double radius) const {
+PixelRectangle PreparedCloud::pixels_of_ball(Vec3 center, double radius) const {
   const Vec3 at = relative_to(camera_->to_world, {{}, origin_}) * center;
-  const int width = static_cast<int>(camera_->width), height = static_cast<int>(camera_->height);
-  const double nearest = at.z - radius, farthest = at.z + radius;
-  if (!(farthest > 0)) return {0, 0, -1, -1};
-  if (!(nearest > 0)) return {0, 0, width - 1, height - 1};
-  const auto range = [&](double x, double f, double c, int size, std::int32_t& low,
-                         std::int32_t& high) {
-    const double left = x - radius, right = x + radius;
-    const double first = f * (left / (left >= 0 ? farthest : nearest)) + c - kPixelTolerance;
-    const double last = f * (right / (right >= 0 ? nearest : farthest)) + c + kPixelTolerance;
-    low = static_cast<std::int32_t>(std::clamp(std::floor(first), 0.0, double(size)));
-    high = static_cast<std::int32_t>(std::clamp(std::ceil(last), -1.0, double(size - 1)));
-  };
-  const Intrinsics& k = camera_->intrinsics;
-  PixelRectangle r{};
-  range(at.x, k.fx, k.cx, width, r.u0, r.u1);
-  range(at.y, k.fy, k.cy, height, r.v0, r.v1);
-  return r;
+  return rectangle_of_ball(camera_->intrinsics, static_cast<std::int32_t>(camera_->width),
+                           static_cast<std::int32_t>(camera_->height), at, radius);
 }
 
 }  // namespace vpm

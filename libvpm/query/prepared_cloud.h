@@ -11,6 +11,7 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/query/depth_surface.h"
 #include "libvpm/query/disk_surface.h"
+#include "libvpm/query/pixel_rectangle.h"
 
 namespace vpm {
 
@@ -49,10 +50,7 @@ class PreparedCloud {
   void build_depth_tiles(const Cloud& cloud);
   void build_boxes();
 
-  struct PixelRectangle {
-    std::int32_t u0, v0, u1, v1;  // inclusive; empty if u0 > u1
-  };
-  PixelRectangle rectangle_of_ball(Vec3 center, double radius) const;
+  PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
 
   Vec3 origin_;
   std::vector<Vec3f> positions_, normals_;
@@ -70,7 +68,7 @@ class PreparedCloud {
 template <class Visit>
 void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const {
   if (is_organised()) {
-    const PixelRectangle r = rectangle_of_ball(center, radius);
+    const PixelRectangle r = pixels_of_ball(center, radius);
     for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
       const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
       const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];

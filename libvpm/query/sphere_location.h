@@ -13,10 +13,22 @@ VPM_HD constexpr bool strictly_inside(const Sphere& s, Vec3 x) {
   return squared_norm(x - s.center) < s.radius * s.radius;
 }
 
+// A view of a PointLocationGrid: plain pointers, for host or device.
+struct GridView {
+  Vec3 low;
+  double cell = 0;
+  std::uint32_t nx = 0, ny = 0, nz = 0;
+  const std::uint32_t* begin = nullptr;
+  const std::uint32_t* spheres = nullptr;
+};
+inline GridView view_of(const PointLocationGrid& grid) {
+  return {grid.low, grid.cell, grid.nx, grid.ny, grid.nz, grid.begin.data(), grid.spheres.data()};
+}
+
 // Tool coordinates. `visit(index)` for every sphere that holds x.
 template <class Visit>
-void for_spheres_at(const PointLocationGrid& grid, const Sphere* spheres, Vec3 x,
-                    const Visit& visit) {
+VPM_HD void for_spheres_at(const GridView& grid, const Sphere* spheres, Vec3 x,
+                           const Visit& visit) {
   const Vec3 at = (x - grid.low) / grid.cell;
   if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < grid.nx && at.y < grid.ny && at.z < grid.nz))
     return;

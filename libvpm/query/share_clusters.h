@@ -1,0 +1,34 @@
+// Shares of a level in compact groups: what happens to a group as a whole is decided once.
+#pragma once
+
+#include <vector>
+
+#include "libvpm/query/cell.h"
+
+namespace vpm {
+
+struct ShareCluster {
+  std::uint32_t begin = 0, end = 0;  // rows of ShareClusters::shares
+  Vec3 center;                       // of a ball that encloses the shares, about the centre of mass
+  double reach = 0;                  // radius of that ball
+  BlockMass mass;                    // of all its shares
+};
+
+// Every share lies in one cluster. A cluster of more than one share is a compact piece.
+struct ShareClusters {
+  std::vector<ShareCluster> clusters;
+  std::vector<std::uint32_t> shares;  // ascending within a cluster
+  std::vector<BlockMass> masses;      // of each share
+};
+
+// Pieces of the tool up to this part of its reach are counted by their centroid where they lie
+// wholly behind the surface. README.md has what that costs.
+inline constexpr double kCompactReach = 0.125;
+
+VPM_HD constexpr bool is_compact(double reach, double tool_reach) {
+  return reach <= kCompactReach * tool_reach;
+}
+
+ShareClusters cluster_shares(const ToolModel& tool, const Level& level);
+
+}  // namespace vpm
