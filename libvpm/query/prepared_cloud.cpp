@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -145,9 +146,14 @@ void check_extent(const Cloud& cloud) {
     refuse("the cloud's image has more than 2^31 - 1 pixels; crop it, or take every second one");
 }
 
+std::uint64_t next_serial() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 }  // namespace
 
-PreparedCloud::PreparedCloud(const Cloud& cloud) : origin_(cloud.origin) {
+PreparedCloud::PreparedCloud(const Cloud& cloud) : serial_(next_serial()), origin_(cloud.origin) {
   if (cloud.size() > kMaxPoints) {
     refuse("the cloud has " + std::to_string(cloud.size()) + " points; at most " +
            std::to_string(kMaxPoints) + " can be counted exactly: thin it out, or split it");

@@ -26,6 +26,10 @@ class PreparedCloud {
   // [kMinDepth, kMaxDepth] (normals.h) count as not measured.
   explicit PreparedCloud(const Cloud& cloud);
 
+  // The same for copies, different for any two clouds of a process: what is known of a cloud
+  // elsewhere (on a device) can be told by it.
+  std::uint64_t serial() const { return serial_; }
+
   Vec3 origin() const { return origin_; }
   const std::vector<Vec3f>& positions() const {
     return positions_;
@@ -36,6 +40,8 @@ class PreparedCloud {
   bool is_organised() const { return camera_.has_value(); }
   const Pose& camera_to_world() const { return camera_->to_world; }
   DepthSurface depth_surface() const;
+  // Of organised clouds: the first point at or after each pixel; pixels + 1.
+  const std::vector<std::uint32_t>& pixel_begin() const { return pixel_begin_; }
   DiskSurface disk_surface() const;  // of clouds that are not organised
 
   // Calls visit(begin, end) for ranges of points that hold all that lie in the ball (about
@@ -52,13 +58,14 @@ class PreparedCloud {
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
 
+  std::uint64_t serial_;
   Vec3 origin_;
   std::vector<Vec3f> positions_, normals_;
   double largest_radius_ = 0;
 
   std::optional<Camera> camera_;
-  std::vector<std::uint32_t> pixel_begin_;  // first point at or after each pixel; pixels + 1
-  std::vector<Vec3f> pixel_normals_;        // camera axes
+  std::vector<std::uint32_t> pixel_begin_;
+  std::vector<Vec3f> pixel_normals_;  // camera axes
   std::vector<std::vector<InverseDepthRange>> tiles_;
 
   std::vector<PointBox> boxes_;

@@ -38,7 +38,9 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach))) {
     throw Error(ErrorKind::usage, "the stiffness is so large that forces overflow");
   }
-  if (options.measure == Measure::paper) {
+  if (options.device.is_cuda()) {
+    device_ = make_device_measure(tool, level_, options.measure, options.device);
+  } else if (options.measure == Measure::paper) {
     paper_ = std::make_unique<PaperMeasure>(tool, level_, options.location);
   } else {
     refined_ = std::make_unique<RefinedMeasure>(tool, level_);
@@ -48,16 +50,43 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
 Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
   check_pose(pose);
   Result result;
-  if (paper_) {
+  if (device_) {
+    result = device_->run(cloud, pose);
+  } else if (paper_) {
     result = paper_->run(cloud, pose, states_);
   } else {
     result = refined_->run(cloud, pose, states_);
     result.points = for_points_inside(cloud, tool_, level_, PointLocation::grid, pose, ranges_,
                                       [](std::uint32_t, std::uint32_t, Vec3) {});
   }
+  scale(result);
+  return result;
+}
+
+void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                std::span<Result> results) {
+  if (results.size() != poses.size()) {
+    throw Error(ErrorKind::usage, "query: " + std::to_string(poses.size()) +
+                                      " poses, but room for " + std::to_string(results.size()) +
+                                      " results");
+  }
+  if (!device_) {
+    for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(cloud, poses[k]);
+    return;
+  }
+  for (const Pose& pose : poses) check_pose(pose);
+  device_->run(cloud, poses, results);
+  for (Result& result : results) scale(result);
+}
+
+std::span<const SphereState> Query::states() const {
+  if (device_) device_->read_states(states_);
+  return states_;
+}
+
+void Query::scale(Result& result) const {
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
-  return result;
 }
 
 }  // namespace vpm

@@ -6,15 +6,16 @@
 //   const Result r = query.run(cloud, pose);               // a thousand times a second
 //
 // The tool must outlive its queries. A Query belongs to one thread at a time (it may use several
-// inside); tools and clouds may be shared. run() allocates nothing after the first call. The same
-// input gives the same bits, whatever the number of threads and the order of the points: README.md
-// states the domain of that promise.
+// inside); tools and clouds may be shared. run() allocates nothing after the first call on a cloud.
+// The same input gives the same bits, whatever the device, the number of threads and the order of
+// the points: README.md states the domain of that promise.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "libvpm/query/device_measure.h"
 #include "libvpm/query/measure_paper.h"
 #include "libvpm/query/measure_refined.h"
 
@@ -24,31 +25,39 @@ struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
   PointLocation location = PointLocation::grid;
+  Device device;         // device_from_text(); the tool's level is copied there
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 class Query {
  public:
-  // Throws Error(usage) where the model has no such level, or the stiffness is not positive or so
-  // large that forces overflow. The model must be one that validate() of tool_model.h accepts.
+  // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
+  // model has no such level, or the stiffness is not positive or so large that forces overflow. The
+  // model must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
   // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
+  // The results of many poses, in their order: the bits of one by one, but a device takes thousands
+  // at once.
+  void run(const PreparedCloud& cloud, std::span<const Pose> poses, std::span<Result> results);
+
   const Level& level() const { return level_; }
-  std::span<const SphereState> states() const {
-    return states_;
-  }  // of the last run, one per sphere of the level
+  // Of the last run of one pose, one per sphere of the level; from a device they are fetched here.
+  std::span<const SphereState> states() const;
 
  private:
+  void scale(Result& result) const;
+
   const ToolModel& tool_;
   const Level& level_;
   QueryOptions options_;
   std::unique_ptr<PaperMeasure> paper_;
   std::unique_ptr<RefinedMeasure> refined_;
-  std::vector<SphereState> states_;
+  std::unique_ptr<DeviceMeasure> device_;
+  mutable std::vector<SphereState> states_;
   PointRanges ranges_;
 };
 

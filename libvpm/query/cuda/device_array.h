@@ -1,0 +1,78 @@
+// Memory of a device, and of the host where a device can write. Errors become vpm::Error.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "libvpm/core/error.h"
+
+namespace vpm::cuda {
+
+inline void check(cudaError_t status) {
+  if (status == cudaSuccess) return;
+  throw Error(ErrorKind::unavailable, std::string("CUDA device: ") + cudaGetErrorString(status) +
+                                          "; use --device cpu if this persists");
+}
+
+// Values on the device. Owns them.
+template <class T>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  explicit DeviceArray(std::size_t count) : count_(count) {
+    if (count > 0) check(cudaMalloc(&data_, count * sizeof(T)));
+  }
+  DeviceArray(const T* values, std::size_t count) : DeviceArray(count) {
+    if (count > 0) check(cudaMemcpy(data_, values, count * sizeof(T), cudaMemcpyHostToDevice));
+  }
+  explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
+  ~DeviceArray() { cudaFree(data_); }
+  DeviceArray(DeviceArray&& other) noexcept { swap(other); }
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  T* get() const { return data_; }
+  std::size_t size() const { return count_; }
+  void clear() {
+    if (count_ > 0) check(cudaMemset(data_, 0, count_ * sizeof(T)));
+  }
+
+ private:
+  void swap(DeviceArray& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(count_, other.count_);
+  }
+  T* data_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+// Values in the host's memory that the device reads and writes over the bus. Owns them.
+template <class T>
+class MappedArray {
+ public:
+  explicit MappedArray(std::size_t count) : count_(count) {
+    check(cudaHostAlloc(&host_, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable));
+    check(cudaHostGetDevicePointer(&device_, host_, 0));
+    for (std::size_t i = 0; i < count; ++i) host_[i] = T{};
+  }
+  ~MappedArray() { cudaFreeHost(host_); }
+  MappedArray(const MappedArray&) = delete;
+  MappedArray& operator=(const MappedArray&) = delete;
+
+  T* host() const { return host_; }
+  T* device() const { return device_; }
+  std::size_t size() const { return count_; }
+
+ private:
+  T* host_ = nullptr;
+  T* device_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,32 @@
+#include "libvpm/query/cuda/device_array.h"
+#include "libvpm/query/cuda/refined_measure.h"
+#include "libvpm/query/device_measure.h"
+
+namespace vpm {
+
+int cuda_device_count() {
+  int count = 0;
+  return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
+}
+
+bool is_built_with_cuda() {
+  return true;
+}
+
+std::string cuda_device_name(int index) {
+  cudaDeviceProp properties;
+  int driver = 0;
+  cuda::check(cudaGetDeviceProperties(&properties, index));
+  cuda::check(cudaDriverGetVersion(&driver));
+  return std::string(properties.name) + ", driver for CUDA " + std::to_string(driver / 1000) + "." +
+         std::to_string(driver % 1000 / 10);
+}
+
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
+                                                   Measure measure, const Device& device) {
+  if (measure == Measure::paper)
+    throw Error(ErrorKind::unavailable, "the paper's measure has no CUDA version yet");
+  return cuda::make_refined_measure(tool, level, device.index);
+}
+
+}  // namespace vpm

@@ -1,0 +1,69 @@
+// A tool's level and a cloud in the memory of a device.
+#pragma once
+
+#include <memory>
+
+#include "libvpm/query/cuda/device_array.h"
+#include "libvpm/query/cuda/views.h"
+#include "libvpm/query/prepared_cloud.h"
+
+namespace vpm::cuda {
+
+// Makes a device the current one of this thread for a scope.
+class CurrentDevice {
+ public:
+  explicit CurrentDevice(int index) {
+    check(cudaGetDevice(&before_));
+    if (index != before_) check(cudaSetDevice(index));
+  }
+  ~CurrentDevice() { cudaSetDevice(before_); }
+  CurrentDevice(const CurrentDevice&) = delete;
+  CurrentDevice& operator=(const CurrentDevice&) = delete;
+
+ private:
+  int before_ = 0;
+};
+
+class DeviceLevel {
+ public:
+  DeviceLevel(const ToolModel& tool, const Level& level);
+  const LevelView& view() const { return view_; }
+
+ private:
+  DeviceArray<Sphere> spheres_;
+  DeviceArray<Vec3> centers_;
+  DeviceArray<double> reach_;
+  DeviceArray<std::uint32_t> block_begin_, block_of_, edge_begin_, neighbors_, grid_begin_,
+      grid_spheres_;
+  DeviceArray<CellBlock> blocks_;
+  DeviceArray<BlockMass> masses_;
+  DeviceArray<CellSample> samples_;
+  LevelView view_;
+};
+
+class DeviceCloud {
+ public:
+  explicit DeviceCloud(const PreparedCloud& cloud);
+
+  const CloudFrame& frame() const { return frame_; }
+  const PointsView& points() const { return points_; }
+  const DepthSurface& depth_surface() const { return depth_; }  // of organised clouds
+  const DiskSurface& disk_surface() const { return disks_; }    // of the others
+
+ private:
+  void copy_image(const PreparedCloud& cloud);
+  void copy_points(const PreparedCloud& cloud);
+
+  DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
+  DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
+  DeviceArray<PointBox> boxes_;
+  CloudFrame frame_;
+  PointsView points_;
+  DepthSurface depth_;
+  DiskSurface disks_;
+};
+
+// The copy of a cloud on the current device, shared by all queries that hold it.
+std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud);
+
+}  // namespace vpm::cuda

@@ -1,0 +1,87 @@
+// What kernels see of a tool, a cloud and a pose: plain pointers and numbers.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/query/cell.h"
+#include "libvpm/query/depth_surface.h"
+#include "libvpm/query/disk_surface.h"
+#include "libvpm/query/pixel_rectangle.h"
+#include "libvpm/query/sphere_location.h"
+
+namespace vpm::cuda {
+
+// One level of a tool.
+struct LevelView {
+  std::uint32_t count = 0;            // of spheres
+  std::uint32_t lanes_per_share = 1;  // threads that measure a share together: a power of two <= 32
+  const Sphere* spheres = nullptr;
+  const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
+  const double* reach = nullptr;  // of the shares
+  const std::uint32_t* block_begin = nullptr;
+  const CellBlock* blocks = nullptr;
+  const BlockMass* masses = nullptr;
+  const CellSample* samples = nullptr;
+  const std::uint32_t* block_of = nullptr;  // of each sample
+  const std::uint32_t* edge_begin = nullptr;
+  const std::uint32_t* neighbors = nullptr;
+  GridView grid;
+  Vec3 center_of_mass;
+  double tool_volume = 0, tool_reach = 0;
+
+  __host__ __device__ CellView cell(std::uint32_t i) const {
+    return {blocks, masses, samples, block_begin[i], block_begin[i + 1], centers[i], reach[i]};
+  }
+};
+
+// The points of a cloud, about its origin: those of an image by pixel (NaN where there is none),
+// others in the order of the leaves of their hierarchy.
+struct PointsView {
+  const Vec3f* positions = nullptr;
+  const Vec3f* normals = nullptr;
+  std::uint32_t count = 0;
+  std::int32_t width = 0;            // > 0: of the image
+  const PointBox* leaves = nullptr;  // otherwise: boxes of kLeafSize points each
+};
+
+// Everything of a cloud that poses are combined with.
+struct CloudFrame {
+  bool is_organised = false;
+  Vec3 origin;
+  Pose camera_to_world;
+  Intrinsics intrinsics;
+  std::int32_t width = 0, height = 0;
+};
+
+// A pose, as the parts of a query need it.
+struct PoseFrame {
+  Pose to_surface;        // from coordinates about the centre of mass
+  Pose to_tool;           // from coordinates about the cloud's origin
+  Vec3 center;            // of mass, about the cloud's origin
+  PixelRectangle pixels;  // that the tool can reach; of organised clouds
+  Rotation tool_to_world;
+};
+
+__host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud,
+                                              Vec3 center_of_mass, double tool_reach) {
+  PoseFrame frame;
+  const Pose from_center_of_mass{pose.rotation, pose * center_of_mass};
+  const Pose surface = cloud.is_organised ? cloud.camera_to_world : Pose{{}, cloud.origin};
+  frame.to_surface = relative_to(surface, from_center_of_mass);
+  frame.to_tool = relative_to(pose, {{}, cloud.origin});
+  frame.center = pose.rotation * center_of_mass + (pose.translation - cloud.origin);
+  frame.tool_to_world = pose.rotation;
+  if (cloud.is_organised) {
+    const Vec3 at = relative_to(cloud.camera_to_world, {{}, cloud.origin}) * frame.center;
+    frame.pixels = rectangle_of_ball(cloud.intrinsics, cloud.width, cloud.height, at, tool_reach);
+  }
+  return frame;
+}
+
+// The answer of a kernel, before it is turned into world axes.
+struct RawResult {
+  ToolSum sum;
+  std::uint32_t boundary = 0, inside = 0, points = 0;
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,38 @@
+// Measures computed on a CUDA device: the same bits as PaperMeasure and RefinedMeasure.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libvpm/core/pose.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/device.h"
+#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/result.h"
+
+namespace vpm {
+
+// The tool's level stays on the device; a cloud is copied there when it is first queried.
+class DeviceMeasure {
+ public:
+  virtual ~DeviceMeasure() = default;
+
+  // One launch, one wait; allocates nothing after the first call on a cloud. Poses must be valid
+  // (query.h). Throw Error(unavailable) where the device fails.
+  virtual Result run(const PreparedCloud& cloud, const Pose& pose) = 0;
+
+  // Results in the order of the poses. Poses are cut into launches that fit the device's memory.
+  virtual void run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                   std::span<Result> results) = 0;
+
+  // Of the last single run.
+  virtual void read_states(std::vector<SphereState>& states) = 0;
+};
+
+// Throws Error(unavailable) where libvpm was built without CUDA, or the device has too little
+// memory.
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
+                                                   Measure measure, const Device& device);
+
+}  // namespace vpm
