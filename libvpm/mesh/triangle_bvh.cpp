@@ -180,4 +180,37 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
   return best;
 }
 
+std::size_t TriangleBvh::around(Vec3 x, double half, std::span<std::uint32_t> found) const {
+  const Vec3 at = x - origin_;
+  const auto apart = [&](Vec3 low, Vec3 high, Vec3 y) {
+    return low.x > y.x + half || high.x < y.x - half || low.y > y.y + half || high.y < y.y - half ||
+           low.z > y.z + half || high.z < y.z - half;
+  };
+  std::array<std::uint32_t, 64> stack;  // see closest
+  std::size_t top = 0, count = 0;
+  stack[top++] = 0;
+  while (top > 0) {
+    const Node& node = nodes_[stack[--top]];
+    for (int slot = 0; slot < 4; ++slot) {
+      const std::uint32_t child = node.child[slot], triangles = node.count[slot];
+      if (triangles == 0 && child == 0) continue;
+      const auto corner = [&](const Float4* box) {
+        return Vec3{double{box[0][slot]}, double{box[1][slot]}, double{box[2][slot]}};
+      };
+      if (apart(corner(node.low), corner(node.high), at)) continue;
+      if (triangles == 0) stack[top++] = child;
+      for (std::uint32_t i = child; i < child + triangles; ++i) {
+        const auto& [a, b, c, index] = corners_[i];
+        if (apart({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+                  {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})},
+                  x))
+          continue;
+        if (count == found.size()) return count + 1;
+        found[count++] = i;
+      }
+    }
+  }
+  return count;
+}
+
 }  // namespace vpm

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -40,6 +41,10 @@ class TriangleBvh {
   // The closest surface point nearer than `within`; triangle == kNone where there is none. Exact
   // in double precision; of equally near triangles any, but always the same. Thread-safe.
   SurfacePoint closest(Vec3 x, double within = std::numeric_limits<double>::infinity()) const;
+
+  // Triangles whose boxes come within `half` of x along every axis, as indices of corners(): the
+  // first of them in `found`, the count returned. Stops counting beyond found.size().
+  std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Corners>& corners() const { return corners_; }

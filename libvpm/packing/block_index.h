@@ -25,8 +25,9 @@ class BlockIndex {
   Coordinates operator[](std::uint32_t block) const { return blocks_[block]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(blocks_.size()); }
 
+  static std::uint64_t scatter(std::uint64_t key);  // spreads keys over all numbers
+
  private:
-  static std::uint64_t scatter(std::uint64_t key);
   std::vector<Coordinates> blocks_;
   std::vector<std::uint32_t> slots_;  // a power of two, at most half full
 };

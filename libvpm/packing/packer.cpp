@@ -26,6 +26,11 @@ constexpr double kUnchanged = 1 - 1e-9;
 constexpr std::size_t kFinishedBand = 1000;
 constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
 constexpr std::size_t kBlocksPerTask = 4;
+// Of the room, in blocks. Solids of all proportions have about ten blocks per sphere; a plate of
+// 1:100000 has a thousand million blocks.
+constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
+// The search ends where what was left out may hold spheres larger by more than this.
+constexpr double kComplete = 0.97;
 // The uncovered volume falls with the number of spheres to the power of -1 / this.
 constexpr double kApollonianPower = 4.7;
 
@@ -90,10 +95,13 @@ class Packer {
         frame_(distance_.frame()),
         volume_(options.volume > 0 ? options.volume : enclosed_mass(solid).volume),
         no_inertia_(solid),
-        smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
+        smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor * frame_.longest)),
+        stop_(smallest_ > kNumericalFloor * frame_.longest ? StopReason::min_radius
+                                                           : StopReason::numerical_floor),
         cap_(options.max_radius / frame_.scale),
         most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
-        space_(distance_, smallest_) {
+        space_(distance_, smallest_,
+               kBlocks + kBlocksPerSphere * std::min(options.spheres, kMostSpheres)) {
     if (!(volume_ > 0)) refuse("the solid has no volume; check that its triangles face outward");
   }
 
@@ -103,6 +111,10 @@ class Packer {
       const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
       radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
       space_.focus(radius);
+      if (is_exhausted(radius)) {
+        stop_ = StopReason::search_limit;
+        break;
+      }
       const std::size_t before = space_.spheres().size();
       fill_band(space_, radius, cap_, most_);
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
@@ -120,6 +132,17 @@ class Packer {
     const double left = (1 - options_.coverage) / (1 - std::min(filled_ / volume_, 0.999999));
     return std::min(1.0, std::max(number, std::pow(left, kApollonianPower)));
   }
+  // Whether room that was left out may hold larger spheres: as large as the first that was placed
+  // since, for all that is known.
+  bool is_exhausted(double radius) {
+    if (space_.left_out() == 0) {
+      complete_ = space_.spheres().size();
+      return false;
+    }
+    if (complete_ == space_.spheres().size()) return false;
+    const double largest = space_.spheres()[complete_].radius;
+    return radius < kComplete * std::min<double>(largest, space_.left_out());
+  }
   bool enough() const {
     return space_.spheres().size() >= options_.spheres || filled_ >= options_.coverage * volume_ ||
            (options_.inertia_error > 0 && result().stop == StopReason::inertia_error);
@@ -132,9 +155,7 @@ class Packer {
       if (const Sphere m = frame_.to_solid(s); m.radius > 0) all.push_back(m);
     std::sort(all.begin(), all.end(), largest_first);
     PackResult result;
-    result.stop = options_.min_radius / frame_.scale >= kNumericalFloor
-                      ? StopReason::min_radius
-                      : StopReason::numerical_floor;
+    result.stop = stop_;
     double filled = 0;
     InertiaError inertia = no_inertia_;
     for (const Sphere& s : all) {
@@ -161,10 +182,13 @@ class Packer {
   UnitFrame frame_;
   double volume_;            // m^3
   InertiaError no_inertia_;  // of no spheres
-  double smallest_, cap_;    // in the unit frame
-  std::size_t most_;         // spheres at which even a band is broken off
+  double smallest_;          // in the unit frame, like cap_
+  StopReason stop_;          // where what was asked for is not reached
+  double cap_;
+  std::size_t most_;  // spheres at which even a band is broken off
   Space space_;
-  double filled_ = 0;  // m^3
+  double filled_ = 0;         // m^3
+  std::size_t complete_ = 0;  // spheres for which no room was left out
 };
 
 }  // namespace

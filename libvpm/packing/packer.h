@@ -31,6 +31,7 @@ enum class StopReason {
   inertia_error,    // the inertia tensor is as near as asked for
   min_radius,       // no sphere of the smallest radius fits any more
   numerical_floor,  // what is left is below kNumericalFloor of the longest side
+  search_limit,     // the solid is so thin that only a part of it was searched, which is full
 };
 
 struct PackResult {

@@ -33,6 +33,7 @@ UnitFrame unit_frame(const Solid& solid) {
   UnitFrame frame;
   frame.center = low + 0.5 * side;
   frame.scale = std::ldexp(1.0, std::ilogb(longest) + 1);
+  frame.longest = longest / frame.scale;
   const double farthest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z),
                                     std::abs(high.x), std::abs(high.y), std::abs(high.z)});
   // Coordinates far from the origin lose digits on the way to the frame and back. In the frame, the

@@ -4,6 +4,9 @@
 // that a solid 2^k times as large gives the same numbers to the bit.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/winding_number.h"
 #include "libvpm/model/solid.h"
@@ -14,6 +17,7 @@ namespace vpm {
 struct UnitFrame {
   Vec3 center;          // of the solid's box
   double scale = 1;     // a power of two: metres per unit
+  double longest = 1;   // side of the box, in units: from 1/2 to 1
   double rounding = 0;  // metres: bound of what the frame and distances in it lose
   Vec3 to_unit(Vec3 p) const { return (p - center) / scale + Vec3{0.5, 0.5, 0.5}; }
   Vec3 to_solid(Vec3 p) const { return center + scale * (p - Vec3{0.5, 0.5, 0.5}); }
@@ -33,6 +37,11 @@ class SolidDistance {
   Vec3 closest_on(std::uint32_t triangle, Vec3 x) const;
   // Whether the disk of this radius about a point of the triangle lies in the triangle.
   bool holds_disk(std::uint32_t triangle, Vec3 point, double radius) const;
+  // As TriangleBvh::around; and a triangle that it found.
+  std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const {
+    return bvh_.around(x, half, found);
+  }
+  const TriangleBvh::Corners& corners(std::uint32_t found) const { return bvh_.corners()[found]; }
   bool inside(Vec3 x) const { return winding_.inside(x); }
 
  private:

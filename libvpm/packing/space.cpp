@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/packing/ascent.h"
 #include "libvpm/packing/max_min_step.h"
+#include "libvpm/packing/thin_part.h"
 
 namespace vpm {
 namespace {
@@ -21,6 +24,9 @@ constexpr double kReach = 0.6;
 constexpr float kLeaf = 0.25f;
 // A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
 constexpr double kSlope = 2.5;
+// Thin parts are looked for where the mesh is nearer to a cell's centre than this many half
+// diagonals.
+constexpr float kNearFace = 0.5f;
 constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
 
@@ -60,8 +66,8 @@ Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
 
 }  // namespace
 
-Space::Space(const SolidDistance& solid, double smallest)
-    : solid_(solid), smallest_(static_cast<float>(smallest)) {
+Space::Space(const SolidDistance& solid, double smallest, std::size_t most_blocks)
+    : solid_(solid), smallest_(static_cast<float>(smallest)), most_blocks_(most_blocks) {
   Cell root{};
   root.x = root.y = root.z = 0.5f;
   root.triangle = SurfacePoint::kNone;
@@ -135,6 +141,15 @@ void Space::measure(Cell& cell) const {
   settle(cell, same ? cell.parent : cell.side);
 }
 
+// Asked of cells that are about to be cut: a cell much larger than the part is thin needs no
+// cutting until spheres of that size are looked for.
+void Space::bound_thin_part(Cell& cell) const {
+  if (cell.thick || cell.mesh > kNearFace * half_diagonal(cell.level)) return;
+  const ThinPart part = thin_part(solid_, cell.center(), edge(cell.level + 1));
+  cell.thick = !part.faces_meet;
+  cell.bound = std::min(cell.bound, round_up(part.bound));
+}
+
 // Bounds the clearance over a cell by all that is near at once: distances are convex and curved by
 // at most 1 / distance, so that planes lie above them within the cell.
 double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const {
@@ -189,7 +204,9 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
     part.level = level;
     part.parent = cell.side;
     part.triangle = cell.triangle;
+    part.thick = cell.thick;
     estimate(part, near);
+    part.bound = std::min(part.bound, cell.bound);
     if (cell.mesh > half) settle(part, cell.side);  // both centres in a ball without triangles
     if (part.bound > smallest_) parts.push_back(part);
   }
@@ -212,6 +229,9 @@ void Space::split_blocks() {
           continue;
         }
         if (!cell.measured) measure(cell);  // estimates of estimates would exclude nothing
+        if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
+          settle(cell, solid_.inside(cell.center()) ? Side::inside : Side::outside);
+        bound_thin_part(cell);
         if (cell.bound > smallest_) split(cell, block.spheres, cells);
       }
       for (const Cell& cell : cells) {
@@ -246,11 +266,41 @@ void Space::split_blocks() {
     }
   }
   blocks_ = std::move(blocks);
+  bounds_.resize(blocks_.size());
+  for (std::size_t b = 0; b < blocks_.size(); ++b) bounds_[b] = block_bound(blocks_[b]);
+  leave_out(coordinates);
   index_.assign(std::move(coordinates));
   level_ = level;
   reach_ = reach;
-  bounds_.resize(blocks_.size());
-  for (std::size_t b = 0; b < blocks_.size(); ++b) bounds_[b] = block_bound(blocks_[b]);
+}
+
+// A thin plate has more blocks than memory holds, all with as much room. Those that stay are spread
+// over it.
+void Space::leave_out(std::vector<BlockIndex::Coordinates>& coordinates) {
+  if (blocks_.size() <= most_blocks_) return;
+  std::vector<std::uint32_t> order(blocks_.size());
+  std::iota(order.begin(), order.end(), 0U);
+  // Bounds are loose until a block is searched: up to a factor of two they tell nothing.
+  const float most_room = *std::max_element(bounds_.begin(), bounds_.end());
+  const auto rank = [&](std::uint32_t b) {
+    return std::tuple(2 * bounds_[b] < most_room, BlockIndex::scatter(coordinates[b].key()), b);
+  };
+  const auto cut = order.begin() + static_cast<std::ptrdiff_t>(most_blocks_);
+  std::nth_element(order.begin(), cut, order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
+  for (auto b = cut; b != order.end(); ++b) left_out_ = std::max(left_out_, bounds_[*b]);
+  order.erase(cut, order.end());
+  std::sort(order.begin(), order.end());
+  for (std::uint32_t to = 0; to < order.size(); ++to) {
+    const std::uint32_t from = order[to];
+    if (from == to) continue;
+    blocks_[to] = std::move(blocks_[from]);
+    bounds_[to] = bounds_[from];
+    coordinates[to] = coordinates[from];
+  }
+  blocks_.resize(order.size());
+  bounds_.resize(order.size());
+  coordinates.resize(order.size());
 }
 
 float Space::block_bound(const Block& block) {
@@ -283,8 +333,13 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
     }
     if (cell.side == Side::inside && (cell.d >= cap || half <= kLeaf * radius)) {
       leaves.push_back(cell);
-    } else {
+      continue;
+    }
+    bound_thin_part(cell);
+    if (cell.bound >= radius) {
       split(cell, block.spheres, pending);
+    } else if (cell.bound > smallest_) {
+      rest.push_back(cell);
     }
   }
 }

@@ -22,12 +22,15 @@ namespace vpm {
 
 class Space {
  public:
-  // Nothing smaller than `smallest` (> 0) will be looked for. Keeps a reference to `solid`. Frame:
-  // the unit cube of `solid`.
-  Space(const SolidDistance& solid, double smallest);
+  // Nothing smaller than `smallest` (> 0) will be looked for. Of more than `most_blocks` those with
+  // the least room are left out. Keeps a reference to `solid`. Frame: the unit cube of `solid`.
+  Space(const SolidDistance& solid, double smallest, std::size_t most_blocks);
 
   // No sphere larger than this fits anywhere, up to what local searches have missed.
   float bound() const;
+
+  // Nor where blocks were left out; 0 where none were.
+  float left_out() const { return left_out_; }
 
   // Prepares for searches of radius `radius` and above: blocks are cut to its size. Radii must not
   // grow from call to call.
@@ -69,6 +72,7 @@ class Space {
     Side parent;         // of the centre of the cell that this one was cut from
     bool measured;       // d is exact, up to the reach
     bool exact;          // `triangle` is nearest to the centre; otherwise it was to a parent's
+    bool thick;          // holds no thin part: see thin_part.h
     std::uint32_t triangle;
     Vec3 center() const { return {x, y, z}; }
   };
@@ -79,11 +83,13 @@ class Space {
   };
 
   void split_blocks();
+  void leave_out(std::vector<BlockIndex::Coordinates>& coordinates);
   void split(const Cell& cell, const std::vector<std::uint32_t>& near,
              std::vector<Cell>& parts) const;
   SurfacePoint nearest_on_mesh(const Cell& cell, double within) const;
   void estimate(Cell& cell, const std::vector<std::uint32_t>& near) const;
   void measure(Cell& cell) const;
+  void bound_thin_part(Cell& cell) const;
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
@@ -95,6 +101,8 @@ class Space {
 
   const SolidDistance& solid_;
   float smallest_;
+  std::size_t most_blocks_;
+  float left_out_ = 0;  // largest bound of a block that was left out
   std::vector<Sphere> spheres_;
   int level_ = 0;     // of the blocks
   double reach_ = 2;  // clearances in a block are exact up to this; the cube's diagonal is shorter

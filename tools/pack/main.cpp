@@ -149,8 +149,11 @@ PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid
   options.progress = [&](double fraction) { progress.update(fraction); };
   PackResult result = pack(solid, options);
   if (result.spheres.empty()) {
-    refuse(a.mesh + ": no sphere fits (stopped by " + name_of(result.stop) +
-           "); give a smaller --min-radius");
+    refuse(a.mesh + ": no sphere fits: " +
+           (result.stop == StopReason::min_radius
+                ? "give a smaller --min-radius"
+                : "it is nowhere wider than 1/131072 of its longest side, and spheres so small are "
+                  "not looked for; pack it in parts"));
   }
   return result;
 }
@@ -168,12 +171,14 @@ void grow_together(const Tool& tool, const Arguments& a, const Solid& solid, Pac
 
 void say_result(const Tool& tool, const Arguments& a, const PackResult& result) {
   const std::string count = std::to_string(result.spheres.size());
-  if (result.stop == StopReason::min_radius || result.stop == StopReason::numerical_floor) {
-    tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " +
-              (result.stop == StopReason::min_radius
-                   ? "no other of --min-radius fits"
-                   : "what is left is too narrow for the numbers"));
-  }
+  const auto fewer = [&](const char* why) {
+    tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
+  };
+  if (result.stop == StopReason::min_radius) fewer("no other of --min-radius fits");
+  if (result.stop == StopReason::numerical_floor)
+    fewer("what is left is too narrow for the numbers");
+  if (result.stop == StopReason::search_limit)
+    fewer("the solid is so thin that only a part of it was searched; ask for more spheres");
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 

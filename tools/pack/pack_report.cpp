@@ -87,6 +87,8 @@ const char* name_of(StopReason reason) {
       return "min_radius";
     case StopReason::numerical_floor:
       return "numerical_floor";
+    case StopReason::search_limit:
+      return "search_limit";
   }
   return "";
 }

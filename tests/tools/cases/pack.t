@@ -27,7 +27,7 @@ $ vpm-pack cube.off --spheres 1 --validate --report - | python3 -c 'import json,
 $ vpm-pack cube.off --spheres 1000 --min-radius 0.3 --export one.csv
 2> vpm-pack: note: delivered 1 of 1000 spheres: no other of --min-radius fits
 $ vpm-pack cube.off --min-radius 0.6 --export none.csv
-2> vpm-pack: error: cube.off: no sphere fits (stopped by min_radius); give a smaller --min-radius
+2> vpm-pack: error: cube.off: no sphere fits: give a smaller --min-radius
 [1]
 
 # Meshes that are mended, and meshes that are not.

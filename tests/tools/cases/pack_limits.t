@@ -19,6 +19,13 @@ $ vpm-pack box.off --inertia-error 0 -o none.vpmp
 2> vpm-pack: error: --inertia-error: *(see vpm-pack --help) (glob)
 [2]
 
+# Thin solids: packed, or the reason why not.
+$ sed 's/^\(.*\) 1$/\1 0.0001/' cube.off > sheet.off && vpm-pack sheet.off --spheres 20 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["spheres"], round(r["r_max"], 9))'
+20 5e-05
+$ sed 's/^\(.*\) 1$/\1 0.000001/' cube.off > foil.off && vpm-pack foil.off -o foil.vpmp
+2> vpm-pack: error: foil.off: no sphere fits: it is nowhere wider than 1/131072 of its longest side, and spheres so small are not looked for; pack it in parts
+[1]
+
 # A packing that fails its certificate: no output of any kind.
 $ vpm-pack-broken cube.off -o broken.vpmp --export broken.csv --report broken.json
 2> vpm-pack: error: cube.off: the packing does not hold its certificate (* nothing is written. * (glob)
@@ -31,9 +38,11 @@ $ ls -A
 box.off
 config.json
 cube.off
+foil.off
 greedy.json
 greedy.vpmp
 grown.json
 grown.vpmp
 inertia.csv
 inertia.json
+sheet.off

@@ -1,0 +1,107 @@
+#include "libvpm/packing/thin_part.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace vpm {
+namespace {
+
+constexpr std::size_t kMostTriangles = 48;
+// Around the cube: the way from a point between the planes to the nearer one must not leave what
+// was looked at.
+constexpr double kAround = 1.5;
+// Points that say what is beyond the planes keep this distance from them, in half edges.
+constexpr double kBeyond = 0.1;
+constexpr double kRounding = 1e-13;  // of coordinates in the unit cube
+
+using Polygon = std::vector<Vec3>;
+
+double component(Vec3 v, int axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+// What of a convex polygon about the origin has sign * coordinate <= limit.
+Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3 p = polygon[k], q = polygon[(k + 1) % polygon.size()];
+    const double beyond_p = sign * component(p, axis) - limit,
+                 beyond_q = sign * component(q, axis) - limit;
+    if (beyond_p <= 0) kept.push_back(p);
+    if ((beyond_p <= 0) != (beyond_q <= 0))
+      kept.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));
+  }
+  return kept;
+}
+
+struct Face {
+  Polygon polygon;  // about the cube's centre
+  Vec3 normal;      // of the whole triangle, of unit length
+  double area = 0;  // of the polygon
+};
+
+double area_of(const Polygon& polygon) {
+  Vec3 twice;
+  for (std::size_t k = 2; k < polygon.size(); ++k)
+    twice += cross(polygon[k - 1] - polygon[0], polygon[k] - polygon[0]);
+  return 0.5 * norm(twice);
+}
+
+Vec3 normal_of(const TriangleBvh::Corners& t) {
+  return normalized_or_zero(cross(t.b - t.a, t.c - t.a));
+}
+
+// What of the triangles lies in the cube with this half edge.
+std::vector<Face> faces_in(const SolidDistance& solid, std::span<const std::uint32_t> triangles,
+                           Vec3 center, double half_edge) {
+  std::vector<Face> faces;
+  for (const std::uint32_t index : triangles) {
+    const TriangleBvh::Corners& t = solid.corners(index);
+    Polygon polygon{t.a - center, t.b - center, t.c - center};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) polygon = clipped(polygon, axis, sign, half_edge);
+    }
+    const double area = area_of(polygon);
+    if (!polygon.empty()) faces.push_back({std::move(polygon), normal_of(t), area});
+  }
+  return faces;
+}
+
+}  // namespace
+
+ThinPart thin_part(const SolidDistance& solid, Vec3 center, double half_edge) {
+  const double around = kAround * half_edge;
+  std::array<std::uint32_t, kMostTriangles> found;
+  const std::size_t count = solid.around(center, around, found);
+  if (count == 0 || count > kMostTriangles) return {};
+  const std::span<const std::uint32_t> triangles(found.data(), count);
+  const Vec3 first = normal_of(solid.corners(found[0]));
+  const auto turns_away = [&](std::uint32_t t) {
+    return dot(normal_of(solid.corners(t)), first) <= 0.5;
+  };
+  if (std::none_of(triangles.begin(), triangles.end(), turns_away)) return {HUGE_VAL, false};
+
+  const std::vector<Face> faces = faces_in(solid, triangles, center, around);
+  const auto widest = std::max_element(
+      faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.area < b.area; });
+  if (widest == faces.end() || !(widest->area > 0)) return {};
+  const Vec3 up = widest->normal;
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Face& face : faces) {
+    for (const Vec3& p : face.polygon) {
+      low = std::min(low, dot(up, p) - kRounding);
+      high = std::max(high, dot(up, p) + kRounding);
+    }
+  }
+  const double above = std::max(0.0, high + kBeyond * half_edge),
+               below = std::min(0.0, low - kBeyond * half_edge);
+  const bool in_sight = high - low <= 2 * (around - half_edge) && above < around && -below < around;
+  if (!in_sight || solid.inside(center + above * up) || solid.inside(center + below * up))
+    return {};
+  return {.bound = 0.5 * (high - low)};
+}
+
+}  // namespace vpm

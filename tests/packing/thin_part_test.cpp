@@ -1,0 +1,101 @@
+// Plates, needles and shells: what bounds their room holds, and packing them ends soon.
+#include "libvpm/packing/thin_part.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/packer.h"
+#include "test_solids.h"
+
+namespace vpm::test {
+namespace {
+
+using synthetic::make_box;
+using synthetic::make_icosphere;
+
+const Vec3 kShift{0.1, -0.2, 0.3};
+
+Solid turned(Solid solid) {
+  return moved(std::move(solid), Random(3).rotation(), kShift);
+}
+
+Solid shell(double thickness) {
+  return turned(joined(make_icosphere(1, 3), reversed(make_icosphere(1 - thickness, 3))));
+}
+
+TEST(ThinPart, NoPointOfTheCubeHasMoreRoom) {
+  int inside = 0;
+  for (const Solid& solid : {turned(make_box(1, 0.8, 0.01)), turned(make_box(1, 0.01, 0.01)),
+                             shell(0.01), random_solid(0, 1), random_solid(3, 2)}) {
+    const SolidDistance distance(solid);
+    Random random(5);
+    for (int k = 0; k < 400; ++k) {
+      const double half_edge = std::pow(2, random.uniform(-7, -2));
+      const Vec3 near = distance.closest(random.in_box({0, 0, 0}, {1, 1, 1}), 2).point;
+      const Vec3 center = near + half_edge * random.in_box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+      const double bound = thin_part(distance, center, half_edge).bound;
+      if (!std::isfinite(bound)) continue;
+      for (int i = 0; i < 100; ++i) {  // about the surface: the rest is outside
+        const Vec3 in_cube = center + half_edge * random.in_box({-1, -1, -1}, {1, 1, 1});
+        const Vec3 x =
+            distance.closest(in_cube, 2).point + 2 * bound * random.in_box({-1, -1, -1}, {1, 1, 1});
+        const Vec3 off = x - center;
+        if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > half_edge) continue;
+        inside += distance.inside(x);
+        EXPECT_TRUE(!distance.inside(x) || distance.closest(x, 2).distance <= bound);
+      }
+    }
+  }
+  EXPECT_GT(inside, 1000);
+}
+
+TEST(ThinPart, IsExactOnAPlate) {
+  const SolidDistance distance(make_box(1, 1, 0x1p-10));  // one unit is two metres
+  const ThinPart part = thin_part(distance, {0.5, 0.5, 0.5}, 0x1p-5);
+  EXPECT_NEAR(part.bound, 0x1p-12, 1e-12);
+}
+
+struct Thin {
+  const char* name;
+  Solid solid;
+  double radius;  // of the largest sphere
+};
+
+// Without bounds of thin parts these took minutes, hours and years.
+TEST(ThinSolids, ArePackedWithinSeconds) {
+  for (const Thin& thin : {Thin{"plate 1:10 000", turned(make_box(1, 1, 1e-4)), 0.5e-4},
+                           Thin{"plate 1:100 000", turned(make_box(1, 1, 1e-5)), 0.5e-5},
+                           Thin{"needle 1:100 000", turned(make_box(1, 1e-5, 1e-5)), 0.5e-5}}) {
+    SCOPED_TRACE(thin.name);
+    const PackResult result = pack(thin.solid, {.spheres = 50});
+    ASSERT_EQ(result.spheres.size(), 50U);
+    EXPECT_TRUE(certify(thin.solid, result.spheres).holds);
+    EXPECT_NEAR(result.spheres.front().radius, thin.radius, 1e-3 * thin.radius);
+    EXPECT_GT(result.spheres.back().radius, 0.95 * thin.radius);
+  }
+}
+
+TEST(ThinSolids, BelowTheNumericalFloorNothingIsLookedFor) {
+  for (const Solid& solid :
+       {turned(make_box(1, 1, 1e-6)), turned(make_box(1, 1e-6, 1e-6)), shell(1e-6)}) {
+    const PackResult result = pack(solid, {.spheres = 50});
+    EXPECT_TRUE(result.spheres.empty());
+    EXPECT_EQ(result.stop, StopReason::numerical_floor);
+  }
+}
+
+// Of a shell's room only a part is kept: what is found is as large as what is not looked for.
+TEST(ThinSolids, TheRoomThatIsKeptIsAsWideAsTheRest) {
+  const Solid solid = shell(2e-4);
+  const PackResult result = pack(solid, {.spheres = 200});
+  EXPECT_TRUE(certify(solid, result.spheres).holds);
+  ASSERT_FALSE(result.spheres.empty());
+  EXPECT_GT(result.spheres.front().radius, 0.98e-4);
+  EXPECT_GT(result.spheres.back().radius, 0.95 * result.spheres.front().radius);
+}
+
+}  // namespace
+}  // namespace vpm::test
