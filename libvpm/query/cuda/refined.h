@@ -82,13 +82,12 @@ class RefinedQuery {
   }
 
  private:
-  // This block's spheres are part, part + parts, ...; its list of work begins at part * capacity.
-  __device__ std::uint32_t capacity() const {
-    return (level_.count + share_.parts - 1) / share_.parts;
+  // This block's spheres are part, part + parts, ...; its list of work has room for them all.
+  __device__ std::uint32_t work_begin() const {
+    const std::uint32_t rest = level_.count % share_.parts;
+    return share_.part * (level_.count / share_.parts) + min(share_.part, rest);
   }
-  __device__ std::uint32_t work(std::uint32_t k) const {
-    return space_.work[share_.part * capacity() + k];
-  }
+  __device__ std::uint32_t work(std::uint32_t k) const { return space_.work[work_begin() + k]; }
   __device__ static unsigned volatile_load(const unsigned& value) {
     return *static_cast<const volatile unsigned*>(&value);
   }
@@ -145,7 +144,7 @@ __device__ void RefinedQuery<Surface, Team>::list_work() {
                       : side == Side::uncut  ? kOpen
                                              : kMixed;
     space_.states[i] = SphereState::outside;
-    if (side != Side::free) space_.work[share_.part * capacity() + atomicAdd(&listed, 1U)] = i;
+    if (side != Side::free) space_.work[work_begin() + atomicAdd(&listed, 1U)] = i;
   }
   __syncthreads();
   listed_ = listed;

@@ -1,0 +1,192 @@
+// control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]: what a haptic or robot controller does with
+// libvpm, timed. The tool slides over the surface in the middle of the cloud, turning, 5 to 10 % of
+// its volume inside; every pose is one query, and its answer is awaited before the next.
+//   device=auto   cpu, cuda, cuda:1
+//   queries=10000
+//   level=0       spheres; 0 is the finest level
+//   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
+//   json=FILE     the figures, also as JSON
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <deque>
+#include <fstream>
+#include <iostream>
+#include <map>
+
+#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/core/error.h"
+#include "libvpm/model/tool_model_file.h"
+#include "libvpm/query/query.h"
+
+namespace {
+
+using namespace vpm;
+using Options = std::map<std::string, std::string>;
+
+constexpr int kWarmUp = 200;  // queries that are not timed
+constexpr double kPi2 = 6.28318530717958648;
+
+// The tool's path. `shallow` and `deep`: heights of its centre of mass above the point on which it
+// slides.
+struct Path {
+  Vec3 place, normal, side;
+  double shallow = 0, deep = 0, swing = 0;
+
+  Pose at(const ToolModel& tool, double height, double turn, Vec3 aside) const {
+    const double half = turn / 2, s = std::sin(half);
+    const Pose pose{
+        rotation_from_quaternion({s * normal.x, s * normal.y, s * normal.z, std::cos(half)}), {}};
+    return {pose.rotation, place + height * normal + aside - pose.rotation * tool.center_of_mass};
+  }
+  Pose at(const ToolModel& tool, int k) const {
+    const double along = 1e-3 * k;
+    const double height = (shallow + deep) / 2 + (shallow - deep) / 2 * std::sin(kPi2 * 3 * along);
+    const Vec3 aside = swing * std::sin(kPi2 * along) * side +
+                       swing * std::sin(kPi2 * 1.4 * along) * cross(normal, side);
+    return at(tool, height, 0.3 * std::sin(kPi2 * 0.7 * along), aside);
+  }
+};
+
+// Height at which this part of the tool is inside, by bisection.
+double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
+                  double fraction) {
+  double low = -tool.reach, high = tool.reach;
+  for (int step = 0; step < 24; ++step) {
+    const double middle = 0.5 * (low + high);
+    const Pose pose = path.at(tool, middle, 0, {});
+    (query.run(cloud, pose).volume_fraction > fraction ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+Path make_path(Query& query, const PreparedCloud& cloud, const ToolModel& tool) {
+  const std::size_t middle = cloud.positions().size() / 2;
+  Path path;
+  path.place = cloud.origin() + widen(cloud.positions()[middle]);
+  path.normal = normalized_or_zero(widen(cloud.normals()[middle]));
+  path.side = normalized_or_zero(
+      cross(path.normal, std::abs(path.normal.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+  path.swing = 0.2 * tool.reach;
+  path.shallow = height_for(query, cloud, tool, path, 0.05);
+  path.deep = height_for(query, cloud, tool, path, 0.10);
+  return path;
+}
+
+struct Figures {
+  std::vector<double> microseconds;
+  double fraction = 0;  // mean part of the tool that was inside
+  double quantile(double q) const {
+    return microseconds[static_cast<std::size_t>(q * static_cast<double>(microseconds.size() - 1))];
+  }
+};
+
+Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
+            const ToolModel& tool, const Path& path, int count) {
+  Figures figures;
+  figures.microseconds.reserve(static_cast<std::size_t>(count));
+  for (int k = -kWarmUp; k < count; ++k) {
+    const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
+    const Pose pose = path.at(tool, k);
+    const auto begin = std::chrono::steady_clock::now();
+    const Result result = queries[copy].run(clouds[copy], pose);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    if (k < 0) continue;
+    figures.microseconds.push_back(took.count());
+    figures.fraction += result.volume_fraction / count;
+  }
+  std::sort(figures.microseconds.begin(), figures.microseconds.end());
+  return figures;
+}
+
+// Bars over classes that widen by a fifth.
+void print_histogram(const Figures& figures) {
+  const std::vector<double>& times = figures.microseconds;
+  double low = figures.quantile(0.001);
+  for (std::size_t at = 0; at < times.size(); low *= 1.2) {
+    const auto end = static_cast<std::size_t>(
+        std::upper_bound(times.begin(), times.end(), low * 1.2) - times.begin());
+    const double share = static_cast<double>(end - at) / static_cast<double>(times.size());
+    if (end > at) {
+      std::printf("%9.1f us  %6zu  %s\n", low * 1.2, end - at,
+                  std::string(static_cast<std::size_t>(std::ceil(60 * share)), '#').c_str());
+    }
+    at = end;
+  }
+}
+
+nlohmann::json to_json(const Figures& figures, const Device& device, const Level& level,
+                       const PreparedCloud& cloud, std::size_t copies) {
+  return {{"device", device.is_cuda() ? cuda_device_name(device.index) : "cpu"},
+          {"spheres", level.sphere_count},
+          {"points", cloud.positions().size()},
+          {"queries", figures.microseconds.size()},
+          {"copies", copies},
+          {"mean_fraction", figures.fraction},
+          {"median_us", figures.quantile(0.5)},
+          {"p99_us", figures.quantile(0.99)},
+          {"min_us", figures.quantile(0)},
+          {"max_us", figures.quantile(1)}};
+}
+
+Options parse(int argc, char** argv) {
+  Options options{
+      {"device", "auto"}, {"queries", "10000"}, {"level", "0"}, {"rotate", "1"}, {"json", ""}};
+  for (int k = 3; k < argc; ++k) {
+    const std::string text = argv[k];
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
+      throw Error(ErrorKind::usage,
+                  text + ": the options are device= queries= level= rotate= json=");
+    options[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return options;
+}
+
+int number(const Options& options, const std::string& name, int least) {
+  const int value = std::atoi(options.at(name).c_str());
+  if (value < least)
+    throw Error(ErrorKind::usage, name + "= must be a number of at least " + std::to_string(least));
+  return value;
+}
+
+void control(int argc, char** argv) {
+  if (argc < 3)
+    throw Error(ErrorKind::usage, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
+  const Options options = parse(argc, argv);
+  QueryOptions query_options;
+  query_options.device = device_from_text(options.at("device"));
+  query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
+  const int copies = number(options, "rotate", 1), count = number(options, "queries", 1);
+
+  const ToolModel tool = read_tool_model(argv[1]);
+  const Cloud cloud = read_cloud(argv[2]);
+  if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
+  std::deque<PreparedCloud> clouds;
+  std::deque<Query> queries;
+  for (int k = 0; k < copies; ++k) {
+    clouds.emplace_back(cloud);
+    queries.emplace_back(tool, query_options);
+  }
+  const Path path = make_path(queries[0], clouds[0], tool);
+  const Figures figures = run(queries, clouds, tool, path, count);
+
+  print_histogram(figures);
+  const nlohmann::json json =
+      to_json(figures, query_options.device, queries[0].level(), clouds[0], queries.size());
+  std::cout << json.dump() << '\n';
+  if (!options.at("json").empty()) std::ofstream(options.at("json")) << json.dump(2) << '\n';
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    control(argc, argv);
+    return 0;
+  } catch (const vpm::Error& fault) {
+    std::cerr << "control-loop: " << fault.what() << '\n';
+    return static_cast<int>(fault.kind());
+  }
+}

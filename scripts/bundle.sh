@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# bundle.sh BUILD FOLDER [EXECUTABLE ...]: makes a folder that runs on a machine with nothing installed but the C library
+# (and an NVIDIA driver, for --device cuda): executables in bin/, libvpm and every shared library that they need in lib/,
+# found by their place relative to the executable. Without names: the tools and control-loop, as far as they are built.
+set -euo pipefail
+if [[ $# -lt 2 || ! -d $1/bin ]]; then
+  echo "usage: bundle.sh BUILD FOLDER [EXECUTABLE ...]; BUILD is a build tree, like build/release" >&2
+  exit 2
+fi
+build=$1 folder=$2
+shift 2
+names=("$@")
+if [[ ${#names[@]} -eq 0 ]]; then
+  for name in vpm-pack vpm-graph vpm-normals vpm-query vpm-bench control-loop; do
+    [[ ! -x $build/bin/$name ]] || names+=("$name")
+  done
+fi
+
+# What belongs to the machine: the C library, which goes with its loader, and the driver.
+is_of_the_machine() {
+  case $(basename "$1") in
+    ld-linux* | libc.so.* | libm.so.* | libdl.so.* | librt.so.* | libpthread.so.* | libcuda.so.*) true ;;
+    *) false ;;
+  esac
+}
+
+mkdir -p "$folder/lib"
+for name in "${names[@]}"; do
+  cmake --install "$build" --component "$name" --prefix "$folder" --strip >/dev/null
+  while read -r library; do
+    is_of_the_machine "$library" || install -m 755 "$library" "$folder/lib/"
+  done < <(ldd "$build/bin/$name" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
+done
+strip --strip-unneeded "$folder"/lib/*
+echo "$folder: ${#names[@]} executables, $(find "$folder/lib" -type f | wc -l) libraries, $(du -sh "$folder" | cut -f1)"

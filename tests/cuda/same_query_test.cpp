@@ -1,0 +1,94 @@
+// Queries on the device give the bits of queries on the CPU: every field, every state, one by one
+// and in batches.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/query/query.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+// Golden ratio and friends: places that never repeat.
+Pose pose_of(int k) {
+  const auto fraction = [&](double step) { return k * step - std::floor(k * step); };
+  const Vec3 axis =
+      normalized_or_zero({fraction(0.618034) - 0.5, fraction(0.414214) - 0.5, fraction(0.732051)});
+  const double half = fraction(0.236068);
+  const double s = std::sin(half);
+  return {rotation_from_quaternion({s * axis.x, s * axis.y, s * axis.z, std::cos(half)}),
+          {0.3 * (fraction(0.324718) - 0.5), 0.3 * (fraction(0.754878) - 0.5),
+           0.8 + 0.45 * fraction(0.569840)}};
+}
+
+void expect_equal(const Result& a, const Result& b) {
+  EXPECT_EQ(a.volume, b.volume);
+  EXPECT_EQ(a.volume_fraction, b.volume_fraction);
+  EXPECT_EQ(a.wrench.force, b.wrench.force);
+  EXPECT_EQ(a.wrench.torque, b.wrench.torque);
+  EXPECT_EQ(a.boundary, b.boundary);
+  EXPECT_EQ(a.inside, b.inside);
+  EXPECT_EQ(a.points, b.points);
+}
+
+class SameQuery : public ::testing::TestWithParam<std::tuple<const char*, bool, Measure>> {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  }
+};
+
+TEST_P(SameQuery, OnCpuAndDevice) {
+  const auto& [scene, camera, measure] = GetParam();
+  constexpr int kPoses = 48;
+  const Cloud seen = testing::see(synthetic::make_scene(scene));
+  const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+  std::uint32_t boundary = 0, inside = 0;
+  for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
+                                testing::lattice_cube(0.25, 20, 1)}) {
+    QueryOptions options;
+    options.measure = measure;
+    Query on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    Query on_device(tool, options);
+    std::vector<Pose> poses;
+    std::vector<Result> expected, batch(kPoses);
+    for (int k = 0; k < kPoses; ++k) {
+      poses.push_back(pose_of(k));
+      expected.push_back(on_cpu.run(cloud, poses.back()));
+      boundary += expected.back().boundary;
+      inside += expected.back().inside;
+      SCOPED_TRACE(k);
+      expect_equal(expected.back(), on_device.run(cloud, poses.back()));
+      const auto states = on_cpu.states(), states_there = on_device.states();
+      EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
+    }
+    on_device.run(cloud, poses, batch);
+    for (int k = 0; k < kPoses; ++k) {
+      SCOPED_TRACE(k);
+      expect_equal(expected[k], batch[k]);
+    }
+  }
+  EXPECT_GT(boundary, 1000U);
+  EXPECT_GT(inside, 1000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
+                         ::testing::Combine(::testing::Values("wall", "groove", "block", "plate",
+                                                              "inverted-ball", "step"),
+                                            ::testing::Bool(),
+                                            ::testing::Values(Measure::refined)));
+
+TEST(SameQueryOnDevice, InAnEmptyCloud) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const PreparedCloud cloud{Cloud{}};
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
+  QueryOptions options;
+  options.device = {Device::Kind::cuda, 0};
+  expect_equal(Result{}, Query(tool, options).run(cloud, {}));
+}
+
+}  // namespace
+}  // namespace vpm
