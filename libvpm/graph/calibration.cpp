@@ -6,13 +6,12 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/query/ball_fraction.h"
 
 namespace vpm {
 namespace {
 
-// Volumes of the solid and of the model may differ by rounding only.
-constexpr double kVolumeTolerance = 1e-9;
 constexpr double kHigh = 0.95;  // the quantile that LevelError::p95 holds
 
 // Numbers that look random and are the same everywhere (SplitMix64).
@@ -127,12 +126,7 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   }
   Solid centered = solid;
   for (Vec3& v : centered.vertices) v -= model.center_of_mass;
-  const double whole = volume_below_plane(centered, {0, 0, 1}, 2 * model.reach);
-  if (!(std::abs(whole - model.volume) <= kVolumeTolerance * model.volume)) {
-    refuse(
-        "parts of the solid overlap, so it cannot be cut exactly: unite them in a mesh editor "
-        "to calibrate");
-  }
+  centered = enclosed_surface(centered);
   std::vector<Cut> cuts = make_cuts(centered);
   std::vector<std::vector<double>> errors(model.levels.size(), std::vector<double>(cuts.size()));
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -13,25 +13,7 @@
 namespace vpm {
 namespace {
 
-Vec3 box_center(const std::vector<Vec3>& points) {
-  Vec3 low = points.front(), high = low;
-  for (const Vec3& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return low + 0.5 * (high - low);
-}
-
-// Six times the volume of tetrahedra over the origin, and four times its moment.
-struct Integral {
-  double six_volumes = 0;
-  Vec3 moment;
-  void add(double sign, Vec3 a, Vec3 b, Vec3 c) {
-    const double six_volume = sign * dot(a, cross(b, c));
-    six_volumes += six_volume;
-    moment += six_volume * (a + b + c);
-  }
-};
+using Corners = std::array<Vec3, 3>;
 
 // A triangle with coordinates in its own plane.
 struct Flat {
@@ -62,7 +44,6 @@ struct OuterSurface::Cells {
         bvh(s.vertices, s.triangles),
         winding(bvh),
         begin(s.triangles.size() + 1),
-        origin(box_center(s.vertices)),
         coplanar(contact_tolerance(s.vertices)) {
     partners.resize(2 * contacts.size());
     for (const auto& [one, other] : contacts) ++begin[one + 1], ++begin[other + 1];
@@ -139,14 +120,15 @@ struct OuterSurface::Cells {
     return true;
   }
 
-  Integral integral_of_cut(std::uint32_t t) const {
+  // What of a triangle that meets others bounds the solid, facing outward.
+  std::vector<Corners> pieces_of_cut(std::uint32_t t) const {
     const Flat plane = flat(t);
     std::vector<TriangleSegment> segments;
     std::vector<std::uint32_t> in_plane;
     for (std::size_t k = begin[t]; k < begin[t + 1]; ++k) {
       if (!add_segments(t, plane, partners[k], segments)) in_plane.push_back(partners[k]);
     }
-    Integral integral;
+    std::vector<Corners> pieces;
     for (const std::vector<Vec2>& cell : triangle_cells(segments)) {
       if (cell.size() < 3) continue;
       Vec2 middle;
@@ -155,36 +137,39 @@ struct OuterSurface::Cells {
       const Side side =
           side_of_cell(t, plane, plane.lift({middle.x / corners, middle.y / corners}), in_plane);
       if (side == Side::none) continue;
-      const Vec3 first = plane.lift(cell[0]) - origin;
-      for (std::size_t k = 2; k < cell.size(); ++k) {
-        integral.add(side == Side::outward ? 1 : -1, first, plane.lift(cell[k - 1]) - origin,
-                     plane.lift(cell[k]) - origin);
-      }
+      const Vec3 first = plane.lift(cell[0]);
+      for (std::size_t k = 2; k < cell.size(); ++k)
+        pieces.push_back(faced(side, first, plane.lift(cell[k - 1]), plane.lift(cell[k])));
     }
-    return integral;
+    return pieces;
   }
 
-  MassProperties mass(const std::vector<Side>& side) const {
+  static Corners faced(Side side, Vec3 a, Vec3 b, Vec3 c) {
+    return side == Side::outward ? Corners{a, b, c} : Corners{a, c, b};
+  }
+
+  Solid surface(const std::vector<Side>& side) const {
     const auto count = static_cast<std::uint32_t>(side.size());
-    std::vector<Integral> of_triangle(count);
+    std::vector<std::vector<Corners>> pieces(count);
     constexpr std::size_t kTogether = 16;
     parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
       for (auto t = static_cast<std::uint32_t>(first); t < last; ++t) {
         if (side[t] == Side::cut) {
-          of_triangle[t] = integral_of_cut(t);
+          pieces[t] = pieces_of_cut(t);
         } else if (side[t] != Side::none) {
-          of_triangle[t].add(side[t] == Side::outward ? 1 : -1, corner(t, 0) - origin,
-                             corner(t, 1) - origin, corner(t, 2) - origin);
+          pieces[t] = {faced(side[t], corner(t, 0), corner(t, 1), corner(t, 2))};
         }
       }
     });
-    Integral sum;
-    for (const Integral& integral : of_triangle) {
-      sum.six_volumes += integral.six_volumes;
-      sum.moment += integral.moment;
+    Solid result;
+    for (const std::vector<Corners>& some : pieces) {
+      for (const Corners& p : some) {
+        const auto next = static_cast<std::uint32_t>(result.vertices.size());
+        result.triangles.push_back({next, next + 1, next + 2});
+        result.vertices.insert(result.vertices.end(), p.begin(), p.end());
+      }
     }
-    if (sum.six_volumes == 0) return {0, origin};
-    return {sum.six_volumes / 6, origin + sum.moment / (4 * sum.six_volumes)};
+    return result;
   }
 
   const Solid& solid;
@@ -192,7 +177,6 @@ struct OuterSurface::Cells {
   WindingNumber winding;
   std::vector<std::size_t> begin;  // rows of `partners`
   std::vector<std::uint32_t> partners;
-  Vec3 origin;
   double coplanar;  // m
 };
 
@@ -225,22 +209,28 @@ void OuterSurface::find_sides(const Cells& cells, const Topology& topology) {
 }
 
 OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts)
-    : side_(solid.triangles.size(), Side::outward), mass_(mass_properties(solid)) {
+    : side_(solid.triangles.size(), Side::outward) {
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
   std::size_t shell_count = 0;
   shells_of(topology, shell_count);
-  if (contacts.empty() && shell_count == 1) return;
+  if (!contacts.empty() || shell_count > 1) {
+    side_.assign(side_.size(), Side::unknown);
+    const Cells cells(solid, contacts);
+    find_sides(cells, topology);
+    if (std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::outward; }))
+      surface_ = cells.surface(side_);
+  }
+  mass_ = mass_properties(surface_ ? *surface_ : solid);
+}
 
-  side_.assign(side_.size(), Side::unknown);
-  const Cells cells(solid, contacts);
-  find_sides(cells, topology);
-  if (std::all_of(side_.begin(), side_.end(), [](Side s) { return s == Side::outward; })) return;
-  mass_ = cells.mass(side_);
+Solid enclosed_surface(const Solid& solid) {
+  if (solid.triangles.empty()) return solid;
+  const OuterSurface outer(solid, find_contacts(solid.vertices, solid.triangles));
+  return outer.surface() ? *outer.surface() : solid;
 }
 
 MassProperties enclosed_mass(const Solid& solid) {
-  if (solid.triangles.empty()) return mass_properties(solid);
-  return OuterSurface(solid, find_contacts(solid.vertices, solid.triangles)).mass();
+  return mass_properties(enclosed_surface(solid));
 }
 
 }  // namespace vpm

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libvpm/mesh/self_intersection.h"
@@ -23,6 +24,8 @@ class OuterSurface {
 
   // Whether the triangle meets no other and has the inside, or the outside, on both of its sides.
   bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }
+  // See enclosed_surface; nothing where that is the solid as it is.
+  const std::optional<Solid>& surface() const { return surface_; }
   const MassProperties& mass() const { return mass_; }
 
  private:
@@ -33,8 +36,14 @@ class OuterSurface {
   void find_sides(const Cells& cells, const Topology& topology);
 
   std::vector<Side> side_;
+  std::optional<Solid> surface_;
   MassProperties mass_;
 };
+
+// The boundary of what the mesh encloses at least once, for integrals over it. The solid as it is
+// where the surface neither meets itself nor lies within itself; else its triangles, cut where they
+// meet, without the pieces inside: each with its own corners, facing outward.
+Solid enclosed_surface(const Solid& solid);
 
 // Volume and centre of mass of what the mesh encloses, overlaps counted once. Equals
 // mass_properties to the bit where the surface neither meets itself nor lies within itself.

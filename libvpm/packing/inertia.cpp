@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "libvpm/mesh/outer_surface.h"
+
 namespace vpm {
 namespace {
 
@@ -35,9 +37,10 @@ SecondMoments second_moments(const Solid& solid) {
 }
 
 InertiaError::InertiaError(const Solid& solid) {
-  const MassProperties mass = mass_properties(solid);
+  const Solid surface = enclosed_surface(solid);
+  const MassProperties mass = mass_properties(surface);
   center_ = mass.center_of_mass;
-  solid_ = second_moments(solid);
+  solid_ = second_moments(surface);
   for (double& m : solid_) m /= mass.volume;
 }
 

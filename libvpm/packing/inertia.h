@@ -11,7 +11,8 @@ namespace vpm {
 // Integral of x x^T about a point: xx, yy, zz, xy, xz, yz; m^5.
 using SecondMoments = std::array<double, 6>;
 
-// About the solid's centre of mass, exactly; what the mesh encloses twice counts twice.
+// About the solid's centre of mass, exactly; what the mesh encloses twice counts twice (see
+// enclosed_surface in outer_surface.h).
 SecondMoments second_moments(const Solid& solid);
 
 // Inertia tensors about the solid's centre of mass, each divided by its volume, so that spheres and
@@ -20,7 +21,7 @@ SecondMoments second_moments(const Solid& solid);
 // everything: the volume that is missing is counted by the coverage, not here.
 class InertiaError {
  public:
-  explicit InertiaError(const Solid& solid);
+  explicit InertiaError(const Solid& solid);  // what it encloses twice counts once
   void add(const Sphere& sphere);
   double value() const;  // 1 without spheres
 

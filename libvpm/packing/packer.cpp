@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "libvpm/core/error.h"
@@ -94,7 +95,6 @@ class Packer {
         distance_(solid),
         frame_(distance_.frame()),
         volume_(options.volume > 0 ? options.volume : enclosed_mass(solid).volume),
-        no_inertia_(solid),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor * frame_.longest)),
         stop_(smallest_ > kNumericalFloor * frame_.longest ? StopReason::min_radius
                                                            : StopReason::numerical_floor),
@@ -102,6 +102,7 @@ class Packer {
         most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
         space_(distance_, smallest_,
                kBlocks + kBlocksPerSphere * std::min(options.spheres, kMostSpheres)) {
+    if (options.inertia_error > 0) no_inertia_.emplace(solid);
     if (!(volume_ > 0)) refuse("the solid has no volume; check that its triangles face outward");
   }
 
@@ -157,14 +158,14 @@ class Packer {
     PackResult result;
     result.stop = stop_;
     double filled = 0;
-    InertiaError inertia = no_inertia_;
+    std::optional<InertiaError> inertia = no_inertia_;
     for (const Sphere& s : all) {
       filled += volume(s);
-      inertia.add(s);
+      if (inertia) inertia->add(s);
       result.spheres.push_back(s);
       if (filled >= options_.coverage * volume_) {
         result.stop = StopReason::coverage;
-      } else if (inertia.value() <= options_.inertia_error) {
+      } else if (inertia && inertia->value() <= options_.inertia_error) {
         result.stop = StopReason::inertia_error;
       } else if (result.spheres.size() == options_.spheres) {
         result.stop = StopReason::spheres;
@@ -180,10 +181,10 @@ class Packer {
   const PackOptions& options_;
   SolidDistance distance_;
   UnitFrame frame_;
-  double volume_;            // m^3
-  InertiaError no_inertia_;  // of no spheres
-  double smallest_;          // in the unit frame, like cap_
-  StopReason stop_;          // where what was asked for is not reached
+  double volume_;                           // m^3
+  std::optional<InertiaError> no_inertia_;  // of no spheres; where it is asked for
+  double smallest_;                         // in the unit frame, like cap_
+  StopReason stop_;                         // where what was asked for is not reached
   double cap_;
   std::size_t most_;  // spheres at which even a band is broken off
   Space space_;

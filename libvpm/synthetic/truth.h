@@ -21,7 +21,9 @@ struct Penetration {
 
 inline constexpr double kTruthTolerance = 1e-6;  // of the solid's volume
 
-// A solid with what repeated poses need of it. Immutable; safe to share between threads.
+// A solid with what repeated poses need of it. What its mesh encloses twice counts twice: give it
+// enclosed_surface (outer_surface.h) of meshes that meet themselves. Immutable; safe to share
+// between threads.
 class TrueSolid {
  public:
   explicit TrueSolid(const Solid& solid);

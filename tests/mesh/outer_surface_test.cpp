@@ -7,9 +7,12 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/triangle_cells.h"
 #include "libvpm/model/sphere.h"
+#include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
+#include "libvpm/synthetic/truth.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace vpm::test {
@@ -113,6 +116,17 @@ TEST(EnclosedMass, AgreesWithALensInClosedForm) {
   const double lens = kPi * (4 + d) * (2 - d) * (2 - d) / 12;
   EXPECT_NEAR(enclosed_mass(together(a, b)).volume, 2 * ball - lens, 2e-3 * lens);
   EXPECT_NEAR(enclosed_mass(together(a, turned_over(b))).volume, ball - lens, 2e-3 * lens);
+}
+
+// A cross of two boxes of 3 x 1 x 1, cut at x = c and by a ball about its middle.
+TEST(EnclosedSurface, IntegralsOverItCountOverlapsOnce) {
+  const Solid cross = together(make_box(3, 1, 1), make_box(1, 3, 1));
+  const Solid surface = enclosed_surface(cross);
+  EXPECT_NEAR(volume_below_plane(surface, {1, 0, 0}, 0), 2.5, 1e-12);
+  EXPECT_NEAR(volume_below_plane(surface, {1, 0, 0}, 1), 4.5, 1e-12);
+  EXPECT_NEAR(volume_in_ball(surface, {{0, 0, 0}, 0.5}), kPi / 6, 1e-12);
+  const synthetic::SurfacePtr wall = synthetic::make_wall({1, 0, 0}, {1, 0, 0});
+  EXPECT_NEAR(synthetic::TrueSolid(surface).penetration({}, *wall).volume, 4.5, 1e-5);
 }
 
 TEST(EnclosedMass, ScalesByPowersOfTwoToTheBitForAnyThreads) {

@@ -61,6 +61,15 @@ TEST(Inertia, ErrorFallsAndStopsThePacker) {
   EXPECT_GT(error_of(solid, spheres), 0.01);
 }
 
+// Two boxes that overlap by a third are the inertia of one long box.
+TEST(Inertia, OverlapsCountOnce) {
+  const Solid box = synthetic::make_box(2, 1, 1);
+  const Solid pair =
+      joined(moved(box, Rotation{}, {-0.5, 0, 0}), moved(box, Rotation{}, {0.5, 0, 0}));
+  const std::vector<Sphere> spheres{{{-0.8, 0.1, 0}, 0.4}, {{0.6, 0, 0}, 0.5}};
+  EXPECT_NEAR(error_of(pair, spheres), error_of(synthetic::make_box(3, 1, 1), spheres), 1e-12);
+}
+
 TEST(Inertia, OtherLimitsComeFirst) {
   const Solid solid = random_solid(4, 3);
   EXPECT_EQ(pack(solid, {.spheres = 5, .inertia_error = 1e-6}).stop, StopReason::spheres);

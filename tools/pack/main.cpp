@@ -113,14 +113,6 @@ std::string link_name(const Arguments& a) {
   return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
-// The inertia tensor is an integral over the triangles, which counts overlaps twice.
-void check_inertia(const Arguments& a, const MeshFacts& facts) {
-  if (!a.inertia_error || facts.self_intersections == 0) return;
-  refuse(a.mesh + ": --inertia-error needs a mesh that does not intersect itself (" +
-         std::to_string(facts.self_intersections) +
-         " pairs of triangles do); mend the mesh or leave the option out");
-}
-
 // Narrows the radii to what the scene asks for.
 SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   const PreparedCloud cloud(read_cloud(a.for_scene));
@@ -214,7 +206,6 @@ void run(const Tool& tool, Arguments a) {
   for (const std::string& note : checked.notes) tool.note(name + ": " + note);
   for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
 
-  check_inertia(a, checked.facts);
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
   PackResult result = pack_checked(tool, a, checked.solid, checked.facts.volume);
