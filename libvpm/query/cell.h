@@ -67,8 +67,9 @@ struct CutShare {
 };
 
 struct CellResult {
-  ToolSum sum;         // surface axes, arms about the tool's centre of mass
-  ContactPlane plane;  // plane.count > 0: the surface cuts the cell
+  ToolSum sum;          // surface axes, arms about the tool's centre of mass
+  ContactPlane plane;   // plane.count > 0: the surface cuts the cell
+  bool is_far = false;  // a piece is further behind the surface than the tool's reach
 };
 
 // A surface further than this many reaches from the cell's centre, or than the tool's reach from
@@ -115,7 +116,8 @@ class CellMeasure {
     return result;
   }
 
-  // What of a share that the flood has reached is inside. `whole`: all of it is behind some
+  // What of an uncut share that the flood has reached is inside, where run() does not know it
+  // because it is far. `whole`: all of it is behind some
   // surface; `nearest` gives the nearest cut share, where it is needed.
   template <class Nearest>
   VPM_HD ToolSum reached(bool whole, const Nearest& nearest) const {
@@ -139,13 +141,34 @@ class CellMeasure {
     return surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
   }
 
+  // Adds what one block contributes to run(): first of all that is seen, then, knowing the plane,
+  // of what is hidden. Returns whether something was left for the second pass.
+  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) const {
+    const CellBlock& block = cell_.blocks[b];
+    const Vec3 center = to_surface_ * widen(block.center);
+    const auto look = surface_.look_at_ball(center, block.radius);
+    if (look.side == Side::free) return false;
+    if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
+    TangentPlane tangent;
+    if (surface_.is_flat(look, center, block.radius, tangent) && !is_hidden(tangent.foot)) {
+      result.is_far |= is_far(center, tangent.foot);
+      if (pass == Pass::seen) add_flat(block, tangent, result);
+      return false;
+    }
+    bool any_hidden = false;
+    for (std::uint32_t s = block.begin; s < block.end; ++s)
+      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result);
+    return any_hidden;
+  }
+
   // Adds what one piece contributes to run(): first of all pieces that are seen, then, knowing the
   // plane, of those that are hidden. Returns whether the piece was left for the second pass.
   VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
     const Vec3 x = to_surface_ * piece.at;
     const Reading reading = surface_.read(x);
     if (!reading.known || reading.distance >= piece.radius) return false;
-    const bool hidden = is_hidden(reading);
+    result.is_far |= is_far(x, reading.foot);
+    const bool hidden = is_hidden(reading.foot);
     if (hidden != (pass == Pass::hidden)) return hidden;
     if (hidden && result.plane.count > 0 &&
         !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
@@ -169,7 +192,7 @@ class CellMeasure {
     const Vec3 x = to_surface_ * piece.at;
     const Reading reading = surface_.read(x);
     if (!reading.known || reading.distance >= piece.radius) return;
-    if (squared_norm(reading.foot - x) > tool_reach_ * tool_reach_) {
+    if (is_far(x, reading.foot)) {
       const CutShare cut = nearest();
       if (!cut.plane.vouches_for(cut.relative(x), cut.relative(reading.foot),
                                  tool_reach_ / cut.reach))
@@ -186,22 +209,38 @@ class CellMeasure {
     return to_surface_.rotation * about_center_of_mass / tool_reach_;
   }
   VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
-  VPM_HD bool is_hidden(const Reading& reading) const {
+  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
+    return squared_norm(foot - x) > tool_reach_ * tool_reach_;
+  }
+  VPM_HD bool is_hidden(Vec3 foot) const {
     const double beyond = (kSheetReach - 1) * cell_.reach;
     const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
-    return squared_norm(reading.foot - center_) > near * near;
+    return squared_norm(foot - center_) > near * near;
   }
 
-  // Returns whether something was left for the pass of the hidden.
-  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) const {
-    const CellBlock& block = cell_.blocks[b];
-    const Side side = side_of(block);
-    if (side == Side::free) return false;
-    if (side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
-    bool any_hidden = false;
-    for (std::uint32_t s = block.begin; s < block.end; ++s)
-      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result);
-    return any_hidden;
+  // Adds the samples of a block that the surface crosses as one plane.
+  VPM_HD void add_flat(const CellBlock& block, const TangentPlane& tangent,
+                       CellResult& result) const {
+    const Vec3 n = transpose(to_surface_.rotation) * tangent.normal;
+    const double height = tangent.distance(to_surface_.translation);
+    double part = 0;
+    Vec3 moment;
+    bool is_cut = false;
+    for (std::uint32_t s = block.begin; s < block.end; ++s) {
+      const CellSample& sample = cell_.samples[s];
+      const Vec3 at = widen(sample.center);
+      const double distance = dot(n, at) + height;
+      if (distance >= sample.radius) continue;
+      double inside = sample.weight;
+      if (distance > -sample.radius) {
+        inside *= ball_fraction_inside(distance / sample.radius);
+        is_cut = true;
+      }
+      part += inside;
+      moment += inside * at;
+    }
+    if (is_cut) result.plane.add(tangent.normal, relative(tangent.foot));
+    result.sum.add_moment(part, arm(moment), tangent.normal);
   }
 
   const Surface& surface_;

@@ -7,6 +7,7 @@
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/surface.h"
 
 namespace vpm {
@@ -31,6 +32,12 @@ struct DepthSurface {
   // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
   // or curved; those of a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
+
+  // Over so few pixels only a jump is told from noise.
+  static constexpr std::int32_t kFewPixels = 4;
+  // A block of the tool sees one plane where what it predicts for the range of the pixels is right
+  // to this part of the block's radius.
+  static constexpr double kFlatness = 1.0;
 
   Intrinsics k;
   std::int32_t width = 0, height = 0;
@@ -126,48 +133,105 @@ struct DepthSurface {
                : normalized_or_zero(towards);
   }
 
+  // What the pixels of a ball tell: its side, and the range of inverse depth over the tiles that
+  // cover them.
+  struct Look {
+    Side side = Side::free;
+    bool leaves_image = true;
+    PixelRectangle pixels, tiles;  // that a place in the ball may touch; those of the tiles
+    InverseDepthRange range;
+  };
+
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
+    return look_at_ball(center, radius).side;
+  }
+
+  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
+    Look look;
     const double nearest = center.z - radius, farthest = center.z + radius;
-    if (!(farthest > 0)) return Side::free;
-    if (!(nearest > 0)) return Side::mixed;
-    const double left = center.x - radius, right = center.x + radius;
-    const double top = center.y - radius, bottom = center.y + radius;
-    const double u_low = k.fx * (left / (left >= 0 ? farthest : nearest)) + k.cx;
-    const double u_high = k.fx * (right / (right >= 0 ? nearest : farthest)) + k.cx;
-    const double v_low = k.fy * (top / (top >= 0 ? farthest : nearest)) + k.cy;
-    const double v_high = k.fy * (bottom / (bottom >= 0 ? nearest : farthest)) + k.cy;
-    if (u_high < -0.5 || v_high < -0.5 || u_low >= width - 0.5 || v_low >= height - 0.5)
-      return Side::free;
-    const bool leaves_image =
+    if (!(farthest > 0)) return look;
+    look.side = Side::mixed;
+    look.pixels = {0, 0, width - 1, height - 1};
+    if (!(nearest > 0)) return look;
+    // |x'/z' - x/z| <= r (1 + |x|/z) / (z - r) for every x' in the ball.
+    const double per_depth = 1 / center.z, per_nearest = radius / nearest;
+    const double x = center.x * per_depth, y = center.y * per_depth;
+    const double u = k.fx * x + k.cx, spread_u = k.fx * (per_nearest * (1 + std::fabs(x)));
+    const double v = k.fy * y + k.cy, spread_v = k.fy * (per_nearest * (1 + std::fabs(y)));
+    const double u_low = u - spread_u, u_high = u + spread_u;
+    const double v_low = v - spread_v, v_high = v + spread_v;
+    if (u_high < -0.5 || v_high < -0.5 || u_low >= width - 0.5 || v_low >= height - 0.5) {
+      look.side = Side::free;
+      return look;
+    }
+    look.leaves_image =
         u_low < -0.5 || v_low < -0.5 || u_high >= width - 0.5 || v_high >= height - 0.5;
     // Every pixel that look_up may touch for a place in the ball.
-    const std::int32_t u0 = u_low < 0 ? 0 : static_cast<std::int32_t>(u_low);
-    const std::int32_t v0 = v_low < 0 ? 0 : static_cast<std::int32_t>(v_low);
-    const std::int32_t u1 = u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1);
-    const std::int32_t v1 =
-        v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1);
-    const InverseDepthRange range = range_of(u0, v0, u1, v1);
-    if (farthest * range.high < 1) return Side::free;
-    if (!leaves_image && nearest * range.low > 1) return Side::behind;
-    return Side::mixed;
+    look.pixels = {u_low < 0 ? 0 : static_cast<std::int32_t>(u_low),
+                   v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
+                   u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
+                   v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
+    cover(look);
+    if (farthest * look.range.high < 1) {
+      look.side = Side::free;
+    } else if (!look.leaves_image && nearest * look.range.low > 1) {
+      look.side = Side::behind;
+    }
+    return look;
+  }
+
+  // Whether the surface in a ball that was looked at is one plane, as far as the range of its
+  // pixels tells: the plane at its centre must predict their least and greatest inverse depth.
+  VPM_HD bool is_flat(const Look& look, Vec3 center, double radius, TangentPlane& plane) const {
+    if (look.leaves_image || !(look.range.low > 0)) return false;
+    const Reading reading = read(center);
+    if (!reading.known) return false;
+    plane = {reading.normal, reading.foot};
+    if (look.pixels.u1 - look.pixels.u0 <= kFewPixels &&
+        look.pixels.v1 - look.pixels.v0 <= kFewPixels)
+      return look.range.high - look.range.low <= kJump * look.range.high;
+    const double per_height = 1 / dot(plane.normal, plane.foot);
+    const double per_u = plane.normal.x * per_height / k.fx;
+    const double per_v = plane.normal.y * per_height / k.fy;
+    const PixelRectangle& t = look.tiles;
+    const double u = 0.5 * (t.u0 + t.u1) - k.cx, v = 0.5 * (t.v0 + t.v1) - k.cy;
+    const double middle = per_u * u + per_v * v + plane.normal.z * per_height;
+    const double spread =
+        0.5 * (std::fabs(per_u) * (t.u1 - t.u0) + std::fabs(per_v) * (t.v1 - t.v0));
+    const double tolerance = kFlatness * radius / (plane.foot.z * plane.foot.z);
+    return std::fabs(middle - spread - look.range.low) <= tolerance &&
+           std::fabs(middle + spread - look.range.high) <= tolerance;
+  }
+
+  // Bound of the distance from any place in a ball that was looked at to the foot of its reading.
+  VPM_HD double largest_gap(const Look& look, Vec3 center, double radius) const {
+    const double nearest = center.z - radius, farthest = center.z + radius;
+    if (!(nearest > 0 && look.range.high > 0)) return HUGE_VAL;
+    return (farthest - 1 / double{look.range.high}) * ((norm(center) + radius) / nearest);
   }
 
  private:
-  // Range of a rectangle of pixels, from at most 3 by 3 tiles that cover it.
-  VPM_HD InverseDepthRange range_of(std::int32_t u0, std::int32_t v0, std::int32_t u1,
-                                    std::int32_t v1) const {
+  // Takes the range of the look's pixels from at most 3 by 3 tiles.
+  VPM_HD void cover(Look& look) const {
+    const PixelRectangle& p = look.pixels;
     int level = 0;
-    while (level + 1 < levels && ((u1 - u0) >> level > 1 || (v1 - v0) >> level > 1)) ++level;
+    while (level + 1 < levels && ((p.u1 - p.u0) >> level > 1 || (p.v1 - p.v0) >> level > 1))
+      ++level;
     const std::int32_t row = tiles_per_row(level);
-    InverseDepthRange all = tiles[level][(v0 >> level) * row + (u0 >> level)];
-    for (std::int32_t v = v0 >> level; v <= v1 >> level; ++v) {
-      for (std::int32_t u = u0 >> level; u <= u1 >> level; ++u) {
+    const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
+    const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
+    InverseDepthRange all = tiles[level][v0 * row + u0];
+    for (std::int32_t v = v0; v <= v1; ++v) {
+      for (std::int32_t u = u0; u <= u1; ++u) {
         const InverseDepthRange tile = tiles[level][v * row + u];
         all.low = tile.low < all.low ? tile.low : all.low;
         all.high = tile.high > all.high ? tile.high : all.high;
       }
     }
-    return all;
+    const std::int32_t right = ((u1 + 1) << level) - 1, bottom = ((v1 + 1) << level) - 1;
+    look.range = all;
+    look.tiles = {u0 << level, v0 << level, right < width ? right : width - 1,
+                  bottom < height ? bottom : height - 1};
   }
 };
 

@@ -104,6 +104,16 @@ struct DiskSurface {
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return nearest(center, radius + largest_radius) == kNone ? Side::uncut : Side::mixed;
   }
+
+  // Each disk is a plane of its own: nothing is taken for flat, and no bound of the gap is known.
+  struct Look {
+    Side side = Side::free;
+  };
+  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
+    return {side_of_ball(center, radius)};
+  }
+  VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
+  VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
 };
 
 }  // namespace vpm

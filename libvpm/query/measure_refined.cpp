@@ -1,6 +1,7 @@
 #include "libvpm/query/measure_refined.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/passage.h"
@@ -22,7 +23,10 @@ std::vector<BlockMass> block_masses(const Level& level) {
 }
 
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
-    : tool_(tool), level_(level), masses_(block_masses(level)) {
+    : tool_(tool),
+      level_(level),
+      masses_(block_masses(level)),
+      clusters_(cluster_shares(tool, level)) {
   cells_.resize(level.sphere_count);
   results_.resize(level.sphere_count);
   passages_.resize(level.sphere_count);
@@ -41,25 +45,27 @@ CellView RefinedMeasure::cell(std::uint32_t i) const {
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose,
                            std::vector<SphereState>& states) {
   const Pose from_center_of_mass{pose.rotation, pose * tool_.center_of_mass};
+  const PointsOfSphere points(cloud, pose);
   if (cloud.is_organised()) {
     const Pose& frame = cloud.camera_to_world();
     return run_on(cloud.depth_surface(), relative_to(frame, from_center_of_mass), frame.rotation,
-                  states);
+                  points, states);
   }
   return run_on(cloud.disk_surface(), relative_to({{}, cloud.origin()}, from_center_of_mass),
-                Rotation{}, states);
+                Rotation{}, points, states);
 }
 
 template <class Surface>
 Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
-                              const Rotation& to_world, std::vector<SphereState>& states) {
-  classify(surface, to_surface);
+                              const Rotation& to_world, const PointsOfSphere& points,
+                              std::vector<SphereState>& states) {
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  Result result;
+  result.points = classify(surface, to_surface, points);
   flood(surface, to_surface);
   count_inside(surface, to_surface);
 
   ToolSum sum;
-  Result result;
-  std::fill(states.begin(), states.end(), SphereState::outside);
   for (const std::uint32_t i : cut_) {
     states[i] = SphereState::boundary;
     sum.add(results_[i].sum);
@@ -75,26 +81,61 @@ Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
   return result;
 }
 
+// Of clusters first: what holds for a ball holds for the balls in it.
 template <class Surface>
-void RefinedMeasure::classify(const Surface& surface, const Pose& to_surface) {
-  constexpr std::size_t kGrain = 32;
-  parallel_for(level_.sphere_count, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const CellView view = cell(static_cast<std::uint32_t>(i));
-      const Side side = surface.side_of_ball(to_surface * view.center, view.reach);
-      if (side == Side::free) {
-        cells_[i] = Cell::free;
-      } else if (side == Side::behind) {
-        cells_[i] = Cell::whole;
-      } else if (side == Side::uncut) {
-        cells_[i] = Cell::open;
+std::uint32_t RefinedMeasure::classify(const Surface& surface, const Pose& to_surface,
+                                       const PointsOfSphere& points) {
+  std::atomic<std::uint32_t> found{0};
+  constexpr std::size_t kGrain = 4;
+  parallel_for(clusters_.clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t found_here = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      const ShareCluster& cluster = clusters_.clusters[c];
+      const Vec3 center = to_surface * cluster.center;
+      const auto look = surface.look_at_ball(center, cluster.reach);
+      if (look.side == Side::mixed) {
+        for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
+          found_here += classify_share(surface, to_surface, points, clusters_.shares[k]);
+      } else if (look.side == Side::behind) {
+        const bool near = surface.largest_gap(look, center, cluster.reach) < tool_.reach;
+        set_cells(cluster, Cell::whole, near ? Passage::near : Passage::unknown);
       } else {
-        results_[i] = CellMeasure(surface, to_surface, tool_.reach, view).run();
-        const bool counts = results_[i].sum.volume.value > 0;
-        cells_[i] = results_[i].plane.count > 0 ? Cell::cut : (counts ? Cell::partial : Cell::free);
+        set_cells(cluster, look.side == Side::free ? Cell::free : Cell::open, Passage::unknown);
       }
     }
+    if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
   });
+  return found;
+}
+
+void RefinedMeasure::set_cells(const ShareCluster& cluster, Cell cell, Passage passage) {
+  for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
+    cells_[clusters_.shares[k]] = cell;
+    passages_[clusters_.shares[k]] = passage;
+  }
+}
+
+template <class Surface>
+std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose& to_surface,
+                                             const PointsOfSphere& points, std::uint32_t i) {
+  passages_[i] = Passage::unknown;
+  const CellView view = cell(i);
+  const Side side = surface.side_of_ball(to_surface * view.center, view.reach);
+  if (side == Side::free) {
+    cells_[i] = Cell::free;
+  } else if (side == Side::behind) {
+    cells_[i] = Cell::whole;
+  } else if (side == Side::uncut) {
+    cells_[i] = Cell::open;
+  } else {
+    results_[i] = CellMeasure(surface, to_surface, tool_.reach, view).run();
+    const bool counts = results_[i].sum.volume.value > 0;
+    cells_[i] = results_[i].plane.count > 0 ? Cell::cut : (counts ? Cell::partial : Cell::free);
+    const Sphere& sphere = tool_.spheres[i];
+    const auto look = surface.look_at_ball(to_surface * view.center, sphere.radius);
+    if (look.side == Side::mixed) return points.count(sphere, look);
+  }
+  return 0;
 }
 
 // The surface enters the tool through cut shares; from there every share behind it that the graph
@@ -102,7 +143,6 @@ void RefinedMeasure::classify(const Surface& surface, const Pose& to_surface) {
 template <class Surface>
 void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
   const SphereGraph& graph = level_.graph;
-  std::fill(passages_.begin(), passages_.end(), Passage::unknown);
   cut_.clear();
   inside_.clear();
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
@@ -115,7 +155,7 @@ void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
   for (const std::uint32_t i : cut_) {
     for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
       const std::uint32_t j = graph.neighbors[k];
-      if (is_passable(surface, to_surface, j) && enters(to_surface, i, j)) take(j);
+      if (is_passable(surface, to_surface, j) && enters(surface, to_surface, i, j)) take(j);
     }
   }
   for (std::size_t next = 0; next < inside_.size(); ++next) {
@@ -133,9 +173,16 @@ void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface
   parallel_for(inside_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const std::uint32_t i = inside_[k];
+      const bool whole = cells_[i] == Cell::whole;
+      if (!whole && !results_[i].is_far) continue;
       const auto nearest = [&] { return cut_share(to_surface, nearest_cut(i)); };
-      results_[i].sum = CellMeasure(surface, to_surface, tool_.reach, cell(i))
-                            .reached(cells_[i] == Cell::whole, nearest);
+      const CellMeasure measure(surface, to_surface, tool_.reach, cell(i));
+      if (whole && is_compact(level_.share_reach[i], tool_.reach)) {
+        results_[i].sum = ToolSum{};
+        measure.add_reached(nearest, piece_of(clusters_.masses[i]), results_[i].sum);
+      } else {
+        results_[i].sum = measure.reached(whole, nearest);
+      }
     }
   });
 }
@@ -144,7 +191,7 @@ template <class Surface>
 bool RefinedMeasure::is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t j) {
   if (cells_[j] == Cell::free || cells_[j] == Cell::cut) return false;
   if (passages_[j] == Passage::unknown) passages_[j] = find_passage(surface, to_surface, j);
-  return passages_[j] == Passage::open;
+  return passages_[j] == Passage::near || passages_[j] == Passage::open;
 }
 
 template <class Surface>
@@ -161,7 +208,14 @@ RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, con
   return cut_share(to_surface, nearest_cut(j)).height(at) < 0 ? Passage::open : Passage::closed;
 }
 
-bool RefinedMeasure::enters(const Pose& to_surface, std::uint32_t cut, std::uint32_t sphere) const {
+template <class Surface>
+bool RefinedMeasure::enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut,
+                            std::uint32_t sphere) {
+  if (passages_[sphere] == Passage::near) {
+    const Vec3 at = to_surface * cell(sphere).center;
+    squared_gaps_[sphere] = squared_gap(at, surface.read(at));
+    passages_[sphere] = Passage::open;
+  }
   return lies_near_sheet(squared_gaps_[sphere], level_.share_reach[cut],
                          level_.share_reach[sphere]) ||
          cut_share(to_surface, cut).height(to_surface * cell(sphere).center) < 0;

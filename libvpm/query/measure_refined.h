@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "libvpm/query/cell.h"
+#include "libvpm/query/points_inside.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/result.h"
+#include "libvpm/query/share_clusters.h"
 
 namespace vpm {
 
@@ -30,13 +32,25 @@ class RefinedMeasure {
   };
 
   // Whether the flood may pass a share that is not cut.
-  enum class Passage : std::uint8_t { unknown, closed, open, taken };
+  enum class Passage : std::uint8_t {
+    unknown,
+    closed,
+    open,
+    near,  // open: no place of its cluster is further behind the surface than the tool's reach
+    taken,
+  };
 
   template <class Surface>
   Result run_on(const Surface& surface, const Pose& to_surface, const Rotation& to_world,
-                std::vector<SphereState>& states);
+                const PointsOfSphere& points, std::vector<SphereState>& states);
+  // Returns the number of points in spheres.
   template <class Surface>
-  void classify(const Surface& surface, const Pose& to_surface);
+  std::uint32_t classify(const Surface& surface, const Pose& to_surface,
+                         const PointsOfSphere& points);
+  template <class Surface>
+  std::uint32_t classify_share(const Surface& surface, const Pose& to_surface,
+                               const PointsOfSphere& points, std::uint32_t sphere);
+  void set_cells(const ShareCluster& cluster, Cell cell, Passage passage);
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
@@ -45,19 +59,23 @@ class RefinedMeasure {
   bool is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
   template <class Surface>
   Passage find_passage(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
-  bool enters(const Pose& to_surface, std::uint32_t cut, std::uint32_t sphere) const;
+  template <class Surface>
+  bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut,
+              std::uint32_t sphere);
   std::uint32_t nearest_cut(std::uint32_t sphere) const;
   CutShare cut_share(const Pose& to_surface, std::uint32_t cut) const;
   CellView cell(std::uint32_t sphere) const;
 
   const ToolModel& tool_;
   const Level& level_;
-  std::vector<BlockMass> masses_;
+  std::vector<BlockMass> masses_;  // of each block
+  ShareClusters clusters_;
   std::vector<Cell> cells_;
   std::vector<CellResult> results_;
   std::vector<Passage> passages_;
-  std::vector<double> squared_gaps_;  // to the foot of the centre's reading, where passable; m^2
-  std::vector<std::uint32_t> cut_, inside_;  // spheres that the surface cuts, that the flood took
+  std::vector<double> squared_gaps_;   // to the foot of the centre's reading, where asked; m^2
+  std::vector<std::uint32_t> cut_;     // spheres that the surface cuts, ascending
+  std::vector<std::uint32_t> inside_;  // spheres that the flood took, in the order of the flood
 };
 
 }  // namespace vpm

@@ -55,4 +55,40 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
   return total;
 }
 
+// The same points of one sphere at a time, for those who know which spheres have any.
+class PointsOfSphere {
+ public:
+  PointsOfSphere(const PreparedCloud& cloud, const Pose& pose)
+      : cloud_(cloud),
+        to_tool_(relative_to(pose, {{}, cloud.origin()})),
+        to_cloud_(relative_to({{}, cloud.origin()}, pose)) {}
+
+  // `look`: what the cloud's surface says of the sphere.
+  std::uint32_t count(const Sphere& sphere, const DepthSurface::Look& look) const {
+    std::uint32_t found = 0;
+    cloud_.for_ranges_in_pixels(look.pixels, [&](std::uint32_t begin, std::uint32_t end) {
+      found += count(sphere, begin, end);
+    });
+    return found;
+  }
+  std::uint32_t count(const Sphere& sphere, const DiskSurface::Look&) const {
+    std::uint32_t found = 0;
+    cloud_.for_ranges_in_ball(
+        to_cloud_ * sphere.center, sphere.radius,
+        [&](std::uint32_t begin, std::uint32_t end) { found += count(sphere, begin, end); });
+    return found;
+  }
+
+ private:
+  std::uint32_t count(const Sphere& sphere, std::uint32_t begin, std::uint32_t end) const {
+    std::uint32_t found = 0;
+    for (std::uint32_t k = begin; k < end; ++k)
+      found += strictly_inside(sphere, to_tool_ * widen(cloud_.positions()[k]));
+    return found;
+  }
+
+  const PreparedCloud& cloud_;
+  Pose to_tool_, to_cloud_;
+};
+
 }  // namespace vpm

@@ -48,6 +48,9 @@ class PreparedCloud {
   // origin()), and others.
   template <class Visit>
   void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const;
+  // Of organised clouds: for the points of these pixels.
+  template <class Visit>
+  void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
 
  private:
   void order_by_pixel(const Cloud& cloud);
@@ -73,15 +76,19 @@ class PreparedCloud {
 };
 
 template <class Visit>
+void PreparedCloud::for_ranges_in_pixels(const PixelRectangle& r, const Visit& visit) const {
+  for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
+    const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
+    const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];
+    const std::uint32_t end = pixel_begin_[row + static_cast<std::size_t>(r.u1) + 1];
+    if (begin < end) visit(begin, end);
+  }
+}
+
+template <class Visit>
 void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const {
   if (is_organised()) {
-    const PixelRectangle r = pixels_of_ball(center, radius);
-    for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
-      const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
-      const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];
-      const std::uint32_t end = pixel_begin_[row + static_cast<std::size_t>(r.u1) + 1];
-      if (begin < end) visit(begin, end);
-    }
+    for_ranges_in_pixels(pixels_of_ball(center, radius), visit);
     return;
   }
   const DiskSurface disks = disk_surface();

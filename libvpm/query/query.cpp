@@ -5,7 +5,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/query/points_inside.h"
 
 namespace vpm {
 namespace {
@@ -56,8 +55,6 @@ Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
     result = paper_->run(cloud, pose, states_);
   } else {
     result = refined_->run(cloud, pose, states_);
-    result.points = for_points_inside(cloud, tool_, level_, PointLocation::grid, pose, ranges_,
-                                      [](std::uint32_t, std::uint32_t, Vec3) {});
   }
   scale(result);
   return result;

@@ -25,7 +25,7 @@ struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
   PointLocation location = PointLocation::grid;
-  Device device;         // device_from_text(); the tool's level is copied there
+  Device device = {};    // device_from_text(); the tool's level is copied there
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
@@ -58,7 +58,6 @@ class Query {
   std::unique_ptr<RefinedMeasure> refined_;
   std::unique_ptr<DeviceMeasure> device_;
   mutable std::vector<SphereState> states_;
-  PointRanges ranges_;
 };
 
 }  // namespace vpm

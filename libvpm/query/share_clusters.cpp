@@ -6,6 +6,10 @@
 namespace vpm {
 namespace {
 
+// Balls of more than a few shares, and few of them: most are decided at once, and those that the
+// surface may pass hold few shares.
+constexpr double kClusterReach = 0.1;  // of the tool's reach
+
 double coordinate(Vec3 v, int axis) {
   return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
 }
@@ -38,7 +42,7 @@ class Clustering {
     return mass;
   }
 
-  // Halves the longest side of the centres' box until what is left is compact.
+  // Halves the longest side of the centres' box until what is left is small.
   void split(std::uint32_t begin, std::uint32_t end) {
     Vec3 low = center(out_.shares[begin]), high = low;
     for (std::uint32_t k = begin; k < end; ++k) {
@@ -46,13 +50,12 @@ class Clustering {
       low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
       high = {std::max(high.x, c.x), std::max(high.y, c.y), std::max(high.z, c.z)};
     }
-    ShareCluster cluster{begin, end, 0.5 * (low + high), 0, {}};
+    ShareCluster cluster{begin, end, 0.5 * (low + high), 0};
     for (std::uint32_t k = begin; k < end; ++k) {
-      cluster.reach =
-          std::max(cluster.reach, norm(center(out_.shares[k]) - cluster.center) +
-                                      level_.share_reach[out_.shares[k]]);
+      cluster.reach = std::max(cluster.reach, norm(center(out_.shares[k]) - cluster.center) +
+                                                  level_.share_reach[out_.shares[k]]);
     }
-    if (end - begin == 1 || is_compact(cluster.reach, tool_.reach)) {
+    if (end - begin == 1 || cluster.reach <= kClusterReach * tool_.reach) {
       keep(cluster);
       return;
     }
@@ -71,13 +74,6 @@ class Clustering {
 
   void keep(ShareCluster cluster) {
     std::sort(out_.shares.begin() + cluster.begin, out_.shares.begin() + cluster.end);
-    Vec3 moment;
-    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
-      const BlockMass& mass = out_.masses[out_.shares[k]];
-      cluster.mass.weight += mass.weight;
-      moment += mass.weight * mass.centroid;
-    }
-    cluster.mass.centroid = cluster.mass.weight > 0 ? moment / cluster.mass.weight : cluster.center;
     // Rounding must not let a share's ball leave its cluster's.
     constexpr double kRounding = 1 + 1e-12;
     cluster.reach *= kRounding;

@@ -1,4 +1,4 @@
-// Shares of a level in compact groups: what happens to a group as a whole is decided once.
+// Shares of a level in compact groups: what is seen of a group as a whole is decided once.
 #pragma once
 
 #include <vector>
@@ -11,18 +11,17 @@ struct ShareCluster {
   std::uint32_t begin = 0, end = 0;  // rows of ShareClusters::shares
   Vec3 center;                       // of a ball that encloses the shares, about the centre of mass
   double reach = 0;                  // radius of that ball
-  BlockMass mass;                    // of all its shares
 };
 
-// Every share lies in one cluster. A cluster of more than one share is a compact piece.
+// Every share lies in one cluster.
 struct ShareClusters {
   std::vector<ShareCluster> clusters;
   std::vector<std::uint32_t> shares;  // ascending within a cluster
   std::vector<BlockMass> masses;      // of each share
 };
 
-// Pieces of the tool up to this part of its reach are counted by their centroid where they lie
-// wholly behind the surface. README.md has what that costs.
+// A share up to this part of the tool's reach that lies wholly behind the surface is counted by its
+// centroid. README.md has what that costs.
 inline constexpr double kCompactReach = 0.125;
 
 VPM_HD constexpr bool is_compact(double reach, double tool_reach) {

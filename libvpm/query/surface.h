@@ -26,4 +26,12 @@ struct Reading {
   Vec3 foot;            // the surface point that was read
 };
 
+// The surface in a ball, where it is flat: a plane.
+struct TangentPlane {
+  Vec3 normal;  // unit, into free space
+  Vec3 foot;    // a point of the plane
+
+  VPM_HD double distance(Vec3 x) const { return dot(normal, x - foot); }
+};
+
 }  // namespace vpm

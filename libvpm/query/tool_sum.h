@@ -15,8 +15,10 @@ struct ToolSum {
   using Sum = FixedSum<60>;
   Sum volume, force[3], torque[3];
 
-  VPM_HD void add(double part, Vec3 normal, Vec3 arm) {
-    const Vec3 f = part * normal, t = cross(arm, f);
+  VPM_HD void add(double part, Vec3 normal, Vec3 arm) { add_moment(part, part * arm, normal); }
+  // Of several parts pushed in one direction: their sum, and the sum of each times its arm.
+  VPM_HD void add_moment(double part, Vec3 moment, Vec3 normal) {
+    const Vec3 f = part * normal, t = cross(moment, normal);
     volume.add(part);
     force[0].add(f.x), force[1].add(f.y), force[2].add(f.z);
     torque[0].add(t.x), torque[1].add(t.y), torque[2].add(t.z);

@@ -29,10 +29,10 @@ inline unsigned processor_count() {
 }
 
 // Blocks that fill the device, as far as their memory takes no more than a quarter of it.
-inline unsigned teams_that_fit(std::size_t spheres, std::size_t bytes_per_sphere) {
+inline unsigned teams_that_fit(std::size_t bytes_of_team) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total));
-  const std::size_t fit = total / 4 / (std::max<std::size_t>(spheres, 1) * bytes_per_sphere);
+  const std::size_t fit = std::min(free, total / 4) / std::max<std::size_t>(bytes_of_team, 1);
   const std::size_t wanted = std::size_t{kBlocksPerProcessor} * processor_count();
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }

@@ -8,19 +8,23 @@
 namespace vpm::cuda {
 namespace {
 
-// Threads that measure one share together: about its number of samples, up to a warp.
-std::uint32_t lanes_per_share(const Level& level) {
-  std::uint32_t lanes = 1;
-  while (lanes < 32 && std::size_t{lanes} * level.sphere_count < level.samples.size()) lanes *= 2;
-  return lanes;
+std::vector<Unit> units_of(const Level& level) {
+  std::vector<Unit> units;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
+    if (begin == end) units.push_back({i, Unit::kNoBlock});
+    for (std::uint32_t b = begin; b < end; ++b) units.push_back({i, b});
+  }
+  return units;
 }
 
-std::vector<std::uint32_t> blocks_of_samples(const Level& level) {
-  std::vector<std::uint32_t> block_of(level.samples.size());
-  for (std::uint32_t b = 0; b < level.blocks.size(); ++b) {
-    for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) block_of[s] = b;
+std::vector<std::uint32_t> clusters_of_shares(const ShareClusters& clusters) {
+  std::vector<std::uint32_t> cluster_of(clusters.shares.size());
+  for (std::uint32_t c = 0; c < clusters.clusters.size(); ++c) {
+    const ShareCluster& cluster = clusters.clusters[c];
+    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) cluster_of[clusters.shares[k]] = c;
   }
-  return block_of;
+  return cluster_of;
 }
 
 std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
@@ -32,29 +36,38 @@ std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
 
 }  // namespace
 
-DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level)
+DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters)
     : spheres_(tool.spheres.data(), level.sphere_count),
       centers_(centers_of(tool, level)),
       reach_(level.share_reach),
       block_begin_(level.block_begin),
-      block_of_(blocks_of_samples(level)),
       edge_begin_(level.graph.begin),
       neighbors_(level.graph.neighbors),
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
+      clustered_(clusters.shares),
+      cluster_of_(clusters_of_shares(clusters)),
       blocks_(level.blocks),
-      masses_(block_masses(level)),
-      samples_(level.samples) {
+      block_masses_(block_masses(level)),
+      share_masses_(clusters.masses),
+      samples_(level.samples),
+      units_(units_of(level)),
+      clusters_(clusters.clusters) {
   view_.count = level.sphere_count;
-  view_.lanes_per_share = lanes_per_share(level);
+  view_.unit_count = static_cast<std::uint32_t>(units_.size());
+  view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
   view_.spheres = spheres_.get();
   view_.centers = centers_.get();
   view_.reach = reach_.get();
   view_.block_begin = block_begin_.get();
   view_.blocks = blocks_.get();
-  view_.masses = masses_.get();
+  view_.block_masses = block_masses_.get();
   view_.samples = samples_.get();
-  view_.block_of = block_of_.get();
+  view_.units = units_.get();
+  view_.clusters = clusters_.get();
+  view_.clustered = clustered_.get();
+  view_.cluster_of = cluster_of_.get();
+  view_.share_masses = share_masses_.get();
   view_.edge_begin = edge_begin_.get();
   view_.neighbors = neighbors_.get();
   view_.grid = view_of(level.grid);

@@ -26,18 +26,23 @@ class CurrentDevice {
 
 class DeviceLevel {
  public:
-  DeviceLevel(const ToolModel& tool, const Level& level);
+  DeviceLevel(const ToolModel& tool, const Level& level)
+      : DeviceLevel(tool, level, cluster_shares(tool, level)) {}
   const LevelView& view() const { return view_; }
 
  private:
+  DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters);
+
   DeviceArray<Sphere> spheres_;
   DeviceArray<Vec3> centers_;
   DeviceArray<double> reach_;
-  DeviceArray<std::uint32_t> block_begin_, block_of_, edge_begin_, neighbors_, grid_begin_,
-      grid_spheres_;
+  DeviceArray<std::uint32_t> block_begin_, edge_begin_, neighbors_, grid_begin_, grid_spheres_,
+      clustered_, cluster_of_;
   DeviceArray<CellBlock> blocks_;
-  DeviceArray<BlockMass> masses_;
+  DeviceArray<BlockMass> block_masses_, share_masses_;
   DeviceArray<CellSample> samples_;
+  DeviceArray<Unit> units_;
+  DeviceArray<ShareCluster> clusters_;
   LevelView view_;
 };
 

@@ -1,11 +1,14 @@
 // The refined measure by a team of threads: the same functions, and so the same bits, as
 // libvpm/query/measure_refined.cpp.
 //
-// 1. Each share is classified by one thread; those that may count are measured by a tile of
-//    threads, also those of which only the flood will decide: most are inside.
+// 1. Units (blocks of shares) and clusters are classified by a thread each. What may count is
+//    listed and measured by a few threads together; also what only the flood will decide, since
+//    most of it is inside.
 // 2. Shares that the flood may pass are joined where the graph has an edge, and with the entry
 //    where a cut share lets the flood in.
-// 3. What is joined with the entry is inside.
+// 3. What is joined with the entry is inside, and is added up by clusters.
+// The team meets between these steps. Where another surface may hide something, which is rare, it
+// meets more often.
 #pragma once
 
 #include "libvpm/query/cuda/points.h"
@@ -16,36 +19,52 @@
 
 namespace vpm::cuda {
 
-// What is known of a share; flags may be added to `partial` and `whole`.
-enum ShareKind : std::uint8_t {
-  kFree,
-  kCut,
-  kPartial,
-  kWhole,
-  kMixed,  // to be measured
-  kOpen,   // its centre decides
-};
+// What is known of a share. A divided share that is `mixed` is resolved by its sums once all its
+// units are measured.
+enum ShareKind : std::uint8_t { kFree, kCut, kPartial, kWhole, kMixed };
 inline constexpr std::uint8_t kKindMask = 0x07;
 inline constexpr std::uint8_t kHidden = 0x10;  // by a surface that may be another one
-inline constexpr std::uint8_t kUnsure = 0x20;  // parts of it need the nearest cut share's plane
+inline constexpr std::uint8_t kUnsure = 0x20;  // a piece of it needs the nearest cut share's plane
+inline constexpr std::uint8_t kNear = 0x40;    // its gap has not been read: it is small
 
+__device__ inline bool is_whole(std::uint8_t kind) {
+  return (kind & kKindMask) == kWhole;
+}
 __device__ inline bool may_be_inside(std::uint8_t kind) {
-  return (kind & kKindMask) == kPartial || (kind & kKindMask) == kWhole;
+  return is_whole(kind) || (kind & kKindMask) == kPartial;
 }
 __device__ inline bool is_passable(std::uint8_t kind) {
   return may_be_inside(kind) && (kind & kHidden) == 0;
 }
 
+// What is known of measured shares. Of divided ones it is 0 at the start of a query, since many add
+// to it.
+struct MeasuredShares {
+  ToolSum* sums = nullptr;
+  ContactPlane* planes = nullptr;  // of cut shares
+  unsigned* marks = nullptr;       // of divided shares: kHidden (pieces of it), kUnsure
+
+  __device__ void clear(std::uint32_t i) const {
+    sums[i] = ToolSum{};
+    planes[i] = ContactPlane{};
+    marks[i] = 0;
+  }
+};
+
 // Memory of one query.
 struct RefinedSpace {
-  std::uint8_t* kinds = nullptr;     // of each sphere
+  std::uint8_t* kinds = nullptr;     // of each share
   double* gaps = nullptr;            // squared_gap of shares that may be inside
-  ToolSum* sums = nullptr;           // of measured shares
-  ContactPlane* planes = nullptr;    // of cut shares
-  std::uint32_t* parents = nullptr;  // count + 1: the entry, then spheres
-  std::uint32_t* work = nullptr;     // spheres to be measured, by parts of the team
-  std::uint32_t* cut = nullptr;      // cut spheres, where anything is hidden
+  MeasuredShares measured[2];        // of this query and, cleared by it, of the next: by turns
+  std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
   SphereState* states = nullptr;
+  std::uint32_t* cut = nullptr;     // the cut shares
+  std::uint32_t* wide = nullptr;    // units to be measured by a warp each, by parts of the team
+  std::uint32_t* narrow = nullptr;  // units and clusters to be measured by a few threads each
+  std::uint32_t* shares = nullptr;  // that are not free
+  Side* cluster_sides = nullptr;
+  bool* cluster_near = nullptr;  // whether `cluster_sums` holds a cluster as one piece
+  ToolSum* cluster_sums = nullptr;
 };
 
 // Counters of a team; 0 at the start.
@@ -54,19 +73,36 @@ struct RefinedCounters {
   unsigned cut = 0;
 };
 
+// Threads that measure a block of few samples together, and the most samples of such a block.
+inline constexpr unsigned kNarrow = 4, kNarrowSamples = 16;
+
 template <class Surface, class Team>
 class RefinedQuery {
  public:
   __device__ RefinedQuery(const LevelView& level, const Surface& surface, const PoseFrame& frame,
-                          const RefinedSpace& space, RefinedCounters& counters, Team& team)
+                          const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
+                          Team& team)
       : level_(level),
         surface_(surface),
         frame_(frame),
         space_(space),
+        measured_(space.measured[turn % 2]),
+        next_(space.measured[(turn + 1) % 2]),
         counters_(counters),
         team_(team),
         share_(team.spheres()),
         flood_(space.parents) {}
+
+  // Whether a sphere's points are counted: only spheres that the surface may pass have any.
+  __device__ static bool counts_points(const LevelView& level, const Surface& surface,
+                                       const PoseFrame& frame, std::uint32_t i) {
+    const auto is_mixed = [&](Vec3 at, double radius) {
+      return surface.side_of_ball(frame.to_surface * at, radius) == Side::mixed;
+    };
+    const ShareCluster& cluster = level.clusters[level.cluster_of[i]];
+    return is_mixed(cluster.center, cluster.reach) && is_mixed(level.centers[i], level.reach[i]) &&
+           is_mixed(level.centers[i], level.spheres[i].radius);
+  }
 
   // This thread's part of the result's sum and counts; `points` apart. Blocks without spheres need
   // not call it.
@@ -74,186 +110,346 @@ class RefinedQuery {
     list_work();
     measure_work();
     team_.sync();
-    if (volatile_load(counters_.hidden) > 0) decide_hidden();
-    join_work();
+    if (hidden() > 0) decide_hidden();
+    join_shares();
     team_.sync();
-    if (volatile_load(counters_.hidden) > 0) measure_unsure();
-    return add_up_work();
+    return add_up_clusters();
   }
 
  private:
-  // This block's spheres are part, part + parts, ...; its list of work has room for them all.
-  __device__ std::uint32_t work_begin() const {
-    const std::uint32_t rest = level_.count % share_.parts;
-    return share_.part * (level_.count / share_.parts) + min(share_.part, rest);
+  using Measure = CellMeasure<Surface>;
+  // Marks in lists of work: a cluster, a unit of a share that is whole.
+  static constexpr std::uint32_t kClusterItem = 0x80000000U, kWholeItem = 0x40000000U;
+
+  // Where this block's rows begin in a list dealt out as part, part + parts, ...
+  __device__ std::uint32_t first_of(std::uint32_t count) const {
+    return share_.part * (count / share_.parts) + min(share_.part, count % share_.parts);
   }
-  __device__ std::uint32_t work(std::uint32_t k) const { return space_.work[work_begin() + k]; }
-  __device__ static unsigned volatile_load(const unsigned& value) {
-    return *static_cast<const volatile unsigned*>(&value);
+  __device__ std::uint32_t* wide() const { return space_.wide + first_of(level_.unit_count); }
+  __device__ std::uint32_t* narrow() const {
+    return space_.narrow + first_of(level_.unit_count) + first_of(level_.cluster_count);
+  }
+  __device__ std::uint32_t* shares() const { return space_.shares + first_of(level_.unit_count); }
+
+  __device__ unsigned hidden() const {
+    return *const_cast<const volatile unsigned*>(&counters_.hidden);
   }
   __device__ Vec3 center(std::uint32_t i) const { return frame_.to_surface * level_.centers[i]; }
   __device__ CutShare cut_share(std::uint32_t cut) const {
-    return {space_.planes[cut], center(cut), level_.reach[cut]};
+    return {measured_.planes[cut], center(cut), level_.reach[cut]};
   }
-  __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
+  __device__ Measure measure_of(const CellView& view) const {
     return {surface_, frame_.to_surface, level_.tool_reach, view};
   }
+  __device__ bool is_compact_share(std::uint32_t i) const {
+    return is_compact(level_.reach[i], level_.tool_reach);
+  }
+  // Whether a whole share counts by its cluster if all of that is inside: then it is not measured
+  // before.
+  __device__ bool is_left_to_cluster(Side side, const ShareCluster& cluster) const {
+    return side != Side::mixed && is_compact(cluster.reach, level_.tool_reach);
+  }
+  __device__ std::uint8_t kind_of(std::uint32_t i) const;
 
   __device__ void list_work();
+  __device__ void list_unit(std::uint32_t index, unsigned (&listed)[3]);
   __device__ void measure_work();
-  __device__ void measure(const Tile& tile, std::uint32_t sphere);
-  __device__ std::uint8_t measure_mixed(const Tile& tile, std::uint32_t sphere,
-                                        const CellView& view);
-  __device__ std::uint8_t measure_candidate(const Tile& tile, std::uint32_t sphere,
-                                            const CellView& view, std::uint8_t kind);
-  template <class Visit>
-  __device__ void for_pieces(const Tile& tile, const CellMeasure<Surface>& measure,
-                             const CellView& view, bool whole, const Visit& visit) const;
+  __device__ void measure_mixed(const Tile& tile, const Unit& unit);
+  __device__ std::uint8_t measure_partial(const Tile& tile, const Unit& unit);
+  __device__ void measure_whole(const Unit& unit);
+  __device__ void measure_cluster(std::uint32_t index);
+  __device__ bool add_block(const Tile& tile, const Measure& measure, const CellView& view,
+                            std::uint32_t block, typename Measure::Pass pass,
+                            CellResult& result) const;
+  template <class Nearest>
+  __device__ void add_reached(const Tile& tile, const Measure& measure, const CellView& view,
+                              std::uint32_t block, const Nearest& nearest, ToolSum& sum) const;
+  __device__ std::uint8_t read_gap(std::uint32_t sphere) const;
   __device__ void decide_hidden();
+  __device__ void list_cut();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
-  __device__ void join_work();
+  __device__ void join_shares();
   __device__ void join(std::uint32_t sphere, std::uint8_t kind, std::uint32_t neighbor) const;
-  __device__ void measure_unsure();
-  __device__ RawResult add_up_work() const;
+  __device__ RawResult add_up_clusters() const;
+  __device__ void add_up_shares(const Tile& warp, std::uint32_t cluster, RawResult& result) const;
+  __device__ ToolSum sum_of_share(const Tile& warp, std::uint32_t sphere, std::uint8_t kind) const;
+  __device__ bool is_inside(std::uint32_t sphere, std::uint8_t kind) const {
+    return is_passable(kind) && flood_.root(sphere + 1) == 0;
+  }
 
   const LevelView& level_;
   const Surface& surface_;
   const PoseFrame& frame_;
   const RefinedSpace& space_;
+  const MeasuredShares &measured_, &next_;
   RefinedCounters& counters_;
   Team& team_;
   Share share_;
-  UnionFind flood_;  // node 0 is the entry, node i + 1 sphere i
-  std::uint32_t listed_ = 0;
+  UnionFind flood_;  // node 0 is the entry, node i + 1 share i
+  std::uint32_t wide_count_ = 0, narrow_count_ = 0, share_count_ = 0;  // of this block
 };
+
+__device__ inline void add_atomically(const ToolSum& part, ToolSum& sum) {
+  const auto add = [](const std::int64_t& term, std::int64_t& total) {
+    if (term != 0)
+      atomicAdd(reinterpret_cast<unsigned long long*>(&total),
+                static_cast<unsigned long long>(term));
+  };
+  add(part.volume.value, sum.volume.value);
+  for (int k = 0; k < 3; ++k) {
+    add(part.force[k].value, sum.force[k].value);
+    add(part.torque[k].value, sum.torque[k].value);
+  }
+}
+
+__device__ inline void add_atomically(const ContactPlane& part, ContactPlane& plane) {
+  const auto add = [](const std::int64_t& term, std::int64_t& total) {
+    atomicAdd(reinterpret_cast<unsigned long long*>(&total), static_cast<unsigned long long>(term));
+  };
+  if (part.count == 0) return;
+  for (int k = 0; k < 3; ++k) {
+    add(part.normal[k].value, plane.normal[k].value);
+    add(part.foot[k].value, plane.foot[k].value);
+  }
+  add(part.count, plane.count);
+}
+
+template <class Surface, class Team>
+__device__ std::uint8_t RefinedQuery<Surface, Team>::kind_of(std::uint32_t i) const {
+  const std::uint8_t kind = space_.kinds[i];
+  if ((kind & kKindMask) != kMixed) return kind;
+  if (measured_.planes[i].count > 0) return kCut;
+  return measured_.sums[i].volume.value > 0 ? kPartial | (kind & kHidden) : kFree;
+}
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::list_work() {
-  __shared__ unsigned listed;
+  __shared__ unsigned listed[3];
   __syncthreads();
-  if (threadIdx.x == 0) {
-    listed = 0;
-    if (share_.part == 0) flood_.reset(0);
+  if (threadIdx.x < 3) listed[threadIdx.x] = 0;
+  if (share_.part == 0 && threadIdx.x == 0) flood_.reset(0);
+  __syncthreads();
+  const std::uint32_t first = share_.part + threadIdx.x * share_.parts;
+  const std::uint32_t step = blockDim.x * share_.parts;
+  for (std::uint32_t c = first; c < level_.cluster_count; c += step) {
+    const ShareCluster& cluster = level_.clusters[c];
+    const Side side = surface_.side_of_ball(frame_.to_surface * cluster.center, cluster.reach);
+    space_.cluster_sides[c] = side;
+    if (side == Side::free) continue;
+    space_.cluster_near[c] = false;
+    if (is_compact(cluster.reach, level_.tool_reach))
+      narrow()[atomicAdd(&listed[1], 1U)] = c | kClusterItem;
   }
+  for (std::uint32_t u = first; u < level_.unit_count; u += step) list_unit(u, listed);
   __syncthreads();
-  for (std::uint32_t i = share_.part + threadIdx.x * share_.parts; i < level_.count;
-       i += blockDim.x * share_.parts) {
-    const Side side = surface_.side_of_ball(center(i), level_.reach[i]);
-    space_.kinds[i] = side == Side::free     ? kFree
-                      : side == Side::behind ? kWhole
-                      : side == Side::uncut  ? kOpen
-                                             : kMixed;
+  wide_count_ = listed[0];
+  narrow_count_ = listed[1];
+  share_count_ = listed[2];
+}
+
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, unsigned (&listed)[3]) {
+  const Unit unit = level_.units[index];
+  const std::uint32_t i = unit.share;
+  const bool head = level_.is_head(unit);
+  const ShareCluster& cluster = level_.clusters[level_.cluster_of[i]];
+  const Vec3 at = frame_.to_surface * cluster.center;
+  const auto look = surface_.look_at_ball(at, cluster.reach);
+  const Side side =
+      look.side == Side::mixed ? surface_.side_of_ball(center(i), level_.reach[i]) : look.side;
+  std::uint8_t kind = side == Side::free ? kFree : side == Side::mixed ? kMixed : kWhole;
+  if (side == Side::uncut) {
+    const Reading reading = surface_.read(center(i));
+    if (!(reading.known && reading.distance < 0)) kind = kFree;
+  }
+  if (kind == kWhole && look.side == Side::behind &&
+      surface_.largest_gap(look, at, cluster.reach) < level_.tool_reach)
+    kind |= kNear;
+  if (head) {
+    if (is_whole(kind) && (kind & kNear) == 0) kind |= read_gap(i);
+    if (kind == kMixed && level_.is_divided(i)) kind |= read_gap(i);
+    space_.kinds[i] = kind;
     space_.states[i] = SphereState::outside;
-    if (side != Side::free) space_.work[work_begin() + atomicAdd(&listed, 1U)] = i;
+    if (level_.is_divided(i)) next_.clear(i);
+    if (kind != kFree) {
+      flood_.reset(i + 1);
+      shares()[atomicAdd(&listed[2], 1U)] = i;
+    }
   }
-  __syncthreads();
-  listed_ = listed;
+  if (kind == kFree) return;
+  if (is_whole(kind) && (is_left_to_cluster(look.side, cluster) || (is_compact_share(i) && !head)))
+    return;
+  const bool is_piece = is_whole(kind) || unit.block == Unit::kNoBlock;
+  const bool is_wide =
+      !is_piece && level_.blocks[unit.block].end - level_.blocks[unit.block].begin > kNarrowSamples;
+  if (is_wide)
+    wide()[atomicAdd(&listed[0], 1U)] = index;
+  else
+    narrow()[atomicAdd(&listed[1], 1U)] = index | (is_whole(kind) ? kWholeItem : 0);
+}
+
+// The gap of a share's centre; returns kHidden, or 0.
+template <class Surface, class Team>
+__device__ std::uint8_t RefinedQuery<Surface, Team>::read_gap(std::uint32_t i) const {
+  const Vec3 at = center(i);
+  const double gap = squared_gap(at, surface_.read(at));
+  space_.gaps[i] = gap;
+  if (!is_hidden_share(gap, level_.tool_reach)) return 0;
+  atomicAdd(&counters_.hidden, 1U);
+  return kHidden;
 }
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::measure_work() {
-  const Tile tile(level_.lanes_per_share);
-  for (std::uint32_t k = tile.index(); k < listed_; k += tile.count()) measure(tile, work(k));
-}
-
-template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::measure(const Tile& tile, std::uint32_t i) {
-  const CellView view = level_.cell(i);
-  std::uint8_t kind = space_.kinds[i];
-  if (kind == kMixed) kind = measure_mixed(tile, i, view);
-  if (kind != kFree && kind != kCut) kind = measure_candidate(tile, i, view, kind);
-  if (!tile.leads()) return;
-  space_.kinds[i] = kind;
-  flood_.reset(i + 1);
-}
-
-// Visits the pieces of a share, each by one thread of the tile: blocks that the surface does not
-// pass as one piece, the others sample by sample; blocks only, where the share is `whole`.
-template <class Surface, class Team>
-template <class Visit>
-__device__ void RefinedQuery<Surface, Team>::for_pieces(const Tile& tile,
-                                                        const CellMeasure<Surface>& measure,
-                                                        const CellView& view, bool whole,
-                                                        const Visit& visit) const {
-  for (std::uint32_t first = view.begin; first < view.end; first += tile.width) {
-    const std::uint32_t b = first + tile.lane, end = min(first + tile.width, view.end);
-    Side side = Side::free;
-    if (b < end) side = whole ? Side::behind : measure.side_of(view.blocks[b]);
-    const std::uint32_t from = whole ? first : view.blocks[first].begin;
-    const std::uint32_t to = whole ? end : view.blocks[end - 1].end;
-    for (std::uint32_t piece = from; piece < to; piece += tile.width) {
-      const std::uint32_t at = piece + tile.lane;
-      const bool exists = at < to;
-      const std::uint32_t block = whole ? at : exists ? level_.block_of[at] : first;
-      const Side of_block =
-          static_cast<Side>(tile.from(static_cast<int>(side), exists ? block - first : 0));
-      if (!exists || of_block == Side::free) continue;
-      const bool sampled = of_block == Side::mixed;
-      if (!sampled && !whole && at != view.blocks[block].begin) continue;
-      visit(sampled ? piece_of(view.samples[at]) : piece_of(view.masses[block]));
-    }
+  const Tile warp(32), tile(kNarrow);
+  for (std::uint32_t k = warp.index(); k < wide_count_; k += warp.count())
+    measure_mixed(warp, level_.units[wide()[k]]);
+  // From the other end, so that warps without wide units begin with narrow ones.
+  for (std::uint32_t k = tile.count() - 1 - tile.index(); k < narrow_count_; k += tile.count()) {
+    const std::uint32_t item = narrow()[k];
+    if ((item & (kClusterItem | kWholeItem)) == 0)
+      measure_mixed(tile, level_.units[item]);
+    else if ((item & kWholeItem) != 0 && tile.leads())
+      measure_whole(level_.units[item & ~kWholeItem]);
+    else if (tile.leads())
+      measure_cluster(item & ~kClusterItem);
   }
 }
 
 template <class Surface, class Team>
-__device__ std::uint8_t RefinedQuery<Surface, Team>::measure_mixed(const Tile& tile,
-                                                                   std::uint32_t i,
-                                                                   const CellView& view) {
-  using Measure = CellMeasure<Surface>;
+__device__ void RefinedQuery<Surface, Team>::measure_cluster(std::uint32_t c) {
+  ToolSum sum;
+  space_.cluster_near[c] = measure_of({}).add_near(piece_of(level_.clusters[c].mass), sum);
+  space_.cluster_sums[c] = sum;
+}
+
+// What one block contributes to CellMeasure::run(). Returns whether something of it, of any thread,
+// was left for the second pass.
+template <class Surface, class Team>
+__device__ bool RefinedQuery<Surface, Team>::add_block(const Tile& tile, const Measure& measure,
+                                                       const CellView& view, std::uint32_t b,
+                                                       typename Measure::Pass pass,
+                                                       CellResult& result) const {
+  const CellBlock block = view.blocks[b];
+  const typename Measure::BlockLook look = measure.look_at(block);
+  bool hidden = false;
+  if (look.side == Side::mixed && !look.flat) {
+    for (std::uint32_t s = block.begin + tile.lane; s < block.end; s += tile.width)
+      hidden |= measure.add_piece(piece_of(view.samples[s]), pass, result);
+  } else if (look.side != Side::free && tile.leads()) {
+    if (look.side != Side::mixed)
+      hidden = measure.add_piece(piece_of(view.masses[b]), pass, result);
+    else if (pass == Measure::Pass::seen)
+      measure.add_flat(block, look.tangent, result);
+  }
+  return tile.any(hidden);
+}
+
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::measure_mixed(const Tile& tile, const Unit& unit) {
+  const std::uint32_t i = unit.share;
+  const CellView view = level_.cell(i);
   const Measure measure = measure_of(view);
   CellResult result;
   bool hidden = false;
-  for_pieces(tile, measure, view, false, [&](const SharePiece& piece) {
-    hidden |= measure.add_piece(piece, Measure::Pass::seen, result);
-  });
-  tile.add_up(result.plane);
-  if (tile.any(hidden)) {
-    for_pieces(tile, measure, view, false, [&](const SharePiece& piece) {
-      measure.add_piece(piece, Measure::Pass::hidden, result);
-    });
+  if (unit.block != Unit::kNoBlock)
+    hidden = add_block(tile, measure, view, unit.block, Measure::Pass::seen, result);
+  if (!level_.is_divided(i)) {
+    tile.add_up(result.plane);
+    if (hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
+    tile.add_up(result.sum);
+    const bool counts = result.sum.volume.value > 0;
+    std::uint8_t kind = result.plane.count > 0 ? kCut : counts ? kPartial : kFree;
+    if (kind == kPartial) {
+      kind = measure_partial(tile, unit);
+    } else if (kind == kCut && tile.leads()) {
+      measured_.sums[i] = result.sum;
+      measured_.planes[i] = result.plane;
+    }
+    if (tile.leads()) space_.kinds[i] = kind;
+    return;
   }
   tile.add_up(result.sum);
-  if (result.plane.count > 0 && tile.leads()) {
-    space_.sums[i] = result.sum;
-    space_.planes[i] = result.plane;
-  }
-  return result.plane.count > 0 ? kCut : result.sum.volume.value > 0 ? kPartial : kFree;
+  tile.add_up(result.plane);
+  if (!tile.leads()) return;
+  add_atomically(result.sum, measured_.sums[i]);
+  add_atomically(result.plane, measured_.planes[i]);
+  if (!hidden) return;
+  atomicOr(&measured_.marks[i], unsigned{kHidden});
+  atomicAdd(&counters_.hidden, 1U);
 }
 
-// A share that is not cut, measured as if the flood reached it.
+// What one block contributes to CellMeasure::reached().
 template <class Surface, class Team>
-__device__ std::uint8_t RefinedQuery<Surface, Team>::measure_candidate(const Tile& tile,
-                                                                       std::uint32_t i,
-                                                                       const CellView& view,
-                                                                       std::uint8_t kind) {
-  const Vec3 at = center(i);
-  const Reading reading = surface_.read(at);
-  if (kind == kOpen) {
-    if (!(reading.known && reading.distance < 0)) return kFree;
-    kind = kWhole;
+template <class Nearest>
+__device__ void RefinedQuery<Surface, Team>::add_reached(const Tile& tile, const Measure& measure,
+                                                         const CellView& view, std::uint32_t b,
+                                                         const Nearest& nearest,
+                                                         ToolSum& sum) const {
+  const CellBlock block = view.blocks[b];
+  const Side side = measure.side_of(block);
+  if (side == Side::mixed) {
+    for (std::uint32_t s = block.begin + tile.lane; s < block.end; s += tile.width)
+      measure.add_reached(nearest, piece_of(view.samples[s]), sum);
+  } else if (side != Side::free && tile.leads()) {
+    measure.add_reached(nearest, piece_of(view.masses[b]), sum);
   }
-  const CellMeasure<Surface> measure = measure_of(view);
+}
+
+// A share of one block that is not cut, but partly behind the surface; as if the flood reached it.
+template <class Surface, class Team>
+__device__ std::uint8_t RefinedQuery<Surface, Team>::measure_partial(const Tile& tile,
+                                                                     const Unit& unit) {
+  const std::uint32_t i = unit.share;
+  const CellView view = level_.cell(i);
   ToolSum sum;
   bool unsure = false;
   const auto nearest = [&] {
     unsure = true;
     return CutShare{};
   };
-  for_pieces(tile, measure, view, kind == kWhole,
-             [&](const SharePiece& piece) { measure.add_reached(nearest, piece, sum); });
+  add_reached(tile, measure_of(view), view, unit.block, nearest, sum);
   tile.add_up(sum);
   unsure = tile.any(unsure);
-  const double gap = squared_gap(at, reading);
-  const bool hidden = is_hidden_share(gap, level_.tool_reach);
-  if (tile.leads()) {
-    space_.sums[i] = sum;
-    space_.gaps[i] = gap;
-    if (hidden || unsure) atomicAdd(&counters_.hidden, 1U);
-  }
-  return static_cast<std::uint8_t>(kind | (hidden ? kHidden : 0) | (unsure ? kUnsure : 0));
+  if (!tile.leads()) return kPartial;
+  measured_.sums[i] = sum;
+  if (unsure) atomicAdd(&counters_.hidden, 1U);
+  return static_cast<std::uint8_t>(kPartial | read_gap(i) | (unsure ? kUnsure : 0));
 }
 
-// Ties go to the smaller index.
+// A share behind the surface, as if the flood reached it: by its mass, or block by block.
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::measure_whole(const Unit& unit) {
+  const std::uint32_t i = unit.share;
+  const bool compact = is_compact_share(i);
+  ToolSum sum;
+  bool unsure = false;
+  const auto nearest = [&] {
+    unsure = true;
+    return CutShare{};
+  };
+  if (compact || unit.block != Unit::kNoBlock) {
+    const BlockMass& mass = compact ? level_.share_masses[i] : level_.block_masses[unit.block];
+    measure_of(level_.cell(i)).add_reached(nearest, piece_of(mass), sum);
+  }
+  if (!compact && level_.is_divided(i)) {
+    add_atomically(sum, measured_.sums[i]);
+    if (unsure) atomicOr(&measured_.marks[i], unsigned{kUnsure});
+  } else {
+    measured_.sums[i] = sum;
+    if (unsure) space_.kinds[i] |= kUnsure;
+  }
+}
+
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::list_cut() {
+  for (std::uint32_t k = threadIdx.x; k < share_count_; k += blockDim.x) {
+    const std::uint32_t i = shares()[k];
+    if (kind_of(i) == kCut) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
+  }
+}
+
+// Ties go to the smaller index. level_.count where nothing is cut.
 template <class Surface, class Team>
 __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& tile,
                                                                   std::uint32_t i) const {
@@ -261,11 +457,11 @@ __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& ti
   double best_squared = HUGE_VAL;
   std::uint32_t best = level_.count;
   const auto take = [&](double squared, std::uint32_t j) {
-    if (squared > best_squared || (squared == best_squared && j > best)) return;
+    if (squared > best_squared || (squared == best_squared && j >= best)) return;
     best_squared = squared;
     best = j;
   };
-  const unsigned count = volatile_load(counters_.cut);
+  const unsigned count = *const_cast<const volatile unsigned*>(&counters_.cut);
   for (unsigned k = tile.lane; k < count; k += tile.width) {
     const std::uint32_t j = space_.cut[k];
     take(squared_norm(level_.spheres[j].center - from), j);
@@ -277,34 +473,46 @@ __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& ti
   return best;
 }
 
-// Of the shares that another surface may hide, those before the nearest cut share's plane are out
-// of sight, and closed to the flood.
+// First the hidden pieces of divided shares, whose planes are known now. Then, of the shares that
+// another surface may hide, those before the nearest cut share's plane are closed to the flood.
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
-  for (std::uint32_t k = threadIdx.x; k < listed_; k += blockDim.x) {
-    if (space_.kinds[work(k)] == kCut) space_.cut[atomicAdd(&counters_.cut, 1U)] = work(k);
+  const Tile warp(32);
+  for (std::uint32_t k = warp.index(); k < wide_count_ + narrow_count_; k += warp.count()) {
+    const std::uint32_t item = k < wide_count_ ? wide()[k] : narrow()[k - wide_count_];
+    if ((item & (kClusterItem | kWholeItem)) != 0) continue;
+    const Unit unit = level_.units[item];
+    const std::uint32_t i = unit.share;
+    if (!level_.is_divided(i) || (measured_.marks[i] & kHidden) == 0) continue;
+    const CellView view = level_.cell(i);
+    CellResult result;
+    result.plane = measured_.planes[i];
+    add_block(warp, measure_of(view), view, unit.block, Measure::Pass::hidden, result);
+    warp.add_up(result.sum);
+    if (warp.leads()) add_atomically(result.sum, measured_.sums[i]);
   }
   team_.sync();
-  const Tile tile(32);
-  for (std::uint32_t k = tile.index(); k < listed_; k += tile.count()) {
-    const std::uint32_t i = work(k);
-    const std::uint8_t kind = space_.kinds[i];
+  list_cut();
+  team_.sync();
+  for (std::uint32_t k = warp.index(); k < share_count_; k += warp.count()) {
+    const std::uint32_t i = shares()[k];
+    const std::uint8_t kind = kind_of(i);
     if (!may_be_inside(kind) || (kind & kHidden) == 0) continue;
-    const std::uint32_t cut = nearest_cut(tile, i);
-    if (cut == level_.count || !tile.leads()) continue;
-    if (cut_share(cut).height(center(i)) < 0)
-      space_.kinds[i] = static_cast<std::uint8_t>(kind & ~kHidden);
+    const std::uint32_t cut = nearest_cut(warp, i);
+    if (cut < level_.count && warp.leads() && cut_share(cut).height(center(i)) < 0)
+      space_.kinds[i] &= static_cast<std::uint8_t>(~kHidden);
   }
   team_.sync();
 }
 
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::join_work() {
+__device__ void RefinedQuery<Surface, Team>::join_shares() {
+  if (hidden() == 0) list_cut();
   constexpr unsigned kLanesPerRow = 8;  // rows of the graph have about that many neighbours
   const Tile tile(kLanesPerRow);
-  for (std::uint32_t k = tile.index(); k < listed_; k += tile.count()) {
-    const std::uint32_t i = work(k);
-    const std::uint8_t kind = space_.kinds[i];
+  for (std::uint32_t k = tile.index(); k < share_count_; k += tile.count()) {
+    const std::uint32_t i = shares()[k];
+    const std::uint8_t kind = kind_of(i);
     if (kind != kCut && !is_passable(kind)) continue;
     for (std::uint32_t e = level_.edge_begin[i] + tile.lane; e < level_.edge_begin[i + 1];
          e += tile.width)
@@ -315,52 +523,102 @@ __device__ void RefinedQuery<Surface, Team>::join_work() {
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::join(std::uint32_t i, std::uint8_t kind,
                                                   std::uint32_t j) const {
-  if (!is_passable(space_.kinds[j])) return;
+  const std::uint8_t other = kind_of(j);
+  if (!is_passable(other)) return;
   if (kind != kCut) {
     if (j < i) flood_.join(i + 1, j + 1);
-  } else if (lies_near_sheet(space_.gaps[j], level_.reach[i], level_.reach[j]) ||
-             cut_share(i).height(center(j)) < 0) {
+    return;
+  }
+  const Vec3 at = center(j);
+  const double gap = (other & kNear) != 0 ? squared_gap(at, surface_.read(at)) : space_.gaps[j];
+  if (lies_near_sheet(gap, level_.reach[i], level_.reach[j]) || cut_share(i).height(at) < 0)
     flood_.join(0, j + 1);
-  }
 }
 
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::measure_unsure() {
-  const Tile tile(level_.lanes_per_share);
-  for (std::uint32_t k = tile.index(); k < listed_; k += tile.count()) {
-    const std::uint32_t i = work(k);
-    const std::uint8_t kind = space_.kinds[i];
-    if (!is_passable(kind) || (kind & kUnsure) == 0 || flood_.root(i + 1) != 0) continue;
-    const CutShare cut = cut_share(nearest_cut(tile, i));
-    const CellView view = level_.cell(i);
-    const CellMeasure<Surface> measure = measure_of(view);
-    ToolSum sum;
-    const auto nearest = [&] { return cut; };
-    for_pieces(tile, measure, view, (kind & kKindMask) == kWhole,
-               [&](const SharePiece& piece) { measure.add_reached(nearest, piece, sum); });
-    tile.add_up(sum);
-    if (tile.leads()) space_.sums[i] = sum;
-  }
-  __syncthreads();
-}
-
-template <class Surface, class Team>
-__device__ RawResult RefinedQuery<Surface, Team>::add_up_work() const {
+__device__ RawResult RefinedQuery<Surface, Team>::add_up_clusters() const {
   RawResult result;
-  for (std::uint32_t k = threadIdx.x; k < listed_; k += blockDim.x) {
-    const std::uint32_t i = work(k);
-    const std::uint8_t kind = space_.kinds[i];
-    if (kind == kCut) {
+  const Tile warp(32);
+  for (std::uint32_t c = share_.part + warp.index() * share_.parts; c < level_.cluster_count;
+       c += warp.count() * share_.parts) {
+    if (space_.cluster_sides[c] == Side::free) continue;
+    const ShareCluster& cluster = level_.clusters[c];
+    bool any_inside = false, any_other = false;
+    for (std::uint32_t k = cluster.begin + warp.lane; k < cluster.end; k += warp.width) {
+      const std::uint32_t i = level_.clustered[k];
+      const std::uint8_t kind = kind_of(i);
+      const bool inside = is_inside(i, kind);
+      any_inside |= inside;
+      any_other |= !inside || !is_whole(kind);
+      if (kind != kCut) continue;
       space_.states[i] = SphereState::boundary;
-      result.sum.add(space_.sums[i]);
+      result.sum.add(measured_.sums[i]);
       ++result.boundary;
-    } else if (is_passable(kind) && flood_.root(i + 1) == 0 && space_.sums[i].volume.value != 0) {
-      space_.states[i] = SphereState::inside;
-      result.sum.add(space_.sums[i]);
-      ++result.inside;
+    }
+    any_inside = warp.any(any_inside);
+    if (any_inside && !warp.any(any_other) && space_.cluster_near[c]) {
+      for (std::uint32_t k = cluster.begin + warp.lane; k < cluster.end; k += warp.width) {
+        space_.states[level_.clustered[k]] = SphereState::inside;
+        ++result.inside;
+      }
+      if (warp.leads()) result.sum.add(space_.cluster_sums[c]);
+    } else if (any_inside) {
+      add_up_shares(warp, c, result);
     }
   }
   return result;
+}
+
+// The shares of a cluster that is not inside as one.
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::add_up_shares(const Tile& warp, std::uint32_t c,
+                                                           RawResult& result) const {
+  const ShareCluster& cluster = level_.clusters[c];
+  const bool is_left = is_left_to_cluster(space_.cluster_sides[c], cluster);
+  for (std::uint32_t first = cluster.begin; first < cluster.end; first += warp.width) {
+    const std::uint32_t k = first + warp.lane;
+    const std::uint32_t mine = k < cluster.end ? level_.clustered[k] : 0;
+    const std::uint8_t kind = k < cluster.end ? kind_of(mine) : kFree;
+    const bool inside = is_inside(mine, kind), divided = level_.is_divided(mine);
+    const bool unsure =
+        (kind & kUnsure) != 0 || (divided && (measured_.marks[mine] & kUnsure) != 0);
+    const bool measured = is_whole(kind) ? !is_left && !unsure : !divided && !unsure;
+    ToolSum sum;
+    if (inside && measured) sum = measured_.sums[mine];
+    for (unsigned rest = __ballot_sync(warp.mask, inside && !measured); rest != 0;
+         rest &= rest - 1) {
+      const auto lane = static_cast<unsigned>(__ffs(static_cast<int>(rest)) - 1);
+      const auto i = static_cast<std::uint32_t>(warp.from(static_cast<int>(mine), lane));
+      const auto its_kind = static_cast<std::uint8_t>(warp.from(kind, lane));
+      const ToolSum all = sum_of_share(warp, i, its_kind);
+      if (warp.lane == lane) sum = all;
+    }
+    if (!inside || sum.volume.value == 0) continue;
+    space_.states[mine] = SphereState::inside;
+    result.sum.add(sum);
+    ++result.inside;
+  }
+}
+
+template <class Surface, class Team>
+__device__ ToolSum RefinedQuery<Surface, Team>::sum_of_share(const Tile& warp, std::uint32_t i,
+                                                             std::uint8_t kind) const {
+  const CutShare cut = cut_share(nearest_cut(warp, i));
+  const auto nearest = [&] { return cut; };
+  const CellView view = level_.cell(i);
+  const Measure measure = measure_of(view);
+  ToolSum sum;
+  if (is_whole(kind) && is_compact_share(i)) {
+    if (warp.leads()) measure.add_reached(nearest, piece_of(level_.share_masses[i]), sum);
+  } else if (is_whole(kind)) {
+    for (std::uint32_t b = view.begin + warp.lane; b < view.end; b += warp.width)
+      measure.add_reached(nearest, piece_of(view.masses[b]), sum);
+  } else {
+    for (std::uint32_t b = view.begin; b < view.end; ++b)
+      add_reached(warp, measure, view, b, nearest, sum);
+  }
+  warp.add_up(sum);
+  return sum;
 }
 
 }  // namespace vpm::cuda

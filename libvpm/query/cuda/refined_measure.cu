@@ -17,10 +17,40 @@ struct RefinedLaunch {
   RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
 };
 
-__device__ RefinedSpace space_of(const RefinedSpace& first, std::size_t count, std::size_t team) {
-  const std::size_t at = team * count;
-  return {first.kinds + at,          first.gaps + at, first.sums + at, first.planes + at,
-          first.parents + at + team, first.work + at, first.cut + at,  first.states + at};
+// The memory of one of several teams.
+__device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& level,
+                                 std::size_t team) {
+  const std::size_t shares = team * level.count, units = team * level.unit_count,
+                    clusters = team * level.cluster_count;
+  RefinedSpace space;
+  space.kinds = first.kinds + shares;
+  space.gaps = first.gaps + shares;
+  for (int turn = 0; turn < 2; ++turn) {
+    const MeasuredShares& from = first.measured[turn];
+    space.measured[turn] = {from.sums + shares, from.planes + shares, from.marks + shares};
+  }
+  space.parents = first.parents + shares + team;
+  space.states = first.states + shares;
+  space.cut = first.cut + shares;
+  space.wide = first.wide + units;
+  space.narrow = first.narrow + units + clusters;
+  space.shares = first.shares + units;
+  space.cluster_sides = first.cluster_sides + clusters;
+  space.cluster_near = first.cluster_near + clusters;
+  space.cluster_sums = first.cluster_sums + clusters;
+  return space;
+}
+
+template <class Surface, class Team>
+__device__ RawResult points_of(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                               Team& team) {
+  RawResult part;
+  for_points_inside(launch.level, launch.points, frame, team.points(),
+                    [&](std::uint32_t sphere, std::uint32_t, Vec3) {
+                      part.points += RefinedQuery<Surface, Team>::counts_points(
+                          launch.level, launch.surface, frame, sphere);
+                    });
+  return part;
 }
 
 template <class Surface>
@@ -32,11 +62,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   RawResult part;
   if (team.spheres().parts > 0) {
     part = RefinedQuery<Surface, GridTeam>(launch.level, launch.surface, frame, launch.space,
-                                           *counters, team)
+                                           sequence, *counters, team)
                .run();
   } else {
-    part.points = for_points_inside(launch.level, launch.points, frame, team.points(),
-                                    [](std::uint32_t, std::uint32_t, Vec3) {});
+    part = points_of(launch, frame, team);
   }
   if (finish(part, *totals, answer, sequence)) *counters = RefinedCounters{};
 }
@@ -50,9 +79,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
   const LevelView& level = launch.level;
-  const RefinedSpace space = space_of(launch.space, level.count, blockIdx.x);
+  const RefinedSpace space = space_of(launch.space, level, blockIdx.x);
   BlockTeam team;
-  for (unsigned p = blockIdx.x; p < count; p += gridDim.x) {
+  unsigned turn = 0;
+  for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
     __syncthreads();
     if (threadIdx.x == 0) {
       frame = frame_of(poses[p], cloud, level.center_of_mass, level.tool_reach);
@@ -61,40 +91,81 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     }
     __syncthreads();
     RawResult part =
-        RefinedQuery<Surface, BlockTeam>(level, launch.surface, frame, space, counters, team).run();
-    part.points = for_points_inside(level, launch.points, frame, team.points(),
-                                    [](std::uint32_t, std::uint32_t, Vec3) {});
+        RefinedQuery<Surface, BlockTeam>(level, launch.surface, frame, space, turn, counters, team)
+            .run();
+    part.points = points_of(launch, frame, team).points;
     add_block(part, total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
+  // The next launch begins with turn 0 again.
+  for (std::uint32_t i = threadIdx.x; i < level.count; i += blockDim.x) {
+    space.measured[0].clear(i);
+    space.measured[1].clear(i);
+  }
 }
 
 // Memory of a number of teams.
-struct RefinedMemory {
-  RefinedMemory(std::size_t spheres, std::size_t teams)
-      : kinds(spheres * teams),
-        gaps(spheres * teams),
-        sums(spheres * teams),
-        planes(spheres * teams),
-        parents((spheres + 1) * teams),
-        work(spheres * teams),
-        cut(spheres * teams),
-        states(spheres * teams) {}
-  RefinedSpace space() const {
-    return {kinds.get(),   gaps.get(), sums.get(), planes.get(),
-            parents.get(), work.get(), cut.get(),  states.get()};
+class RefinedMemory {
+ public:
+  RefinedMemory(const LevelView& level, std::size_t teams)
+      : kinds_(level.count * teams),
+        gaps_(level.count * teams),
+        sums_(2 * level.count * teams),
+        planes_(2 * level.count * teams),
+        marks_(2 * level.count * teams),
+        parents_((std::size_t{level.count} + 1) * teams),
+        states_(level.count * teams),
+        cut_(level.count * teams),
+        wide_(level.unit_count * teams),
+        narrow_((std::size_t{level.unit_count} + level.cluster_count) * teams),
+        shares_(level.unit_count * teams),
+        cluster_sides_(level.cluster_count * teams),
+        cluster_near_(level.cluster_count * teams),
+        cluster_sums_(level.cluster_count * teams) {
+    sums_.clear();
+    planes_.clear();
+    marks_.clear();
+    states_.clear();
   }
-  static constexpr std::size_t kBytesPerSphere = sizeof(std::uint8_t) + sizeof(double) +
-                                                 sizeof(ToolSum) + sizeof(ContactPlane) +
-                                                 3 * sizeof(std::uint32_t) + sizeof(SphereState);
 
-  DeviceArray<std::uint8_t> kinds;
-  DeviceArray<double> gaps;
-  DeviceArray<ToolSum> sums;
-  DeviceArray<ContactPlane> planes;
-  DeviceArray<std::uint32_t> parents, work, cut;
-  DeviceArray<SphereState> states;
+  RefinedSpace space() const {
+    const std::size_t half = marks_.size() / 2;
+    return {kinds_.get(),
+            gaps_.get(),
+            {{sums_.get(), planes_.get(), marks_.get()},
+             {sums_.get() + half, planes_.get() + half, marks_.get() + half}},
+            parents_.get(),
+            states_.get(),
+            cut_.get(),
+            wide_.get(),
+            narrow_.get(),
+            shares_.get(),
+            cluster_sides_.get(),
+            cluster_near_.get(),
+            cluster_sums_.get()};
+  }
+
+  static std::size_t bytes_of_team(const LevelView& level) {
+    constexpr std::size_t kOfShare = 2 * sizeof(std::uint8_t) + sizeof(double) +
+                                     2 * (sizeof(ToolSum) + sizeof(ContactPlane)) +
+                                     4 * sizeof(std::uint32_t);
+    return level.count * kOfShare + level.unit_count * 3 * sizeof(std::uint32_t) +
+           level.cluster_count * (sizeof(std::uint32_t) + 2 + sizeof(ToolSum));
+  }
+
+ private:
+  DeviceArray<std::uint8_t> kinds_;
+  DeviceArray<double> gaps_;
+  DeviceArray<ToolSum> sums_;
+  DeviceArray<ContactPlane> planes_;
+  DeviceArray<unsigned> marks_;
+  DeviceArray<std::uint32_t> parents_;
+  DeviceArray<SphereState> states_;
+  DeviceArray<std::uint32_t> cut_, wide_, narrow_, shares_;
+  DeviceArray<Side> cluster_sides_;
+  DeviceArray<bool> cluster_near_;
+  DeviceArray<ToolSum> cluster_sums_;
 };
 
 class RefinedOnDevice : public DeviceMeasure {
@@ -103,7 +174,7 @@ class RefinedOnDevice : public DeviceMeasure {
       : device_(device),
         tool_(tool),
         level_(tool, level),
-        memory_(level.sphere_count, 1),
+        memory_(level_.view(), 1),
         totals_(1),
         counters_(1),
         answer_(1) {
@@ -127,7 +198,7 @@ class RefinedOnDevice : public DeviceMeasure {
            std::span<Result> results) override {
     const CurrentDevice current(device_);
     bring(cloud);
-    if (!batch_) batch_ = std::make_unique<Batch>(level_.view().count);
+    if (!batch_) batch_ = std::make_unique<Batch>(level_.view());
     for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
       const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
       check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
@@ -146,7 +217,7 @@ class RefinedOnDevice : public DeviceMeasure {
   void read_states(std::vector<SphereState>& states) override {
     const CurrentDevice current(device_);
     check(cudaStreamSynchronize(stream_.get()));
-    check(cudaMemcpy(states.data(), memory_.states.get(), states.size() * sizeof(SphereState),
+    check(cudaMemcpy(states.data(), memory_.space().states, states.size() * sizeof(SphereState),
                      cudaMemcpyDeviceToHost));
   }
 
@@ -155,9 +226,9 @@ class RefinedOnDevice : public DeviceMeasure {
   struct Batch {
     static constexpr std::size_t kPoses = 16384;
 
-    explicit Batch(std::size_t spheres)
-        : teams(teams_that_fit(spheres, RefinedMemory::kBytesPerSphere)),
-          memory(spheres, teams),
+    explicit Batch(const LevelView& level)
+        : teams(teams_that_fit(RefinedMemory::bytes_of_team(level))),
+          memory(level, teams),
           poses(kPoses),
           results(kPoses),
           answers(kPoses) {}

@@ -7,22 +7,33 @@
 #include "libvpm/query/depth_surface.h"
 #include "libvpm/query/disk_surface.h"
 #include "libvpm/query/pixel_rectangle.h"
+#include "libvpm/query/share_clusters.h"
 #include "libvpm/query/sphere_location.h"
 
 namespace vpm::cuda {
 
+// One block of a share, or a share that has none: what is measured by itself.
+struct Unit {
+  std::uint32_t share = 0, block = 0;  // block: kNoBlock if there is none
+
+  static constexpr std::uint32_t kNoBlock = 0xffffffffU;
+};
+
 // One level of a tool.
 struct LevelView {
-  std::uint32_t count = 0;            // of spheres
-  std::uint32_t lanes_per_share = 1;  // threads that measure a share together: a power of two <= 32
+  std::uint32_t count = 0, unit_count = 0, cluster_count = 0;  // `count` of spheres
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
   const std::uint32_t* block_begin = nullptr;
   const CellBlock* blocks = nullptr;
-  const BlockMass* masses = nullptr;
+  const BlockMass* block_masses = nullptr;
   const CellSample* samples = nullptr;
-  const std::uint32_t* block_of = nullptr;  // of each sample
+  const Unit* units = nullptr;
+  const ShareCluster* clusters = nullptr;
+  const std::uint32_t* clustered = nullptr;   // shares by clusters
+  const std::uint32_t* cluster_of = nullptr;  // of each share
+  const BlockMass* share_masses = nullptr;
   const std::uint32_t* edge_begin = nullptr;
   const std::uint32_t* neighbors = nullptr;
   GridView grid;
@@ -30,7 +41,15 @@ struct LevelView {
   double tool_volume = 0, tool_reach = 0;
 
   __host__ __device__ CellView cell(std::uint32_t i) const {
-    return {blocks, masses, samples, block_begin[i], block_begin[i + 1], centers[i], reach[i]};
+    return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
+            centers[i], reach[i]};
+  }
+  // Whether a share is measured in several units.
+  __host__ __device__ bool is_divided(std::uint32_t i) const {
+    return block_begin[i + 1] - block_begin[i] > 1;
+  }
+  __host__ __device__ bool is_head(const Unit& unit) const {
+    return unit.block == Unit::kNoBlock || unit.block == block_begin[unit.share];
   }
 };
 
