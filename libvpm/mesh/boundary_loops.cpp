@@ -1,6 +1,7 @@
 #include "libvpm/mesh/boundary_loops.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <unordered_map>
 
@@ -120,6 +121,27 @@ class Walk {
 std::vector<BoundaryLoop> boundary_loops(const Topology& topology,
                                          const std::vector<Triangle>& triangles) {
   return topology.boundary.empty() ? std::vector<BoundaryLoop>{} : Walk(topology, triangles).all();
+}
+
+double width_of(const BoundaryLoop& loop, const std::vector<Vec3>& vertices) {
+  constexpr std::size_t kMostEdges = 256;  // time grows with edges times vertices
+  const std::size_t count = loop.vertices.size();
+  const auto corner = [&](std::size_t k) { return vertices[loop.vertices[k % count]]; };
+  Vec3 normal;
+  for (std::size_t k = 0; k < count; ++k)
+    normal += cross(corner(k) - corner(0), corner(k + 1) - corner(0));
+  double narrowest = HUGE_VAL;
+  for (std::size_t k = 0; k < count; k += 1 + count / kMostEdges) {
+    const Vec3 across = normalized_or_zero(cross(normal, corner(k + 1) - corner(k)));
+    if (across == Vec3{}) continue;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = 0; i < count; ++i) {
+      low = std::min(low, dot(across, corner(i) - corner(k)));
+      high = std::max(high, dot(across, corner(i) - corner(k)));
+    }
+    narrowest = std::min(narrowest, high - low);
+  }
+  return narrowest < HUGE_VAL ? narrowest : 0;  // a rim without an area lets nothing pass
 }
 
 }  // namespace vpm

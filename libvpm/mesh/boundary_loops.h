@@ -21,4 +21,9 @@ struct BoundaryLoop {
 std::vector<BoundaryLoop> boundary_loops(const Topology& topology,
                                          const std::vector<Triangle>& triangles);
 
+// How wide a ball may be that passes through the hole, for a rim that is nearly flat and convex:
+// the rim's narrowest extent across one of its edges, in its mean plane. More for rims that are
+// neither.
+double width_of(const BoundaryLoop& loop, const std::vector<Vec3>& vertices);
+
 }  // namespace vpm

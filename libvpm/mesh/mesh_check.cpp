@@ -83,7 +83,7 @@ class Check {
     join_vertices();
     report_dropped();
     if (triangles().empty()) refuse_empty();
-    if (options_.repair == Repair::voxel) remesh();
+    if (options_.repair == Repair::voxel || options_.repair == Repair::flood) remesh();
     topology_ = topology_of(vertices().size(), triangles());
     close_by_welding();
     if (options_.repair == Repair::holes) repair_holes();
@@ -157,14 +157,33 @@ class Check {
   }
 
   void remesh() {
+    const bool is_flood = options_.repair == Repair::flood;
+    const Box box = box_of(vertices(), triangles());
+    const Vec3 size = box.high - box.low;
+    const double longest = std::max({size.x, size.y, size.z});
+    const double max_hole = options_.max_hole ? *options_.max_hole / options_.scale
+                            : is_flood        ? kDefaultMaxHole * longest
+                                              : HUGE_VAL;
+    refuse_wide_holes(max_hole);
     VoxelRepair done;
-    result_.solid = repair_by_voxels(result_.solid, options_.repair_voxels, done);
-    if (triangles().empty()) {
-      refuse(
-          mesh_.name + ": no voxel of 1/" + std::to_string(options_.repair_voxels) +
-          " of the longest side lies inside of the mesh; give more voxels (--repair voxel=N), or "
-          "turn triangles that face inward");
+    if (is_flood) {
+      result_.solid = repair_by_flood(result_.solid, options_.repair_voxels, max_hole, done);
+    } else if (orient_outward(result_.solid)) {
+      result_.solid = repair_by_winding_number(result_.solid, options_.repair_voxels, done);
+    } else {
+      refuse(mesh_.name +
+             ": the surface is one-sided (like a Moebius band), and has no winding number; where "
+             "it encloses something all the same, give --repair flood");
     }
+    if (triangles().empty()) {
+      const std::string voxel =
+          "no voxel of 1/" + std::to_string(options_.repair_voxels) + " of the longest side ";
+      refuse(mesh_.name + ": " + voxel +
+             (is_flood ? "is closed off from outside; give a wider --max-hole, or more voxels"
+                       : "lies inside of the mesh; give more voxels (--repair voxel=N), or turn "
+                         "triangles that face inward"));
+    }
+    done.max_hole = std::isfinite(max_hole) ? options_.scale * max_hole : 0;
     done.voxel *= options_.scale;
     done.solid_to_mesh *= options_.scale;
     done.mesh_to_solid *= options_.scale;
@@ -175,6 +194,18 @@ class Check {
                   "at most %.3g m from it",
                   done.voxel, done.solid_to_mesh, done.mesh_to_solid);
     note(text);
+  }
+
+  void refuse_wide_holes(double max_hole) {
+    const Topology topology = topology_of(vertices().size(), triangles());
+    for (const BoundaryLoop& loop : boundary_loops(topology, triangles())) {
+      const double width = width_of(loop, vertices());
+      if (width <= max_hole) continue;
+      char text[160];
+      std::snprintf(text, sizeof text, ": a hole is %.3g m wide, more than %.3g m, through ",
+                    options_.scale * width, options_.scale * max_hole);
+      refuse(mesh_.name + text + text_of_rim(loop) + "; close it, or give a wider --max-hole");
+    }
   }
 
   void repair_holes() {
@@ -197,6 +228,14 @@ class Check {
     topology_ = topology_of(vertices().size(), triangles());
   }
 
+  // "A, B, C, ..."
+  std::string text_of_rim(const BoundaryLoop& loop) const {
+    std::string text;
+    for (std::size_t v = 0; v < std::min(loop.vertices.size(), kRimPlacesShown); ++v)
+      text += (v > 0 ? ", " : "") + text_of(result_.solid.vertices[loop.vertices[v]]);
+    return text + (loop.vertices.size() > kRimPlacesShown ? ", ..." : "");
+  }
+
   // "around 2 holes: a loop of 8 edges through A, B, C, ...; ..."
   std::string text_of_holes() const {
     const std::vector<BoundaryLoop> loops = boundary_loops(topology_, result_.solid.triangles);
@@ -205,10 +244,7 @@ class Check {
       const BoundaryLoop& loop = loops[k];
       const std::size_t edges = loop.vertices.size() - (loop.closed ? 0 : 1);
       text += (k > 0 ? "; " : "") + std::string(loop.closed ? "a loop of " : "a rim of ") +
-              counted(edges, "edge", "edges") + " through ";
-      for (std::size_t v = 0; v < std::min(loop.vertices.size(), kRimPlacesShown); ++v)
-        text += (v > 0 ? ", " : "") + text_of(result_.solid.vertices[loop.vertices[v]]);
-      if (loop.vertices.size() > kRimPlacesShown) text += ", ...";
+              counted(edges, "edge", "edges") + " through " + text_of_rim(loop);
     }
     if (loops.size() > kPlacesShown)
       text += "; and " + std::to_string(loops.size() - kPlacesShown) + " more";
@@ -367,6 +403,8 @@ class Check {
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale)))
     throw Error(ErrorKind::usage, "scale: must be a positive number");
+  if (options.max_hole && !(*options.max_hole > 0))
+    throw Error(ErrorKind::usage, "max-hole: must be a positive number");
   if (options.weld && !(*options.weld >= 0 && *options.weld <= kLargestWeld)) {
     throw Error(ErrorKind::usage,
                 "weld: must lie between 0 and 0.1; it is a share of the mesh's diagonal");

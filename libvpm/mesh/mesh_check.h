@@ -19,6 +19,7 @@ enum class Repair {
   none,   // refuse what is not a solid
   holes,  // drop repeated triangles; fill holes that are planar or small (fill_holes.h)
   voxel,  // a new surface about the voxels that the mesh encloses (voxel_repair.h)
+  flood,  // the same about those that a ball of max_hole cannot reach from outside
 };
 
 struct SolidOptions {
@@ -27,11 +28,16 @@ struct SolidOptions {
   // for formats with indices only if the mesh is open as its indices have it and closed after.
   std::optional<double> weld = std::nullopt;
   Repair repair = Repair::none;
-  int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel
+  int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel and flood
+  // m: wider holes (width_of in boundary_loops.h) are refused. Unset: none with Repair::voxel,
+  // kDefaultMaxHole with Repair::flood.
+  std::optional<double> max_hole = std::nullopt;
 };
 
 // CAD exporters write one coordinate as 0 here and as -2.7e-16 there.
 inline constexpr double kDefaultWeld = 1e-9;
+// Of the longest side.
+inline constexpr double kDefaultMaxHole = 1.0 / 16;
 // A larger tolerance would eat parts of the mesh instead of joining them.
 inline constexpr double kLargestWeld = 0.1;
 

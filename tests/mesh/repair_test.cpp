@@ -216,6 +216,54 @@ TEST(RepairByVoxels, FinsVanishAndOverlapsBecomeOneSurface) {
   EXPECT_GT(checked.facts.voxel_repair->mesh_to_solid, 1);
 }
 
+TEST(RepairByFlood, ClosesWhatIsNarrowWhateverTheOrientation) {
+  Solid torus = make_torus(1, 0.35, 48, 24);
+  const double volume = mass_properties(torus).volume;
+  for (std::size_t k = 0; k < torus.triangles.size(); k += 3)
+    std::swap(torus.triangles[k][0], torus.triangles[k][1]);
+  for (std::size_t k = 0; k < 3; ++k)
+    torus.triangles.erase(torus.triangles.begin() + static_cast<std::ptrdiff_t>(500 * k));
+  torus = together(torus, make_icosphere(0.1, 2));  // a body in the hole of the ring
+  const CheckedSolid checked = solid_of(torus, repair(Repair::flood));
+  EXPECT_EQ(checked.facts.shells, 2U);
+  EXPECT_EQ(checked.facts.euler, 2);  // of the torus 0, of the ball 2
+  EXPECT_NEAR(checked.facts.volume, volume, 0.02 * volume);
+  const VoxelRepair& done = *checked.facts.voxel_repair;
+  EXPECT_NEAR(done.max_hole, 2.7 / 16, 0.02);
+  EXPECT_LT(done.mesh_to_solid, done.voxel);
+  EXPECT_LT(done.solid_to_mesh, done.max_hole);
+}
+
+TEST(RepairByFlood, FillsCavitiesAndKeepsConvexEdges) {
+  const Solid hollow = together(make_cube(2), turned_over(make_cube(1)));
+  const CheckedSolid checked = solid_of(hollow, repair(Repair::flood));
+  EXPECT_EQ(checked.facts.shells, 1U);
+  EXPECT_NEAR(checked.facts.volume, 8, 0.05);
+  EXPECT_LT(checked.facts.voxel_repair->mesh_to_solid, 1.0 + checked.facts.voxel_repair->voxel);
+}
+
+TEST(RepairMaxHole, WiderHolesAreRefusedWithTheirPlace) {
+  const Solid open = cut_open(make_icosphere(1, 4), 0.8);  // 1.1 m wide
+  for (const Repair how : {Repair::voxel, Repair::flood}) {
+    SolidOptions options = repair(how, 32);
+    options.max_hole = 1;
+    const std::string message = refusal_of(as_off(open), "a.off", options);
+    EXPECT_TRUE(contains(message, "a.off: a hole is 1.1")) << message;
+    EXPECT_TRUE(contains(message, " m wide, more than 1 m, through (")) << message;
+    options.max_hole = 1.4;
+    const CheckedSolid checked = solid_of(open, options);
+    EXPECT_EQ(checked.facts.euler, 2);
+    EXPECT_EQ(checked.facts.voxel_repair->max_hole, 1.4);
+  }
+}
+
+// A ball passes a slit by its width, not by its length.
+TEST(RepairMaxHole, IsTheWidthOfTheRim) {
+  const std::vector<Vec3> rim{{0, 0, 1}, {10, 10, 1}, {9.9, 10.1, 1}, {-0.1, 0.1, 1}};
+  EXPECT_NEAR(width_of({{0, 1, 2, 3}, true}, rim), std::hypot(0.1, 0.1), 1e-12);
+  EXPECT_EQ(width_of({{0, 1, 0}, true}, rim), 0);
+}
+
 TEST(RepairByVoxels, LengthsAreScaled) {
   SolidOptions options = repair(Repair::voxel, 24);
   const CheckedSolid metres = solid_of(make_cube(2), options);
@@ -231,9 +279,9 @@ TEST(RepairByVoxels, IsTheSameForAnyThreads) {
   const Solid open = cut_open(make_icosphere(1, 3), 0.8);
   VoxelRepair done;
   set_thread_count(1);
-  const Solid one = repair_by_voxels(open, 40, done);
+  const Solid one = repair_by_winding_number(open, 40, done);
   set_thread_count(8);
-  const Solid eight = repair_by_voxels(open, 40, done);
+  const Solid eight = repair_by_winding_number(open, 40, done);
   set_thread_count(0);
   EXPECT_EQ(one.vertices, eight.vertices);
   EXPECT_EQ(one.triangles, eight.triangles);

@@ -191,7 +191,7 @@ const Hostile kMeshes[] = {
      {8, 1.5}},
     {"FlippedFaces", [] { return flipped_some(make_icosphere(1, 2)); }, kBall, kBall, {kBall, 0.1}},
     {"InsideOut", [] { return reversed(make_cube(2)); }, 8, 8, {8, 0.2}},
-    {"Moebius", moebius_band, kOpen, kOpen, {0.04, 0.03}},
+    {"Moebius", moebius_band, kOpen, kOpen, "one-sided"},
     {"Triangle",
      [] {
        return Solid{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};

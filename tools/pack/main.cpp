@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
@@ -30,7 +33,7 @@ struct Arguments {
   std::string mesh, repair, output, report, export_path, link, for_scene;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
-  std::optional<double> inertia_error, max_radius, weld;
+  std::optional<double> inertia_error, max_radius, weld, max_hole;
   double scale = 1;
   bool grow = false, validate = false;
 };
@@ -66,30 +69,59 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--weld", a.weld,
                  "Join vertices nearer than this share of the mesh's diagonal (STL: 1e-9)");
   app.add_option("--repair", a.repair,
-                 "holes (when no value follows): fill planar and small holes. voxel[=RES]: a new "
-                 "surface from RES voxels (128) along the longest side")
+                 "holes (when none of these words follows): fill planar and small holes. "
+                 "voxel[=RES]: a new surface about what the mesh encloses by its winding number, "
+                 "from RES voxels (128) along the longest side. flood[=RES]: about what cannot be "
+                 "reached from outside through holes up to --max-hole")
       ->expected(0, 1)
       ->default_str("holes");
+  app.add_option("--max-hole", a.max_hole,
+                 "Refuse wider holes with --repair voxel or flood, m (flood: 1/16 of the longest "
+                 "side)")
+      ->check(CLI::PositiveNumber);
+}
+
+// "holes", "voxel", "voxel=RES", "flood" or "flood=RES"; false for another word.
+bool parse_repair(std::string_view word, SolidOptions& options) {
+  const std::string_view mode = word.substr(0, word.find('='));
+  if (word == "holes") {
+    options.repair = Repair::holes;
+    return true;
+  }
+  if (mode != "voxel" && mode != "flood") return false;
+  options.repair = mode == "voxel" ? Repair::voxel : Repair::flood;
+  if (word == mode) return true;
+  const char* const end = word.data() + word.size();
+  const auto [last, fault] =
+      std::from_chars(word.data() + mode.size() + 1, end, options.repair_voxels);
+  return fault == std::errc() && last == end;
 }
 
 SolidOptions solid_options(const Arguments& a) {
-  SolidOptions options{.scale = a.scale, .weld = a.weld};
-  constexpr std::string_view kVoxel = "voxel=";
-  if (a.repair.empty()) return options;
-  options.repair = a.repair == "holes" ? Repair::holes : Repair::voxel;
-  if (a.repair == "holes" || a.repair == "voxel") return options;
-  const char* const digits = a.repair.data() + std::min(kVoxel.size(), a.repair.size());
-  const char* const end = a.repair.data() + a.repair.size();
-  const auto [last, fault] = std::from_chars(digits, end, options.repair_voxels);
-  if (a.repair.starts_with(kVoxel) && fault == std::errc() && last == end) return options;
+  SolidOptions options{.scale = a.scale, .weld = a.weld, .max_hole = a.max_hole};
+  if (a.repair.empty() || parse_repair(a.repair, options)) return options;
   throw Error(ErrorKind::usage, "--repair: '" + a.repair +
-                                    "' is none of holes, voxel and voxel=RES; where it is the "
-                                    "mesh, name that before the option");
+                                    "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+}
+
+// The value of --repair may be left out, and a mesh may follow: only the words that it knows, and
+// what looks like one, are taken for its value.
+std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) {
+  std::vector<char*> arguments(argv, argv + argc);
+  for (std::size_t k = 1; k < arguments.size(); ++k) {
+    if (arguments[k] != std::string_view("--repair")) continue;
+    const std::string_view next = k + 1 < arguments.size() ? arguments[k + 1] : "";
+    const std::string_view mode = next.substr(0, next.find('='));
+    if (mode != "holes" && mode != "voxel" && mode != "flood") arguments[k] = holes.data();
+  }
+  return arguments;
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
-  solid_options(a);
+  const Repair repair = solid_options(a).repair;
+  if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
+    wrong("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
     wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
@@ -240,5 +272,7 @@ int main(int argc, char** argv) {
   Tool tool("vpm-pack", "Fill a closed mesh with spheres that neither overlap nor protrude");
   Arguments arguments;
   declare(tool.app(), arguments);
-  return tool.run(argc, argv, [&] { run(tool, arguments); });
+  std::string holes = "--repair=holes";
+  std::vector<char*> words = with_plain_repair(argc, argv, holes);
+  return tool.run(argc, words.data(), [&] { run(tool, arguments); });
 }

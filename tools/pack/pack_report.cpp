@@ -23,6 +23,7 @@ json as_json(const FilledHole& hole) {
 
 json as_json(const VoxelRepair& repair) {
   return {{"voxel", repair.voxel},
+          {"max_hole", repair.max_hole > 0 ? json(repair.max_hole) : json()},
           {"hausdorff_distance", std::max(repair.solid_to_mesh, repair.mesh_to_solid)},
           {"solid_to_mesh", repair.solid_to_mesh},
           {"mesh_to_solid", repair.mesh_to_solid}};

@@ -26,12 +26,35 @@ $ vpm-pack --dump-config | grep -c repair
 0
 [1]
 
-$ vpm-pack --repair open.off -o open.vpmp
-2> vpm-pack: error: --repair: 'open.off' is none of holes, voxel and voxel=RES; where it is the mesh, name that before the option
+# What follows --repair is its mode where it is one of the words, and the mesh where it is not.
+$ vpm-pack --repair open.off --spheres 1 --quiet -o - | cmp - filled.vpmp
+$ vpm-pack --spheres 1 --quiet -o - open.off --repair | cmp - filled.vpmp
+$ vpm-pack --repair=holes open.off --spheres 1 --quiet -o - | cmp - filled.vpmp
+$ vpm-pack --repair voxel open.off --spheres 1 --quiet --report - | grep -c voxel_repair
+1
+$ vpm-pack --repair=open.off open.off -o open.vpmp
+2> vpm-pack: error: --repair: 'open.off' is none of holes, voxel, voxel=RES, flood and flood=RES
 [2]
 $ vpm-pack open.off --repair voxel=1 -o open.vpmp
 2> vpm-pack: error: repair: the voxels along the longest side must lie between 8 and 1024
 [2]
 $ vpm-pack open.off --repair voxel=1e3 -o open.vpmp
-2> vpm-pack: error: --repair: 'voxel=1e3' is none of holes, voxel and voxel=RES; where it is the mesh, name that before the option
+2> vpm-pack: error: --repair: 'voxel=1e3' is none of holes, voxel, voxel=RES, flood and flood=RES
 [2]
+
+# Holes up to a width, by winding number or by a flood from outside.
+$ vpm-pack open.off --repair voxel=20 --max-hole 0.5 -o open.vpmp
+2> vpm-pack: error: open.off: a hole is 1 m wide, more than 0.5 m, through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1); close it, or give a wider --max-hole
+[1]
+$ vpm-pack open.off --repair flood -o open.vpmp
+2> vpm-pack: error: open.off: a hole is 1 m wide, more than 0.0625 m, through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1); close it, or give a wider --max-hole
+[1]
+$ vpm-pack open.off --repair flood=20 --max-hole 1.2 --spheres 1 --quiet --report flood.json && $VALIDATE pack-report flood.json
+$ python3 -c 'import json; r = json.load(open("flood.json")); v = r["mesh"]["voxel_repair"]; print(v["max_hole"], 0.8 < r["volume_mesh"] < 1.02)'
+1.2 True
+$ vpm-pack open.off --max-hole 1 -o open.vpmp
+2> vpm-pack: error: --max-hole belongs to --repair voxel or flood
+[2]
+$ vpm-pack open.off --repair flood --max-hole 0.001 -o open.vpmp
+2> vpm-pack: error: open.off: a hole is 1 m wide, more than 0.001 m, * (glob)
+[1]
