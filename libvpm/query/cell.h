@@ -141,18 +141,33 @@ class CellMeasure {
     return surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
   }
 
+  // How the surface meets one block of the cell.
+  struct BlockLook {
+    Side side = Side::free;
+    bool is_flat = false;  // of mixed blocks: the surface crosses it as one plane
+    TangentPlane tangent;
+    Vec3 center;
+  };
+  VPM_HD BlockLook look_at(const CellBlock& block) const {
+    BlockLook result;
+    result.center = to_surface_ * widen(block.center);
+    const auto look = surface_.look_at_ball(result.center, block.radius);
+    result.side = look.side;
+    result.is_flat = look.side == Side::mixed &&
+                     surface_.is_flat(look, result.center, block.radius, result.tangent) &&
+                     !is_hidden(result.tangent.foot);
+    return result;
+  }
+
   // Adds what one block contributes to run(): first of all that is seen, then, knowing the plane,
   // of what is hidden. Returns whether something was left for the second pass.
   VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
-    const Vec3 center = to_surface_ * widen(block.center);
-    const auto look = surface_.look_at_ball(center, block.radius);
+    const BlockLook look = look_at(block);
     if (look.side == Side::free) return false;
     if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
-    TangentPlane tangent;
-    if (surface_.is_flat(look, center, block.radius, tangent) && !is_hidden(tangent.foot)) {
-      result.is_far |= is_far(center, tangent.foot);
-      if (pass == Pass::seen) add_flat(block, tangent, result);
+    if (look.is_flat) {
+      if (pass == Pass::seen) add_flat(block, look, result);
       return false;
     }
     bool any_hidden = false;
@@ -204,23 +219,10 @@ class CellMeasure {
             arm(piece.at));
   }
 
- private:
-  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
-    return to_surface_.rotation * about_center_of_mass / tool_reach_;
-  }
-  VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
-  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
-    return squared_norm(foot - x) > tool_reach_ * tool_reach_;
-  }
-  VPM_HD bool is_hidden(Vec3 foot) const {
-    const double beyond = (kSheetReach - 1) * cell_.reach;
-    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
-    return squared_norm(foot - center_) > near * near;
-  }
-
   // Adds the samples of a block that the surface crosses as one plane.
-  VPM_HD void add_flat(const CellBlock& block, const TangentPlane& tangent,
-                       CellResult& result) const {
+  VPM_HD void add_flat(const CellBlock& block, const BlockLook& look, CellResult& result) const {
+    const TangentPlane& tangent = look.tangent;
+    result.is_far |= is_far(look.center, tangent.foot);
     const Vec3 n = transpose(to_surface_.rotation) * tangent.normal;
     const double height = tangent.distance(to_surface_.translation);
     double part = 0;
@@ -241,6 +243,20 @@ class CellMeasure {
     }
     if (is_cut) result.plane.add(tangent.normal, relative(tangent.foot));
     result.sum.add_moment(part, arm(moment), tangent.normal);
+  }
+
+ private:
+  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
+    return to_surface_.rotation * about_center_of_mass / tool_reach_;
+  }
+  VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
+  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
+    return squared_norm(foot - x) > tool_reach_ * tool_reach_;
+  }
+  VPM_HD bool is_hidden(Vec3 foot) const {
+    const double beyond = (kSheetReach - 1) * cell_.reach;
+    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
+    return squared_norm(foot - center_) > near * near;
   }
 
   const Surface& surface_;

@@ -45,7 +45,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       neighbors_(level.graph.neighbors),
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
-      clustered_(clusters.shares),
       cluster_of_(clusters_of_shares(clusters)),
       blocks_(level.blocks),
       block_masses_(block_masses(level)),
@@ -55,7 +54,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       clusters_(clusters.clusters) {
   view_.count = level.sphere_count;
   view_.unit_count = static_cast<std::uint32_t>(units_.size());
-  view_.cluster_count = static_cast<std::uint32_t>(clusters_.size());
   view_.spheres = spheres_.get();
   view_.centers = centers_.get();
   view_.reach = reach_.get();
@@ -65,7 +63,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.samples = samples_.get();
   view_.units = units_.get();
   view_.clusters = clusters_.get();
-  view_.clustered = clustered_.get();
   view_.cluster_of = cluster_of_.get();
   view_.share_masses = share_masses_.get();
   view_.edge_begin = edge_begin_.get();

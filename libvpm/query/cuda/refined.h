@@ -1,12 +1,12 @@
 // The refined measure by a team of threads: the same functions, and so the same bits, as
 // libvpm/query/measure_refined.cpp.
 //
-// 1. Units (blocks of shares) and clusters are classified by a thread each. What may count is
-//    listed and measured by a few threads together; also what only the flood will decide, since
-//    most of it is inside.
+// 1. Units (blocks of shares) are classified by a thread each. What may count is listed and
+//    measured by a few threads together; also what only the flood will decide, since most of it is
+//    inside.
 // 2. Shares that the flood may pass are joined where the graph has an edge, and with the entry
 //    where a cut share lets the flood in.
-// 3. What is joined with the entry is inside, and is added up by clusters.
+// 3. What is joined with the entry is inside, and is added up.
 // The team meets between these steps. Where another surface may hide something, which is rare, it
 // meets more often.
 #pragma once
@@ -58,13 +58,13 @@ struct RefinedSpace {
   MeasuredShares measured[2];        // of this query and, cleared by it, of the next: by turns
   std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
   SphereState* states = nullptr;
-  std::uint32_t* cut = nullptr;     // the cut shares
-  std::uint32_t* wide = nullptr;    // units to be measured by a warp each, by parts of the team
-  std::uint32_t* narrow = nullptr;  // units and clusters to be measured by a few threads each
-  std::uint32_t* shares = nullptr;  // that are not free
-  Side* cluster_sides = nullptr;
-  bool* cluster_near = nullptr;  // whether `cluster_sums` holds a cluster as one piece
-  ToolSum* cluster_sums = nullptr;
+  std::uint32_t* cut = nullptr;  // the cut shares
+  // By parts of the team: units to be measured by a warp, by a few threads, by one thread each;
+  // shares that are not free.
+  std::uint32_t* wide = nullptr;
+  std::uint32_t* narrow = nullptr;
+  std::uint32_t* pieces = nullptr;
+  std::uint32_t* shares = nullptr;
 };
 
 // Counters of a team; 0 at the start.
@@ -113,24 +113,19 @@ class RefinedQuery {
     if (hidden() > 0) decide_hidden();
     join_shares();
     team_.sync();
-    return add_up_clusters();
+    return add_up_shares();
   }
 
  private:
   using Measure = CellMeasure<Surface>;
-  // Marks in lists of work: a cluster, a unit of a share that is whole.
-  static constexpr std::uint32_t kClusterItem = 0x80000000U, kWholeItem = 0x40000000U;
-
   // Where this block's rows begin in a list dealt out as part, part + parts, ...
   __device__ std::uint32_t first_of(std::uint32_t count) const {
     return share_.part * (count / share_.parts) + min(share_.part, count % share_.parts);
   }
-  __device__ std::uint32_t* wide() const { return space_.wide + first_of(level_.unit_count); }
-  __device__ std::uint32_t* narrow() const {
-    return space_.narrow + first_of(level_.unit_count) + first_of(level_.cluster_count);
+  // This block's part of a list.
+  __device__ std::uint32_t* mine(std::uint32_t* list) const {
+    return list + first_of(level_.unit_count);
   }
-  __device__ std::uint32_t* shares() const { return space_.shares + first_of(level_.unit_count); }
-
   __device__ unsigned hidden() const {
     return *const_cast<const volatile unsigned*>(&counters_.hidden);
   }
@@ -144,20 +139,16 @@ class RefinedQuery {
   __device__ bool is_compact_share(std::uint32_t i) const {
     return is_compact(level_.reach[i], level_.tool_reach);
   }
-  // Whether a whole share counts by its cluster if all of that is inside: then it is not measured
-  // before.
-  __device__ bool is_left_to_cluster(Side side, const ShareCluster& cluster) const {
-    return side != Side::mixed && is_compact(cluster.reach, level_.tool_reach);
-  }
   __device__ std::uint8_t kind_of(std::uint32_t i) const;
 
   __device__ void list_work();
-  __device__ void list_unit(std::uint32_t index, unsigned (&listed)[3]);
+  struct Listed {
+    unsigned wide, narrow, pieces, shares;
+  };
+  __device__ void list_unit(std::uint32_t index, Listed& listed);
   __device__ void measure_work();
   __device__ void measure_mixed(const Tile& tile, const Unit& unit);
-  __device__ std::uint8_t measure_partial(const Tile& tile, const Unit& unit);
   __device__ void measure_whole(const Unit& unit);
-  __device__ void measure_cluster(std::uint32_t index);
   __device__ bool add_block(const Tile& tile, const Measure& measure, const CellView& view,
                             std::uint32_t block, typename Measure::Pass pass,
                             CellResult& result) const;
@@ -170,8 +161,7 @@ class RefinedQuery {
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
   __device__ void join_shares();
   __device__ void join(std::uint32_t sphere, std::uint8_t kind, std::uint32_t neighbor) const;
-  __device__ RawResult add_up_clusters() const;
-  __device__ void add_up_shares(const Tile& warp, std::uint32_t cluster, RawResult& result) const;
+  __device__ RawResult add_up_shares() const;
   __device__ ToolSum sum_of_share(const Tile& warp, std::uint32_t sphere, std::uint8_t kind) const;
   __device__ bool is_inside(std::uint32_t sphere, std::uint8_t kind) const {
     return is_passable(kind) && flood_.root(sphere + 1) == 0;
@@ -186,7 +176,7 @@ class RefinedQuery {
   Team& team_;
   Share share_;
   UnionFind flood_;  // node 0 is the entry, node i + 1 share i
-  std::uint32_t wide_count_ = 0, narrow_count_ = 0, share_count_ = 0;  // of this block
+  Listed listed_{};  // of this block
 };
 
 __device__ inline void add_atomically(const ToolSum& part, ToolSum& sum) {
@@ -224,34 +214,24 @@ __device__ std::uint8_t RefinedQuery<Surface, Team>::kind_of(std::uint32_t i) co
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::list_work() {
-  __shared__ unsigned listed[3];
+  __shared__ Listed listed;
   __syncthreads();
-  if (threadIdx.x < 3) listed[threadIdx.x] = 0;
-  if (share_.part == 0 && threadIdx.x == 0) flood_.reset(0);
-  __syncthreads();
-  const std::uint32_t first = share_.part + threadIdx.x * share_.parts;
-  const std::uint32_t step = blockDim.x * share_.parts;
-  for (std::uint32_t c = first; c < level_.cluster_count; c += step) {
-    const ShareCluster& cluster = level_.clusters[c];
-    const Side side = surface_.side_of_ball(frame_.to_surface * cluster.center, cluster.reach);
-    space_.cluster_sides[c] = side;
-    if (side == Side::free) continue;
-    space_.cluster_near[c] = false;
-    if (is_compact(cluster.reach, level_.tool_reach))
-      narrow()[atomicAdd(&listed[1], 1U)] = c | kClusterItem;
+  if (threadIdx.x == 0) {
+    listed = Listed{};
+    if (share_.part == 0) flood_.reset(0);
   }
-  for (std::uint32_t u = first; u < level_.unit_count; u += step) list_unit(u, listed);
   __syncthreads();
-  wide_count_ = listed[0];
-  narrow_count_ = listed[1];
-  share_count_ = listed[2];
+  for (std::uint32_t u = share_.part + threadIdx.x * share_.parts; u < level_.unit_count;
+       u += blockDim.x * share_.parts)
+    list_unit(u, listed);
+  __syncthreads();
+  listed_ = listed;
 }
 
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, unsigned (&listed)[3]) {
+__device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, Listed& listed) {
   const Unit unit = level_.units[index];
   const std::uint32_t i = unit.share;
-  const bool head = level_.is_head(unit);
   const ShareCluster& cluster = level_.clusters[level_.cluster_of[i]];
   const Vec3 at = frame_.to_surface * cluster.center;
   const auto look = surface_.look_at_ball(at, cluster.reach);
@@ -265,27 +245,29 @@ __device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, unsi
   if (kind == kWhole && look.side == Side::behind &&
       surface_.largest_gap(look, at, cluster.reach) < level_.tool_reach)
     kind |= kNear;
+  const bool head = level_.is_head(unit);
   if (head) {
-    if (is_whole(kind) && (kind & kNear) == 0) kind |= read_gap(i);
-    if (kind == kMixed && level_.is_divided(i)) kind |= read_gap(i);
+    const bool divided = level_.is_divided(i);
+    if (kind == kWhole || (kind == kMixed && divided)) kind |= read_gap(i);
     space_.kinds[i] = kind;
     space_.states[i] = SphereState::outside;
-    if (level_.is_divided(i)) next_.clear(i);
+    if (divided) next_.clear(i);
     if (kind != kFree) {
       flood_.reset(i + 1);
-      shares()[atomicAdd(&listed[2], 1U)] = i;
+      mine(space_.shares)[atomicAdd(&listed.shares, 1U)] = i;
     }
   }
   if (kind == kFree) return;
-  if (is_whole(kind) && (is_left_to_cluster(look.side, cluster) || (is_compact_share(i) && !head)))
-    return;
-  const bool is_piece = is_whole(kind) || unit.block == Unit::kNoBlock;
-  const bool is_wide =
-      !is_piece && level_.blocks[unit.block].end - level_.blocks[unit.block].begin > kNarrowSamples;
-  if (is_wide)
-    wide()[atomicAdd(&listed[0], 1U)] = index;
-  else
-    narrow()[atomicAdd(&listed[1], 1U)] = index | (is_whole(kind) ? kWholeItem : 0);
+  const bool has_block = unit.block != Unit::kNoBlock;
+  if (is_whole(kind)) {
+    if (is_compact_share(i) ? head : has_block || head)
+      mine(space_.pieces)[atomicAdd(&listed.pieces, 1U)] = index;
+  } else if (has_block &&
+             level_.blocks[unit.block].end - level_.blocks[unit.block].begin > kNarrowSamples) {
+    mine(space_.wide)[atomicAdd(&listed.wide, 1U)] = index;
+  } else {
+    mine(space_.narrow)[atomicAdd(&listed.narrow, 1U)] = index;
+  }
 }
 
 // The gap of a share's centre; returns kHidden, or 0.
@@ -302,25 +284,13 @@ __device__ std::uint8_t RefinedQuery<Surface, Team>::read_gap(std::uint32_t i) c
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::measure_work() {
   const Tile warp(32), tile(kNarrow);
-  for (std::uint32_t k = warp.index(); k < wide_count_; k += warp.count())
-    measure_mixed(warp, level_.units[wide()[k]]);
-  // From the other end, so that warps without wide units begin with narrow ones.
-  for (std::uint32_t k = tile.count() - 1 - tile.index(); k < narrow_count_; k += tile.count()) {
-    const std::uint32_t item = narrow()[k];
-    if ((item & (kClusterItem | kWholeItem)) == 0)
-      measure_mixed(tile, level_.units[item]);
-    else if ((item & kWholeItem) != 0 && tile.leads())
-      measure_whole(level_.units[item & ~kWholeItem]);
-    else if (tile.leads())
-      measure_cluster(item & ~kClusterItem);
-  }
-}
-
-template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::measure_cluster(std::uint32_t c) {
-  ToolSum sum;
-  space_.cluster_near[c] = measure_of({}).add_near(piece_of(level_.clusters[c].mass), sum);
-  space_.cluster_sums[c] = sum;
+  for (std::uint32_t k = warp.index(); k < listed_.wide; k += warp.count())
+    measure_mixed(warp, level_.units[mine(space_.wide)[k]]);
+  // From the other end, so that warps without the first kind begin with these.
+  for (std::uint32_t k = tile.count() - 1 - tile.index(); k < listed_.narrow; k += tile.count())
+    measure_mixed(tile, level_.units[mine(space_.narrow)[k]]);
+  for (std::uint32_t k = blockDim.x - 1 - threadIdx.x; k < listed_.pieces; k += blockDim.x)
+    measure_whole(level_.units[mine(space_.pieces)[k]]);
 }
 
 // What one block contributes to CellMeasure::run(). Returns whether something of it, of any thread,
@@ -333,14 +303,14 @@ __device__ bool RefinedQuery<Surface, Team>::add_block(const Tile& tile, const M
   const CellBlock block = view.blocks[b];
   const typename Measure::BlockLook look = measure.look_at(block);
   bool hidden = false;
-  if (look.side == Side::mixed && !look.flat) {
+  if (look.side == Side::mixed && !look.is_flat) {
     for (std::uint32_t s = block.begin + tile.lane; s < block.end; s += tile.width)
       hidden |= measure.add_piece(piece_of(view.samples[s]), pass, result);
   } else if (look.side != Side::free && tile.leads()) {
     if (look.side != Side::mixed)
       hidden = measure.add_piece(piece_of(view.masses[b]), pass, result);
     else if (pass == Measure::Pass::seen)
-      measure.add_flat(block, look.tangent, result);
+      measure.add_flat(block, look, result);
   }
   return tile.any(hidden);
 }
@@ -354,29 +324,27 @@ __device__ void RefinedQuery<Surface, Team>::measure_mixed(const Tile& tile, con
   bool hidden = false;
   if (unit.block != Unit::kNoBlock)
     hidden = add_block(tile, measure, view, unit.block, Measure::Pass::seen, result);
-  if (!level_.is_divided(i)) {
-    tile.add_up(result.plane);
-    if (hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
+  const bool far = tile.any(result.is_far);
+  tile.add_up(result.plane);
+  if (level_.is_divided(i)) {
     tile.add_up(result.sum);
-    const bool counts = result.sum.volume.value > 0;
-    std::uint8_t kind = result.plane.count > 0 ? kCut : counts ? kPartial : kFree;
-    if (kind == kPartial) {
-      kind = measure_partial(tile, unit);
-    } else if (kind == kCut && tile.leads()) {
-      measured_.sums[i] = result.sum;
-      measured_.planes[i] = result.plane;
-    }
-    if (tile.leads()) space_.kinds[i] = kind;
+    if (!tile.leads()) return;
+    add_atomically(result.sum, measured_.sums[i]);
+    add_atomically(result.plane, measured_.planes[i]);
+    const unsigned marks = (hidden ? kHidden : 0U) | (far ? kUnsure : 0U);
+    if (marks != 0) atomicOr(&measured_.marks[i], marks);
+    if (hidden) atomicAdd(&counters_.hidden, 1U);
     return;
   }
+  if (hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
   tile.add_up(result.sum);
-  tile.add_up(result.plane);
   if (!tile.leads()) return;
-  add_atomically(result.sum, measured_.sums[i]);
-  add_atomically(result.plane, measured_.planes[i]);
-  if (!hidden) return;
-  atomicOr(&measured_.marks[i], unsigned{kHidden});
-  atomicAdd(&counters_.hidden, 1U);
+  const bool counts = result.sum.volume.value > 0;
+  std::uint8_t kind = result.plane.count > 0 ? kCut : counts ? kPartial : kFree;
+  if (kind == kPartial) kind |= static_cast<std::uint8_t>(read_gap(i) | (far ? kUnsure : 0));
+  space_.kinds[i] = kind;
+  measured_.sums[i] = result.sum;
+  measured_.planes[i] = result.plane;
 }
 
 // What one block contributes to CellMeasure::reached().
@@ -394,27 +362,6 @@ __device__ void RefinedQuery<Surface, Team>::add_reached(const Tile& tile, const
   } else if (side != Side::free && tile.leads()) {
     measure.add_reached(nearest, piece_of(view.masses[b]), sum);
   }
-}
-
-// A share of one block that is not cut, but partly behind the surface; as if the flood reached it.
-template <class Surface, class Team>
-__device__ std::uint8_t RefinedQuery<Surface, Team>::measure_partial(const Tile& tile,
-                                                                     const Unit& unit) {
-  const std::uint32_t i = unit.share;
-  const CellView view = level_.cell(i);
-  ToolSum sum;
-  bool unsure = false;
-  const auto nearest = [&] {
-    unsure = true;
-    return CutShare{};
-  };
-  add_reached(tile, measure_of(view), view, unit.block, nearest, sum);
-  tile.add_up(sum);
-  unsure = tile.any(unsure);
-  if (!tile.leads()) return kPartial;
-  measured_.sums[i] = sum;
-  if (unsure) atomicAdd(&counters_.hidden, 1U);
-  return static_cast<std::uint8_t>(kPartial | read_gap(i) | (unsure ? kUnsure : 0));
 }
 
 // A share behind the surface, as if the flood reached it: by its mass, or block by block.
@@ -443,8 +390,8 @@ __device__ void RefinedQuery<Surface, Team>::measure_whole(const Unit& unit) {
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::list_cut() {
-  for (std::uint32_t k = threadIdx.x; k < share_count_; k += blockDim.x) {
-    const std::uint32_t i = shares()[k];
+  for (std::uint32_t k = threadIdx.x; k < listed_.shares; k += blockDim.x) {
+    const std::uint32_t i = mine(space_.shares)[k];
     if (kind_of(i) == kCut) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
   }
 }
@@ -478,9 +425,9 @@ __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& ti
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
   const Tile warp(32);
-  for (std::uint32_t k = warp.index(); k < wide_count_ + narrow_count_; k += warp.count()) {
-    const std::uint32_t item = k < wide_count_ ? wide()[k] : narrow()[k - wide_count_];
-    if ((item & (kClusterItem | kWholeItem)) != 0) continue;
+  for (std::uint32_t k = warp.index(); k < listed_.wide + listed_.narrow; k += warp.count()) {
+    const std::uint32_t item =
+        k < listed_.wide ? mine(space_.wide)[k] : mine(space_.narrow)[k - listed_.wide];
     const Unit unit = level_.units[item];
     const std::uint32_t i = unit.share;
     if (!level_.is_divided(i) || (measured_.marks[i] & kHidden) == 0) continue;
@@ -494,8 +441,8 @@ __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
   team_.sync();
   list_cut();
   team_.sync();
-  for (std::uint32_t k = warp.index(); k < share_count_; k += warp.count()) {
-    const std::uint32_t i = shares()[k];
+  for (std::uint32_t k = warp.index(); k < listed_.shares; k += warp.count()) {
+    const std::uint32_t i = mine(space_.shares)[k];
     const std::uint8_t kind = kind_of(i);
     if (!may_be_inside(kind) || (kind & kHidden) == 0) continue;
     const std::uint32_t cut = nearest_cut(warp, i);
@@ -510,8 +457,8 @@ __device__ void RefinedQuery<Surface, Team>::join_shares() {
   if (hidden() == 0) list_cut();
   constexpr unsigned kLanesPerRow = 8;  // rows of the graph have about that many neighbours
   const Tile tile(kLanesPerRow);
-  for (std::uint32_t k = tile.index(); k < share_count_; k += tile.count()) {
-    const std::uint32_t i = shares()[k];
+  for (std::uint32_t k = tile.index(); k < listed_.shares; k += tile.count()) {
+    const std::uint32_t i = mine(space_.shares)[k];
     const std::uint8_t kind = kind_of(i);
     if (kind != kCut && !is_passable(kind)) continue;
     for (std::uint32_t e = level_.edge_begin[i] + tile.lane; e < level_.edge_begin[i + 1];
@@ -536,70 +483,35 @@ __device__ void RefinedQuery<Surface, Team>::join(std::uint32_t i, std::uint8_t 
 }
 
 template <class Surface, class Team>
-__device__ RawResult RefinedQuery<Surface, Team>::add_up_clusters() const {
+__device__ RawResult RefinedQuery<Surface, Team>::add_up_shares() const {
   RawResult result;
   const Tile warp(32);
-  for (std::uint32_t c = share_.part + warp.index() * share_.parts; c < level_.cluster_count;
-       c += warp.count() * share_.parts) {
-    if (space_.cluster_sides[c] == Side::free) continue;
-    const ShareCluster& cluster = level_.clusters[c];
-    bool any_inside = false, any_other = false;
-    for (std::uint32_t k = cluster.begin + warp.lane; k < cluster.end; k += warp.width) {
-      const std::uint32_t i = level_.clustered[k];
-      const std::uint8_t kind = kind_of(i);
-      const bool inside = is_inside(i, kind);
-      any_inside |= inside;
-      any_other |= !inside || !is_whole(kind);
-      if (kind != kCut) continue;
-      space_.states[i] = SphereState::boundary;
-      result.sum.add(measured_.sums[i]);
-      ++result.boundary;
+  for (std::uint32_t first = warp.index() * 32; first < listed_.shares; first += blockDim.x) {
+    const std::uint32_t k = first + warp.lane;
+    const std::uint32_t i = k < listed_.shares ? mine(space_.shares)[k] : 0;
+    const std::uint8_t kind = k < listed_.shares ? kind_of(i) : kFree;
+    const bool inside = is_inside(i, kind);
+    const bool unsure = inside && ((kind & kUnsure) != 0 ||
+                                   (level_.is_divided(i) && (measured_.marks[i] & kUnsure) != 0));
+    ToolSum sum;
+    if (kind == kCut || inside) sum = measured_.sums[i];
+    for (unsigned rest = __ballot_sync(warp.mask, unsure); rest != 0; rest &= rest - 1) {
+      const auto lane = static_cast<unsigned>(__ffs(static_cast<int>(rest)) - 1);
+      const ToolSum all =
+          sum_of_share(warp, static_cast<std::uint32_t>(warp.from(static_cast<int>(i), lane)),
+                       static_cast<std::uint8_t>(warp.from(kind, lane)));
+      if (warp.lane == lane) sum = all;
     }
-    any_inside = warp.any(any_inside);
-    if (any_inside && !warp.any(any_other) && space_.cluster_near[c]) {
-      for (std::uint32_t k = cluster.begin + warp.lane; k < cluster.end; k += warp.width) {
-        space_.states[level_.clustered[k]] = SphereState::inside;
-        ++result.inside;
-      }
-      if (warp.leads()) result.sum.add(space_.cluster_sums[c]);
-    } else if (any_inside) {
-      add_up_shares(warp, c, result);
-    }
+    if (kind != kCut && sum.volume.value == 0) continue;  // the flood passed through the hidden
+    space_.states[i] = kind == kCut ? SphereState::boundary : SphereState::inside;
+    result.sum.add(sum);
+    ++(kind == kCut ? result.boundary : result.inside);
   }
   return result;
 }
 
-// The shares of a cluster that is not inside as one.
-template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::add_up_shares(const Tile& warp, std::uint32_t c,
-                                                           RawResult& result) const {
-  const ShareCluster& cluster = level_.clusters[c];
-  const bool is_left = is_left_to_cluster(space_.cluster_sides[c], cluster);
-  for (std::uint32_t first = cluster.begin; first < cluster.end; first += warp.width) {
-    const std::uint32_t k = first + warp.lane;
-    const std::uint32_t mine = k < cluster.end ? level_.clustered[k] : 0;
-    const std::uint8_t kind = k < cluster.end ? kind_of(mine) : kFree;
-    const bool inside = is_inside(mine, kind), divided = level_.is_divided(mine);
-    const bool unsure =
-        (kind & kUnsure) != 0 || (divided && (measured_.marks[mine] & kUnsure) != 0);
-    const bool measured = is_whole(kind) ? !is_left && !unsure : !divided && !unsure;
-    ToolSum sum;
-    if (inside && measured) sum = measured_.sums[mine];
-    for (unsigned rest = __ballot_sync(warp.mask, inside && !measured); rest != 0;
-         rest &= rest - 1) {
-      const auto lane = static_cast<unsigned>(__ffs(static_cast<int>(rest)) - 1);
-      const auto i = static_cast<std::uint32_t>(warp.from(static_cast<int>(mine), lane));
-      const auto its_kind = static_cast<std::uint8_t>(warp.from(kind, lane));
-      const ToolSum all = sum_of_share(warp, i, its_kind);
-      if (warp.lane == lane) sum = all;
-    }
-    if (!inside || sum.volume.value == 0) continue;
-    space_.states[mine] = SphereState::inside;
-    result.sum.add(sum);
-    ++result.inside;
-  }
-}
-
+// An inside share of which pieces are far behind the surface: the nearest cut share vouches for
+// them, or they do not count.
 template <class Surface, class Team>
 __device__ ToolSum RefinedQuery<Surface, Team>::sum_of_share(const Tile& warp, std::uint32_t i,
                                                              std::uint8_t kind) const {

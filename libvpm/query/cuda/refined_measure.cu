@@ -20,8 +20,7 @@ struct RefinedLaunch {
 // The memory of one of several teams.
 __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& level,
                                  std::size_t team) {
-  const std::size_t shares = team * level.count, units = team * level.unit_count,
-                    clusters = team * level.cluster_count;
+  const std::size_t shares = team * level.count, units = team * level.unit_count;
   RefinedSpace space;
   space.kinds = first.kinds + shares;
   space.gaps = first.gaps + shares;
@@ -33,11 +32,9 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.states = first.states + shares;
   space.cut = first.cut + shares;
   space.wide = first.wide + units;
-  space.narrow = first.narrow + units + clusters;
+  space.narrow = first.narrow + units;
+  space.pieces = first.pieces + units;
   space.shares = first.shares + units;
-  space.cluster_sides = first.cluster_sides + clusters;
-  space.cluster_near = first.cluster_near + clusters;
-  space.cluster_sums = first.cluster_sums + clusters;
   return space;
 }
 
@@ -118,11 +115,9 @@ class RefinedMemory {
         states_(level.count * teams),
         cut_(level.count * teams),
         wide_(level.unit_count * teams),
-        narrow_((std::size_t{level.unit_count} + level.cluster_count) * teams),
-        shares_(level.unit_count * teams),
-        cluster_sides_(level.cluster_count * teams),
-        cluster_near_(level.cluster_count * teams),
-        cluster_sums_(level.cluster_count * teams) {
+        narrow_(level.unit_count * teams),
+        pieces_(level.unit_count * teams),
+        shares_(level.unit_count * teams) {
     sums_.clear();
     planes_.clear();
     marks_.clear();
@@ -140,18 +135,16 @@ class RefinedMemory {
             cut_.get(),
             wide_.get(),
             narrow_.get(),
-            shares_.get(),
-            cluster_sides_.get(),
-            cluster_near_.get(),
-            cluster_sums_.get()};
+            pieces_.get(),
+            shares_.get()};
   }
 
   static std::size_t bytes_of_team(const LevelView& level) {
     constexpr std::size_t kOfShare = 2 * sizeof(std::uint8_t) + sizeof(double) +
                                      2 * (sizeof(ToolSum) + sizeof(ContactPlane)) +
                                      4 * sizeof(std::uint32_t);
-    return level.count * kOfShare + level.unit_count * 3 * sizeof(std::uint32_t) +
-           level.cluster_count * (sizeof(std::uint32_t) + 2 + sizeof(ToolSum));
+    constexpr std::size_t kOfUnit = 4 * sizeof(std::uint32_t);
+    return level.count * kOfShare + level.unit_count * kOfUnit;
   }
 
  private:
@@ -162,10 +155,7 @@ class RefinedMemory {
   DeviceArray<unsigned> marks_;
   DeviceArray<std::uint32_t> parents_;
   DeviceArray<SphereState> states_;
-  DeviceArray<std::uint32_t> cut_, wide_, narrow_, shares_;
-  DeviceArray<Side> cluster_sides_;
-  DeviceArray<bool> cluster_near_;
-  DeviceArray<ToolSum> cluster_sums_;
+  DeviceArray<std::uint32_t> cut_, wide_, narrow_, pieces_, shares_;
 };
 
 class RefinedOnDevice : public DeviceMeasure {

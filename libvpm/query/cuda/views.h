@@ -21,7 +21,7 @@ struct Unit {
 
 // One level of a tool.
 struct LevelView {
-  std::uint32_t count = 0, unit_count = 0, cluster_count = 0;  // `count` of spheres
+  std::uint32_t count = 0, unit_count = 0;  // `count` of spheres
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
@@ -31,7 +31,6 @@ struct LevelView {
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
   const ShareCluster* clusters = nullptr;
-  const std::uint32_t* clustered = nullptr;   // shares by clusters
   const std::uint32_t* cluster_of = nullptr;  // of each share
   const BlockMass* share_masses = nullptr;
   const std::uint32_t* edge_begin = nullptr;
