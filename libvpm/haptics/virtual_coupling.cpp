@@ -1,0 +1,124 @@
+#include "libvpm/haptics/virtual_coupling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/haptics/rotation_vector.h"
+
+namespace vpm {
+namespace {
+
+void check_positive(double value, const char* name) {
+  if (!(value > 0 && std::isfinite(value)))
+    throw Error(ErrorKind::usage, std::string("coupling: ") + name + " must be a positive number");
+}
+
+// One direction of motion, linear or angular: the implicit step of inertia, spring and damper.
+struct Axis {
+  double stiffness, damping, inertia, brake, step;
+
+  // `offset`: of the device, after its move, from the tool before its own.
+  Vec3 new_velocity(Vec3 velocity, Vec3 offset, Vec3 device_velocity, Vec3 contact) const {
+    const Vec3 push = stiffness * offset + damping * device_velocity + contact;
+    return (inertia * velocity + step * push) /
+           (inertia + step * (damping + brake) + step * step * stiffness);
+  }
+};
+
+}  // namespace
+
+void validate(const CouplingParameters& p) {
+  check_positive(p.stiffness, "stiffness (N/m)");
+  check_positive(p.damping, "damping (N s/m)");
+  check_positive(p.mass, "mass (kg)");
+  check_positive(p.gyration, "radius of gyration (m)");
+  check_positive(p.rate, "rate (Hz)");
+}
+
+double critical_mass(double stiffness, double damping) {
+  return damping * damping / (4 * stiffness);
+}
+
+// The step with a sampled contact c is x' = x + h v', (m + h b + h^2 k) v' = m v - h (k + c) x;
+// its eigenvalues leave the unit circle at -1, where c = 4 m / h^2 + 2 b / h + k.
+CouplingLimits coupling_limits(const CouplingParameters& p) {
+  return {4 * p.mass * p.rate * p.rate + 2 * p.damping * p.rate + p.stiffness,
+          p.stiffness / (2 * p.rate) + p.damping};
+}
+
+double stable_rate(const CouplingParameters& p, double contact_stiffness) {
+  if (contact_stiffness <= p.stiffness) return 0;
+  const double beyond = contact_stiffness - p.stiffness;
+  return (std::sqrt(p.damping * p.damping + 4 * p.mass * beyond) - p.damping) / (4 * p.mass);
+}
+
+VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass,
+                                 const Pose& device)
+    : parameters_(parameters), center_of_mass_(center_of_mass) {
+  validate(parameters);
+  device_ = {device.rotation, device * center_of_mass_};
+  tool_ = device_;
+}
+
+Pose VirtualCoupling::tool() const {
+  return {tool_.rotation, tool_.translation - tool_.rotation * center_of_mass_};
+}
+
+double VirtualCoupling::stored() const {
+  const double squared_gyration = parameters_.gyration * parameters_.gyration;
+  const Vec3 stretch = device_.translation - tool_.translation;
+  const Vec3 twist = rotation_vector(device_.rotation * transpose(tool_.rotation));
+  return 0.5 * parameters_.mass *
+             (squared_norm(velocity_) + squared_gyration * squared_norm(angular_velocity_)) +
+         0.5 * parameters_.stiffness *
+             (squared_norm(stretch) + squared_gyration * squared_norm(twist));
+}
+
+Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
+  const CouplingParameters& p = parameters_;
+  const double step = 1 / p.rate, squared_gyration = p.gyration * p.gyration;
+  const Pose held{device.rotation, device * center_of_mass_};
+  const Vec3 moved = held.translation - device_.translation;
+  const Vec3 turned = rotation_vector(held.rotation * transpose(device_.rotation));
+  const Vec3 stretch = held.translation - tool_.translation;
+  const Vec3 twist = rotation_vector(held.rotation * transpose(tool_.rotation));
+
+  // Energy that the sampled contact has made is braked out of the tool's motion, a part of it that
+  // the motion has.
+  const double made = std::max(0.0, -energy_.absorbed - controlled_);
+  const double motion =
+      step * (squared_norm(velocity_) + squared_gyration * squared_norm(angular_velocity_));
+  const double brake = motion > 0 ? std::min(made / motion, p.mass * p.rate) : 0;
+
+  const Axis linear{p.stiffness, p.damping, p.mass, brake, step};
+  const Axis angular{squared_gyration * p.stiffness, squared_gyration * p.damping,
+                     squared_gyration * p.mass, squared_gyration * brake, step};
+  velocity_ = linear.new_velocity(velocity_, stretch, p.rate * moved, contact.force);
+  angular_velocity_ =
+      angular.new_velocity(angular_velocity_, twist, p.rate * turned, contact.torque);
+  const Vec3 slid = step * velocity_, rolled = step * angular_velocity_;
+  tool_.translation += slid;
+  tool_.rotation = rotation_from_vector(rolled) * tool_.rotation;
+  device_ = held;
+
+  // Forces of the implicit step on the tool; the device feels their opposites.
+  const Vec3 slip = moved - slid, spin = turned - rolled;
+  const Wrench pull{
+      linear.stiffness * (stretch - slid) + (linear.damping * p.rate) * slip,
+      angular.stiffness * (twist - rolled) + (angular.damping * p.rate) * spin,
+  };
+  const double braked =
+      brake * p.rate * (squared_norm(slid) + squared_gyration * squared_norm(rolled));
+  controlled_ += braked;
+  energy_.supplied += dot(pull.force, moved) + dot(pull.torque, turned);
+  energy_.dissipated +=
+      p.rate * (linear.damping * squared_norm(slip) + angular.damping * squared_norm(spin)) +
+      braked;
+  energy_.absorbed -= dot(contact.force, slid) + dot(contact.torque, rolled);
+  energy_.stored = stored();
+  energy_.lost = energy_.supplied - energy_.stored - energy_.dissipated - energy_.absorbed;
+  return {-pull.force, -pull.torque};
+}
+
+}  // namespace vpm

@@ -1,0 +1,173 @@
+#include "libvpm/haptics/virtual_coupling.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "libvpm/core/error.h"
+#include "libvpm/haptics/gyration.h"
+#include "libvpm/haptics/rotation_vector.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/scenes.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+constexpr double kStiffness = 500, kDamping = 5, kGyration = 0.08;
+
+CouplingParameters parameters(double rate = 1000) {
+  return {kStiffness, kDamping, critical_mass(kStiffness, kDamping), kGyration, rate};
+}
+
+Pose at(Vec3 place, Vec3 turn = {}) {
+  return {rotation_from_vector(turn), place};
+}
+
+// Smooth, without a period that the steps could meet.
+Pose wander(double t) {
+  return at({0.1 * std::sin(2.1 * t), 0.05 * std::sin(3.7 * t + 1), 0.08 * std::cos(1.3 * t)},
+            {0.4 * std::sin(1.7 * t), 0.3 * std::cos(2.3 * t), 0.2 * std::sin(0.9 * t)});
+}
+
+// A floor z = 0 that pushes a point up.
+Wrench floor_push(const Pose& tool, double stiffness) {
+  return {{0, 0, stiffness * std::max(0.0, -tool.translation.z)}, {}};
+}
+
+TEST(VirtualCoupling, ComesToTheDevice) {
+  VirtualCoupling coupling(parameters(), {0.01, 0.02, 0}, at({0, 0, 0}));
+  const Pose device = at({0.1, 0, 0}, {0, 0, 0.5});
+  for (int k = 0; k < 400; ++k) coupling.advance(device, {});
+  EXPECT_LE(norm(coupling.tool().translation - device.translation), 1e-6);
+  EXPECT_LE(norm(rotation_vector(device.rotation * transpose(coupling.tool().rotation))), 1e-5);
+}
+
+TEST(VirtualCoupling, ComesBackWithoutOvershootWhenLetGo) {
+  VirtualCoupling coupling(parameters(), {}, at({}));
+  for (int k = 0; k < 400; ++k) coupling.advance(at({}), {{0, 0, 10}, {}});
+  double before = coupling.tool().translation.z;
+  EXPECT_NEAR(before, 10 / kStiffness, 1e-6);
+  for (int k = 0; k < 400; ++k) {
+    coupling.advance(at({}), {});
+    const double z = coupling.tool().translation.z;
+    EXPECT_LE(z, before);
+    EXPECT_GE(z, 0);
+    before = z;
+  }
+}
+
+TEST(VirtualCoupling, LosesEnergyAndNeverMakesAnyInFreeSpace) {
+  VirtualCoupling coupling(parameters(), {}, wander(0));
+  double lost = 0;
+  for (int k = 1; k <= 5000; ++k) {
+    coupling.advance(wander(k * 1e-3), {});
+    const CouplingEnergy& e = coupling.energy();
+    EXPECT_EQ(e.absorbed, 0);
+    EXPECT_GE(e.lost, lost - 1e-9) << k;
+    EXPECT_GE(e.supplied, -1e-9) << k;
+    lost = e.lost;
+  }
+  EXPECT_GT(coupling.energy().supplied, 0);
+}
+
+// What comes out was put in or stored before, however the floor is hit.
+TEST(VirtualCoupling, IsPassiveAgainstASampledFloor) {
+  for (const double stiffness : {1e3, 1e4, 3e4}) {
+    VirtualCoupling coupling(parameters(), {}, at({0, 0, 0.02}));
+    const double mass = parameters().mass;
+    double fastest = 0;
+    std::mt19937_64 draw(7);
+    for (int k = 1; k <= 20000; ++k) {
+      const double jitter = 1e-4 * (static_cast<double>(draw() >> 11) * 0x1p-53 - 0.5);
+      const Pose device = at({0, 0, 0.02 * std::cos(9e-3 * k) + jitter});
+      const Vec3 before = coupling.tool().translation;
+      coupling.advance(device, floor_push(coupling.tool(), stiffness));
+      fastest = std::max(fastest, 1e3 * norm(coupling.tool().translation - before));
+      // Up to what one step can make before the controller knows.
+      EXPECT_GE(coupling.energy().supplied, -mass * fastest * fastest) << stiffness << ' ' << k;
+    }
+  }
+}
+
+TEST(VirtualCoupling, RestsWhereSpringAndContactBalance) {
+  VirtualCoupling coupling(parameters(), {}, at({0, 0, 0.02}));
+  Wrench felt;
+  for (int k = 0; k < 3000; ++k)
+    felt = coupling.advance(at({0, 0, -0.01}), floor_push(coupling.tool(), 2000));
+  const double depth = -coupling.tool().translation.z;
+  EXPECT_NEAR(depth, 0.01 * kStiffness / (kStiffness + 2000), 1e-9);
+  EXPECT_NEAR(felt.force.z, 2000 * depth, 1e-6);
+}
+
+// The implicit step against a linear contact, without the passivity controller: how far it still
+// swings after 4000 steps from 1 mm.
+double swing_without_controller(const CouplingParameters& p, double contact) {
+  const double h = 1 / p.rate, inert = p.mass + h * p.damping + h * h * p.stiffness;
+  double x = 1e-3, v = 0;
+  for (int k = 0; k < 4000; ++k) {
+    v = (p.mass * v - h * (p.stiffness + contact) * x) / inert;
+    x += h * v;
+  }
+  return std::abs(x);
+}
+
+TEST(VirtualCoupling, KnowsWhichContactsItsStepsAreStableAgainst) {
+  const double limit = coupling_limits(parameters()).contact_stiffness;
+  EXPECT_LE(swing_without_controller(parameters(), 0.99 * limit), 1e-9);
+  EXPECT_GE(swing_without_controller(parameters(), 1.01 * limit), 1);
+}
+
+TEST(VirtualCoupling, ThePassivityControllerReachesABitBeyondThat) {
+  const double stiffness = 1.1 * coupling_limits(parameters()).contact_stiffness;
+  VirtualCoupling coupling(parameters(), {}, at({}));
+  for (int k = 0; k < 4000; ++k) {
+    const double push = k == 0 ? 1 : 0;
+    coupling.advance(at({}), {{0, 0, push - stiffness * coupling.tool().translation.z}, {}});
+  }
+  EXPECT_LE(norm(coupling.tool().translation), 1e-6);
+}
+
+TEST(VirtualCoupling, KnowsTheRateThatAContactNeeds) {
+  EXPECT_EQ(stable_rate(parameters(), kStiffness), 0);
+  const double rate = stable_rate(parameters(), 3e4);
+  EXPECT_NEAR(coupling_limits(parameters(rate)).contact_stiffness, 3e4, 1e-6);
+}
+
+TEST(VirtualCoupling, RefusesWhatIsNoCoupling) {
+  CouplingParameters wrong = parameters();
+  wrong.damping = 0;
+  EXPECT_THROW(VirtualCoupling(wrong, {}, {}), Error);
+  wrong = parameters();
+  wrong.rate = std::nan("");
+  EXPECT_THROW(VirtualCoupling(wrong, {}, {}), Error);
+}
+
+TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {
+  constexpr double kEdge = 0.2, kPerVolume = 2e4;  // N/m^3
+  const ToolModel tool = testing::lattice_cube(kEdge, 6, 4);
+  EXPECT_NEAR(radius_of_gyration(tool), kEdge / std::sqrt(6), 1e-3);
+  const synthetic::Scene scene = synthetic::make_scene("wall");
+  const PreparedCloud cloud(testing::see(scene));
+  QueryOptions options;
+  options.stiffness = kPerVolume;
+  Query query(tool, options);
+  const CouplingParameters p{kStiffness, kDamping, 0.2, radius_of_gyration(tool), 1000};
+  VirtualCoupling coupling(p, tool.center_of_mass, at({0, 0, 0.8}));
+  Result contact;
+  Pose device;
+  for (int k = 0; k < 1500; ++k) {
+    device = at({0, 0, 0.8 + 0.15 * std::min(1.0, k / 1000.0)});
+    contact = query.run(cloud, coupling.tool());
+    coupling.advance(device, contact.wrench);
+  }
+  const double depth = coupling.tool().translation.z + kEdge / 2 - 1;
+  ASSERT_GT(depth, 0);
+  const double pull = kStiffness * (device.translation.z - coupling.tool().translation.z);
+  EXPECT_NEAR(contact.wrench.force.z, -pull, 0.01 * pull);
+  EXPECT_NEAR(kPerVolume * kEdge * kEdge * depth, pull, 0.02 * pull);
+}
+
+}  // namespace
+}  // namespace vpm
