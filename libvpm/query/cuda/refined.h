@@ -160,7 +160,9 @@ class RefinedQuery {
   __device__ void list_cut();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
   __device__ void join_shares();
-  __device__ void join(std::uint32_t sphere, std::uint8_t kind, std::uint32_t neighbor) const;
+  __device__ void join(std::uint32_t sphere, std::uint8_t kind, std::uint32_t neighbor,
+                       std::uint8_t its_kind) const;
+  __device__ void enter(std::uint32_t cut, std::uint32_t sphere, std::uint8_t kind) const;
   __device__ RawResult add_up_shares() const;
   __device__ ToolSum sum_of_share(const Tile& warp, std::uint32_t sphere, std::uint8_t kind) const;
   __device__ bool is_inside(std::uint32_t sphere, std::uint8_t kind) const {
@@ -455,31 +457,40 @@ __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::join_shares() {
   if (hidden() == 0) list_cut();
-  constexpr unsigned kLanesPerRow = 8;  // rows of the graph have about that many neighbours
+  // An edge belongs to its smaller sphere: large ones have thousands of neighbours.
+  constexpr unsigned kLanesPerRow = 8;
   const Tile tile(kLanesPerRow);
   for (std::uint32_t k = tile.index(); k < listed_.shares; k += tile.count()) {
     const std::uint32_t i = mine(space_.shares)[k];
     const std::uint8_t kind = kind_of(i);
     if (kind != kCut && !is_passable(kind)) continue;
     for (std::uint32_t e = level_.edge_begin[i] + tile.lane; e < level_.edge_begin[i + 1];
-         e += tile.width)
-      join(i, kind, level_.neighbors[e]);
+         e += tile.width) {
+      const std::uint32_t j = level_.neighbors[e];
+      if (j > i) break;
+      join(i, kind, j, kind_of(j));
+    }
   }
 }
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::join(std::uint32_t i, std::uint8_t kind,
-                                                  std::uint32_t j) const {
-  const std::uint8_t other = kind_of(j);
-  if (!is_passable(other)) return;
-  if (kind != kCut) {
-    if (j < i) flood_.join(i + 1, j + 1);
-    return;
-  }
-  const Vec3 at = center(j);
-  const double gap = (other & kNear) != 0 ? squared_gap(at, surface_.read(at)) : space_.gaps[j];
-  if (lies_near_sheet(gap, level_.reach[i], level_.reach[j]) || cut_share(i).height(at) < 0)
-    flood_.join(0, j + 1);
+                                                  std::uint32_t j, std::uint8_t other) const {
+  if (is_passable(kind) && is_passable(other))
+    flood_.join(i + 1, j + 1);
+  else if (kind == kCut && is_passable(other))
+    enter(i, j, other);
+  else if (other == kCut && is_passable(kind))
+    enter(j, i, kind);
+}
+
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::enter(std::uint32_t cut, std::uint32_t i,
+                                                   std::uint8_t kind) const {
+  const Vec3 at = center(i);
+  const double gap = (kind & kNear) != 0 ? squared_gap(at, surface_.read(at)) : space_.gaps[i];
+  if (lies_near_sheet(gap, level_.reach[cut], level_.reach[i]) || cut_share(cut).height(at) < 0)
+    flood_.join(0, i + 1);
 }
 
 template <class Surface, class Team>
