@@ -18,13 +18,14 @@ struct Validation {
   double volume_mesh = 0;  // m^3, voxels whose centres lie inside
   double coverage = 0;     // volume of the union of the spheres within the solid / volume_mesh
   // Three standard errors of the coverage, each voxel cut by a surface taken as a coin of its own,
-  // and 1 % of the voxels that the mesh cuts for errors of their signs. A bound for solids whose
-  // walls, holes and gaps are at least three voxels wide: OpenVDB fills narrower ones, and voids
-  // that nothing but a surface crossing itself closes off.
+  // and the voxels near the mesh whose side OpenVDB and the winding number do not agree on: OpenVDB
+  // fills gaps narrower than three voxels, and voids that nothing but a surface crossing itself
+  // closes off.
   double coverage_error = 0;
   double max_protrusion = 0;  // m: how far outside the farthest voxel centre in a sphere lies
   double max_overlap = 0;     // m: r_i + r_j - |c_i - c_j| of spheres that share a voxel centre
   std::size_t protruding_voxels = 0, overlapping_voxels = 0;
+  std::size_t disputed_voxels = 0;  // inside by OpenVDB or by the winding number, but not by both
   // m: a protrusion or an overlap deeper than this holds a voxel centre and cannot be missed
   // (a depth d leaves room for a ball of diameter d; no ball wider than a voxel's diagonal
   // misses the centres).

@@ -63,6 +63,7 @@ json as_json(const Validation& validation) {
           {"max_overlap", validation.max_overlap},
           {"protruding_voxels", validation.protruding_voxels},
           {"overlapping_voxels", validation.overlapping_voxels},
+          {"disputed_voxels", validation.disputed_voxels},
           {"detection_limit", validation.detection_limit}};
 }
 
