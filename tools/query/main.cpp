@@ -12,6 +12,8 @@
 #include "libvpm/query/query.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
+#include "tools/query/coupled.h"
+#include "tools/query/device_path.h"
 #include "tools/query/level_query.h"
 #include "tools/query/pose_reader.h"
 #include "tools/query/query_report.h"
@@ -27,6 +29,7 @@ struct Arguments {
   std::optional<double> deadline_us;
   bool for_scene = false;
   double stiffness = 1;
+  std::string coupling;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -50,6 +53,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--stiffness", a.stiffness,
                  "N/m^3: scales force and torque; 1 leaves them in m^3 and m^4")
       ->capture_default_str();
+  app.add_option("--coupling", a.coupling,
+                 "Take --poses for those of a haptic device that holds the tool by a spring and "
+                 "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state (.ply or .csv)");
@@ -68,6 +74,10 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong(
         "--level, --max-error and --for-scene choose the level: give one of them; --deadline-us "
         "goes with the last two only");
+  if (!a.coupling.empty() && (a.poses.empty() || a.stiffness == 1))
+    wrong(
+        "--coupling needs the device's path (--poses) and what the scene's volume weighs "
+        "(--stiffness in N/m^3)");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
@@ -123,6 +133,42 @@ void note_scale(const Tool& tool, const SceneScale& scale, const Level& level) {
             std::to_string(level.sphere_count) + " is enough");
 }
 
+void say_limits(const Tool& tool, const CouplingParameters& coupling, const ToolModel& model,
+                double stiffness) {
+  tool.note("coupling: " + coupling_note(coupling));
+  const std::string warning = coupling_warning(coupling, model, stiffness);
+  if (!warning.empty()) tool.warn(warning);
+}
+
+// Queries one after the other, each answered by a line.
+struct Run {
+  const PreparedCloud& cloud;
+  ResultSink& sink;
+  std::vector<double> seconds;  // of each
+  Pose last;
+
+  Result ask(LevelQuery& query, const Pose& pose) {
+    const Result result = query.run(cloud, pose);
+    seconds.push_back(query.seconds());
+    last = pose;
+    return result;
+  }
+  void pose(LevelQuery& query, const Pose& pose, Measure measure) {
+    const std::size_t index = seconds.size();
+    const Result result = ask(query, pose);
+    sink.line(result_line(index, result, query.query().level(), measure, query.reason()));
+  }
+  void coupled(LevelQuery& query, VirtualCoupling coupling, const DevicePath& path) {
+    for (std::size_t k = 0; k < path.steps(); ++k) {
+      CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
+      step.contact = ask(query, step.tool);
+      step.rendered = coupling.advance(step.device, step.contact.wrench);
+      step.energy = coupling.energy();
+      sink.line(coupled_line(step));
+    }
+  }
+};
+
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
   const LevelRequest request = level_request(a);
@@ -141,30 +187,37 @@ void run(const Tool& tool, const Arguments& a) {
 
   std::optional<PoseReader> reader;
   if (!single) reader.emplace(a.poses);
-  std::optional<Pose> pose = single ? single : reader->next();
+  ResultSink sink(a.output);
+  Run run{prepared, sink, {}, {}};
+  std::optional<Pose> pose = single;
+  std::optional<CouplingParameters> coupling;
+  std::optional<DevicePath> path;
+  if (!a.coupling.empty()) {
+    coupling = coupling_from_text(a.coupling, model);
+    path.emplace(*reader, coupling->rate);
+    pose = path->pose(0);
+  } else if (!single) {
+    pose = reader->next();
+  }
   if (!pose) refuse(a.poses + ": no pose in it");
   LevelQuery query(model, options, request, prepared, *pose);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
-  ResultSink sink(a.output);
-  std::vector<double> seconds;
-  Pose last;
-  while (pose) {
-    const Result result = query.run(prepared, *pose);
-    sink.line(result_line(seconds.size(), result, query.query().level(), options.measure,
-                          query.reason()));
-    seconds.push_back(query.seconds());
-    last = *pose;
-    pose = reader ? reader->next() : std::nullopt;
+  if (coupling) {
+    say_limits(tool, *coupling, model, a.stiffness);
+    run.coupled(query, VirtualCoupling(*coupling, model.center_of_mass, *pose), *path);
+  } else {
+    for (; pose; pose = reader ? reader->next() : std::nullopt)
+      run.pose(query, *pose, options.measure);
   }
   sink.finish();
   note_deviation(tool, reader ? reader->largest_deviation() : pose_deviation);
   const Level& level = query.query().level();
   if (!a.spheres_out.empty()) {
     write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
-                  last);
+                  run.last);
   }
   if (!a.stats.empty()) {
-    nlohmann::json stats = query_stats(std::move(seconds), prepare_seconds, a.deadline_us);
+    nlohmann::json stats = query_stats(std::move(run.seconds), prepare_seconds, a.deadline_us);
     stats["device"] = "cpu";
     stats["threads"] = thread_count();
     stats["cloud_points"] = prepared.positions().size();

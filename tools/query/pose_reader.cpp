@@ -61,11 +61,12 @@ std::optional<std::string> PoseReader::next_line() {
 std::optional<Pose> PoseReader::next() {
   const std::optional<std::string> line = next_line();
   if (!line) return std::nullopt;
+  time_.reset();
   try {
     const char first = (*line)[line->find_first_not_of(" \t")];
     return first == '{' || first == '[' ? parse_json(*line) : parse_text(*line);
   } catch (const Error& fault) {
-    refuse(name_ + ", line " + std::to_string(line_) + ": " + fault.what());
+    refuse(place() + ": " + fault.what());
   }
 }
 
@@ -90,6 +91,7 @@ Pose PoseReader::parse_text(const std::string& line) {
       numbers.insert(numbers.end(), more.begin(), more.end());
     }
   } else if (numbers.size() == kTimedPose) {
+    time_ = numbers.front();
     numbers.erase(numbers.begin());
   }
   return from_numbers(numbers);

@@ -23,6 +23,11 @@ class PoseReader {
   // The next pose; none at the end. Throws Error(refused) naming the line.
   std::optional<Pose> next();
 
+  // Of the last pose, in seconds; none where its line has none.
+  std::optional<double> time() const { return time_; }
+  // Where the reader is, for messages.
+  std::string place() const { return name_ + ", line " + std::to_string(line_); }
+
   // How far the worst rotation so far was from one before it was normalised.
   double largest_deviation() const { return largest_deviation_; }
 
@@ -36,6 +41,7 @@ class PoseReader {
   std::ifstream file_;
   std::istream& stream_;
   std::size_t line_ = 0;
+  std::optional<double> time_;
   double largest_deviation_ = 0;
 };
 

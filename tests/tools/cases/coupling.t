@@ -1,0 +1,41 @@
+# A haptic device holds the tool by a spring and a damper.
+
+$ cp $SOURCE/tests/tools/inputs/* .
+$ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
+$ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --quiet
+
+# From free space to 40 mm into the wall in half a second, and a second at rest: 1501 steps at 1 kHz.
+$ printf '%s\n' '10 0 0 0.85 0 0 0 1' '10.5 0 0 0.94 0 0 0 1' '11.5 0 0 0.94 0 0 0 1' > device.txt
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o steps.jsonl --stats stats.json
+2> vpm-query: note: coupling: mass 0.0125 kg, radius of gyration 0.0817 m; to be passive a device that renders this needs a damping of its own of 5.25 N s/m
+$ $VALIDATE coupling-step steps.jsonl && $VALIDATE query-stats stats.json && wc -l < steps.jsonl
+1501
+
+# At rest spring and contact balance; the tool stays closer to the surface than the device, and energy adds up.
+$ tail -n 1 steps.jsonl | python3 -c 'import json; s = json.loads(input()); pull = 500 * (s["device"][2] - s["tool"][2]); print(abs(pull + s["force"][2]) < 1e-3 * pull, abs(pull + s["rendered_force"][2]) < 1e-3 * pull, 0.9 < s["tool"][2] < 0.94)'
+True True True
+$ tail -n 1 steps.jsonl | python3 -c 'import json; e = json.loads(input())["energy"]; print(abs(e["supplied"] - e["stored"] - e["dissipated"] - e["absorbed"] - e["lost"]) < 1e-12, e["lost"] >= 0)'
+True True
+
+# The same bytes for any number of threads; a path without times is a step for each pose.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5,rate=1000,mass=0.0125 --stiffness 2e4 --threads 1 --quiet | cmp - steps.jsonl
+$ cut -d' ' -f2- device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | wc -l
+3
+
+# What the steps cannot stand is said, with what mends it.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 1e7 -o /dev/null --quiet
+2> vpm-query: warning: --coupling is stable against contacts up to 6.05e+04 N/m, but with --stiffness 1e+07 this tool can make one of 9.42e+05 N/m: take rate=4242 or more, a larger mass, or less --stiffness
+
+# Wrong usage.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500 --stiffness 2e4
+2> vpm-query: error: --coupling stiffness=500: give stiffness=N/m,damping=N s/m and, if wanted, mass=kg,rate=Hz
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=-1 --stiffness 2e4
+2> vpm-query: error: --coupling stiffness=500,damping=-1: give stiffness=N/m,damping=N s/m and, if wanted, mass=kg,rate=Hz
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5
+2> vpm-query: error: --coupling needs the device's path (--poses) and what the scene's volume weighs (--stiffness in N/m^3)
+[2]
+$ printf '%s\n' '1 0 0 0.85 0 0 0 1' '1 0 0 0.9 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4
+2> vpm-query: error: standard input, line 2: times must ascend
+[1]
