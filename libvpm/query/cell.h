@@ -67,9 +67,10 @@ struct CutShare {
 };
 
 struct CellResult {
-  ToolSum sum;          // surface axes, arms about the tool's centre of mass
-  ContactPlane plane;   // plane.count > 0: the surface cuts the cell
-  bool is_far = false;  // a piece is further behind the surface than the tool's reach
+  ToolSum sum;                     // surface axes, arms about the tool's centre of mass
+  ContactPlane plane;              // plane.count > 0: the surface cuts the cell
+  bool is_far = false;             // a piece is further behind the surface than the tool's reach
+  std::uint32_t point = kNoPoint;  // where the surface was read last
 };
 
 // A surface further than this many reaches from the cell's centre, or than the tool's reach from
@@ -117,8 +118,8 @@ class CellMeasure {
   }
 
   // What of an uncut share that the flood has reached is inside, where run() does not know it
-  // because it is far. `whole`: all of it is behind some
-  // surface; `nearest` gives the nearest cut share, where it is needed.
+  // because it is far. `whole`: all of it is behind some surface; `nearest` gives the nearest cut
+  // share, where it is needed.
   template <class Nearest>
   VPM_HD ToolSum reached(bool whole, const Nearest& nearest) const {
     ToolSum sum;
@@ -147,12 +148,14 @@ class CellMeasure {
     bool is_flat = false;  // of mixed blocks: the surface crosses it as one plane
     TangentPlane tangent;
     Vec3 center;
+    std::uint32_t point = kNoPoint;  // where to begin to read the surface
   };
   VPM_HD BlockLook look_at(const CellBlock& block) const {
     BlockLook result;
     result.center = to_surface_ * widen(block.center);
     const auto look = surface_.look_at_ball(result.center, block.radius);
     result.side = look.side;
+    result.point = look.point;
     result.is_flat = look.side == Side::mixed &&
                      surface_.is_flat(look, result.center, block.radius, result.tangent) &&
                      !is_hidden(result.tangent.foot);
@@ -165,6 +168,7 @@ class CellMeasure {
     const CellBlock& block = cell_.blocks[b];
     const BlockLook look = look_at(block);
     if (look.side == Side::free) return false;
+    result.point = look.point;
     if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
     if (look.is_flat) {
       if (pass == Pass::seen) add_flat(block, look, result);
@@ -180,7 +184,8 @@ class CellMeasure {
   // plane, of those that are hidden. Returns whether the piece was left for the second pass.
   VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
     const Vec3 x = to_surface_ * piece.at;
-    const Reading reading = surface_.read(x);
+    const Reading reading = surface_.read(x, result.point);
+    result.point = reading.point;
     if (!reading.known || reading.distance >= piece.radius) return false;
     result.is_far |= is_far(x, reading.foot);
     const bool hidden = is_hidden(reading.foot);
@@ -219,30 +224,30 @@ class CellMeasure {
             arm(piece.at));
   }
 
-  // Adds the samples of a block that the surface crosses as one plane.
-  VPM_HD void add_flat(const CellBlock& block, const BlockLook& look, CellResult& result) const {
-    const TangentPlane& tangent = look.tangent;
-    result.is_far |= is_far(look.center, tangent.foot);
-    const Vec3 n = transpose(to_surface_.rotation) * tangent.normal;
-    const double height = tangent.distance(to_surface_.translation);
-    double part = 0;
-    Vec3 moment;
-    bool is_cut = false;
-    for (std::uint32_t s = block.begin; s < block.end; ++s) {
-      const CellSample& sample = cell_.samples[s];
-      const Vec3 at = widen(sample.center);
-      const double distance = dot(n, at) + height;
-      if (distance >= sample.radius) continue;
-      double inside = sample.weight;
-      if (distance > -sample.radius) {
-        inside *= ball_fraction_inside(distance / sample.radius);
-        is_cut = true;
-      }
-      part += inside;
-      moment += inside * at;
-    }
-    if (is_cut) result.plane.add(tangent.normal, relative(tangent.foot));
-    result.sum.add_moment(part, arm(moment), tangent.normal);
+  // The plane that crosses a flat block, in the tool's axes about its centre of mass.
+  struct FlatCut {
+    Vec3 normal;
+    double height = 0;  // of the centre of mass
+  };
+  VPM_HD FlatCut flat_cut(const BlockLook& look) const {
+    return {transpose(to_surface_.rotation) * look.tangent.normal,
+            look.tangent.distance(to_surface_.translation)};
+  }
+  // The weight of a sample that lies behind the plane.
+  VPM_HD double weight_inside(const CellSample& sample, const FlatCut& cut, bool& is_cut) const {
+    const double distance = dot(cut.normal, widen(sample.center)) + cut.height;
+    if (distance >= sample.radius) return 0;
+    if (distance <= -sample.radius) return sample.weight;
+    is_cut = true;
+    return sample.weight * ball_fraction_inside(distance / sample.radius);
+  }
+  // Adds a flat block: the sums, sample by sample in their order, of those weights and of each
+  // times its sample's centre.
+  VPM_HD void add_flat(const BlockLook& look, double weight, Vec3 moment, bool is_cut,
+                       CellResult& result) const {
+    result.is_far |= is_far(look.center, look.tangent.foot);
+    if (is_cut) result.plane.add(look.tangent.normal, relative(look.tangent.foot));
+    result.sum.add_moment(weight, arm(moment), look.tangent.normal);
   }
 
  private:
@@ -257,6 +262,20 @@ class CellMeasure {
     const double beyond = (kSheetReach - 1) * cell_.reach;
     const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
     return squared_norm(foot - center_) > near * near;
+  }
+
+  VPM_HD void add_flat(const CellBlock& block, const BlockLook& look, CellResult& result) const {
+    const FlatCut cut = flat_cut(look);
+    double weight = 0;
+    Vec3 moment;
+    bool is_cut = false;
+    for (std::uint32_t s = block.begin; s < block.end; ++s) {
+      const double inside = weight_inside(cell_.samples[s], cut, is_cut);
+      if (inside == 0) continue;
+      weight += inside;
+      moment += inside * widen(cell_.samples[s].center);
+    }
+    add_flat(look, weight, moment, is_cut, result);
   }
 
   const Surface& surface_;

@@ -79,7 +79,7 @@ struct DepthSurface {
     return {top + fv * (bottom - top), nearest};
   }
 
-  VPM_HD Reading read(Vec3 x) const {
+  VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
     if (!(x.z >= kSmallestLength)) return {};  // squares of less would vanish
     const Pixel pixel = look_up(x);
     if (!(pixel.inverse_depth > 0)) return {};
@@ -137,6 +137,7 @@ struct DepthSurface {
   // cover them.
   struct Look {
     Side side = Side::free;
+    std::uint32_t point = kNoPoint;  // projection needs no place to begin
     bool leaves_image = true;
     PixelRectangle pixels, tiles;  // that a place in the ball may touch; those of the tiles
     InverseDepthRange range;
@@ -221,13 +222,21 @@ struct DepthSurface {
     const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
     const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
     InverseDepthRange all = tiles[level][v0 * row + u0];
+    const auto take = [&](std::int32_t u, std::int32_t v) {
+      const InverseDepthRange tile = tiles[level][v * row + u];
+      all.low = tile.low < all.low ? tile.low : all.low;
+      all.high = tile.high > all.high ? tile.high : all.high;
+    };
+#ifdef __CUDA_ARCH__
+    // Always nine, some of them twice: loads that do not wait for each other.
+#pragma unroll
+    for (std::int32_t k = 0; k < 9; ++k)
+      take(u0 + k % 3 < u1 ? u0 + k % 3 : u1, v0 + k / 3 < v1 ? v0 + k / 3 : v1);
+#else
     for (std::int32_t v = v0; v <= v1; ++v) {
-      for (std::int32_t u = u0; u <= u1; ++u) {
-        const InverseDepthRange tile = tiles[level][v * row + u];
-        all.low = tile.low < all.low ? tile.low : all.low;
-        all.high = tile.high > all.high ? tile.high : all.high;
-      }
+      for (std::int32_t u = u0; u <= u1; ++u) take(u, v);
     }
+#endif
     const std::int32_t right = ((u1 + 1) << level) - 1, bottom = ((v1 + 1) << level) - 1;
     look.range = all;
     look.tiles = {u0 << level, v0 << level, right < width ? right : width - 1,

@@ -20,7 +20,6 @@ struct PointBox {
 struct DiskSurface {
   static constexpr std::uint32_t kLeafSize = 8;
   static constexpr int kMaxDepth = 32;
-  static constexpr std::uint32_t kNone = 0xffffffffu;
 
   const Vec3f* positions = nullptr;
   const Vec3f* normals = nullptr;
@@ -41,11 +40,19 @@ struct DiskSurface {
   }
 
   // The point nearest to x among those closer than `bound`; equal distances go to the smaller
-  // index. kNone if none.
-  VPM_HD std::uint32_t nearest(Vec3 x, double bound) const {
-    if (count == 0) return kNone;
-    std::uint32_t best = kNone;
+  // index. kNoPoint if none. A point that is thought to be near makes the search short and does not
+  // change its result.
+  VPM_HD std::uint32_t nearest(Vec3 x, double bound, std::uint32_t near = kNoPoint) const {
+    if (count == 0) return kNoPoint;
+    std::uint32_t best = kNoPoint;
     double best_squared = bound * bound;
+    if (near != kNoPoint) {
+      const double squared = squared_norm(widen(positions[near]) - x);
+      if (squared < best_squared) {
+        best_squared = squared;
+        best = near;
+      }
+    }
     std::uint32_t stack[kMaxDepth];
     double stack_squared[kMaxDepth];
     int size = 0;
@@ -70,7 +77,7 @@ struct DiskSurface {
         const std::uint32_t end = begin + kLeafSize < count ? begin + kLeafSize : count;
         for (std::uint32_t i = begin; i < end; ++i) {
           const double squared = squared_norm(widen(positions[i]) - x);
-          if (squared < best_squared || (squared == best_squared && best != kNone && i < best)) {
+          if (squared < best_squared || (squared == best_squared && best != kNoPoint && i < best)) {
             best_squared = squared;
             best = i;
           }
@@ -83,11 +90,11 @@ struct DiskSurface {
   }
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
-  VPM_HD Reading read(Vec3 x) const {
-    const std::uint32_t i = nearest(x, HUGE_VAL);
-    if (i == kNone) return {};
+  VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
+    const std::uint32_t i = nearest(x, HUGE_VAL, near);
+    if (i == kNoPoint) return {};
     const Vec3 normal = widen(normals[i]), foot = widen(positions[i]);
-    return {true, dot(normal, x - foot), normal, foot};
+    return {true, dot(normal, x - foot), normal, foot, i};
   }
 
   // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
@@ -101,16 +108,17 @@ struct DiskSurface {
     return normalized_or_zero(towards - (largest_radius / std::sqrt(aside_squared)) * aside);
   }
 
-  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
-    return nearest(center, radius + largest_radius) == kNone ? Side::uncut : Side::mixed;
-  }
-
   // Each disk is a plane of its own: nothing is taken for flat, and no bound of the gap is known.
   struct Look {
     Side side = Side::free;
+    std::uint32_t point = kNoPoint;  // a point that the ball may touch
   };
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
-    return {side_of_ball(center, radius)};
+    const std::uint32_t point = nearest(center, radius + largest_radius);
+    return {point == kNoPoint ? Side::uncut : Side::mixed, point};
+  }
+  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
+    return look_at_ball(center, radius).side;
   }
   VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }

@@ -18,12 +18,16 @@ enum class Side : std::uint8_t {
   mixed,   // look closer
 };
 
+// A point of the cloud by its index, for surfaces that have such.
+inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
+
 // The surface as seen from one place x.
 struct Reading {
   bool known = false;   // false: nothing was measured in this direction
   double distance = 0;  // signed distance to the surface along its normal; negative inside
   Vec3 normal;          // unit, into free space
   Vec3 foot;            // the surface point that was read
+  std::uint32_t point = kNoPoint;  // the same, by index: a good place to begin the next search
 };
 
 // The surface in a ball, where it is flat: a plane.

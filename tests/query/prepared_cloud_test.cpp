@@ -53,8 +53,10 @@ TEST(PreparedCloud, NearestIsTheNearest) {
     double best = HUGE_VAL;
     for (const Vec3f& p : prepared.positions()) best = std::min(best, squared_norm(widen(p) - x));
     const std::uint32_t found = disks.nearest(x, HUGE_VAL);
-    ASSERT_NE(found, DiskSurface::kNone);
+    ASSERT_NE(found, kNoPoint);
     EXPECT_EQ(squared_norm(widen(prepared.positions()[found]) - x), best);
+    const std::uint32_t begin_at = static_cast<std::uint32_t>(k) * 15;
+    EXPECT_EQ(disks.nearest(x, HUGE_VAL, begin_at), found);
   }
 }
 
@@ -100,7 +102,7 @@ TEST(PreparedCloud, RefusesTwoPointsAtOnePixel) {
 
 TEST(PreparedCloud, EmptyCloudsAnswerNothing) {
   const PreparedCloud cloud{Cloud{}};
-  EXPECT_EQ(cloud.disk_surface().nearest({}, HUGE_VAL), DiskSurface::kNone);
+  EXPECT_EQ(cloud.disk_surface().nearest({}, HUGE_VAL), kNoPoint);
 }
 
 }  // namespace
