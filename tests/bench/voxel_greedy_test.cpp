@@ -19,8 +19,8 @@ double coverage(const Solid& solid, const std::vector<Sphere>& spheres) {
 TEST(VoxelGreedy, GivesPackings) {
   for (const Solid& solid : {synthetic::make_cube(1), synthetic::make_tetrahedron(2),
                              synthetic::make_torus(1, 0.3, 48, 24)}) {
-    const auto centres = pack_on_voxels(solid, 100, 32, Refine::none);
-    const auto refined = pack_on_voxels(solid, 100, 32, Refine::local_maximum);
+    const auto centres = VoxelGreedy(solid, 32).pack(100, Refine::none);
+    const auto refined = VoxelGreedy(solid, 32).pack(100, Refine::local_maximum);
     ASSERT_EQ(centres.size(), 100u);
     ASSERT_EQ(refined.size(), 100u);
     EXPECT_TRUE(certify(solid, centres).holds);
@@ -30,12 +30,13 @@ TEST(VoxelGreedy, GivesPackings) {
 }
 
 TEST(VoxelGreedy, RefinedFirstSphereIsTheInsphere) {
-  const auto spheres = pack_on_voxels(synthetic::make_octahedron(1), 1, 20, Refine::local_maximum);
+  const auto spheres =
+      VoxelGreedy(synthetic::make_octahedron(1), 20).pack(1, Refine::local_maximum);
   EXPECT_NEAR(spheres.at(0).radius, std::sqrt(6.0) / 6, 1e-6);
 }
 
 TEST(VoxelGreedy, EndsWhereNoVoxelHasRoom) {
-  const auto spheres = pack_on_voxels(synthetic::make_cube(1), 1000000, 8, Refine::none);
+  const auto spheres = VoxelGreedy(synthetic::make_cube(1), 8).pack(1000000, Refine::none);
   EXPECT_LT(spheres.size(), 1000u);
   EXPECT_TRUE(certify(synthetic::make_cube(1), spheres).holds);
 }

@@ -17,31 +17,50 @@ constexpr double kFirstStep = 0.5;     // of a compass search, in voxels
 constexpr double kLastStep = 1e-6;     // in voxels
 constexpr double kWalk = 2;            // farthest way of a compass search, in voxels
 
-class VoxelGreedy {
- public:
-  VoxelGreedy(const Solid& solid, int voxels)
-      : bvh_(solid.vertices, solid.triangles), winding_(bvh_), low_(solid.vertices.front()) {
-    Vec3 high = low_;
+}  // namespace
+
+struct VoxelGreedy::Field {
+  Field(const Solid& solid, int voxels)
+      : bvh(solid.vertices, solid.triangles), low(solid.vertices.front()) {
+    Vec3 high = low;
     for (const Vec3 p : solid.vertices) {
-      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
-    const Vec3 side = high - low_;
-    width_ = std::max({side.x, side.y, side.z}) / voxels;
-    const auto count = [&](double length) { return static_cast<int>(std::ceil(length / width_)); };
-    nx_ = std::max(1, count(side.x));
-    ny_ = std::max(1, count(side.y));
-    nz_ = std::max(1, count(side.z));
-    room_.resize(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_) *
-                 static_cast<std::size_t>(nz_));
-    const auto row = static_cast<std::size_t>(nx_);
-    parallel_for(room_.size() / row, 4, [&](std::size_t begin, std::size_t end) {
+    const Vec3 side = high - low;
+    width = std::max({side.x, side.y, side.z}) / voxels;
+    const auto count = [&](double length) { return static_cast<int>(std::ceil(length / width)); };
+    nx = std::max(1, count(side.x));
+    ny = std::max(1, count(side.y));
+    nz = std::max(1, count(side.z));
+    room.resize(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) *
+                static_cast<std::size_t>(nz));
+    const WindingNumber winding(bvh);
+    const auto row = static_cast<std::size_t>(nx);
+    parallel_for(room.size() / row, 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin * row; v < end * row; ++v) {
         const Vec3 x = center(v);
-        room_[v] = winding_.inside(x) ? static_cast<float>(bvh_.closest(x).distance) : 0;
+        room[v] = winding.inside(x) ? static_cast<float>(bvh.closest(x).distance) : 0;
       }
     });
   }
+
+  Vec3 center(std::size_t v) const {
+    const auto i = static_cast<int>(v % static_cast<std::size_t>(nx));
+    const auto jk = static_cast<int>(v / static_cast<std::size_t>(nx));
+    return low + width * Vec3{i + 0.5, jk % ny + 0.5, jk / ny + 0.5};
+  }
+
+  TriangleBvh bvh;
+  Vec3 low;
+  double width = 0;
+  int nx = 0, ny = 0, nz = 0;
+  std::vector<float> room;  // per voxel; 0 outside
+};
+
+class VoxelGreedy::Run {
+ public:
+  explicit Run(const Field& field) : field_(field), room_(field.room) {}
 
   std::vector<Sphere> run(std::size_t spheres, Refine refine) {
     std::priority_queue<std::pair<float, std::size_t>> queue;
@@ -54,9 +73,10 @@ class VoxelGreedy {
         if (room_[v] > 0) queue.push({room_[v], v});
         continue;
       }
-      gather(center(v), room);
-      const Sphere found = refine == Refine::none ? Sphere{center(v), clearance(center(v))}
-                                                  : compass_search(center(v));
+      gather(field_.center(v), room);
+      const Sphere found = refine == Refine::none
+                               ? Sphere{field_.center(v), clearance(field_.center(v))}
+                               : compass_search(field_.center(v));
       placed_.push_back({found.center, kMargin * found.radius});
       take(found, std::max<double>(room, found.radius));
     }
@@ -64,21 +84,15 @@ class VoxelGreedy {
   }
 
  private:
-  Vec3 center(std::size_t v) const {
-    const auto i = static_cast<int>(v % static_cast<std::size_t>(nx_));
-    const auto jk = static_cast<int>(v / static_cast<std::size_t>(nx_));
-    return low_ + width_ * Vec3{i + 0.5, jk % ny_ + 0.5, jk / ny_ + 0.5};
-  }
-
   // The spheres that a search from x can meet.
   void gather(Vec3 x, double room) {
     near_.clear();
     for (const Sphere& s : placed_)
-      if (norm(x - s.center) - s.radius < room + 2 * kWalk * width_) near_.push_back(s);
+      if (norm(x - s.center) - s.radius < room + 2 * kWalk * field_.width) near_.push_back(s);
   }
 
   double clearance(Vec3 x) const {
-    double d = bvh_.closest(x).distance;
+    double d = field_.bvh.closest(x).distance;
     for (const Sphere& s : near_) d = std::min(d, norm(x - s.center) - s.radius);
     return d;
   }
@@ -86,8 +100,8 @@ class VoxelGreedy {
   // Stays in the ball about the start that the mesh does not meet, so on its side.
   Sphere compass_search(Vec3 start) const {
     Sphere best{start, clearance(start)};
-    const double walk = std::min(kWalk * width_, best.radius);
-    for (double step = kFirstStep * width_; step > kLastStep * width_;) {
+    const double walk = std::min(kWalk * field_.width, best.radius);
+    for (double step = kFirstStep * field_.width; step > kLastStep * field_.width;) {
       bool better = false;
       for (int k = 0; k < 26; ++k) {
         const int code = k < 13 ? k : k + 1;  // all of 27 but the middle
@@ -109,39 +123,38 @@ class VoxelGreedy {
     const double around = s.radius + most;
     const auto range = [&](double at, double low, int count) {
       const auto index = [&](double x) {
-        return static_cast<int>(std::clamp((x - low) / width_, 0.0, count - 1.0));
+        return static_cast<int>(std::clamp((x - low) / field_.width, 0.0, count - 1.0));
       };
       return std::pair{index(at - around), index(at + around)};
     };
-    const auto [x0, x1] = range(s.center.x, low_.x, nx_);
-    const auto [y0, y1] = range(s.center.y, low_.y, ny_);
-    const auto [z0, z1] = range(s.center.z, low_.z, nz_);
+    const auto [x0, x1] = range(s.center.x, field_.low.x, field_.nx);
+    const auto [y0, y1] = range(s.center.y, field_.low.y, field_.ny);
+    const auto [z0, z1] = range(s.center.z, field_.low.z, field_.nz);
     for (int z = z0; z <= z1; ++z) {
       for (int y = y0; y <= y1; ++y) {
         for (int x = x0; x <= x1; ++x) {
-          const auto v = static_cast<std::size_t>((z * ny_ + y)) * static_cast<std::size_t>(nx_) +
-                         static_cast<std::size_t>(x);
-          const auto beside = static_cast<float>(norm(center(v) - s.center) - s.radius);
+          const auto v =
+              static_cast<std::size_t>((z * field_.ny + y)) * static_cast<std::size_t>(field_.nx) +
+              static_cast<std::size_t>(x);
+          const auto beside = static_cast<float>(norm(field_.center(v) - s.center) - s.radius);
           room_[v] = std::min(room_[v], std::max(beside, 0.0f));
         }
       }
     }
   }
 
-  TriangleBvh bvh_;
-  WindingNumber winding_;
-  Vec3 low_;
-  double width_ = 0;
-  int nx_ = 0, ny_ = 0, nz_ = 0;
+  const Field& field_;
   std::vector<float> room_;  // per voxel; 0 outside and where nothing fits
   std::vector<Sphere> placed_, near_;
 };
 
-}  // namespace
+VoxelGreedy::VoxelGreedy(const Solid& solid, int voxels)
+    : field_(std::make_unique<Field>(solid, voxels)) {}
 
-std::vector<Sphere> pack_on_voxels(const Solid& solid, std::size_t spheres, int voxels,
-                                   Refine refine) {
-  return VoxelGreedy(solid, voxels).run(spheres, refine);
+VoxelGreedy::~VoxelGreedy() = default;
+
+std::vector<Sphere> VoxelGreedy::pack(std::size_t spheres, Refine refine) const {
+  return Run(*field_).run(spheres, refine);
 }
 
 }  // namespace vpm::bench
