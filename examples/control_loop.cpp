@@ -61,8 +61,19 @@ double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& too
   return 0.5 * (low + high);
 }
 
+// The point nearest to the mean of all.
+std::size_t middle_of(const std::vector<Vec3f>& points) {
+  Vec3 mean;
+  for (const Vec3f& p : points) mean += widen(p) / static_cast<double>(points.size());
+  const auto nearer = [&](const Vec3f& a, const Vec3f& b) {
+    return squared_norm(widen(a) - mean) < squared_norm(widen(b) - mean);
+  };
+  return static_cast<std::size_t>(std::min_element(points.begin(), points.end(), nearer) -
+                                  points.begin());
+}
+
 Path make_path(Query& query, const PreparedCloud& cloud, const ToolModel& tool) {
-  const std::size_t middle = cloud.positions().size() / 2;
+  const std::size_t middle = middle_of(cloud.positions());
   Path path;
   path.place = cloud.origin() + widen(cloud.positions()[middle]);
   path.normal = normalized_or_zero(widen(cloud.normals()[middle]));

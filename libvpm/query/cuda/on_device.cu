@@ -18,6 +18,14 @@ std::vector<Unit> units_of(const Level& level) {
   return units;
 }
 
+std::vector<std::uint32_t> divided_shares(const Level& level) {
+  std::vector<std::uint32_t> divided;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    if (level.block_begin[i + 1] - level.block_begin[i] > 1) divided.push_back(i);
+  }
+  return divided;
+}
+
 std::vector<std::uint32_t> clusters_of_shares(const ShareClusters& clusters) {
   std::vector<std::uint32_t> cluster_of(clusters.shares.size());
   for (std::uint32_t c = 0; c < clusters.clusters.size(); ++c) {
@@ -46,6 +54,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
       cluster_of_(clusters_of_shares(clusters)),
+      divided_(divided_shares(level)),
       blocks_(level.blocks),
       block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
@@ -62,6 +71,8 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.block_masses = block_masses_.get();
   view_.samples = samples_.get();
   view_.units = units_.get();
+  view_.divided = divided_.get();
+  view_.divided_count = static_cast<std::uint32_t>(divided_.size());
   view_.clusters = clusters_.get();
   view_.cluster_of = cluster_of_.get();
   view_.share_masses = share_masses_.get();

@@ -37,7 +37,7 @@ class DeviceLevel {
   DeviceArray<Vec3> centers_;
   DeviceArray<double> reach_;
   DeviceArray<std::uint32_t> block_begin_, edge_begin_, neighbors_, grid_begin_, grid_spheres_,
-      cluster_of_;
+      cluster_of_, divided_;
   DeviceArray<CellBlock> blocks_;
   DeviceArray<BlockMass> block_masses_, share_masses_;
   DeviceArray<CellSample> samples_;

@@ -69,12 +69,14 @@ struct RefinedSpace {
 
 // Counters of a team; 0 at the start.
 struct RefinedCounters {
-  unsigned hidden = 0;  // > 0: some share needs the nearest cut one
+  unsigned hidden = 0;  // > 0: the flood may pass some share only if the nearest cut one lets it
+  unsigned hidden_pieces = 0;  // > 0: some divided share has pieces for the second pass
   unsigned cut = 0;
 };
 
-// Threads that measure a block of few samples together, and the most samples of such a block.
-inline constexpr unsigned kNarrow = 4, kNarrowSamples = 16;
+// Most samples of a block that is measured by less than a warp, and the threads that do it: more,
+// where there is little to do.
+inline constexpr unsigned kNarrowSamples = 16, kNarrowest = 4, kWidest = 16;
 
 template <class Surface, class Team>
 class RefinedQuery {
@@ -110,8 +112,11 @@ class RefinedQuery {
     list_work();
     measure_work();
     team_.sync();
-    if (hidden() > 0) decide_hidden();
-    join_shares();
+    const bool pieces = read(counters_.hidden_pieces) > 0;
+    const bool waits = read(counters_.hidden) > 0 || (pieces && any_waits_for_hidden());
+    if (pieces) measure_hidden();
+    if (waits) decide_hidden();
+    join_shares(waits);
     team_.sync();
     return add_up_shares();
   }
@@ -126,8 +131,8 @@ class RefinedQuery {
   __device__ std::uint32_t* mine(std::uint32_t* list) const {
     return list + first_of(level_.unit_count);
   }
-  __device__ unsigned hidden() const {
-    return *const_cast<const volatile unsigned*>(&counters_.hidden);
+  __device__ static unsigned read(const unsigned& counter) {
+    return *const_cast<const volatile unsigned*>(&counter);
   }
   __device__ Vec3 center(std::uint32_t i) const { return frame_.to_surface * level_.centers[i]; }
   __device__ CutShare cut_share(std::uint32_t cut) const {
@@ -142,24 +147,33 @@ class RefinedQuery {
   __device__ std::uint8_t kind_of(std::uint32_t i) const;
 
   __device__ void list_work();
+  // What add_block() has left: pieces for the second pass; results in other threads than the first.
+  struct BlockPart {
+    bool hidden = false, is_shared = false;
+  };
   struct Listed {
     unsigned wide, narrow, pieces, shares;
   };
   __device__ void list_unit(std::uint32_t index, Listed& listed);
   __device__ void measure_work();
-  __device__ void measure_mixed(const Tile& tile, const Unit& unit);
+  __device__ __noinline__ void measure_mixed(Tile tile, Unit unit);
   __device__ void measure_whole(const Unit& unit);
-  __device__ bool add_block(const Tile& tile, const Measure& measure, const CellView& view,
-                            std::uint32_t block, typename Measure::Pass pass,
-                            CellResult& result) const;
-  template <class Nearest>
-  __device__ void add_reached(const Tile& tile, const Measure& measure, const CellView& view,
-                              std::uint32_t block, const Nearest& nearest, ToolSum& sum) const;
+  __device__ __noinline__ BlockPart add_block(Tile tile, const Measure& measure,
+                                              const CellView& view, std::uint32_t block,
+                                              typename Measure::Pass pass,
+                                              CellResult& result) const;
+  __device__ void add_flat(const Tile& tile, const Measure& measure, const CellView& view,
+                           const CellBlock& block, const typename Measure::BlockLook& look,
+                           CellResult& result) const;
+  __device__ __noinline__ bool add_reached(const Measure& measure, const SharePiece& piece,
+                                           const CutShare* nearest, ToolSum& sum) const;
   __device__ std::uint8_t read_gap(std::uint32_t sphere) const;
+  __device__ bool any_waits_for_hidden() const;
+  __device__ void measure_hidden();
   __device__ void decide_hidden();
   __device__ void list_cut();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
-  __device__ void join_shares();
+  __device__ void join_shares(bool cut_is_listed);
   __device__ void join(std::uint32_t sphere, std::uint8_t kind, std::uint32_t neighbor,
                        std::uint8_t its_kind) const;
   __device__ void enter(std::uint32_t cut, std::uint32_t sphere, std::uint8_t kind) const;
@@ -285,61 +299,97 @@ __device__ std::uint8_t RefinedQuery<Surface, Team>::read_gap(std::uint32_t i) c
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::measure_work() {
-  const Tile warp(32), tile(kNarrow);
+  const Tile warp(32);
   for (std::uint32_t k = warp.index(); k < listed_.wide; k += warp.count())
     measure_mixed(warp, level_.units[mine(space_.wide)[k]]);
   // From the other end, so that warps without the first kind begin with these.
+  unsigned width = kWidest;
+  while (width > kNarrowest && listed_.narrow * width > blockDim.x) width /= 2;
+  const Tile tile(width);
   for (std::uint32_t k = tile.count() - 1 - tile.index(); k < listed_.narrow; k += tile.count())
     measure_mixed(tile, level_.units[mine(space_.narrow)[k]]);
   for (std::uint32_t k = blockDim.x - 1 - threadIdx.x; k < listed_.pieces; k += blockDim.x)
     measure_whole(level_.units[mine(space_.pieces)[k]]);
 }
 
-// What one block contributes to CellMeasure::run(). Returns whether something of it, of any thread,
-// was left for the second pass.
+// What one block contributes to CellMeasure::run().
 template <class Surface, class Team>
-__device__ bool RefinedQuery<Surface, Team>::add_block(const Tile& tile, const Measure& measure,
-                                                       const CellView& view, std::uint32_t b,
-                                                       typename Measure::Pass pass,
-                                                       CellResult& result) const {
+__device__ __noinline__ typename RefinedQuery<Surface, Team>::BlockPart
+RefinedQuery<Surface, Team>::add_block(Tile tile, const Measure& measure, const CellView& view,
+                                       std::uint32_t b, typename Measure::Pass pass,
+                                       CellResult& result) const {
   const CellBlock block = view.blocks[b];
   const typename Measure::BlockLook look = measure.look_at(block);
-  bool hidden = false;
-  if (look.side == Side::mixed && !look.is_flat) {
-    for (std::uint32_t s = block.begin + tile.lane; s < block.end; s += tile.width)
-      hidden |= measure.add_piece(piece_of(view.samples[s]), pass, result);
-  } else if (look.side != Side::free && tile.leads()) {
-    if (look.side != Side::mixed)
-      hidden = measure.add_piece(piece_of(view.masses[b]), pass, result);
-    else if (pass == Measure::Pass::seen)
-      measure.add_flat(block, look, result);
+  if (look.side == Side::free) return {};
+  if (look.is_flat) {
+    if (pass == Measure::Pass::seen) add_flat(tile, measure, view, block, look, result);
+    return {};
   }
-  return tile.any(hidden);
+  const bool sampled = look.side == Side::mixed;
+  const std::uint32_t count = sampled ? block.end - block.begin : 1;
+  bool hidden = false;
+  for (std::uint32_t s = tile.lane; s < count; s += tile.width) {
+    const SharePiece piece =
+        sampled ? piece_of(view.samples[block.begin + s]) : piece_of(view.masses[b]);
+    hidden |= measure.add_piece(piece, pass, result);
+  }
+  return {tile.any(hidden), sampled};
+}
+
+// The weights of the samples by all threads, their sums in the samples' order by four.
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::add_flat(const Tile& tile, const Measure& measure,
+                                                      const CellView& view, const CellBlock& block,
+                                                      const typename Measure::BlockLook& look,
+                                                      CellResult& result) const {
+  __shared__ double terms[4][kThreads];
+  const typename Measure::FlatCut cut = measure.flat_cut(look);
+  const unsigned slot = tile.index() * tile.width;
+  bool is_cut = false;
+  double sum = 0;  // of this thread's row of terms
+  for (std::uint32_t begin = block.begin; begin < block.end; begin += tile.width) {
+    const std::uint32_t s = begin + tile.lane;
+    const double inside = s < block.end ? measure.weight_inside(view.samples[s], cut, is_cut) : 0;
+    const Vec3 moment = inside != 0 ? inside * widen(view.samples[s].center) : Vec3{};
+    terms[0][slot + tile.lane] = inside;
+    terms[1][slot + tile.lane] = moment.x;
+    terms[2][slot + tile.lane] = moment.y;
+    terms[3][slot + tile.lane] = moment.z;
+    __syncwarp(tile.mask);
+    const unsigned count = min(tile.width, block.end - begin);
+    if (tile.lane < 4)
+      for (unsigned k = 0; k < count; ++k) sum += terms[tile.lane][slot + k];
+    __syncwarp(tile.mask);
+  }
+  is_cut = tile.any(is_cut);
+  const double sums[4] = {tile.from(sum, 0), tile.from(sum, 1), tile.from(sum, 2),
+                          tile.from(sum, 3)};
+  if (tile.leads()) measure.add_flat(look, sums[0], {sums[1], sums[2], sums[3]}, is_cut, result);
 }
 
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::measure_mixed(const Tile& tile, const Unit& unit) {
+__device__ __noinline__ void RefinedQuery<Surface, Team>::measure_mixed(Tile tile, Unit unit) {
   const std::uint32_t i = unit.share;
   const CellView view = level_.cell(i);
   const Measure measure = measure_of(view);
   CellResult result;
-  bool hidden = false;
+  BlockPart part;
   if (unit.block != Unit::kNoBlock)
-    hidden = add_block(tile, measure, view, unit.block, Measure::Pass::seen, result);
+    part = add_block(tile, measure, view, unit.block, Measure::Pass::seen, result);
   const bool far = tile.any(result.is_far);
-  tile.add_up(result.plane);
+  if (part.is_shared) tile.add_up(result.plane);
   if (level_.is_divided(i)) {
-    tile.add_up(result.sum);
+    if (part.is_shared) tile.add_up(result.sum);
     if (!tile.leads()) return;
     add_atomically(result.sum, measured_.sums[i]);
     add_atomically(result.plane, measured_.planes[i]);
-    const unsigned marks = (hidden ? kHidden : 0U) | (far ? kUnsure : 0U);
+    const unsigned marks = (part.hidden ? kHidden : 0U) | (far ? kUnsure : 0U);
     if (marks != 0) atomicOr(&measured_.marks[i], marks);
-    if (hidden) atomicAdd(&counters_.hidden, 1U);
+    if (part.hidden) atomicAdd(&counters_.hidden_pieces, 1U);
     return;
   }
-  if (hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
-  tile.add_up(result.sum);
+  if (part.hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
+  if (part.is_shared) tile.add_up(result.sum);
   if (!tile.leads()) return;
   const bool counts = result.sum.volume.value > 0;
   std::uint8_t kind = result.plane.count > 0 ? kCut : counts ? kPartial : kFree;
@@ -349,21 +399,20 @@ __device__ void RefinedQuery<Surface, Team>::measure_mixed(const Tile& tile, con
   measured_.planes[i] = result.plane;
 }
 
-// What one block contributes to CellMeasure::reached().
+// What one piece contributes to CellMeasure::reached(). Returns whether that needs the nearest cut
+// share and none is given.
 template <class Surface, class Team>
-template <class Nearest>
-__device__ void RefinedQuery<Surface, Team>::add_reached(const Tile& tile, const Measure& measure,
-                                                         const CellView& view, std::uint32_t b,
-                                                         const Nearest& nearest,
-                                                         ToolSum& sum) const {
-  const CellBlock block = view.blocks[b];
-  const Side side = measure.side_of(block);
-  if (side == Side::mixed) {
-    for (std::uint32_t s = block.begin + tile.lane; s < block.end; s += tile.width)
-      measure.add_reached(nearest, piece_of(view.samples[s]), sum);
-  } else if (side != Side::free && tile.leads()) {
-    measure.add_reached(nearest, piece_of(view.masses[b]), sum);
-  }
+__device__ __noinline__ bool RefinedQuery<Surface, Team>::add_reached(const Measure& measure,
+                                                                      const SharePiece& piece,
+                                                                      const CutShare* nearest,
+                                                                      ToolSum& sum) const {
+  bool unsure = false;
+  const auto cut = [&] {
+    unsure = nearest == nullptr;
+    return unsure ? CutShare{} : *nearest;
+  };
+  measure.add_reached(cut, piece, sum);
+  return unsure;
 }
 
 // A share behind the surface, as if the flood reached it: by its mass, or block by block.
@@ -373,13 +422,9 @@ __device__ void RefinedQuery<Surface, Team>::measure_whole(const Unit& unit) {
   const bool compact = is_compact_share(i);
   ToolSum sum;
   bool unsure = false;
-  const auto nearest = [&] {
-    unsure = true;
-    return CutShare{};
-  };
   if (compact || unit.block != Unit::kNoBlock) {
     const BlockMass& mass = compact ? level_.share_masses[i] : level_.block_masses[unit.block];
-    measure_of(level_.cell(i)).add_reached(nearest, piece_of(mass), sum);
+    unsure = add_reached(measure_of(level_.cell(i)), piece_of(mass), nullptr, sum);
   }
   if (!compact && level_.is_divided(i)) {
     add_atomically(sum, measured_.sums[i]);
@@ -410,7 +455,7 @@ __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& ti
     best_squared = squared;
     best = j;
   };
-  const unsigned count = *const_cast<const volatile unsigned*>(&counters_.cut);
+  const unsigned count = read(counters_.cut);
   for (unsigned k = tile.lane; k < count; k += tile.width) {
     const std::uint32_t j = space_.cut[k];
     take(squared_norm(level_.spheres[j].center - from), j);
@@ -422,15 +467,25 @@ __device__ std::uint32_t RefinedQuery<Surface, Team>::nearest_cut(const Tile& ti
   return best;
 }
 
-// First the hidden pieces of divided shares, whose planes are known now. Then, of the shares that
-// another surface may hide, those before the nearest cut share's plane are closed to the flood.
+// Whether the kind of a divided share depends on its hidden pieces: if nothing else of it is cut.
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::decide_hidden() {
+__device__ bool RefinedQuery<Surface, Team>::any_waits_for_hidden() const {
+  bool waits = false;
+  for (std::uint32_t k = threadIdx.x; k < level_.divided_count; k += blockDim.x) {
+    const std::uint32_t i = level_.divided[k];
+    waits |= (measured_.marks[i] & kHidden) != 0 && measured_.planes[i].count == 0;
+  }
+  return __syncthreads_or(waits) != 0;
+}
+
+// The hidden pieces of divided shares, whose planes are known now.
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::measure_hidden() {
   const Tile warp(32);
   for (std::uint32_t k = warp.index(); k < listed_.wide + listed_.narrow; k += warp.count()) {
-    const std::uint32_t item =
-        k < listed_.wide ? mine(space_.wide)[k] : mine(space_.narrow)[k - listed_.wide];
-    const Unit unit = level_.units[item];
+    const Unit unit =
+        level_
+            .units[k < listed_.wide ? mine(space_.wide)[k] : mine(space_.narrow)[k - listed_.wide]];
     const std::uint32_t i = unit.share;
     if (!level_.is_divided(i) || (measured_.marks[i] & kHidden) == 0) continue;
     const CellView view = level_.cell(i);
@@ -440,9 +495,16 @@ __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
     warp.add_up(result.sum);
     if (warp.leads()) add_atomically(result.sum, measured_.sums[i]);
   }
+}
+
+// Of the shares that another surface may hide, those before the nearest cut share's plane are
+// closed to the flood.
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::decide_hidden() {
   team_.sync();
   list_cut();
   team_.sync();
+  const Tile warp(32);
   for (std::uint32_t k = warp.index(); k < listed_.shares; k += warp.count()) {
     const std::uint32_t i = mine(space_.shares)[k];
     const std::uint8_t kind = kind_of(i);
@@ -455,8 +517,8 @@ __device__ void RefinedQuery<Surface, Team>::decide_hidden() {
 }
 
 template <class Surface, class Team>
-__device__ void RefinedQuery<Surface, Team>::join_shares() {
-  if (hidden() == 0) list_cut();
+__device__ void RefinedQuery<Surface, Team>::join_shares(bool cut_is_listed) {
+  if (!cut_is_listed) list_cut();
   // An edge belongs to its smaller sphere: large ones have thousands of neighbours.
   constexpr unsigned kLanesPerRow = 8;
   const Tile tile(kLanesPerRow);
@@ -527,18 +589,22 @@ template <class Surface, class Team>
 __device__ ToolSum RefinedQuery<Surface, Team>::sum_of_share(const Tile& warp, std::uint32_t i,
                                                              std::uint8_t kind) const {
   const CutShare cut = cut_share(nearest_cut(warp, i));
-  const auto nearest = [&] { return cut; };
   const CellView view = level_.cell(i);
   const Measure measure = measure_of(view);
+  const bool compact = is_whole(kind) && is_compact_share(i);
   ToolSum sum;
-  if (is_whole(kind) && is_compact_share(i)) {
-    if (warp.leads()) measure.add_reached(nearest, piece_of(level_.share_masses[i]), sum);
-  } else if (is_whole(kind)) {
-    for (std::uint32_t b = view.begin + warp.lane; b < view.end; b += warp.width)
-      measure.add_reached(nearest, piece_of(view.masses[b]), sum);
-  } else {
-    for (std::uint32_t b = view.begin; b < view.end; ++b)
-      add_reached(warp, measure, view, b, nearest, sum);
+  if (compact && warp.leads()) add_reached(measure, piece_of(level_.share_masses[i]), &cut, sum);
+  for (std::uint32_t b = view.begin; b < view.end && !compact; ++b) {
+    const CellBlock block = view.blocks[b];
+    const Side side = is_whole(kind) ? Side::behind : measure.side_of(block);
+    if (side == Side::free) continue;
+    const bool sampled = side == Side::mixed;
+    const std::uint32_t count = sampled ? block.end - block.begin : 1;
+    for (std::uint32_t s = warp.lane; s < count; s += warp.width) {
+      add_reached(measure,
+                  sampled ? piece_of(view.samples[block.begin + s]) : piece_of(view.masses[b]),
+                  &cut, sum);
+    }
   }
   warp.add_up(sum);
   return sum;

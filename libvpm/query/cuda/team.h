@@ -71,7 +71,8 @@ struct Tile {
   __device__ unsigned count() const { return blockDim.x / width; }
   __device__ bool leads() const { return lane == 0; }
   __device__ bool any(bool value) const { return __any_sync(mask, value) != 0; }
-  __device__ int from(int value, unsigned source) const {
+  template <class T>
+  __device__ T from(T value, unsigned source) const {
     return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
   }
   __device__ std::int64_t sum(std::int64_t value) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cuda/atomic>
 
 namespace vpm::cuda {
 
@@ -38,12 +39,13 @@ class UnionFind {
   }
 
  private:
-  // Other threads write meanwhile: read and write memory, not a register.
+  // Other threads write meanwhile.
+  using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
   __device__ std::uint32_t load(std::uint32_t node) const {
-    return *static_cast<volatile std::uint32_t*>(parents_ + node);
+    return Parent(parents_[node]).load(::cuda::memory_order_relaxed);
   }
   __device__ void store(std::uint32_t node, std::uint32_t parent) const {
-    *static_cast<volatile std::uint32_t*>(parents_ + node) = parent;
+    Parent(parents_[node]).store(parent, ::cuda::memory_order_relaxed);
   }
 
   std::uint32_t* parents_;

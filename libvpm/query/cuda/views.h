@@ -30,6 +30,8 @@ struct LevelView {
   const BlockMass* block_masses = nullptr;
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
+  const std::uint32_t* divided = nullptr;  // shares of several units
+  std::uint32_t divided_count = 0;
   const ShareCluster* clusters = nullptr;
   const std::uint32_t* cluster_of = nullptr;  // of each share
   const BlockMass* share_masses = nullptr;
