@@ -21,6 +21,7 @@
 #include "tools/bench/suite.h"
 #include "tools/bench/tradeoff_report.h"
 #include "tools/bench/view.h"
+#include "tools/query/level_query.h"
 
 namespace vpm::bench {
 namespace {
@@ -76,9 +77,10 @@ class Tradeoff {
     vary_sensing();
     vary_threads();
     keep_max_error();
+    keep_deadlines();
     fit_scenes();
     TradeoffSettings settings{options_.quick, levels_, poses_, cases_.size()};
-    return tradeoff_report(settings, measured_, kept_, fitted_);
+    return tradeoff_report(settings, measured_, kept_, deadlines_, fitted_);
   }
 
  private:
@@ -245,6 +247,38 @@ class Tradeoff {
     }
   }
 
+  // As vpm-query does it, on one thread: into the contact and out of it by small steps, again and
+  // again.
+  void keep_deadlines() {
+    const std::size_t queries = options_.quick ? 500 : 10000;
+    constexpr int kSteps = 250;
+    set_thread_count(1);
+    for (const Case& c : cases_) {
+      const synthetic::Scene scene = synthetic::make_scene(c.scene);
+      const Tool& t = tool(c.shape);
+      const Rotation turned = path(c).path.front().rotation;
+      const std::vector<Pose> in = make_sweep(t.solid, {turned, {}}, *scene.surface, kSteps);
+      const PreparedCloud& seen = cloud(c.scene, sensing(Noise::kinect));
+      for (const double asked_us : {200.0, 1000.0}) {
+        tools::LevelRequest request;
+        request.deadline_seconds = 1e-6 * asked_us;
+        tools::LevelQuery query(t.model, {}, request, seen, in.front());
+        Deadline d{c.shape, c.scene, to_text(Noise::kinect), asked_us, queries, 0, 0, 0};
+        d.coarsest = t.model.levels.back().sphere_count;
+        for (std::size_t k = 0; k < queries; ++k) {
+          const std::size_t at = k % (2 * kSteps);
+          query.run(seen, in[at < kSteps ? at : 2 * kSteps - 1 - at]);
+          d.kept += query.seconds() <= *request.deadline_seconds;
+          const std::uint32_t used = query.query().level().sphere_count;
+          d.coarsest = std::min(d.coarsest, used);
+          d.finest = std::max(d.finest, used);
+        }
+        deadlines_.push_back(d);
+      }
+    }
+    set_thread_count(0);
+  }
+
   // Levels by --for-scene, and packings by it, beside the fixed sizes.
   void fit_scenes() {
     for (const Case& c : cases_) {
@@ -290,6 +324,7 @@ class Tradeoff {
   std::map<std::tuple<std::string, Noise, NormalMethod, int, std::uint32_t>, PreparedCloud> clouds_;
   std::vector<Measured> measured_;
   std::vector<Kept> kept_;
+  std::vector<Deadline> deadlines_;
   std::vector<Fitted> fitted_;
 };
 

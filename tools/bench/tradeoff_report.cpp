@@ -90,13 +90,21 @@ std::string line_of(const Row& row, bool is_knee) {
   return line;
 }
 
-std::string summary_of(const std::vector<Kept>& kept, const std::vector<Fitted>& fitted) {
+std::string summary_of(const std::vector<Kept>& kept, const std::vector<Deadline>& deadlines,
+                       const std::vector<Fitted>& fitted) {
   std::string text = "\n--max-error: what was asked, and what the level measured\n";
   char line[200];
   for (const Kept& k : kept) {
     std::snprintf(line, sizeof line,
                   "%-14s asked %6.2f %%  %6u spheres  worst %7.4f %%  mean %7.4f %%\n",
                   k.shape.c_str(), 100 * k.asked, k.spheres, 100 * k.worst, 100 * k.mean);
+    text += line;
+  }
+  text += "\n--deadline-us: queries that kept it, and the levels that were used\n";
+  for (const Deadline& d : deadlines) {
+    std::snprintf(
+        line, sizeof line, "%-14s %-14s asked %6.0f us  %6zu of %6zu kept  %u to %u spheres\n",
+        d.shape.c_str(), d.scene.c_str(), d.asked_us, d.kept, d.queries, d.coarsest, d.finest);
     text += line;
   }
   text +=
@@ -117,6 +125,12 @@ std::string summary_of(const std::vector<Kept>& kept, const std::vector<Fitted>&
 nlohmann::json to_json(const Kept& k) {
   return {{"varied", "max-error"}, {"shape", k.shape}, {"asked", k.asked},
           {"spheres", k.spheres},  {"worst", k.worst}, {"mean", k.mean}};
+}
+
+nlohmann::json to_json(const Deadline& d) {
+  return {{"varied", "deadline"}, {"shape", d.shape},       {"scene", d.scene},
+          {"noise", d.noise},     {"asked_us", d.asked_us}, {"queries", d.queries},
+          {"kept", d.kept},       {"coarsest", d.coarsest}, {"finest", d.finest}};
 }
 
 nlohmann::json to_json(const Fitted& f) {
@@ -185,7 +199,8 @@ std::size_t knee(const std::vector<double>& x, const std::vector<double>& y) {
 }
 
 Report tradeoff_report(const TradeoffSettings& settings, const std::vector<Measured>& measured,
-                       const std::vector<Kept>& kept, const std::vector<Fitted>& fitted) {
+                       const std::vector<Kept>& kept, const std::vector<Deadline>& deadlines,
+                       const std::vector<Fitted>& fitted) {
   Report report;
   report.suite = "tradeoff";
   const std::vector<Row> rows = rows_of(measured);
@@ -210,8 +225,9 @@ Report tradeoff_report(const TradeoffSettings& settings, const std::vector<Measu
     report.summary += line_of(row, &row == clean || &row == noisy);
   }
   for (const Kept& k : kept) report.results.push_back(to_json(k));
+  for (const Deadline& d : deadlines) report.results.push_back(to_json(d));
   for (const Fitted& f : fitted) report.results.push_back(to_json(f));
-  report.summary += summary_of(kept, fitted);
+  report.summary += summary_of(kept, deadlines, fitted);
   add_table(measured, report.table);
   return report;
 }

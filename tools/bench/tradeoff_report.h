@@ -28,6 +28,14 @@ struct Kept {
   double worst = 0, mean = 0;
 };
 
+// Queries with --deadline-us along a path into contact and back.
+struct Deadline {
+  std::string shape, scene, noise;
+  double asked_us = 0;
+  std::size_t queries = 0, kept = 0;
+  std::uint32_t coarsest = 0, finest = 0;  // spheres of the levels used
+};
+
 // What --for-scene chose: a level of the usual packing, and a packing of its own.
 struct Fitted {
   std::string shape, scene, noise;
@@ -52,6 +60,7 @@ std::vector<std::size_t> pareto_front(const std::vector<double>& x, const std::v
 std::size_t knee(const std::vector<double>& x, const std::vector<double>& y);
 
 Report tradeoff_report(const TradeoffSettings& settings, const std::vector<Measured>& measured,
-                       const std::vector<Kept>& kept, const std::vector<Fitted>& fitted);
+                       const std::vector<Kept>& kept, const std::vector<Deadline>& deadlines,
+                       const std::vector<Fitted>& fitted);
 
 }  // namespace vpm::bench
