@@ -53,6 +53,13 @@ std::string message_of(const CLI::ParseError& fault) {
   return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
 }
 
+std::string check_device(const std::string& text) {
+  const bool has_index = text.rfind("cuda:", 0) == 0 && text.size() > 5 &&
+                         text.find_first_not_of("0123456789", 5) == std::string::npos;
+  if (has_index || text == "auto" || text == "cpu" || text == "cuda") return {};
+  return text + " not in {auto,cpu,cuda,cuda:N}";
+}
+
 }  // namespace
 
 Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), app_(purpose, name) {
@@ -63,8 +70,9 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
   app_.allow_config_extras(false);
   app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
       ->configurable(false);
-  app_.add_option("--device", common_.device, "Where to compute: auto, cpu or cuda")
-      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+  app_.add_option("--device", common_.device,
+                  "Where to compute: cpu, cuda, cuda:N, or auto (cuda where there is a device)")
+      ->check(check_device)
       ->capture_default_str();
   app_.add_option("--threads", common_.threads,
                   "Threads to use; 0 is one per core. Never changes a result")
@@ -92,10 +100,10 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
       flush_output();
       return 0;
     }
-    if (common_.device == "cuda") {
-      throw Error(
-          ErrorKind::unavailable,
-          "--device cuda: this build has no CUDA; use --device cpu, or leave the option out");
+    if (common_.device != "auto" && device().is_cuda() && !on_devices_) {
+      throw Error(ErrorKind::unavailable,
+                  "--device " + common_.device + ": " + name_ +
+                      " computes on the CPU only; use --device cpu, or leave the option out");
     }
     set_thread_count(common_.threads);
     job();

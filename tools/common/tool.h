@@ -8,11 +8,12 @@
 #include <string>
 
 #include "libvpm/file/container.h"
+#include "libvpm/query/device.h"
 
 namespace vpm::tools {
 
 struct CommonOptions {
-  std::string device = "auto";  // auto, cpu, cuda
+  std::string device = "auto";  // auto, cpu, cuda, cuda:N
   int threads = 0;              // 0: one per core
   bool quiet = false;
   bool verbose = false;
@@ -27,6 +28,11 @@ class Tool {
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
   const std::string& name() const { return name_; }
+
+  // To be called before run() by a tool that asks for device(). Others refuse --device cuda.
+  void computes_on_devices() { on_devices_ = true; }
+  // The device of --device. Throws Error(unavailable) where it is not there.
+  Device device() const { return device_from_text(common_.device); }
 
   // Parses, then runs `job`; turns every error into a message on standard error and an exit code.
   int run(int argc, char** argv, const std::function<void()>& job);
@@ -45,6 +51,7 @@ class Tool {
   CLI::App app_;
   CommonOptions common_;
   bool dump_config_ = false;
+  bool on_devices_ = false;
 };
 
 // To be called before the work begins. Without --force a container replaces only one of its kind,

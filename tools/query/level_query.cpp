@@ -78,6 +78,15 @@ Result LevelQuery::run(const PreparedCloud& cloud, const Pose& pose) {
   return result_;
 }
 
+void LevelQuery::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                     std::span<Result> results) {
+  reason_ = reason_now();
+  const auto begin = std::chrono::steady_clock::now();
+  queries_[used_].run(cloud, poses, results);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  seconds_ = took.count() / static_cast<double>(std::max<std::size_t>(poses.size(), 1));
+}
+
 std::string LevelQuery::reason_now() const {
   const std::string wanted = request_.max_error ? "max-error" : request_.for_scene ? "scene" : "";
   if (!deadline_) return wanted;

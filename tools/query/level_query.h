@@ -32,6 +32,8 @@ class LevelQuery {
              const PreparedCloud& cloud, const Pose& first_pose);
 
   Result run(const PreparedCloud& cloud, const Pose& pose);
+  // Many at once, without a deadline; seconds() is then the time of each on average.
+  void run(const PreparedCloud& cloud, std::span<const Pose> poses, std::span<Result> results);
 
   // Of the last run.
   const Query& query() const { return queries_[used_]; }

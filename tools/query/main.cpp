@@ -30,6 +30,7 @@ struct Arguments {
   bool for_scene = false;
   double stiffness = 1;
   std::string coupling;
+  std::size_t batch = 1;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -56,6 +57,11 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--coupling", a.coupling,
                  "Take --poses for those of a haptic device that holds the tool by a spring and "
                  "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
+  app.add_option(
+         "--batch", a.batch,
+         "Poses that a device takes at once; answers come in their order. Changes no result")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state (.ply or .csv)");
@@ -78,6 +84,8 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong(
         "--coupling needs the device's path (--poses) and what the scene's volume weighs "
         "(--stiffness in N/m^3)");
+  if (a.batch > 1 && (a.deadline_us || !a.coupling.empty()))
+    wrong("--batch answers many poses at once; leave --deadline-us and --coupling out");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
@@ -158,6 +166,16 @@ struct Run {
     const Result result = ask(query, pose);
     sink.line(result_line(index, result, query.query().level(), measure, query.reason()));
   }
+  void batch(LevelQuery& query, const std::vector<Pose>& poses, Measure measure) {
+    std::vector<Result> results(poses.size());
+    query.run(cloud, poses, results);
+    for (const Result& result : results) {
+      sink.line(
+          result_line(seconds.size(), result, query.query().level(), measure, query.reason()));
+      seconds.push_back(query.seconds());
+    }
+    last = poses.back();
+  }
   void coupled(LevelQuery& query, VirtualCoupling coupling, const DevicePath& path) {
     for (std::size_t k = 0; k < path.steps(); ++k) {
       CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
@@ -168,6 +186,11 @@ struct Run {
     }
   }
 };
+
+// The paper's measure is computed on the CPU unless a device is named.
+Device device_of(const Tool& tool, Measure measure) {
+  return measure == Measure::paper && tool.common().device == "auto" ? Device{} : tool.device();
+}
 
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
@@ -180,6 +203,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
+  options.device = device_of(tool, options.measure);
   const Cloud cloud = read_cloud(a.cloud);
   const auto start = std::chrono::steady_clock::now();
   const PreparedCloud prepared(cloud);
@@ -206,19 +230,30 @@ void run(const Tool& tool, const Arguments& a) {
     say_limits(tool, *coupling, model, a.stiffness);
     run.coupled(query, VirtualCoupling(*coupling, model.center_of_mass, *pose), *path);
   } else {
-    for (; pose; pose = reader ? reader->next() : std::nullopt)
-      run.pose(query, *pose, options.measure);
+    const auto next = [&] { return reader ? reader->next() : std::nullopt; };
+    for (; pose && a.batch == 1; pose = next()) run.pose(query, *pose, options.measure);
+    std::vector<Pose> poses;
+    for (; pose; pose = next()) {
+      poses.push_back(*pose);
+      if (poses.size() < a.batch) continue;
+      run.batch(query, poses, options.measure);
+      poses.clear();
+    }
+    if (!poses.empty()) run.batch(query, poses, options.measure);
   }
   sink.finish();
   note_deviation(tool, reader ? reader->largest_deviation() : pose_deviation);
   const Level& level = query.query().level();
   if (!a.spheres_out.empty()) {
+    if (a.batch > 1) query.run(prepared, run.last);  // batches keep no states
     write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
                   run.last);
   }
   if (!a.stats.empty()) {
     nlohmann::json stats = query_stats(std::move(run.seconds), prepare_seconds, a.deadline_us);
-    stats["device"] = "cpu";
+    stats["device"] = options.device.is_cuda() ? "cuda" : "cpu";
+    if (options.device.is_cuda()) stats["device_name"] = cuda_device_name(options.device.index);
+    stats["batch"] = a.batch;
     stats["threads"] = thread_count();
     stats["cloud_points"] = prepared.positions().size();
     stats["level"] = level.sphere_count;
@@ -236,5 +271,6 @@ int main(int argc, char** argv) {
   Tool tool("vpm-query", "Penetration volume, force and torque of a tool in a point cloud");
   Arguments arguments;
   declare(tool.app(), arguments);
+  tool.computes_on_devices();
   return tool.run(argc, argv, [&] { run(tool, arguments); });
 }

@@ -98,7 +98,7 @@ $ vpm-probe in.off -o - --threads -1
 2> vpm-probe: error: --threads: Value -1 not in range 0 to 4096 (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --device tpu
-2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda} (see vpm-probe --help)
+2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda,cuda:N} (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --device cuda
 2> vpm-probe: error: --device cuda: this build has no CUDA; use --device cpu, or leave the option out
