@@ -61,7 +61,8 @@ def main():
     folder = pathlib.Path(sys.argv[1])
     with (folder / "accuracy.csv").open() as file:
         rows = list(csv.DictReader(file))
-    results = json.loads((folder / "accuracy.json").read_text())["results"]
+    report = json.loads((folder / "accuracy.json").read_text())
+    results = [r for r in report["results"] if r["group"] in ("paper", "turned")]  # --all has more
     figure = plt.figure(figsize=(17, 11))
     grid = figure.add_gridspec(3, 3)
     draw_paths([figure.add_subplot(grid[k // 3, k % 3]) for k in range(6)], rows)

@@ -286,7 +286,12 @@ class Tradeoff {
         const Tool& t = tool(c.shape);
         const PreparedCloud& seen = cloud(c.scene, sensing(noise));
         const Pose& deepest = path(c).path.back();
-        Fitted f{c.shape, c.scene, to_text(noise), {}, 0, 0, {}, {}, 0, 0};
+        Fitted f{c.shape, c.scene, to_text(noise), {}, 0, 0, {}, {}, 0, 0, {}};
+        for (const Measured& m : measured_) {
+          if (m.varied == "spheres" && m.measure == "refined" && m.shape == c.shape &&
+              m.scene == c.scene && m.noise == f.noise)
+            f.fixed.push_back({m.spheres, m.median_us, m.errors.volume.mean()});
+        }
         f.scale = scene_scale(seen, t.model.reach, deepest * t.model.center_of_mass);
         f.level = t.model.levels[level_for_scene(t.model, f.scale)].sphere_count;
         QueryOptions query_options;

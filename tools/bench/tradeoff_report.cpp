@@ -150,6 +150,11 @@ nlohmann::json to_json(const Fitted& f) {
                         {"smallest_radius", f.scale.smallest_radius()},
                         {"level", of(f.level, f.level_us, f.level_errors)},
                         {"packing", of(f.packed, f.packed_us, f.packed_errors)}};
+  for (const Fixed& fixed : f.fixed) {
+    result["fixed"].push_back({{"spheres", fixed.spheres},
+                               {"median_us", fixed.median_us},
+                               {"volume_mean", fixed.volume_mean}});
+  }
   if (std::isfinite(f.scale.largest_radius())) result["largest_radius"] = f.scale.largest_radius();
   return result;
 }

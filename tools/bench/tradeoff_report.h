@@ -36,13 +36,21 @@ struct Deadline {
   std::uint32_t coarsest = 0, finest = 0;  // spheres of the levels used
 };
 
-// What --for-scene chose: a level of the usual packing, and a packing of its own.
+// A level of the usual packing in one case.
+struct Fixed {
+  std::uint32_t spheres = 0;
+  double median_us = 0, volume_mean = 0;
+};
+
+// What --for-scene chose: a level of the usual packing, and a packing of its own; beside them all
+// levels of the usual packing.
 struct Fitted {
   std::string shape, scene, noise;
   SceneScale scale;
   std::uint32_t level = 0, packed = 0;  // spheres
   Errors level_errors, packed_errors;
   double level_us = 0, packed_us = 0;
+  std::vector<Fixed> fixed;
 };
 
 struct TradeoffSettings {

@@ -1,0 +1,145 @@
+#!/usr/bin/python3
+"""Writes the tables of README.md and libvpm/query/scene-scale.md from tests/results/*.json, between <!-- NAME --> and
+<!-- end NAME -->.
+
+usage: result_tables.py [--check]    (--check: exit 1 where a page is not what the results say)
+"""
+import json
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+NOISE = {"none": "clean", "kinect": "Kinect noise"}
+GROUPS = {"paper": "3 solids, a wall and an inverted ball",
+          "turned": "4 turned tools, 4 scenes",
+          "all": "5 tools straight and turned, 6 scenes"}
+
+
+def results(suite):
+    path = ROOT / "tests" / "results" / f"{suite}.json"
+    return json.loads(path.read_text()) if path.exists() else None
+
+
+def table(head, rows):
+    lines = [head, ["---"] * len(head)] + rows
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def source(report):
+    machine = report["machine"]
+    return (f"`{report['command']}`, commit {report['commit'][:7]}, {machine['cores']} cores of "
+            f"{machine['processor']}.")
+
+
+def percent(value, digits=3):
+    return f"{100 * value:.{digits}f}"
+
+
+def thousands(number):
+    return f"{number:,}".replace(",", " ")
+
+
+def accuracy(report):
+    rows = []
+    for s in sorted(report["settings"]["summary"],
+                    key=lambda s: (list(GROUPS).index(s["group"]), s["cloud"], s["noise"] != "none",
+                                   s["spheres"], s["measure"] != "paper")):
+        rows.append([GROUPS[s["group"]], s["cloud"], NOISE[s["noise"]], s["measure"], thousands(s["spheres"]),
+                     percent(s["volume_mean"]), percent(s["volume_worst"], 2), percent(s["jump_worst"], 2),
+                     percent(s["torque_worst"], 2), f"{s['direction_mean_degrees']:.2f}",
+                     f"{s['direction_worst_degrees']:.1f}"])
+    return table(["tools and scenes", "cloud", "image", "measure", "spheres", "mean", "worst", "jump",
+                  "torque, worst", "direction, mean °", "worst °"], rows)
+
+
+def bounds(report):
+    missed = [b for b in report["settings"].get("bounds", []) if not b["holds"]]
+    kept = len(report["settings"].get("bounds", [])) - len(missed)
+    text = f"{kept} of {kept + len(missed)} bounds hold."
+    if missed:
+        text += " These do not:\n\n" + table(["what", "measured", "bound"],
+                                             [[b["what"], f"{b['value']:.4g}", f"{b['bound']:.4g}"] for b in missed])
+    return text
+
+
+def tradeoff(report):
+    rows = [r for r in report["results"] if r["varied"] == "spheres"]
+    knee = report["settings"]["knee"]
+    counts = sorted({r["spheres"] for r in rows})
+    lines = []
+    for noise in ("none", "kinect"):
+        for measure in ("refined", "paper"):
+            of = {r["spheres"]: r for r in rows if (r["noise"], r["measure"]) == (noise, measure)}
+            bold = lambda n, text: f"**{text}**" if measure == "refined" and n == knee[noise] else text
+            lines.append([f"{measure}, {NOISE[noise]}: µs"]
+                         + [bold(n, thousands(round(of[n]["mean_us"]))) for n in counts])
+            lines.append(["mean error, %"] + [bold(n, percent(of[n]["volume_mean"])) for n in counts])
+    text = table(["spheres"] + [thousands(n) for n in counts], lines)
+    deadlines = [r for r in report["results"] if r["varied"] == "deadline"]
+    for asked in sorted({d["asked_us"] for d in deadlines}):
+        of = [d for d in deadlines if d["asked_us"] == asked]
+        least = min(d["kept"] / d["queries"] for d in of)
+        text += (f"\n\n`--deadline-us {asked:g}`: kept by {100 * least:.2f} % of {thousands(of[0]['queries'])} queries"
+                 f" in the worst of {len(of)} scenes, with {thousands(min(d['coarsest'] for d in of))} to "
+                 f"{thousands(max(d['finest'] for d in of))} spheres.")
+    errors = [r for r in report["results"] if r["varied"] == "max-error"]
+    if errors:
+        worst = max(e["worst"] / e["asked"] for e in errors)
+        text += f" `--max-error`: the worst pose of any scene erred by {worst:.2f} of what was asked."
+    return text
+
+
+def timing(report):
+    rows = {}
+    for r in report["results"]:
+        rows.setdefault((r["stage"], r["spheres"]), {})[r["threads"]] = r["median_ms"]
+    number = lambda ms: f"{ms:.3g}" if ms < 1000 else f"{ms:.0f}"
+    threads = sorted({r["threads"] for r in report["results"]})
+    return table(["stage", "spheres"] + [f"ms, {t} thread{'s' if t > 1 else ''}" for t in threads],
+                 [[stage, thousands(spheres) if spheres else ""] + [number(of[t]) for t in threads]
+                  for (stage, spheres), of in rows.items()])
+
+
+def for_scene(report):
+    rows = []
+    for r in (r for r in report["results"] if r["varied"] == "for-scene"):
+        fixed = {f["spheres"]: f for f in r["fixed"]}
+        cell = lambda f: f"{percent(f['volume_mean'])} / {f['median_us']:.0f}"
+        rows.append([f"{r['shape']}, {r['scene']}", NOISE[r["noise"]], f"{1e3 * r['smallest_radius']:.1f}",
+                     f"{1e3 * r['largest_radius']:.0f}" if "largest_radius" in r else "∞"]
+                    + [cell(fixed[n]) for n in (100, 1000, 10000)]
+                    + [f"{r[own]['spheres']}: {cell(r[own])}" for own in ("level", "packing")])
+    return table(["tool, scene", "image", "r₀", "r₁", "100", "1000", "10 000", "level for the scene",
+                  "packing for the scene"], rows)
+
+
+PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
+                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing")},
+         "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
+
+
+def filled(page, text):
+    for name, (make, suite) in PAGES[page].items():
+        begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
+        report = results(suite)
+        if report is None or begin not in text:
+            sys.exit(f"result_tables.py: no tests/results/{suite}.json, or no {begin} in {page}")
+        before, rest = text.split(begin)
+        after = rest.split(end)[1]
+        text = f"{before}{begin}\n{make(report)}\n\n{source(report)}\n{end}{after}"
+    return text
+
+
+def main():
+    for page in PAGES:
+        path = ROOT / page
+        text = path.read_text()
+        wanted = filled(page, text)
+        if "--check" not in sys.argv:
+            path.write_text(wanted)
+        elif text != wanted:
+            sys.exit(f"{page} is not what tests/results says; run scripts/result_tables.py")
+
+
+if __name__ == "__main__":
+    main()
