@@ -5,7 +5,9 @@
 //   queries=10000
 //   level=0       spheres; 0 is the finest level
 //   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
+//   batch=1       so many poses are asked at once, as planners do
 //   json=FILE     the figures, also as JSON
+//   poses=FILE    the first path=400 poses, for vpm-query --poses
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -93,6 +95,19 @@ struct Figures {
   }
 };
 
+// Poses per second, asked `batch` at a time.
+double run_batches(Query& query, const PreparedCloud& cloud, const ToolModel& tool,
+                   const Path& path, int count, int batch) {
+  std::vector<Pose> poses;
+  for (int k = 0; k < batch; ++k) poses.push_back(path.at(tool, k));
+  std::vector<Result> results(poses.size());
+  query.run(cloud, poses, results);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < count; k += batch) query.run(cloud, poses, results);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  return (count + batch - 1) / batch * batch / took.count();
+}
+
 Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
   Figures figures;
@@ -127,29 +142,39 @@ void print_histogram(const Figures& figures) {
   }
 }
 
-nlohmann::json to_json(const Figures& figures, const Device& device, const Level& level,
-                       const PreparedCloud& cloud, std::size_t copies) {
+nlohmann::json about(const Device& device, const Level& level, const PreparedCloud& cloud) {
   return {{"device", device.is_cuda() ? cuda_device_name(device.index) : "cpu"},
           {"spheres", level.sphere_count},
-          {"points", cloud.positions().size()},
-          {"queries", figures.microseconds.size()},
-          {"copies", copies},
-          {"mean_fraction", figures.fraction},
-          {"median_us", figures.quantile(0.5)},
-          {"p99_us", figures.quantile(0.99)},
-          {"min_us", figures.quantile(0)},
-          {"max_us", figures.quantile(1)}};
+          {"points", cloud.positions().size()}};
+}
+
+nlohmann::json to_json(const Figures& figures) {
+  return {{"queries", figures.microseconds.size()}, {"mean_fraction", figures.fraction},
+          {"median_us", figures.quantile(0.5)},     {"p99_us", figures.quantile(0.99)},
+          {"min_us", figures.quantile(0)},          {"max_us", figures.quantile(1)}};
+}
+
+void write_poses(const std::string& name, const ToolModel& tool, const Path& path, int count) {
+  std::ofstream file(name);
+  for (int k = 0; k < count; ++k) {
+    const Pose pose = path.at(tool, k);
+    const Quaternion q = quaternion_from_rotation(pose.rotation);
+    const Vec3 t = pose.translation;
+    file << nlohmann::json{t.x, t.y, t.z, q.x, q.y, q.z, q.w}.dump() << '\n';
+  }
+  if (!file) throw Error(ErrorKind::cannot_write, "cannot write " + name);
 }
 
 Options parse(int argc, char** argv) {
-  Options options{
-      {"device", "auto"}, {"queries", "10000"}, {"level", "0"}, {"rotate", "1"}, {"json", ""}};
+  Options options{{"device", "auto"}, {"queries", "10000"}, {"level", "0"}, {"rotate", "1"},
+                  {"batch", "1"},     {"json", ""},         {"poses", ""},  {"path", "400"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(ErrorKind::usage,
-                  text + ": the options are device= queries= level= rotate= json=");
+      throw Error(
+          ErrorKind::usage,
+          text + ": the options are device= queries= level= rotate= batch= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -181,11 +206,21 @@ void control(int argc, char** argv) {
     queries.emplace_back(tool, query_options);
   }
   const Path path = make_path(queries[0], clouds[0], tool);
-  const Figures figures = run(queries, clouds, tool, path, count);
+  if (!options.at("poses").empty())
+    write_poses(options.at("poses"), tool, path, number(options, "path", 1));
 
-  print_histogram(figures);
-  const nlohmann::json json =
-      to_json(figures, query_options.device, queries[0].level(), clouds[0], queries.size());
+  nlohmann::json json = about(query_options.device, queries[0].level(), clouds[0]);
+  const int batch = number(options, "batch", 1);
+  if (batch > 1) {
+    json["batch"] = batch;
+    json["poses"] = count;
+    json["poses_per_second"] = run_batches(queries[0], clouds[0], tool, path, count, batch);
+  } else {
+    const Figures figures = run(queries, clouds, tool, path, count);
+    print_histogram(figures);
+    json.update(to_json(figures));
+    json["copies"] = copies;
+  }
   std::cout << json.dump() << '\n';
   if (!options.at("json").empty()) std::ofstream(options.at("json")) << json.dump(2) << '\n';
 }

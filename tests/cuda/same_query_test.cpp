@@ -81,6 +81,30 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                                             ::testing::Bool(),
                                             ::testing::Values(Measure::refined)));
 
+// Small enough for compute-sanitizer, with every path through the kernels: contact, hidden places,
+// one pose and several.
+TEST(SmallQueryOnDevice, GivesTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const Cloud seen = testing::see(synthetic::make_scene("block"));
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
+  for (const bool camera : {true, false}) {
+    const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+    QueryOptions options;
+    Query on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    Query on_device(tool, options);
+    std::vector<Pose> poses;
+    std::vector<Result> expected, batch(4);
+    for (int k = 0; k < 4; ++k) {
+      poses.push_back(pose_of(7 * k + 5));
+      expected.push_back(on_cpu.run(cloud, poses.back()));
+      expect_equal(expected.back(), on_device.run(cloud, poses.back()));
+    }
+    on_device.run(cloud, poses, batch);
+    for (int k = 0; k < 4; ++k) expect_equal(expected[k], batch[k]);
+  }
+}
+
 TEST(SameQueryOnDevice, InAnEmptyCloud) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud{Cloud{}};
