@@ -51,6 +51,12 @@ struct MeasuredShares {
   }
 };
 
+// The plane that crosses a flat block.
+struct FlatLook {
+  TangentPlane tangent;
+  Vec3 center;  // of the block
+};
+
 // Memory of one query.
 struct RefinedSpace {
   std::uint8_t* kinds = nullptr;     // of each share
@@ -59,10 +65,11 @@ struct RefinedSpace {
   std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
   SphereState* states = nullptr;
   std::uint32_t* cut = nullptr;  // the cut shares
-  // By parts of the team: units to be measured by a warp, by a few threads, by one thread each;
+  FlatLook* flats = nullptr;     // of listed units that are flat
+  // By parts of the team: units to be measured by many threads, by a few, by one thread each;
   // shares that are not free.
-  std::uint32_t* wide = nullptr;
-  std::uint32_t* narrow = nullptr;
+  std::uint32_t* many = nullptr;
+  std::uint32_t* few = nullptr;
   std::uint32_t* pieces = nullptr;
   std::uint32_t* shares = nullptr;
 };
@@ -74,9 +81,13 @@ struct RefinedCounters {
   unsigned cut = 0;
 };
 
-// Most samples of a block that is measured by less than a warp, and the threads that do it: more,
-// where there is little to do.
-inline constexpr unsigned kNarrowSamples = 16, kNarrowest = 4, kWidest = 16;
+// Most samples of a block for the second of those lists, and the threads for each block of a list:
+// more, where there is little to do.
+inline constexpr unsigned kFewSamples = 16;
+struct Widths {
+  unsigned least, most;
+};
+inline constexpr Widths kForMany{8, 32}, kForFew{4, 16};
 
 template <class Surface, class Team>
 class RefinedQuery {
@@ -147,24 +158,37 @@ class RefinedQuery {
   __device__ std::uint8_t kind_of(std::uint32_t i) const;
 
   __device__ void list_work();
-  // What add_block() has left: pieces for the second pass; results in other threads than the first.
+  // How a unit is measured, noted in the lists.
+  enum class Form : std::uint32_t { flat, sampled, piece, whole };
+  static constexpr unsigned kFormBits = 2;
+  __device__ static std::uint32_t item(std::uint32_t unit, Form form) {
+    return unit << kFormBits | static_cast<std::uint32_t>(form);
+  }
+  __device__ static Form form_of(std::uint32_t item) {
+    return static_cast<Form>(item & ((1U << kFormBits) - 1));
+  }
+
+  // What add_pieces() has left: pieces for the second pass; results in other threads than the
+  // first.
   struct BlockPart {
     bool hidden = false, is_shared = false;
   };
   struct Listed {
-    unsigned wide, narrow, pieces, shares;
+    unsigned many, few, pieces, shares;
   };
   __device__ void list_unit(std::uint32_t index, Listed& listed);
   __device__ void measure_work();
-  __device__ __noinline__ void measure_mixed(Tile tile, Unit unit);
+  __device__ bool list_block(std::uint32_t index, const Unit& unit, Listed& listed);
+  __device__ void measure_list(const std::uint32_t* list, unsigned count, Widths widths,
+                               bool from_the_end);
+  __device__ __noinline__ void measure_mixed(Tile tile, std::uint32_t index, Form form);
   __device__ void measure_whole(const Unit& unit);
-  __device__ __noinline__ BlockPart add_block(Tile tile, const Measure& measure,
-                                              const CellView& view, std::uint32_t block,
-                                              typename Measure::Pass pass,
-                                              CellResult& result) const;
+  __device__ __noinline__ BlockPart add_pieces(Tile tile, const Measure& measure,
+                                               const CellView& view, std::uint32_t block,
+                                               bool sampled, typename Measure::Pass pass,
+                                               CellResult& result) const;
   __device__ void add_flat(const Tile& tile, const Measure& measure, const CellView& view,
-                           const CellBlock& block, const typename Measure::BlockLook& look,
-                           CellResult& result) const;
+                           std::uint32_t block, const FlatLook& flat, CellResult& result) const;
   __device__ __noinline__ bool add_reached(const Measure& measure, const SharePiece& piece,
                                            const CutShare* nearest, ToolSum& sum) const;
   __device__ std::uint8_t read_gap(std::uint32_t sphere) const;
@@ -261,9 +285,9 @@ __device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, List
   if (kind == kWhole && look.side == Side::behind &&
       surface_.largest_gap(look, at, cluster.reach) < level_.tool_reach)
     kind |= kNear;
-  const bool head = level_.is_head(unit);
+  const bool head = level_.is_head(unit), divided = level_.is_divided(i);
+  if (kind == kMixed && !list_block(index, unit, listed) && !divided) kind = kFree;
   if (head) {
-    const bool divided = level_.is_divided(i);
     if (kind == kWhole || (kind == kMixed && divided)) kind |= read_gap(i);
     space_.kinds[i] = kind;
     space_.states[i] = SphereState::outside;
@@ -273,17 +297,31 @@ __device__ void RefinedQuery<Surface, Team>::list_unit(std::uint32_t index, List
       mine(space_.shares)[atomicAdd(&listed.shares, 1U)] = i;
     }
   }
-  if (kind == kFree) return;
-  const bool has_block = unit.block != Unit::kNoBlock;
-  if (is_whole(kind)) {
-    if (is_compact_share(i) ? head : has_block || head)
-      mine(space_.pieces)[atomicAdd(&listed.pieces, 1U)] = index;
-  } else if (has_block &&
-             level_.blocks[unit.block].end - level_.blocks[unit.block].begin > kNarrowSamples) {
-    mine(space_.wide)[atomicAdd(&listed.wide, 1U)] = index;
-  } else {
-    mine(space_.narrow)[atomicAdd(&listed.narrow, 1U)] = index;
+  const bool counts = is_compact_share(i) ? head : head || unit.block != Unit::kNoBlock;
+  if (is_whole(kind) && counts)
+    mine(space_.pieces)[atomicAdd(&listed.pieces, 1U)] = item(index, Form::whole);
+}
+
+// Lists a unit of a mixed share. Returns whether there is anything to measure.
+template <class Surface, class Team>
+__device__ bool RefinedQuery<Surface, Team>::list_block(std::uint32_t index, const Unit& unit,
+                                                        Listed& listed) {
+  if (unit.block == Unit::kNoBlock) return false;
+  const CellView view = level_.cell(unit.share);
+  const CellBlock block = view.blocks[unit.block];
+  const typename Measure::BlockLook look = measure_of(view).look_at(block);
+  if (look.side == Side::free) return false;
+  if (look.side != Side::mixed) {
+    mine(space_.pieces)[atomicAdd(&listed.pieces, 1U)] = item(index, Form::piece);
+    return true;
   }
+  if (look.is_flat) space_.flats[index] = {look.tangent, look.center};
+  const std::uint32_t listing = item(index, look.is_flat ? Form::flat : Form::sampled);
+  if (block.end - block.begin > kFewSamples)
+    mine(space_.many)[atomicAdd(&listed.many, 1U)] = listing;
+  else
+    mine(space_.few)[atomicAdd(&listed.few, 1U)] = listing;
+  return true;
 }
 
 // The gap of a share's centre; returns kHidden, or 0.
@@ -299,38 +337,41 @@ __device__ std::uint8_t RefinedQuery<Surface, Team>::read_gap(std::uint32_t i) c
 
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::measure_work() {
-  const Tile warp(32);
-  for (std::uint32_t k = warp.index(); k < listed_.wide; k += warp.count())
-    measure_mixed(warp, level_.units[mine(space_.wide)[k]]);
+  measure_list(mine(space_.many), listed_.many, kForMany, false);
   // From the other end, so that warps without the first kind begin with these.
-  unsigned width = kWidest;
-  while (width > kNarrowest && listed_.narrow * width > blockDim.x) width /= 2;
-  const Tile tile(width);
-  for (std::uint32_t k = tile.count() - 1 - tile.index(); k < listed_.narrow; k += tile.count())
-    measure_mixed(tile, level_.units[mine(space_.narrow)[k]]);
-  for (std::uint32_t k = blockDim.x - 1 - threadIdx.x; k < listed_.pieces; k += blockDim.x)
-    measure_whole(level_.units[mine(space_.pieces)[k]]);
+  measure_list(mine(space_.few), listed_.few, kForFew, true);
+  for (std::uint32_t k = blockDim.x - 1 - threadIdx.x; k < listed_.pieces; k += blockDim.x) {
+    const std::uint32_t listing = mine(space_.pieces)[k];
+    if (form_of(listing) == Form::whole)
+      measure_whole(level_.units[listing >> kFormBits]);
+    else
+      measure_mixed(Tile(1), listing >> kFormBits, Form::piece);
+  }
 }
 
-// What one block contributes to CellMeasure::run().
+template <class Surface, class Team>
+__device__ void RefinedQuery<Surface, Team>::measure_list(const std::uint32_t* list, unsigned count,
+                                                          Widths widths, bool from_the_end) {
+  unsigned width = widths.most;
+  while (width > widths.least && count * width > blockDim.x) width /= 2;
+  const Tile tile(width);
+  const unsigned first = from_the_end ? tile.count() - 1 - tile.index() : tile.index();
+  for (unsigned k = first; k < count; k += tile.count())
+    measure_mixed(tile, list[k] >> kFormBits, form_of(list[k]));
+}
+
+// What one block that is not flat contributes to CellMeasure::run(): its samples, or all of it as
+// one piece.
 template <class Surface, class Team>
 __device__ __noinline__ typename RefinedQuery<Surface, Team>::BlockPart
-RefinedQuery<Surface, Team>::add_block(Tile tile, const Measure& measure, const CellView& view,
-                                       std::uint32_t b, typename Measure::Pass pass,
-                                       CellResult& result) const {
-  const CellBlock block = view.blocks[b];
-  const typename Measure::BlockLook look = measure.look_at(block);
-  if (look.side == Side::free) return {};
-  if (look.is_flat) {
-    if (pass == Measure::Pass::seen) add_flat(tile, measure, view, block, look, result);
-    return {};
-  }
-  const bool sampled = look.side == Side::mixed;
-  const std::uint32_t count = sampled ? block.end - block.begin : 1;
+RefinedQuery<Surface, Team>::add_pieces(Tile tile, const Measure& measure, const CellView& view,
+                                        std::uint32_t b, bool sampled, typename Measure::Pass pass,
+                                        CellResult& result) const {
+  const std::uint32_t begin = sampled ? view.blocks[b].begin : 0;
+  const std::uint32_t count = sampled ? view.blocks[b].end - begin : 1;
   bool hidden = false;
   for (std::uint32_t s = tile.lane; s < count; s += tile.width) {
-    const SharePiece piece =
-        sampled ? piece_of(view.samples[block.begin + s]) : piece_of(view.masses[b]);
+    const SharePiece piece = sampled ? piece_of(view.samples[begin + s]) : piece_of(view.masses[b]);
     hidden |= measure.add_piece(piece, pass, result);
   }
   return {tile.any(hidden), sampled};
@@ -339,9 +380,13 @@ RefinedQuery<Surface, Team>::add_block(Tile tile, const Measure& measure, const 
 // The weights of the samples by all threads, their sums in the samples' order by four.
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::add_flat(const Tile& tile, const Measure& measure,
-                                                      const CellView& view, const CellBlock& block,
-                                                      const typename Measure::BlockLook& look,
+                                                      const CellView& view, std::uint32_t b,
+                                                      const FlatLook& flat,
                                                       CellResult& result) const {
+  typename Measure::BlockLook look;
+  look.tangent = flat.tangent;
+  look.center = flat.center;
+  const CellBlock block = view.blocks[b];
   __shared__ double terms[4][kThreads];
   const typename Measure::FlatCut cut = measure.flat_cut(look);
   const unsigned slot = tile.index() * tile.width;
@@ -368,14 +413,20 @@ __device__ void RefinedQuery<Surface, Team>::add_flat(const Tile& tile, const Me
 }
 
 template <class Surface, class Team>
-__device__ __noinline__ void RefinedQuery<Surface, Team>::measure_mixed(Tile tile, Unit unit) {
+__device__ __noinline__ void RefinedQuery<Surface, Team>::measure_mixed(Tile tile,
+                                                                        std::uint32_t index,
+                                                                        Form form) {
+  const Unit unit = level_.units[index];
   const std::uint32_t i = unit.share;
   const CellView view = level_.cell(i);
   const Measure measure = measure_of(view);
   CellResult result;
+  const bool sampled = form == Form::sampled;
   BlockPart part;
-  if (unit.block != Unit::kNoBlock)
-    part = add_block(tile, measure, view, unit.block, Measure::Pass::seen, result);
+  if (form == Form::flat)
+    add_flat(tile, measure, view, unit.block, space_.flats[index], result);
+  else
+    part = add_pieces(tile, measure, view, unit.block, sampled, Measure::Pass::seen, result);
   const bool far = tile.any(result.is_far);
   if (part.is_shared) tile.add_up(result.plane);
   if (level_.is_divided(i)) {
@@ -388,7 +439,8 @@ __device__ __noinline__ void RefinedQuery<Surface, Team>::measure_mixed(Tile til
     if (part.hidden) atomicAdd(&counters_.hidden_pieces, 1U);
     return;
   }
-  if (part.hidden) add_block(tile, measure, view, unit.block, Measure::Pass::hidden, result);
+  if (part.hidden)
+    add_pieces(tile, measure, view, unit.block, sampled, Measure::Pass::hidden, result);
   if (part.is_shared) tile.add_up(result.sum);
   if (!tile.leads()) return;
   const bool counts = result.sum.volume.value > 0;
@@ -482,16 +534,22 @@ __device__ bool RefinedQuery<Surface, Team>::any_waits_for_hidden() const {
 template <class Surface, class Team>
 __device__ void RefinedQuery<Surface, Team>::measure_hidden() {
   const Tile warp(32);
-  for (std::uint32_t k = warp.index(); k < listed_.wide + listed_.narrow; k += warp.count()) {
-    const Unit unit =
-        level_
-            .units[k < listed_.wide ? mine(space_.wide)[k] : mine(space_.narrow)[k - listed_.wide]];
+  const std::uint32_t count = listed_.many + listed_.few + listed_.pieces;
+  for (std::uint32_t k = warp.index(); k < count; k += warp.count()) {
+    const std::uint32_t listing = k < listed_.many ? mine(space_.many)[k]
+                                  : k < listed_.many + listed_.few
+                                      ? mine(space_.few)[k - listed_.many]
+                                      : mine(space_.pieces)[k - listed_.many - listed_.few];
+    const Form form = form_of(listing);
+    if (form == Form::flat || form == Form::whole) continue;
+    const Unit unit = level_.units[listing >> kFormBits];
     const std::uint32_t i = unit.share;
     if (!level_.is_divided(i) || (measured_.marks[i] & kHidden) == 0) continue;
     const CellView view = level_.cell(i);
     CellResult result;
     result.plane = measured_.planes[i];
-    add_block(warp, measure_of(view), view, unit.block, Measure::Pass::hidden, result);
+    add_pieces(warp, measure_of(view), view, unit.block, form == Form::sampled,
+               Measure::Pass::hidden, result);
     warp.add_up(result.sum);
     if (warp.leads()) add_atomically(result.sum, measured_.sums[i]);
   }

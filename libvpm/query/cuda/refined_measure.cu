@@ -31,8 +31,9 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.parents = first.parents + shares + team;
   space.states = first.states + shares;
   space.cut = first.cut + shares;
-  space.wide = first.wide + units;
-  space.narrow = first.narrow + units;
+  space.flats = first.flats + units;
+  space.many = first.many + units;
+  space.few = first.few + units;
   space.pieces = first.pieces + units;
   space.shares = first.shares + units;
   return space;
@@ -114,8 +115,9 @@ class RefinedMemory {
         parents_((std::size_t{level.count} + 1) * teams),
         states_(level.count * teams),
         cut_(level.count * teams),
-        wide_(level.unit_count * teams),
-        narrow_(level.unit_count * teams),
+        flats_(level.unit_count * teams),
+        many_(level.unit_count * teams),
+        few_(level.unit_count * teams),
         pieces_(level.unit_count * teams),
         shares_(level.unit_count * teams) {
     sums_.clear();
@@ -133,8 +135,9 @@ class RefinedMemory {
             parents_.get(),
             states_.get(),
             cut_.get(),
-            wide_.get(),
-            narrow_.get(),
+            flats_.get(),
+            many_.get(),
+            few_.get(),
             pieces_.get(),
             shares_.get()};
   }
@@ -143,7 +146,7 @@ class RefinedMemory {
     constexpr std::size_t kOfShare = 2 * sizeof(std::uint8_t) + sizeof(double) +
                                      2 * (sizeof(ToolSum) + sizeof(ContactPlane)) +
                                      4 * sizeof(std::uint32_t);
-    constexpr std::size_t kOfUnit = 4 * sizeof(std::uint32_t);
+    constexpr std::size_t kOfUnit = 4 * sizeof(std::uint32_t) + sizeof(FlatLook);
     return level.count * kOfShare + level.unit_count * kOfUnit;
   }
 
@@ -155,7 +158,8 @@ class RefinedMemory {
   DeviceArray<unsigned> marks_;
   DeviceArray<std::uint32_t> parents_;
   DeviceArray<SphereState> states_;
-  DeviceArray<std::uint32_t> cut_, wide_, narrow_, pieces_, shares_;
+  DeviceArray<FlatLook> flats_;
+  DeviceArray<std::uint32_t> cut_, many_, few_, pieces_, shares_;
 };
 
 class RefinedOnDevice : public DeviceMeasure {
@@ -221,7 +225,9 @@ class RefinedOnDevice : public DeviceMeasure {
           memory(level, teams),
           poses(kPoses),
           results(kPoses),
-          answers(kPoses) {}
+          answers(kPoses) {
+      results.clear();  // results have gaps, which are copied too
+    }
     unsigned teams;
     RefinedMemory memory;
     DeviceArray<Pose> poses;
