@@ -49,9 +49,9 @@ struct ContactPlane {
     return dot(normalized_or_zero(n), relative - p);
   }
   // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
-  // object more than `near` in front of it.
+  // object more than `near` in front of it. Where there is no plane nothing speaks against.
   VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
-    return height(relative) < 0 && height(hiding) <= near;
+    return count == 0 || (height(relative) < 0 && height(hiding) <= near);
   }
 };
 
@@ -190,7 +190,7 @@ class CellMeasure {
     result.is_far |= is_far(x, reading.foot);
     const bool hidden = is_hidden(reading.foot);
     if (hidden != (pass == Pass::hidden)) return hidden;
-    if (hidden && result.plane.count > 0 &&
+    if (hidden &&
         !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
       return false;
     }

@@ -22,11 +22,12 @@ std::vector<BlockMass> block_masses(const Level& level) {
   return masses;
 }
 
-RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level)
+RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level, bool coherent)
     : tool_(tool),
       level_(level),
       masses_(block_masses(level)),
       clusters_(cluster_shares(tool, level)) {
+  if (coherent) memory_.emplace(level.sphere_count);
   cells_.resize(level.sphere_count);
   results_.resize(level.sphere_count);
   passages_.resize(level.sphere_count);
@@ -48,21 +49,24 @@ Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose,
   const PointsOfSphere points(cloud, pose);
   if (cloud.is_organised()) {
     const Pose& frame = cloud.camera_to_world();
-    return run_on(cloud.depth_surface(), relative_to(frame, from_center_of_mass), frame.rotation,
-                  points, states);
+    return run_on(cloud.depth_surface(), relative_to(frame, from_center_of_mass), frame, points,
+                  states);
   }
   return run_on(cloud.disk_surface(), relative_to({{}, cloud.origin()}, from_center_of_mass),
-                Rotation{}, points, states);
+                Pose{{}, cloud.origin()}, points, states);
 }
 
 template <class Surface>
-Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
-                              const Rotation& to_world, const PointsOfSphere& points,
-                              std::vector<SphereState>& states) {
+Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface, const Pose& to_world,
+                              const PointsOfSphere& points, std::vector<SphereState>& states) {
   std::fill(states.begin(), states.end(), SphereState::outside);
   Result result;
   result.points = classify(surface, to_surface, points);
   flood(surface, to_surface);
+  if (memory_) {
+    if (cut_.empty()) flood_from_memory(surface, to_surface, to_world);
+    remember(surface, to_surface, to_world);
+  }
   count_inside(surface, to_surface);
 
   ToolSum sum;
@@ -77,7 +81,7 @@ Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface,
     sum.add(results_[i].sum);
     ++result.inside;
   }
-  sum.write(tool_, to_world, result);
+  sum.write(tool_, to_world.rotation, result);
   return result;
 }
 
@@ -167,6 +171,54 @@ void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
   }
 }
 
+// The surface passes through no share: those stay inside that were, or were cut, as long as they
+// are behind the same surface; so does what the graph reaches from them near it.
+template <class Surface>
+void RefinedMeasure::flood_from_memory(const Surface& surface, const Pose& to_surface,
+                                       const Pose& to_world) {
+  const SphereGraph& graph = level_.graph;
+  const auto take = [&](std::uint32_t i) {
+    if (cells_[i] == Cell::open) cells_[i] = Cell::whole;
+    passages_[i] = Passage::taken;
+    inside_.push_back(i);
+  };
+  const auto is_behind = [&](std::uint32_t i, const auto& holds) {
+    if (cells_[i] == Cell::free || passages_[i] == Passage::taken) return false;
+    const Vec3 at = to_surface * cell(i).center;
+    const Reading reading = surface.read(at);
+    if (!reading.known || (cells_[i] == Cell::open && !(reading.distance < 0))) return false;
+    return holds(at, reading.foot);
+  };
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    if (is_behind(i, [&](Vec3, Vec3 foot) {
+          return memory_->was_behind(i, to_world * foot, tool_.reach);
+        }))
+      take(i);
+  }
+  const auto is_near = [&](Vec3 at, Vec3 foot) {
+    return squared_norm(foot - at) <= tool_.reach * tool_.reach;
+  };
+  for (std::size_t next = 0; next < inside_.size(); ++next) {
+    const std::uint32_t i = inside_[next];
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+      const std::uint32_t j = graph.neighbors[k];
+      if (is_behind(j, is_near)) take(j);
+    }
+  }
+}
+
+template <class Surface>
+void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface,
+                              const Pose& to_world) {
+  memory_->forget();
+  const auto keep = [&](std::uint32_t i) {
+    const Reading reading = surface.read(to_surface * cell(i).center);
+    if (reading.known) memory_->remember(i, to_world * reading.foot);
+  };
+  for (const std::uint32_t i : cut_) keep(i);
+  for (const std::uint32_t i : inside_) keep(i);
+}
+
 template <class Surface>
 void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface) {
   constexpr std::size_t kGrain = 64;
@@ -175,7 +227,9 @@ void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface
       const std::uint32_t i = inside_[k];
       const bool whole = cells_[i] == Cell::whole;
       if (!whole && !results_[i].is_far) continue;
-      const auto nearest = [&] { return cut_share(to_surface, nearest_cut(i)); };
+      const auto nearest = [&] {
+        return cut_.empty() ? CutShare{} : cut_share(to_surface, nearest_cut(i));
+      };
       const CellMeasure measure(surface, to_surface, tool_.reach, cell(i));
       if (whole && is_compact(level_.share_reach[i], tool_.reach)) {
         results_[i].sum = ToolSum{};

@@ -2,9 +2,11 @@
 // it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "libvpm/query/cell.h"
+#include "libvpm/query/flood_memory.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/result.h"
@@ -16,10 +18,16 @@ std::vector<BlockMass> block_masses(const Level& level);
 
 class RefinedMeasure {
  public:
-  RefinedMeasure(const ToolModel& tool, const Level& level);
+  // `coherent`: the poses are those of a motion, see flood_memory.h.
+  RefinedMeasure(const ToolModel& tool, const Level& level, bool coherent);
 
   // `states` receives one entry per sphere. Allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
+
+  // Of a coherent sequence: the next pose is seen alone.
+  void forget() {
+    if (memory_) memory_->forget();
+  }
 
  private:
   // How the surface meets a sphere's share.
@@ -41,7 +49,7 @@ class RefinedMeasure {
   };
 
   template <class Surface>
-  Result run_on(const Surface& surface, const Pose& to_surface, const Rotation& to_world,
+  Result run_on(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                 const PointsOfSphere& points, std::vector<SphereState>& states);
   // Returns the number of points in spheres.
   template <class Surface>
@@ -53,6 +61,10 @@ class RefinedMeasure {
   void set_cells(const ShareCluster& cluster, Cell cell, Passage passage);
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
+  template <class Surface>
+  void flood_from_memory(const Surface& surface, const Pose& to_surface, const Pose& to_world);
+  template <class Surface>
+  void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world);
   template <class Surface>
   void count_inside(const Surface& surface, const Pose& to_surface);
   template <class Surface>
@@ -70,6 +82,7 @@ class RefinedMeasure {
   const Level& level_;
   std::vector<BlockMass> masses_;  // of each block
   ShareClusters clusters_;
+  std::optional<FloodMemory> memory_;
   std::vector<Cell> cells_;
   std::vector<CellResult> results_;
   std::vector<Passage> passages_;

@@ -37,12 +37,17 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach))) {
     throw Error(ErrorKind::usage, "the stiffness is so large that forces overflow");
   }
+  if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda())) {
+    throw Error(ErrorKind::usage,
+                "coherent poses are a matter of the refined measure on the CPU; leave the other "
+                "measure or device out");
+  }
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options.measure, options.device);
   } else if (options.measure == Measure::paper) {
     paper_ = std::make_unique<PaperMeasure>(tool, level_, options.location);
   } else {
-    refined_ = std::make_unique<RefinedMeasure>(tool, level_);
+    refined_ = std::make_unique<RefinedMeasure>(tool, level_, options.coherent);
   }
 }
 
@@ -58,6 +63,10 @@ Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
   }
   scale(result);
   return result;
+}
+
+void Query::forget() {
+  if (refined_) refined_->forget();
 }
 
 void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,

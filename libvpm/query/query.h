@@ -25,15 +25,18 @@ struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
   PointLocation location = PointLocation::grid;
-  Device device = {};    // device_from_text(); the tool's level is copied there
+  Device device = {};     // device_from_text(); the tool's level is copied there
+  bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
+                          // surface stays inside until it comes out; refined measure, on the CPU
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 class Query {
  public:
   // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
-  // model has no such level, or the stiffness is not positive or so large that forces overflow. The
-  // model must be one that validate() of tool_model.h accepts.
+  // model has no such level, coherence is asked of another measure or device, or the stiffness is
+  // not positive or so large that forces overflow. The model must be one that validate() of
+  // tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
@@ -43,6 +46,9 @@ class Query {
   // The results of many poses, in their order: the bits of one by one, but a device takes thousands
   // at once.
   void run(const PreparedCloud& cloud, std::span<const Pose> poses, std::span<Result> results);
+
+  // Of coherent poses: the next one does not follow from the last.
+  void forget();
 
   const Level& level() const { return level_; }
   // Of the last run of one pose, one per sphere of the level; from a device they are fetched here.

@@ -27,7 +27,7 @@ struct Arguments {
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
-  bool for_scene = false;
+  bool for_scene = false, coherent = false;
   double stiffness = 1;
   std::string coupling;
   std::size_t batch = 1;
@@ -54,6 +54,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--stiffness", a.stiffness,
                  "N/m^3: scales force and torque; 1 leaves them in m^3 and m^4")
       ->capture_default_str();
+  app.add_flag(
+      "--coherent", a.coherent,
+      "The poses are one motion: a tool that passes wholly behind the surface stays inside "
+      "until it comes out");
   app.add_option("--coupling", a.coupling,
                  "Take --poses for those of a haptic device that holds the tool by a spring and "
                  "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
@@ -84,6 +88,8 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong(
         "--coupling needs the device's path (--poses) and what the scene's volume weighs "
         "(--stiffness in N/m^3)");
+  if (a.coherent && (a.batch > 1 || a.deadline_us))
+    wrong("--coherent goes pose by pose at one level; leave --batch and --deadline-us out");
   if (a.batch > 1 && (a.deadline_us || !a.coupling.empty()))
     wrong("--batch answers many poses at once; leave --deadline-us and --coupling out");
   if (a.deadline_us && !(*a.deadline_us > 0))
@@ -203,6 +209,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
+  options.coherent = a.coherent;
   options.device = device_of(tool, options.measure);
   const Cloud cloud = read_cloud(a.cloud);
   const auto start = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-# A haptic device holds the tool by a spring and a damper.
+# Motions: a haptic device holds the tool by a spring and a damper; poses that follow each other.
 
 $ cp $SOURCE/tests/tools/inputs/* .
 $ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
@@ -21,6 +21,19 @@ True True
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5,rate=1000,mass=0.0125 --stiffness 2e4 --threads 1 --quiet | cmp - steps.jsonl
 $ cut -d' ' -f2- device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | wc -l
 3
+
+# One motion: a tool that has passed wholly behind the wall is still inside; seen alone it is not.
+$ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 1.05 0 0 0 1' '0 0 1.12 0 0 0 1' '0 0 1.3 0 0 0 1' > deep.txt
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
+[0.25, 0.75, 1.0, 1.0]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
+[0.25, 0.75, 0.0, 0.0]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --batch 2
+2> vpm-query: error: --coherent goes pose by pose at one level; leave --batch and --deadline-us out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --measure paper
+2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
+[2]
 
 # What the steps cannot stand is said, with what mends it.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 1e7 -o /dev/null --quiet

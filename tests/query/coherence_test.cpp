@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/scenes.h"
+#include "libvpm/synthetic/truth.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::generic_rotation;
+using testing::lattice_cube;
+using testing::see;
+
+constexpr double kEdge = 0.1, kStep = 0.002;
+
+QueryOptions coherent() {
+  QueryOptions options;
+  options.coherent = true;
+  return options;
+}
+
+bool equal(const Result& a, const Result& b) {
+  return a.volume == b.volume && a.wrench.force == b.wrench.force &&
+         a.wrench.torque == b.wrench.torque && a.boundary == b.boundary && a.inside == b.inside &&
+         a.points == b.points;
+}
+
+// The wall is at 1 m; the cube goes in until it is `deepest` and comes back.
+std::vector<Pose> through_the_wall(double deepest) {
+  std::vector<Pose> path;
+  const auto add = [&](double z) { path.push_back({generic_rotation(), {0.013, -0.008, z}}); };
+  for (double z = 0.85; z < deepest; z += kStep) add(z);
+  for (double z = deepest; z > 0.85; z -= kStep) add(z);
+  return path;
+}
+
+TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
+  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  Query query(tool, coherent()), alone(tool, {});
+  bool was_wholly_behind = false;
+  for (const Pose& pose : through_the_wall(1.6)) {
+    const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
+    if (seen_alone.boundary > 0 || pose.translation.z < 1) {
+      EXPECT_TRUE(equal(r, seen_alone)) << pose.translation.z;  // the memory adds nothing
+    } else {
+      was_wholly_behind = true;
+      EXPECT_EQ(seen_alone.volume, 0);
+      EXPECT_NEAR(r.volume_fraction, 1, 1e-12) << pose.translation.z;
+      EXPECT_NEAR(r.wrench.force.z, -r.volume, 1e-6 * r.volume);
+    }
+  }
+  EXPECT_TRUE(was_wholly_behind);
+}
+
+TEST(CoherentPoses, ForgetWhenTold) {
+  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  Query query(tool, coherent());
+  const std::vector<Pose> path = through_the_wall(1.3);
+  for (std::size_t k = 0; k < path.size() / 2; ++k) query.run(cloud, path[k]);
+  const Pose& deep = path[path.size() / 2];
+  EXPECT_GT(query.run(cloud, deep).volume, 0);
+  query.forget();
+  EXPECT_EQ(query.run(cloud, deep).volume, 0);
+}
+
+// In free space behind an object, as the camera sees it: never inside.
+TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
+  const synthetic::Scene scene = synthetic::make_scene("block");
+  const PreparedCloud cloud(see(scene));
+  const ToolModel tool = lattice_cube(0.05, 5, 3);
+  Query query(tool, coherent()), alone(tool, {});
+  for (double x = -0.4; x < 0.4; x += kStep) {
+    const Pose pose{generic_rotation(), {x, 0.01, 1.25}};
+    EXPECT_TRUE(equal(query.run(cloud, pose), alone.run(cloud, pose))) << x;
+  }
+}
+
+Cloud wall_at(double z) {
+  synthetic::Scene scene = synthetic::make_scene("wall");
+  scene.surface = synthetic::make_wall({0, 0, z}, {0, 0, -1});
+  return see(scene);
+}
+
+// A frame every 33 poses, of a wall that moves; then a hand before the lens.
+TEST(CoherentPoses, FollowFramesThatChange) {
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  Query query(tool, coherent());
+  const std::vector<Pose> path = through_the_wall(1.4);
+  PreparedCloud cloud(wall_at(1));
+  std::size_t k = 0;
+  for (; k < path.size() / 2; ++k) {
+    if (k % 33 == 0)
+      cloud = PreparedCloud(wall_at(1 + 0.01 * std::sin(0.05 * static_cast<double>(k))));
+    query.run(cloud, path[k]);
+  }
+  EXPECT_NEAR(query.run(cloud, path[k]).volume_fraction, 1, 1e-12);
+  EXPECT_EQ(query.run(PreparedCloud(wall_at(0.4)), path[k]).volume, 0);  // what is seen is another
+  EXPECT_EQ(query.run(cloud, path[k]).volume, 0);                        // and the memory is gone
+  EXPECT_EQ(query.run(PreparedCloud(wall_at(3)), path[k]).volume, 0);
+}
+
+TEST(CoherentPoses, AreRefusedWhereTheyMeanNothing) {
+  const ToolModel tool = lattice_cube(kEdge, 2, 2);
+  QueryOptions options = coherent();
+  options.measure = Measure::paper;
+  EXPECT_THROW(Query(tool, options), Error);
+}
+
+}  // namespace
+}  // namespace vpm
