@@ -140,6 +140,7 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
     }
   });
   std::vector<LevelError> calibration;
+  calibration.reserve(errors.size());
   for (std::vector<double>& of_level : errors)
     calibration.push_back(summarise(std::move(of_level)));
   return calibration;

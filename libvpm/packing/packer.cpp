@@ -30,8 +30,6 @@ constexpr std::size_t kBlocksPerTask = 4;
 // Of the room, in blocks. Solids of all proportions have about ten blocks per sphere; a plate of
 // 1:100000 has a thousand million blocks.
 constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
-// The search ends where what was left out may hold spheres larger by more than this.
-constexpr double kComplete = 0.97;
 // The uncovered volume falls with the number of spheres to the power of -1 / this.
 constexpr double kApollonianPower = 4.7;
 
@@ -112,10 +110,6 @@ class Packer {
       const double band = space_.spheres().size() < kFirstSpheres ? kFirstBand : kLaterBand;
       radius = std::max(smallest_, band * std::min<double>(radius, space_.bound()));
       space_.focus(radius);
-      if (is_exhausted(radius)) {
-        stop_ = StopReason::search_limit;
-        break;
-      }
       const std::size_t before = space_.spheres().size();
       fill_band(space_, radius, cap_, most_);
       for (std::size_t i = before; i < space_.spheres().size(); ++i)
@@ -133,17 +127,6 @@ class Packer {
     const double left = (1 - options_.coverage) / (1 - std::min(filled_ / volume_, 0.999999));
     return std::min(1.0, std::max(number, std::pow(left, kApollonianPower)));
   }
-  // Whether room that was left out may hold larger spheres: as large as the first that was placed
-  // since, for all that is known.
-  bool is_exhausted(double radius) {
-    if (space_.left_out() == 0) {
-      complete_ = space_.spheres().size();
-      return false;
-    }
-    if (complete_ == space_.spheres().size()) return false;
-    const double largest = space_.spheres()[complete_].radius;
-    return radius < kComplete * std::min<double>(largest, space_.left_out());
-  }
   bool enough() const {
     return space_.spheres().size() >= options_.spheres || filled_ >= options_.coverage * volume_ ||
            (options_.inertia_error > 0 && result().stop == StopReason::inertia_error);
@@ -156,6 +139,7 @@ class Packer {
       if (const Sphere m = frame_.to_solid(s); m.radius > 0) all.push_back(m);
     std::sort(all.begin(), all.end(), largest_first);
     PackResult result;
+    result.partly_searched = space_.left_out();
     result.stop = stop_;
     double filled = 0;
     std::optional<InertiaError> inertia = no_inertia_;
@@ -188,8 +172,7 @@ class Packer {
   double cap_;
   std::size_t most_;  // spheres at which even a band is broken off
   Space space_;
-  double filled_ = 0;         // m^3
-  std::size_t complete_ = 0;  // spheres for which no room was left out
+  double filled_ = 0;  // m^3
 };
 
 }  // namespace

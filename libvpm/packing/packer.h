@@ -31,13 +31,15 @@ enum class StopReason {
   inertia_error,    // the inertia tensor is as near as asked for
   min_radius,       // no sphere of the smallest radius fits any more
   numerical_floor,  // what is left is below kNumericalFloor of the longest side
-  search_limit,     // the solid is so thin that only a part of it was searched, which is full
 };
 
 struct PackResult {
   std::vector<Sphere> spheres;  // largest first; ties by centre
   double coverage = 0;          // volume of the spheres / volume of the solid
   StopReason stop = StopReason::spheres;
+  // The solid is so thin that only a part of its room was looked at, spread over it: larger spheres
+  // may fit elsewhere.
+  bool partly_searched = false;
 };
 
 // No two spheres overlap and none protrudes: radii are exact distances less a rounding margin.

@@ -288,7 +288,7 @@ void Space::leave_out(std::vector<BlockIndex::Coordinates>& coordinates) {
   const auto cut = order.begin() + static_cast<std::ptrdiff_t>(most_blocks_);
   std::nth_element(order.begin(), cut, order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
-  for (auto b = cut; b != order.end(); ++b) left_out_ = std::max(left_out_, bounds_[*b]);
+  left_out_ = true;
   order.erase(cut, order.end());
   std::sort(order.begin(), order.end());
   for (std::uint32_t to = 0; to < order.size(); ++to) {

@@ -26,11 +26,11 @@ class Space {
   // the least room are left out. Keeps a reference to `solid`. Frame: the unit cube of `solid`.
   Space(const SolidDistance& solid, double smallest, std::size_t most_blocks);
 
-  // No sphere larger than this fits anywhere, up to what local searches have missed.
+  // No sphere larger than this fits anywhere, up to what local searches have missed and what was
+  // left out.
   float bound() const;
 
-  // Nor where blocks were left out; 0 where none were.
-  float left_out() const { return left_out_; }
+  bool left_out() const { return left_out_; }  // some blocks
 
   // Prepares for searches of radius `radius` and above: blocks are cut to its size. Radii must not
   // grow from call to call.
@@ -102,7 +102,7 @@ class Space {
   const SolidDistance& solid_;
   float smallest_;
   std::size_t most_blocks_;
-  float left_out_ = 0;  // largest bound of a block that was left out
+  bool left_out_ = false;
   std::vector<Sphere> spheres_;
   int level_ = 0;     // of the blocks
   double reach_ = 2;  // clearances in a block are exact up to this; the cube's diagonal is shorter

@@ -71,9 +71,10 @@ inline Solid random_solid(int family, std::uint64_t seed) {
       return moved(joined(joined(box(), moved(box(), random.rotation(), {.2, .1, 0})), second),
                    turn, shift);
     }
-    case 1:
-      return moved(synthetic::make_box(length(), length(), random.uniform(0.02, 0.05)), turn,
-                   shift);
+    case 1: {
+      const double thin = std::pow(10, random.uniform(-2.5, -1.3));
+      return moved(synthetic::make_box(length(), length(), thin * length()), turn, shift);
+    }
     case 2: {
       const double thin = std::pow(10, random.uniform(-3, -1.5));
       return moved(synthetic::make_box(length(), thin * length(), thin * length()), turn, shift);

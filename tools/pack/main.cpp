@@ -201,8 +201,8 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   if (result.stop == StopReason::min_radius) fewer("no other of --min-radius fits");
   if (result.stop == StopReason::numerical_floor)
     fewer("what is left is too narrow for the numbers");
-  if (result.stop == StopReason::search_limit)
-    fewer("the solid is so thin that only a part of it was searched; ask for more spheres");
+  if (result.partly_searched)
+    tool.note("the solid is so thin that only a part of its room was searched, spread over it");
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 

@@ -89,8 +89,6 @@ const char* name_of(StopReason reason) {
       return "min_radius";
     case StopReason::numerical_floor:
       return "numerical_floor";
-    case StopReason::search_limit:
-      return "search_limit";
   }
   return "";
 }
@@ -115,6 +113,7 @@ json pack_report(const CheckedSolid& checked, const PackResult& result,
                  {"r_min", result.spheres.back().radius},
                  {"r_max", result.spheres.front().radius},
                  {"stop_reason", name_of(result.stop)},
+                 {"partly_searched", result.partly_searched},
                  {"seconds", seconds},
                  {"quality", quality(checked, result)},
                  {"mesh", as_json(checked.facts)},
