@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -42,6 +43,16 @@ std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
   return centers;
 }
 
+double reach_of_spheres(const ToolModel& tool, const Level& level) {
+  double reach = 0;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const Sphere& s = tool.spheres[i];
+    reach = std::max(reach, norm(s.center - tool.center_of_mass) + s.radius);
+  }
+  constexpr double kRounding = 1 + 1e-9;
+  return kRounding * reach;
+}
+
 }  // namespace
 
 DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters)
@@ -82,8 +93,8 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.grid.begin = grid_begin_.get();
   view_.grid.spheres = grid_spheres_.get();
   view_.center_of_mass = tool.center_of_mass;
-  view_.tool_volume = tool.volume;
   view_.tool_reach = tool.reach;
+  view_.spheres_reach = reach_of_spheres(tool, level);
 }
 
 DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {

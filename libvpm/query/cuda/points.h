@@ -23,6 +23,7 @@ __device__ void for_points_inside(const LevelView& level, const PointsView& poin
   if (share.parts == 0) return;
   const std::uint32_t first = share.part * blockDim.x + threadIdx.x;
   const std::uint32_t step = share.parts * blockDim.x;
+  const double reach_squared = level.spheres_reach * level.spheres_reach;
   if (points.width > 0) {
     const PixelRectangle r = frame.pixels;
     if (r.u0 > r.u1 || r.v0 > r.v1) return;
@@ -30,11 +31,12 @@ __device__ void for_points_inside(const LevelView& level, const PointsView& poin
     const std::uint32_t count = columns * static_cast<std::uint32_t>(r.v1 - r.v0 + 1);
     for (std::uint32_t k = first; k < count; k += step) {
       const std::uint32_t pixel = (r.v0 + k / columns) * points.width + r.u0 + k % columns;
-      try_point(level, points, frame.to_tool, pixel, visit);
+      // Not so where the pixel has no point.
+      if (squared_norm(widen(points.positions[pixel]) - frame.center) <= reach_squared)
+        try_point(level, points, frame.to_tool, pixel, visit);
     }
     return;
   }
-  const double reach_squared = level.tool_reach * level.tool_reach;
   constexpr std::uint32_t kLeaf = DiskSurface::kLeafSize;
   for (std::uint32_t k = first; k < points.count; k += step) {
     if (DiskSurface::squared_distance(points.leaves[k / kLeaf], frame.center) <= reach_squared)

@@ -83,7 +83,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
     __syncthreads();
     if (threadIdx.x == 0) {
-      frame = frame_of(poses[p], cloud, level.center_of_mass, level.tool_reach);
+      frame = frame_of(poses[p], cloud, level.center_of_mass, level.spheres_reach);
       counters = RefinedCounters{};
       total = RawResult{};
     }
@@ -179,7 +179,8 @@ class RefinedOnDevice : public DeviceMeasure {
   Result run(const PreparedCloud& cloud, const Pose& pose) override {
     const CurrentDevice current(device_);
     bring(cloud);
-    const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, tool_.reach);
+    const PoseFrame frame =
+        frame_of(pose, cloud_->frame(), tool_.center_of_mass, level_.view().spheres_reach);
     if (cloud_->frame().is_organised)
       launch(cloud_->depth_surface(), frame);
     else

@@ -39,7 +39,8 @@ struct LevelView {
   const std::uint32_t* neighbors = nullptr;
   GridView grid;
   Vec3 center_of_mass;
-  double tool_volume = 0, tool_reach = 0;
+  double tool_reach = 0;
+  double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
 
   __host__ __device__ CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
@@ -83,7 +84,7 @@ struct PoseFrame {
 };
 
 __host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud,
-                                              Vec3 center_of_mass, double tool_reach) {
+                                              Vec3 center_of_mass, double spheres_reach) {
   PoseFrame frame;
   const Pose from_center_of_mass{pose.rotation, pose * center_of_mass};
   const Pose surface = cloud.is_organised ? cloud.camera_to_world : Pose{{}, cloud.origin};
@@ -93,7 +94,8 @@ __host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame
   frame.tool_to_world = pose.rotation;
   if (cloud.is_organised) {
     const Vec3 at = relative_to(cloud.camera_to_world, {{}, cloud.origin}) * frame.center;
-    frame.pixels = rectangle_of_ball(cloud.intrinsics, cloud.width, cloud.height, at, tool_reach);
+    frame.pixels =
+        rectangle_of_ball(cloud.intrinsics, cloud.width, cloud.height, at, spheres_reach);
   }
   return frame;
 }
