@@ -193,9 +193,10 @@ struct Run {
   }
 };
 
-// The paper's measure is computed on the CPU unless a device is named.
-Device device_of(const Tool& tool, Measure measure) {
-  return measure == Measure::paper && tool.common().device == "auto" ? Device{} : tool.device();
+// What no device computes is computed on the CPU, unless a device is named.
+Device device_of(const Tool& tool, Measure measure, bool coherent) {
+  const bool cpu_only = measure == Measure::paper || coherent;
+  return cpu_only && tool.common().device == "auto" ? Device{} : tool.device();
 }
 
 void run(const Tool& tool, const Arguments& a) {
@@ -210,7 +211,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
   options.coherent = a.coherent;
-  options.device = device_of(tool, options.measure);
+  options.device = device_of(tool, options.measure, a.coherent);
   const Cloud cloud = read_cloud(a.cloud);
   const auto start = std::chrono::steady_clock::now();
   const PreparedCloud prepared(cloud);
