@@ -62,6 +62,7 @@ SurfaceGap surface_gap(const Solid& solid, const std::vector<Sphere>& spheres) {
   const Vec3 origin = spheres.front().center;
   const double unit = reach(solid, origin);
   std::vector<Sphere> scaled;
+  scaled.reserve(spheres.size());
   for (const Sphere& s : spheres) scaled.push_back({(s.center - origin) / unit, s.radius / unit});
   const SphereBvh bvh(scaled);
 

@@ -169,10 +169,10 @@ class Packings {
       add_prefixes(shape, "vpm-pack", spheres, cost);
       std::optional<VoxelGreedy> voxels;
       const Cost field = cost_of([&] { voxels.emplace(shape.solid, voxels_); });
-      for (const auto& [method, refine] :
-           {std::pair{"refined voxels", Refine::local_maximum}, {"voxel centres", Refine::none}}) {
+      for (const Refine refine : {Refine::local_maximum, Refine::none}) {
         cost = cost_of([&] { spheres = voxels->pack(most_, refine); });
-        add_prefixes(shape, method, spheres, field + cost);
+        add_prefixes(shape, refine == Refine::none ? "voxel centres" : "refined voxels", spheres,
+                     field + cost);
       }
       progress(0.6 * ++done_ / static_cast<double>(shapes_.size()));
     }

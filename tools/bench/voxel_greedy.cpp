@@ -48,7 +48,8 @@ struct VoxelGreedy::Field {
   Vec3 center(std::size_t v) const {
     const auto i = static_cast<int>(v % static_cast<std::size_t>(nx));
     const auto jk = static_cast<int>(v / static_cast<std::size_t>(nx));
-    return low + width * Vec3{i + 0.5, jk % ny + 0.5, jk / ny + 0.5};
+    const int j = jk % ny, k = jk / ny;
+    return low + width * Vec3{i + 0.5, j + 0.5, k + 0.5};
   }
 
   TriangleBvh bvh;
@@ -105,8 +106,8 @@ class VoxelGreedy::Run {
       bool better = false;
       for (int k = 0; k < 26; ++k) {
         const int code = k < 13 ? k : k + 1;  // all of 27 but the middle
-        const Vec3 x =
-            best.center + step * Vec3{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
+        const int i = code % 3 - 1, j = code / 3 % 3 - 1, l = code / 9 - 1;
+        const Vec3 x = best.center + step * Vec3{1.0 * i, 1.0 * j, 1.0 * l};
         if (norm(x - start) > walk) continue;
         if (const double d = clearance(x); d > best.radius) {
           best = {x, d};

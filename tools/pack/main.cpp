@@ -235,8 +235,9 @@ void run(const Tool& tool, Arguments a) {
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
   CheckedSolid checked = make_solid(parse_mesh(bytes, name), solid_options(a));
-  for (const std::string& note : checked.notes) tool.note(name + ": " + note);
-  for (const std::string& warning : checked.warnings) tool.warn(name + ": " + warning);
+  const std::string prefix = name + ": ";
+  for (const std::string& note : checked.notes) tool.note(prefix + note);
+  for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
 
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
