@@ -65,12 +65,13 @@ struct Contacts {
 
 }  // namespace
 
-Sphere ascend(const Space& space, Vec3 start, const Clearance& from) {
+Sphere ascend(const Space& space, Vec3 start, const Clearance& from, double longest_step) {
   Sphere best{start, from.value};
   if (from.nearest.kind == Obstacle::Kind::none) return best;
   Contacts contacts;
   contacts.add(space, from.nearest, start);
-  double box = kBox * best.radius;
+  const double largest_box = std::min(kBox, longest_step / best.radius);
+  double box = largest_box * best.radius;
   for (int i = 0; i < kMaxSteps && box > kSmallestBox * best.radius; ++i) {
     const MaxMinStep step = max_min_step(contacts.bounds, box);
     if (!(step.value - best.radius > kConverged * best.radius)) break;
@@ -80,7 +81,7 @@ Sphere ascend(const Space& space, Vec3 start, const Clearance& from) {
         there.nearest.kind != Obstacle::Kind::none && !contacts.has(there.nearest);
     if (there.value > best.radius) {
       best = {x, there.value};
-      box = kBox * best.radius;
+      box = largest_box * best.radius;
       contacts.move_to(space, x, best.radius * (1 + 4 * kBox));
       if (unforeseen) contacts.add(space, there.nearest, x);
       if (contacts.bounds.empty()) break;  // nothing within reach

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "libvpm/core/error.h"
-#include "libvpm/core/parallel.h"
 #include "libvpm/mesh/outer_surface.h"
+#include "libvpm/packing/candidates.h"
 #include "libvpm/packing/inertia.h"
 #include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/solid_distance.h"
@@ -17,16 +17,14 @@ namespace vpm {
 namespace {
 
 // All spheres of a band of radii are found together. The first spheres decide the coverage of a
-// small packing, so their bands are narrow; later ones only need the right order of magnitude.
+// small packing, so their bands are narrow and each takes the place that suits the others; later
+// ones only need the right order of magnitude.
 constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
 constexpr std::size_t kFirstSpheres = 200;
-// A sphere that another of its round has shrunk by more than rounding is looked for again.
-constexpr double kUnchanged = 1 - 1e-9;
 // A band is finished, so that what is asked for is a prefix of what more would have been, unless it
 // brings more than this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
 constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
-constexpr std::size_t kBlocksPerTask = 4;
 // Of the room, in blocks. Solids of all proportions have about ten blocks per sphere; a plate of
 // 1:100000 has a thousand million blocks.
 constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
@@ -65,19 +63,15 @@ void fill_band(Space& space, double radius, double cap, std::size_t most) {
     std::vector<std::uint32_t> blocks = space.promising(radius);
     if (blocks.empty()) return;
     keep_most_promising(space, blocks, most);
-    while (!blocks.empty()) {
-      std::vector<std::vector<Sphere>> found(blocks.size());
-      parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) space.search(blocks[i], radius, cap, found[i]);
-      });
-      std::vector<Sphere> candidates;
-      for (const auto& some : found) candidates.insert(candidates.end(), some.begin(), some.end());
-      std::sort(candidates.begin(), candidates.end(), largest_first);
-      for (const Sphere& s : candidates) {
-        if (space.spheres().size() == most) return;
-        const double room = space.clearance(s.center).value;
-        if (room >= kUnchanged * s.radius)
-          space.place({s.center, std::min(room, s.radius)}, blocks);
+    Candidates candidates(space, radius, cap);
+    while (!blocks.empty() || !candidates.empty()) {
+      candidates.search(blocks);
+      if (space.spheres().size() == most) return;
+      if (space.spheres().size() < kFirstSpheres) {
+        blocks.clear();
+        candidates.place_closest(blocks);
+      } else {
+        candidates.place_all(most, blocks);
       }
       std::sort(blocks.begin(), blocks.end());
       blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());

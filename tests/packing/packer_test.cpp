@@ -65,6 +65,15 @@ TEST(Packer, CoverageOfAGreedyPacking) {
   }
 }
 
+TEST(Packer, EqualSpheresOfATubeTouch) {
+  const double ring = 1, tube = 0.2;
+  const auto fit = static_cast<std::size_t>(kPi / std::asin(tube / ring));  // touching, in a circle
+  const PackResult result = pack(synthetic::make_torus(ring, tube, 240, 24), {.spheres = 2 * fit});
+  std::size_t full = 0;
+  for (const Sphere& s : result.spheres) full += s.radius > 0.99 * result.spheres[0].radius ? 1 : 0;
+  EXPECT_GE(full, fit - 1);  // spheres anywhere would leave a quarter of their places empty
+}
+
 TEST(Packer, SameBytesForEveryThreadCount) {
   const Solid solid = random_solid(0, 1);
   set_thread_count(1);

@@ -1,7 +1,7 @@
 # vpm-pack: spheres that grow together, the inertia as a limit, and runs that end without an output.
 
 $ printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' > cube.off
-$ sed 's/^\(.*\) 1$/\1 2.5/' cube.off > box.off
+$ sed 's/^\(.*\) 1$/\1 1.7/' cube.off > box.off
 $ vpm-pack box.off -o greedy.vpmp --spheres 30 --report greedy.json
 $ vpm-pack box.off -o grown.vpmp --spheres 30 --grow --report grown.json
 $ python3 -c 'import json; a, b = json.load(open("greedy.json")), json.load(open("grown.json")); print(b["spheres"], b["certified"], b["coverage"] > a["coverage"], abs(b["coverage"] * b["volume_mesh"] - b["volume_spheres"]) < 1e-12)'

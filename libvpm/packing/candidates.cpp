@@ -1,0 +1,98 @@
+#include "libvpm/packing/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/packing/ascent.h"
+#include "libvpm/packing/largest_first.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::size_t kBlocksPerTask = 4;
+// A sphere that another of its round has shrunk by more than rounding is looked for again.
+constexpr double kUnchanged = 1 - 1e-9;
+// In radii. Wider gaps hold another candidate that is closer, or are none of this tube.
+constexpr double kWidestGap = 1;
+// A step towards contact leaves the tube's axis by less than this part of it; so the ascent back
+// may not wander further along the axis.
+constexpr double kAstray = 0.3;
+constexpr double kStep = 0.3;      // radii
+constexpr double kContact = 1e-6;  // radii; what is left of a gap
+constexpr double kNearer = 0.9;    // a step that leaves more of the gap leads nowhere
+constexpr int kMostSteps = 30;
+
+}  // namespace
+
+void Candidates::search(const std::vector<std::uint32_t>& blocks) {
+  std::vector<std::vector<Sphere>> found(blocks.size());
+  parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) space_.search(blocks[i], radius_, cap_, found[i]);
+  });
+  for (const auto& some : found)
+    for (const Sphere& s : some) candidates_.push_back({s, HUGE_VAL, 0, 0});
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return largest_first(a.sphere, b.sphere);
+  });
+}
+
+void Candidates::place_all(std::size_t most, std::vector<std::uint32_t>& touched) {
+  for (const Candidate& c : candidates_)
+    if (space_.spheres().size() < most) place(c.sphere, touched);
+  candidates_.clear();
+}
+
+void Candidates::place_closest(std::vector<std::uint32_t>& touched) {
+  bool placed = false;
+  while (!placed && !candidates_.empty()) {
+    for (Candidate& c : candidates_) update_gap(c);
+    std::erase_if(candidates_,
+                  [](const auto& c) { return c.gap < (kUnchanged - 1) * c.sphere.radius; });
+    if (candidates_.empty()) return;
+    const auto closest =
+        std::min_element(candidates_.begin(), candidates_.end(),
+                         [](const auto& a, const auto& b) { return a.gap < b.gap; });
+    placed = place(moved_to_contact(*closest), touched);
+    candidates_.erase(closest);
+  }
+}
+
+void Candidates::update_gap(Candidate& c) const {
+  for (; c.compared < space_.spheres().size(); ++c.compared) {
+    const Sphere& s = space_.spheres()[c.compared];
+    const double gap = norm(c.sphere.center - s.center) - s.radius - c.sphere.radius;
+    if (gap < c.gap) {
+      c.gap = gap;
+      c.nearest = c.compared;
+    }
+  }
+}
+
+Sphere Candidates::moved_to_contact(const Candidate& c) const {
+  Sphere best = c.sphere;
+  if (c.gap > kWidestGap * best.radius) return best;
+  const Sphere& to = space_.spheres()[c.nearest];
+  double gap = c.gap;
+  for (int i = 0; i < kMostSteps && gap > kContact * best.radius; ++i) {
+    const double step = std::min(gap, kStep * best.radius);
+    const Vec3 x = best.center + normalized_or_zero(to.center - best.center) * step;
+    const Clearance at = space_.clearance(x);
+    if (!(at.value > 0)) break;
+    const Sphere moved = ascend(space_, x, at, kAstray * step);
+    const double left = norm(moved.center - to.center) - to.radius - moved.radius;
+    if (moved.radius < radius_ || left > kNearer * gap) break;
+    best = {moved.center, std::min(moved.radius, cap_)};
+    gap = left;
+  }
+  return best;
+}
+
+bool Candidates::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
+  const double room = space_.clearance(sphere.center).value;
+  if (!(room >= kUnchanged * sphere.radius)) return false;
+  space_.place({sphere.center, std::min(room, sphere.radius)}, touched);
+  return true;
+}
+
+}  // namespace vpm
