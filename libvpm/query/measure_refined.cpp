@@ -8,39 +8,15 @@
 
 namespace vpm {
 
-std::vector<BlockMass> block_masses(const Level& level) {
-  std::vector<BlockMass> masses(level.blocks.size());
-  for (std::size_t b = 0; b < masses.size(); ++b) {
-    Vec3 moment;
-    for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
-      masses[b].weight += level.samples[s].weight;
-      moment += level.samples[s].weight * widen(level.samples[s].center);
-    }
-    masses[b].centroid =
-        masses[b].weight > 0 ? moment / masses[b].weight : widen(level.blocks[b].center);
-  }
-  return masses;
-}
-
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level, bool coherent)
-    : tool_(tool),
-      level_(level),
-      masses_(block_masses(level)),
-      clusters_(cluster_shares(tool, level)) {
-  if (coherent) memory_.emplace(level.sphere_count);
-  cells_.resize(level.sphere_count);
-  results_.resize(level.sphere_count);
-  passages_.resize(level.sphere_count);
-  squared_gaps_.resize(level.sphere_count);
-  cut_.reserve(level.sphere_count);
-  inside_.reserve(level.sphere_count);
-}
-
-CellView RefinedMeasure::cell(std::uint32_t i) const {
-  return {level_.blocks.data(),      masses_.data(),
-          level_.samples.data(),     level_.block_begin[i],
-          level_.block_begin[i + 1], tool_.spheres[i].center - tool_.center_of_mass,
-          level_.share_reach[i]};
+    : tool_(tool), level_(tool, level) {
+  if (coherent) memory_.emplace(level_.size());
+  cells_.resize(level_.size());
+  results_.resize(level_.size());
+  passages_.resize(level_.size());
+  squared_gaps_.resize(level_.size());
+  cut_.reserve(level_.size());
+  inside_.reserve(level_.size());
 }
 
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose,
@@ -71,13 +47,13 @@ Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface, co
 
   ToolSum sum;
   for (const std::uint32_t i : cut_) {
-    states[i] = SphereState::boundary;
+    states[level_.sphere(i)] = SphereState::boundary;
     sum.add(results_[i].sum);
   }
   result.boundary = static_cast<std::uint32_t>(cut_.size());
   for (const std::uint32_t i : inside_) {
     if (results_[i].sum.volume.value == 0) continue;  // the flood passed through the hidden
-    states[i] = SphereState::inside;
+    states[level_.sphere(i)] = SphereState::inside;
     sum.add(results_[i].sum);
     ++result.inside;
   }
@@ -91,20 +67,24 @@ std::uint32_t RefinedMeasure::classify(const Surface& surface, const Pose& to_su
                                        const PointsOfSphere& points) {
   std::atomic<std::uint32_t> found{0};
   constexpr std::size_t kGrain = 4;
-  parallel_for(clusters_.clusters.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  const std::vector<ShareTreeNode>& nodes = level_.nodes();
+  parallel_for(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::uint32_t found_here = 0;
-    for (std::size_t c = begin; c < end; ++c) {
-      const ShareCluster& cluster = clusters_.clusters[c];
-      const Vec3 center = to_surface * cluster.center;
-      const auto look = surface.look_at_ball(center, cluster.reach);
-      if (look.side == Side::mixed) {
-        for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
-          found_here += classify_share(surface, to_surface, points, clusters_.shares[k]);
-      } else if (look.side == Side::behind) {
-        const bool near = surface.largest_gap(look, center, cluster.reach) < tool_.reach;
-        set_cells(cluster, Cell::whole, near ? Passage::near : Passage::unknown);
-      } else {
-        set_cells(cluster, look.side == Side::free ? Cell::free : Cell::open, Passage::unknown);
+    for (std::size_t root = begin; root < end; ++root) {
+      std::uint32_t node = level_.roots()[root];
+      const std::uint32_t after = nodes[node].next;
+      while (node < after) {
+        const auto& [cluster, next] = nodes[node];
+        const bool is_leaf = next == node + 1;
+        if (classify_cluster(surface, to_surface, cluster)) {
+          node = next;
+          continue;
+        }
+        if (is_leaf) {
+          for (std::uint32_t i = cluster.begin; i < cluster.end; ++i)
+            found_here += classify_share(surface, to_surface, points, i);
+        }
+        ++node;
       }
     }
     if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
@@ -112,18 +92,29 @@ std::uint32_t RefinedMeasure::classify(const Surface& surface, const Pose& to_su
   return found;
 }
 
-void RefinedMeasure::set_cells(const ShareCluster& cluster, Cell cell, Passage passage) {
-  for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
-    cells_[clusters_.shares[k]] = cell;
-    passages_[clusters_.shares[k]] = passage;
+// False where the surface may pass through the cluster.
+template <class Surface>
+bool RefinedMeasure::classify_cluster(const Surface& surface, const Pose& to_surface,
+                                      const ShareCluster& cluster) {
+  const Vec3 center = to_surface * cluster.center;
+  const auto look = surface.look_at_ball(center, cluster.reach);
+  if (look.side == Side::mixed) return false;
+  Cell cell = look.side == Side::free ? Cell::free : Cell::open;
+  Passage passage = Passage::unknown;
+  if (look.side == Side::behind) {
+    cell = Cell::whole;
+    if (surface.largest_gap(look, center, cluster.reach) < tool_.reach) passage = Passage::near;
   }
+  std::fill(cells_.begin() + cluster.begin, cells_.begin() + cluster.end, cell);
+  std::fill(passages_.begin() + cluster.begin, passages_.begin() + cluster.end, passage);
+  return true;
 }
 
 template <class Surface>
 std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose& to_surface,
                                              const PointsOfSphere& points, std::uint32_t i) {
   passages_[i] = Passage::unknown;
-  const CellView view = cell(i);
+  const CellView view = level_.cell(i);
   const Side side = surface.side_of_ball(to_surface * view.center, view.reach);
   if (side == Side::free) {
     cells_[i] = Cell::free;
@@ -135,7 +126,7 @@ std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose&
     results_[i] = CellMeasure(surface, to_surface, tool_.reach, view).run();
     const bool counts = results_[i].sum.volume.value > 0;
     cells_[i] = results_[i].plane.count > 0 ? Cell::cut : (counts ? Cell::partial : Cell::free);
-    const Sphere& sphere = tool_.spheres[i];
+    const Sphere& sphere = tool_.spheres[level_.sphere(i)];
     const auto look = surface.look_at_ball(to_surface * view.center, sphere.radius);
     if (look.side == Side::mixed) return points.count(sphere, look);
   }
@@ -146,10 +137,9 @@ std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose&
 // reaches is inside. Which ones does not depend on the order of the traversal.
 template <class Surface>
 void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
-  const SphereGraph& graph = level_.graph;
   cut_.clear();
   inside_.clear();
-  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+  for (std::uint32_t i = 0; i < level_.size(); ++i) {
     if (cells_[i] == Cell::cut) cut_.push_back(i);
   }
   const auto take = [&](std::uint32_t j) {
@@ -157,15 +147,13 @@ void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
     inside_.push_back(j);
   };
   for (const std::uint32_t i : cut_) {
-    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
-      const std::uint32_t j = graph.neighbors[k];
+    for (const std::uint32_t j : level_.neighbors(i)) {
       if (is_passable(surface, to_surface, j) && enters(surface, to_surface, i, j)) take(j);
     }
   }
   for (std::size_t next = 0; next < inside_.size(); ++next) {
     const std::uint32_t i = inside_[next];
-    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
-      const std::uint32_t j = graph.neighbors[k];
+    for (const std::uint32_t j : level_.neighbors(i)) {
       if (is_passable(surface, to_surface, j)) take(j);
     }
   }
@@ -176,7 +164,6 @@ void RefinedMeasure::flood(const Surface& surface, const Pose& to_surface) {
 template <class Surface>
 void RefinedMeasure::flood_from_memory(const Surface& surface, const Pose& to_surface,
                                        const Pose& to_world) {
-  const SphereGraph& graph = level_.graph;
   const auto take = [&](std::uint32_t i) {
     if (cells_[i] == Cell::open) cells_[i] = Cell::whole;
     passages_[i] = Passage::taken;
@@ -184,12 +171,12 @@ void RefinedMeasure::flood_from_memory(const Surface& surface, const Pose& to_su
   };
   const auto is_behind = [&](std::uint32_t i, const auto& holds) {
     if (cells_[i] == Cell::free || passages_[i] == Passage::taken) return false;
-    const Vec3 at = to_surface * cell(i).center;
+    const Vec3 at = to_surface * level_.cell(i).center;
     const Reading reading = surface.read(at);
     if (!reading.known || (cells_[i] == Cell::open && !(reading.distance < 0))) return false;
     return holds(at, reading.foot);
   };
-  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+  for (std::uint32_t i = 0; i < level_.size(); ++i) {
     if (is_behind(i, [&](Vec3, Vec3 foot) {
           return memory_->was_behind(i, to_world * foot, tool_.reach);
         }))
@@ -200,8 +187,7 @@ void RefinedMeasure::flood_from_memory(const Surface& surface, const Pose& to_su
   };
   for (std::size_t next = 0; next < inside_.size(); ++next) {
     const std::uint32_t i = inside_[next];
-    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
-      const std::uint32_t j = graph.neighbors[k];
+    for (const std::uint32_t j : level_.neighbors(i)) {
       if (is_behind(j, is_near)) take(j);
     }
   }
@@ -212,7 +198,7 @@ void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface,
                               const Pose& to_world) {
   memory_->forget();
   const auto keep = [&](std::uint32_t i) {
-    const Reading reading = surface.read(to_surface * cell(i).center);
+    const Reading reading = surface.read(to_surface * level_.cell(i).center);
     if (reading.known) memory_->remember(i, to_world * reading.foot);
   };
   for (const std::uint32_t i : cut_) keep(i);
@@ -230,10 +216,10 @@ void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface
       const auto nearest = [&] {
         return cut_.empty() ? CutShare{} : cut_share(to_surface, nearest_cut(i));
       };
-      const CellMeasure measure(surface, to_surface, tool_.reach, cell(i));
-      if (whole && is_compact(level_.share_reach[i], tool_.reach)) {
+      const CellMeasure measure(surface, to_surface, tool_.reach, level_.cell(i));
+      if (whole && is_compact(level_.reach(i), tool_.reach)) {
         results_[i].sum = ToolSum{};
-        measure.add_reached(nearest, piece_of(clusters_.masses[i]), results_[i].sum);
+        measure.add_reached(nearest, piece_of(level_.mass(i)), results_[i].sum);
       } else {
         results_[i].sum = measure.reached(whole, nearest);
       }
@@ -251,7 +237,7 @@ bool RefinedMeasure::is_passable(const Surface& surface, const Pose& to_surface,
 template <class Surface>
 RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, const Pose& to_surface,
                                                      std::uint32_t j) {
-  const Vec3 at = to_surface * cell(j).center;
+  const Vec3 at = to_surface * level_.cell(j).center;
   const Reading reading = surface.read(at);
   if (cells_[j] == Cell::open) {
     if (!(reading.known && reading.distance < 0)) return Passage::closed;
@@ -264,28 +250,29 @@ RefinedMeasure::Passage RefinedMeasure::find_passage(const Surface& surface, con
 
 template <class Surface>
 bool RefinedMeasure::enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut,
-                            std::uint32_t sphere) {
-  if (passages_[sphere] == Passage::near) {
-    const Vec3 at = to_surface * cell(sphere).center;
-    squared_gaps_[sphere] = squared_gap(at, surface.read(at));
-    passages_[sphere] = Passage::open;
+                            std::uint32_t row) {
+  if (passages_[row] == Passage::near) {
+    const Vec3 at = to_surface * level_.cell(row).center;
+    squared_gaps_[row] = squared_gap(at, surface.read(at));
+    passages_[row] = Passage::open;
   }
-  return lies_near_sheet(squared_gaps_[sphere], level_.share_reach[cut],
-                         level_.share_reach[sphere]) ||
-         cut_share(to_surface, cut).height(to_surface * cell(sphere).center) < 0;
+  return lies_near_sheet(squared_gaps_[row], level_.reach(cut), level_.reach(row)) ||
+         cut_share(to_surface, cut).height(to_surface * level_.cell(row).center) < 0;
 }
 
-// Equal distances go to the smaller index.
-std::uint32_t RefinedMeasure::nearest_cut(std::uint32_t sphere) const {
-  const Vec3 center = tool_.spheres[sphere].center;
-  return *std::min_element(cut_.begin(), cut_.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return squared_norm(tool_.spheres[a].center - center) <
-           squared_norm(tool_.spheres[b].center - center);
-  });
+// Equal distances go to the sphere with the smaller index.
+std::uint32_t RefinedMeasure::nearest_cut(std::uint32_t row) const {
+  const Vec3 center = tool_.spheres[level_.sphere(row)].center;
+  const auto rank = [&](std::uint32_t cut) {
+    const std::uint32_t sphere = level_.sphere(cut);
+    return std::pair(squared_norm(tool_.spheres[sphere].center - center), sphere);
+  };
+  return *std::min_element(cut_.begin(), cut_.end(),
+                           [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
 }
 
 CutShare RefinedMeasure::cut_share(const Pose& to_surface, std::uint32_t cut) const {
-  return {results_[cut].plane, to_surface * cell(cut).center, level_.share_reach[cut]};
+  return {results_[cut].plane, to_surface * level_.cell(cut).center, level_.reach(cut)};
 }
 
 }  // namespace vpm

@@ -10,11 +10,9 @@
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/result.h"
-#include "libvpm/query/share_clusters.h"
+#include "libvpm/query/spatial_level.h"
 
 namespace vpm {
-
-std::vector<BlockMass> block_masses(const Level& level);
 
 class RefinedMeasure {
  public:
@@ -57,8 +55,10 @@ class RefinedMeasure {
                          const PointsOfSphere& points);
   template <class Surface>
   std::uint32_t classify_share(const Surface& surface, const Pose& to_surface,
-                               const PointsOfSphere& points, std::uint32_t sphere);
-  void set_cells(const ShareCluster& cluster, Cell cell, Passage passage);
+                               const PointsOfSphere& points, std::uint32_t row);
+  template <class Surface>
+  bool classify_cluster(const Surface& surface, const Pose& to_surface,
+                        const ShareCluster& cluster);
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
@@ -68,27 +68,23 @@ class RefinedMeasure {
   template <class Surface>
   void count_inside(const Surface& surface, const Pose& to_surface);
   template <class Surface>
-  bool is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  bool is_passable(const Surface& surface, const Pose& to_surface, std::uint32_t row);
   template <class Surface>
-  Passage find_passage(const Surface& surface, const Pose& to_surface, std::uint32_t sphere);
+  Passage find_passage(const Surface& surface, const Pose& to_surface, std::uint32_t row);
   template <class Surface>
-  bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut,
-              std::uint32_t sphere);
-  std::uint32_t nearest_cut(std::uint32_t sphere) const;
+  bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut, std::uint32_t row);
+  std::uint32_t nearest_cut(std::uint32_t row) const;
   CutShare cut_share(const Pose& to_surface, std::uint32_t cut) const;
-  CellView cell(std::uint32_t sphere) const;
 
   const ToolModel& tool_;
-  const Level& level_;
-  std::vector<BlockMass> masses_;  // of each block
-  ShareClusters clusters_;
+  SpatialLevel level_;  // all that follows is in its rows
   std::optional<FloodMemory> memory_;
   std::vector<Cell> cells_;
   std::vector<CellResult> results_;
   std::vector<Passage> passages_;
   std::vector<double> squared_gaps_;   // to the foot of the centre's reading, where asked; m^2
-  std::vector<std::uint32_t> cut_;     // spheres that the surface cuts, ascending
-  std::vector<std::uint32_t> inside_;  // spheres that the flood took, in the order of the flood
+  std::vector<std::uint32_t> cut_;     // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> inside_;  // shares that the flood took, in the order of the flood
 };
 
 }  // namespace vpm

@@ -20,6 +20,8 @@ struct ShareClusters {
   std::vector<BlockMass> masses;      // of each share
 };
 
+std::vector<BlockMass> block_masses(const Level& level);
+
 // A share up to this part of the tool's reach that lies wholly behind the surface is counted by its
 // centroid. README.md has what that costs.
 inline constexpr double kCompactReach = 0.125;
@@ -29,5 +31,15 @@ VPM_HD constexpr bool is_compact(double reach, double tool_reach) {
 }
 
 ShareClusters cluster_shares(const ToolModel& tool, const Level& level);
+
+// Of the shares listed in rows [begin, end): the ball that encloses them.
+ShareCluster enclosing_cluster(const ToolModel& tool, const Level& level,
+                               const std::vector<std::uint32_t>& shares, std::uint32_t begin,
+                               std::uint32_t end);
+
+// Sorts rows [begin, end) by the longest side of their centres' box, as far as the median needs it,
+// and returns the row in the middle.
+std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& shares, std::uint32_t begin,
+                    std::uint32_t end);
 
 }  // namespace vpm

@@ -1,0 +1,66 @@
+#include "libvpm/query/spatial_level.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kFewShares = 8;  // are looked at one by one
+
+}  // namespace
+
+SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
+  ShareClusters clusters = cluster_shares(tool, level);
+  spheres_ = std::move(clusters.shares);
+  for (const ShareCluster& c : clusters.clusters) {
+    roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+    add_nodes(tool, level, c.begin, c.end);
+  }
+  const std::vector<BlockMass> block_masses = vpm::block_masses(level);
+  for (const std::uint32_t sphere : spheres_) {
+    masses_.push_back(clusters.masses[sphere]);
+    block_masses_.insert(block_masses_.end(), block_masses.begin() + level.block_begin[sphere],
+                         block_masses.begin() + level.block_begin[sphere + 1]);
+    add_share(tool, level, sphere);
+  }
+  add_graph(level.graph);
+}
+
+void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
+                             std::uint32_t end) {
+  const std::size_t node = nodes_.size();
+  nodes_.push_back({enclosing_cluster(tool, level, spheres_, begin, end), 0});
+  if (end - begin > kFewShares) {
+    const std::uint32_t middle = halve(tool, spheres_, begin, end);
+    add_nodes(tool, level, begin, middle);
+    add_nodes(tool, level, middle, end);
+  }
+  nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
+}
+
+void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
+  Share share{tool.spheres[sphere].center - tool.center_of_mass, level.share_reach[sphere],
+              static_cast<std::uint32_t>(blocks_.size()), 0};
+  for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
+    CellBlock block = level.blocks[b];
+    const auto begin = static_cast<std::uint32_t>(samples_.size());
+    samples_.insert(samples_.end(), level.samples.begin() + block.begin,
+                    level.samples.begin() + block.end);
+    block.begin = begin;
+    block.end = static_cast<std::uint32_t>(samples_.size());
+    blocks_.push_back(block);
+  }
+  share.end = static_cast<std::uint32_t>(blocks_.size());
+  shares_.push_back(share);
+}
+
+void SpatialLevel::add_graph(const SphereGraph& graph) {
+  std::vector<std::uint32_t> row_of(size());
+  for (std::uint32_t row = 0; row < size(); ++row) row_of[spheres_[row]] = row;
+  neighbor_begin_.push_back(0);
+  for (const std::uint32_t sphere : spheres_) {
+    for (std::uint32_t k = graph.begin[sphere]; k < graph.begin[sphere + 1]; ++k)
+      neighbors_.push_back(row_of[graph.neighbors[k]]);
+    neighbor_begin_.push_back(static_cast<std::uint32_t>(neighbors_.size()));
+  }
+}
+
+}  // namespace vpm
