@@ -41,11 +41,11 @@ ImportedCloud cloud_of_depth(const DepthImage& depth, const Intrinsics& k, const
   imported.invalid = count_invalid(depth);
   imported.normals_estimated = true;
   const std::size_t measured = depth.depth.size() - imported.invalid;
-  if (measured == 0) refuse(name + ": no pixel holds a measurement");
+  if (measured == 0) throw NothingMeasured(name + ": no pixel holds a measurement");
   imported.cloud = make_cloud(depth, Camera{k, depth.width, depth.height, to_world}, options);
   if (imported.cloud.size() == 0) {
-    refuse(name + ": none of its " + std::to_string(measured) +
-           " measured pixels has neighbours enough for a normal");
+    throw NothingMeasured(name + ": none of its " + std::to_string(measured) +
+                          " measured pixels has neighbours enough for a normal");
   }
   imported.without_normal = measured - imported.cloud.size();
   return imported;

@@ -8,6 +8,7 @@
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/error.h"
 
 namespace vpm {
 
@@ -29,10 +30,17 @@ struct ImportedCloud {
   bool normals_estimated = false;  // false: taken from the file
 };
 
+// A sound depth image in which nothing was seen.
+class NothingMeasured : public Error {
+ public:
+  explicit NothingMeasured(const std::string& message) : Error(ErrorKind::refused, message) {}
+};
+
 // Depth images and organised PCD become clouds with a sensor, their normals estimated from the
 // depth whatever the file holds. Other PCD and PLY need normals, which must point into free space.
-// Throws Error: refused for what is damaged, unknown, without normals or without any point; usage
-// for depth images without intrinsics; unavailable for OpenEXR in a build without it.
+// Throws Error: refused for what is damaged, unknown, without normals or without any point (of
+// depth: NothingMeasured); usage for depth images without intrinsics; unavailable for OpenEXR in a
+// build without it.
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
                            const ImportOptions& options);
 

@@ -1,8 +1,6 @@
 // vpm-normals: a depth image or a cloud of another program becomes a cloud with normals (.vpmc).
 
 #include <chrono>
-#include <cmath>
-#include <optional>
 
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
@@ -10,39 +8,22 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
+#include "tools/common/import_arguments.h"
 #include "tools/common/tool.h"
 
 namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string depth, output, report, export_path, camera_pose, method = "inverse-depth";
-  std::vector<double> intrinsics;
-  std::optional<double> depth_scale;
-  int window = 7;
-  double edge_gate = kEdgeGate;
+  std::string depth, output, report, export_path;
+  ImportArguments import;
 };
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("depth", a.depth,
                  "Depth image (16-bit PNG, OpenEXR) or cloud (PCD, PLY); - is standard input");
   app.add_option("-o,--output", a.output, "Cloud to write (.vpmc); - is standard output");
-  app.add_option("--intrinsics", a.intrinsics,
-                 "fx,fy,cx,cy of the camera, pixels; an organised PCD tells its own")
-      ->delimiter(',')
-      ->expected(4)
-      ->allow_extra_args(false);
-  app.add_option("--depth-scale", a.depth_scale, "Units of the file per metre (PNG: 1000, else 1)");
-  app.add_option("--method", a.method, "Normals by: inverse-depth, or pca as printed in 2017")
-      ->check(CLI::IsMember({"inverse-depth", "pca"}))
-      ->capture_default_str();
-  app.add_option("--window", a.window, "Side of the window of a normal, pixels, odd, 3 to 31")
-      ->capture_default_str();
-  app.add_option("--edge-gate", a.edge_gate,
-                 "Difference of inverse depth, relative, that is still one surface; 0: no edges")
-      ->capture_default_str();
-  app.add_option("--camera-pose", a.camera_pose,
-                 "Camera (or the cloud's frame) in the world: tx,ty,tz,qx,qy,qz,qw");
+  declare(app, a.import);
   app.add_option("--report", a.report, "Facts and figures (JSON)");
   app.add_option("--export", a.export_path, "Also write the points with normals, .ply or .pcd");
 }
@@ -53,30 +34,10 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
     wrong("nothing would be written: give -o OUT.vpmc, --export or --report");
   if ((a.output == "-") && (a.report == "-")) wrong("only one output can be standard output");
-  if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
-    wrong("--depth-scale must be finite and greater than 0");
   if (!a.export_path.empty()) check_points_path(a.export_path);
   check_output(a.output, file::Kind::cloud, common);
   check_output(a.report, common);
   check_output(a.export_path, common);
-}
-
-ImportOptions import_options(const Tool& tool, const Arguments& a) {
-  ImportOptions options;
-  options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
-  check_normal_options(options.normals);
-  options.units_per_metre = a.depth_scale;
-  if (!a.intrinsics.empty()) {
-    options.intrinsics = {a.intrinsics[0], a.intrinsics[1], a.intrinsics[2], a.intrinsics[3]};
-    check_intrinsics(*options.intrinsics);
-  }
-  if (!a.camera_pose.empty()) {
-    double deviation = 0;
-    options.to_world = pose_from_text(a.camera_pose, &deviation);
-    if (deviation > kRotationRounding)
-      tool.note("--camera-pose: its quaternion is not of unit length and has been normalised");
-  }
-  return options;
 }
 
 nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, double seconds) {
@@ -87,9 +48,9 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
                         {"without_normal", imported.without_normal},
                         {"seconds", seconds}};
   if (imported.normals_estimated) {
-    report["method"] = a.method;
-    report["window"] = a.window;
-    report["edge_gate"] = a.edge_gate;
+    report["method"] = a.import.method;
+    report["window"] = a.import.window;
+    report["edge_gate"] = a.import.edge_gate;
   } else {
     report["method"] = "file";
   }
@@ -117,7 +78,7 @@ void say_notes(const Tool& tool, const std::string& name, const ImportedCloud& i
 
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
-  const ImportOptions options = import_options(tool, a);
+  const ImportOptions options = import_options(tool, a.import);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);

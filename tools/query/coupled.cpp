@@ -41,8 +41,9 @@ nlohmann::json list_of(const Pose& pose) {
 
 }  // namespace
 
-CouplingParameters coupling_from_text(const std::string& text, const ToolModel& tool) {
+CouplingParameters coupling_from_text(const std::string& text, const ToolModel& tool, double rate) {
   CouplingParameters p;
+  p.rate = rate;
   const std::array<std::pair<std::string_view, double*>, 4> known{
       {{"stiffness", &p.stiffness}, {"damping", &p.damping}, {"mass", &p.mass}, {"rate", &p.rate}}};
   std::string_view rest = text;
@@ -87,10 +88,11 @@ std::string coupling_note(const CouplingParameters& p) {
   return text;
 }
 
-std::string coupled_line(const CoupledStep& s) {
+std::string coupled_line(const CoupledStep& s, const std::string& frame) {
   nlohmann::ordered_json line;
   line["step"] = s.step;
   line["time"] = s.time;
+  if (!frame.empty()) line["frame"] = frame;
   line["device"] = list_of(s.device);
   line["tool"] = list_of(s.tool);
   line["volume"] = s.contact.volume;

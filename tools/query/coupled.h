@@ -8,8 +8,8 @@
 namespace vpm::tools {
 
 // "stiffness=500,damping=5,mass=0.0125,rate=1000" in N/m, N s/m, kg and Hz. Left out: the mass that
-// is critically damped, 1000 Hz. Throws Error(usage) naming the option.
-CouplingParameters coupling_from_text(const std::string& text, const ToolModel& tool);
+// is critically damped, `rate`. Throws Error(usage) naming the option.
+CouplingParameters coupling_from_text(const std::string& text, const ToolModel& tool, double rate);
 
 // What the parameters cannot stand of a scene of this stiffness (N/m^3), in words; "" if nothing.
 std::string coupling_warning(const CouplingParameters& parameters, const ToolModel& tool,
@@ -26,7 +26,7 @@ struct CoupledStep {
   CouplingEnergy energy;
 };
 
-// One line of results: formats/schemas/coupling-step.json.
-std::string coupled_line(const CoupledStep& step);
+// One line of results: formats/schemas/coupling-step.json. `frame`: of a replay; "" leaves it out.
+std::string coupled_line(const CoupledStep& step, const std::string& frame);
 
 }  // namespace vpm::tools

@@ -1,7 +1,6 @@
 // vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out.
 
 #include <chrono>
-#include <cstdio>
 #include <optional>
 
 #include "libvpm/cloud/cloud_file.h"
@@ -10,13 +9,13 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model_file.h"
 #include "libvpm/query/query.h"
+#include "libvpm/recording/timed_path.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
-#include "tools/query/device_path.h"
 #include "tools/query/level_query.h"
-#include "tools/query/pose_reader.h"
 #include "tools/query/query_report.h"
+#include "tools/query/replay.h"
 #include "tools/query/spheres_out.h"
 
 namespace vpm::tools {
@@ -31,6 +30,7 @@ struct Arguments {
   double stiffness = 1;
   std::string coupling;
   std::size_t batch = 1;
+  ReplayArguments replay;
 };
 
 void declare(CLI::App& app, Arguments& a) {
@@ -59,13 +59,15 @@ void declare(CLI::App& app, Arguments& a) {
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
   app.add_option("--coupling", a.coupling,
-                 "Take --poses for those of a haptic device that holds the tool by a spring and "
+                 "Take --poses or --trajectory for those of a haptic device that holds the tool by "
+                 "a spring and "
                  "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
   app.add_option(
          "--batch", a.batch,
          "Poses that a device takes at once; answers come in their order. Changes no result")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
+  declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
                  "The spheres of the last pose by state (.ply or .csv)");
@@ -75,23 +77,25 @@ void declare(CLI::App& app, Arguments& a) {
 void check(const Arguments& a, const CommonOptions& common) {
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
   if (a.tool.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
-  if (a.cloud.empty()) wrong("--cloud is missing: give the .vpmc that vpm-normals wrote");
-  if (a.pose.empty() == a.poses.empty()) wrong("give either --pose or --poses");
-  if ((a.tool == "-") + (a.cloud == "-") + (a.poses == "-") > 1) {
-    wrong("only one of --tool, --cloud and --poses can be standard input");
+  const bool replays = !a.replay.frames.empty();
+  if (!replays && a.cloud.empty())
+    wrong("--cloud is missing: give the .vpmc that vpm-normals wrote, or --frames");
+  if (!replays && a.pose.empty() == a.poses.empty()) wrong("give either --pose or --poses");
+  if ((a.tool == "-") + (a.cloud == "-") + (a.poses == "-") + (a.replay.trajectory == "-") > 1) {
+    wrong("only one of --tool, --cloud, --poses and --trajectory can be standard input");
   }
   if ((a.level != 0) + !a.max_error.empty() + a.for_scene > 1 || (a.level != 0 && a.deadline_us))
     wrong(
         "--level, --max-error and --for-scene choose the level: give one of them; --deadline-us "
         "goes with the last two only");
-  if (!a.coupling.empty() && (a.poses.empty() || a.stiffness == 1))
+  if (!a.coupling.empty() && ((a.poses.empty() && !replays) || a.stiffness == 1))
     wrong(
         "--coupling needs the device's path (--poses) and what the scene's volume weighs "
         "(--stiffness in N/m^3)");
   if (a.coherent && (a.batch > 1 || a.deadline_us))
     wrong("--coherent goes pose by pose at one level; leave --batch and --deadline-us out");
-  if (a.batch > 1 && (a.deadline_us || !a.coupling.empty()))
-    wrong("--batch answers many poses at once; leave --deadline-us and --coupling out");
+  if (a.batch > 1 && (a.deadline_us || !a.coupling.empty() || replays))
+    wrong("--batch answers many poses at once; leave --deadline-us, --coupling and --frames out");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
@@ -99,27 +103,6 @@ void check(const Arguments& a, const CommonOptions& common) {
   check_output(a.spheres_out, common);
   check_output(a.stats, common);
 }
-
-// Results to a pipe or terminal line by line, to a file whole at the end.
-class ResultSink {
- public:
-  explicit ResultSink(const std::string& path) : path_(path) {}
-  void line(const std::string& text) {
-    if (path_ != "-") {
-      held_ += text;
-    } else if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
-               std::fflush(stdout) != 0) {
-      throw Error(ErrorKind::cannot_write,
-                  "standard output cannot be written: the reader is gone, or the disk is full");
-    }
-  }
-  void finish() const {
-    if (path_ != "-") file::write_all(path_, held_);
-  }
-
- private:
-  std::string path_, held_;
-};
 
 LevelRequest level_request(const Arguments& a) {
   LevelRequest request;
@@ -131,15 +114,6 @@ LevelRequest level_request(const Arguments& a) {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-void note_deviation(const Tool& tool, double deviation) {
-  if (!(deviation > kRotationRounding)) return;
-  char text[96];
-  std::snprintf(text, sizeof text,
-                "rotations were up to %.2g away from orthonormal and have been normalised",
-                deviation);
-  tool.note(text);
 }
 
 void note_scale(const Tool& tool, const SceneScale& scale, const Level& level) {
@@ -170,25 +144,41 @@ struct Run {
   void pose(LevelQuery& query, const Pose& pose, Measure measure) {
     const std::size_t index = seconds.size();
     const Result result = ask(query, pose);
-    sink.line(result_line(index, result, query.query().level(), measure, query.reason()));
+    sink.line(result_line(index, result, query.query().level(), measure, query.reason(), {}));
   }
   void batch(LevelQuery& query, const std::vector<Pose>& poses, Measure measure) {
     std::vector<Result> results(poses.size());
     query.run(cloud, poses, results);
     for (const Result& result : results) {
       sink.line(
-          result_line(seconds.size(), result, query.query().level(), measure, query.reason()));
+          result_line(seconds.size(), result, query.query().level(), measure, query.reason(), {}));
       seconds.push_back(query.seconds());
     }
     last = poses.back();
   }
-  void coupled(LevelQuery& query, VirtualCoupling coupling, const DevicePath& path) {
+  // From the first pose on all of the reader, if there is one.
+  void all(LevelQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
+           std::size_t at_once, Measure measure) {
+    std::vector<Pose> poses;
+    for (; next; next = reader ? reader->next() : std::nullopt) {
+      if (at_once == 1) {
+        pose(query, *next, measure);
+        continue;
+      }
+      poses.push_back(*next);
+      if (poses.size() < at_once) continue;
+      batch(query, poses, measure);
+      poses.clear();
+    }
+    if (!poses.empty()) batch(query, poses, measure);
+  }
+  void coupled(LevelQuery& query, VirtualCoupling coupling, const SampledPath& path) {
     for (std::size_t k = 0; k < path.steps(); ++k) {
       CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
       step.contact = ask(query, step.tool);
       step.rendered = coupling.advance(step.device, step.contact.wrench);
       step.energy = coupling.energy();
-      sink.line(coupled_line(step));
+      sink.line(coupled_line(step, ""));
     }
   }
 };
@@ -199,12 +189,96 @@ Device device_of(const Tool& tool, Measure measure, bool coherent) {
   return cpu_only && tool.common().device == "auto" ? Device{} : tool.device();
 }
 
+void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& query,
+                const Device& device, const Pose& last, nlohmann::json stats) {
+  const Level& level = query.query().level();
+  if (!a.spheres_out.empty())
+    write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
+                  last);
+  if (a.stats.empty()) return;
+  stats["device"] = device.is_cuda() ? "cuda" : "cpu";
+  if (device.is_cuda()) stats["device_name"] = cuda_device_name(device.index);
+  stats["batch"] = a.batch;
+  stats["threads"] = thread_count();
+  stats["level"] = level.sphere_count;
+  stats["measure"] = a.measure;
+  if (query.scale()) stats["scene"] = scene_report(*query.scale());
+  file::write_all(a.stats, stats.dump(2) + "\n");
+}
+
+void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
+               const QueryOptions& options) {
+  double deviation = 0;
+  std::optional<Pose> pose;
+  if (!a.pose.empty()) pose = pose_from_text(a.pose, &deviation);
+  const Cloud cloud = read_cloud(a.cloud);
+  const auto start = std::chrono::steady_clock::now();
+  const PreparedCloud prepared(cloud);
+  const double prepare_seconds = seconds_since(start);
+
+  std::optional<PoseReader> reader;
+  if (!pose) reader.emplace(a.poses);
+  ResultSink sink(a.output);
+  Run run{prepared, sink, {}, {}};
+  std::optional<CouplingParameters> coupling;
+  std::optional<SampledPath> path;
+  if (!a.coupling.empty()) {
+    coupling = coupling_from_text(a.coupling, model, ReplayArguments::kRate);
+    path.emplace(TimedPath(*reader), coupling->rate);
+    pose = path->pose(0);
+  } else if (reader) {
+    pose = reader->next();
+  }
+  if (!pose) refuse(a.poses + ": no pose in it");
+  LevelQuery query(model, options, level_request(a), prepared, *pose);
+  if (query.scale()) note_scale(tool, *query.scale(), query.finest());
+  if (coupling) {
+    say_limits(tool, *coupling, model, a.stiffness);
+    run.coupled(query, VirtualCoupling(*coupling, model.center_of_mass, *pose), *path);
+  } else {
+    run.all(query, pose, reader, a.batch, options.measure);
+  }
+  sink.finish();
+  note_deviation(tool, "", reader ? reader->largest_deviation() : deviation);
+  if (!a.spheres_out.empty() && a.batch > 1)
+    query.run(prepared, run.last);  // batches keep no states
+  nlohmann::json stats = query_stats(std::move(run.seconds), prepare_seconds, a.deadline_us);
+  stats["cloud_points"] = prepared.positions().size();
+  write_rest(a, model, query, options.device, run.last, std::move(stats));
+}
+
+void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
+                const QueryOptions& options) {
+  std::optional<CouplingParameters> parameters;
+  double rate = a.replay.rate.value_or(ReplayArguments::kRate);
+  if (!a.coupling.empty()) {
+    parameters = coupling_from_text(a.coupling, model, rate);
+    if (a.replay.rate && rate != parameters->rate)
+      throw Error(ErrorKind::usage, "--rate and the rate of --coupling differ; give one of them");
+    rate = parameters->rate;
+  }
+  Replay replay(tool, a.replay, rate);
+  const Pose first = replay.path().pose(0);
+  LevelQuery query(model, options, level_request(a), replay.first_cloud(), first);
+  if (query.scale()) note_scale(tool, *query.scale(), query.finest());
+  std::optional<VirtualCoupling> coupling;
+  if (parameters) {
+    say_limits(tool, *parameters, model, a.stiffness);
+    coupling.emplace(*parameters, model.center_of_mass, first);
+  }
+  ResultSink sink(a.output);
+  replay.run(query, std::move(coupling), options.measure, sink);
+  sink.finish();
+  nlohmann::json stats =
+      query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
+  stats["cloud_points"] = replay.last_cloud().positions().size();
+  stats["replay"] = replay.report(a.deadline_us ? 1e-6 * *a.deadline_us : 1 / rate);
+  write_rest(a, model, query, options.device, replay.last_pose(), std::move(stats));
+}
+
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
-  const LevelRequest request = level_request(a);
-  double pose_deviation = 0;
-  std::optional<Pose> single;
-  if (!a.pose.empty()) single = pose_from_text(a.pose, &pose_deviation);
+  level_request(a);
   const ToolModel model = read_tool_model(a.tool);
   QueryOptions options;
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
@@ -212,63 +286,8 @@ void run(const Tool& tool, const Arguments& a) {
   options.stiffness = a.stiffness;
   options.coherent = a.coherent;
   options.device = device_of(tool, options.measure, a.coherent);
-  const Cloud cloud = read_cloud(a.cloud);
-  const auto start = std::chrono::steady_clock::now();
-  const PreparedCloud prepared(cloud);
-  const double prepare_seconds = seconds_since(start);
-
-  std::optional<PoseReader> reader;
-  if (!single) reader.emplace(a.poses);
-  ResultSink sink(a.output);
-  Run run{prepared, sink, {}, {}};
-  std::optional<Pose> pose = single;
-  std::optional<CouplingParameters> coupling;
-  std::optional<DevicePath> path;
-  if (!a.coupling.empty()) {
-    coupling = coupling_from_text(a.coupling, model);
-    path.emplace(*reader, coupling->rate);
-    pose = path->pose(0);
-  } else if (!single) {
-    pose = reader->next();
-  }
-  if (!pose) refuse(a.poses + ": no pose in it");
-  LevelQuery query(model, options, request, prepared, *pose);
-  if (query.scale()) note_scale(tool, *query.scale(), query.finest());
-  if (coupling) {
-    say_limits(tool, *coupling, model, a.stiffness);
-    run.coupled(query, VirtualCoupling(*coupling, model.center_of_mass, *pose), *path);
-  } else {
-    const auto next = [&] { return reader ? reader->next() : std::nullopt; };
-    for (; pose && a.batch == 1; pose = next()) run.pose(query, *pose, options.measure);
-    std::vector<Pose> poses;
-    for (; pose; pose = next()) {
-      poses.push_back(*pose);
-      if (poses.size() < a.batch) continue;
-      run.batch(query, poses, options.measure);
-      poses.clear();
-    }
-    if (!poses.empty()) run.batch(query, poses, options.measure);
-  }
-  sink.finish();
-  note_deviation(tool, reader ? reader->largest_deviation() : pose_deviation);
-  const Level& level = query.query().level();
-  if (!a.spheres_out.empty()) {
-    if (a.batch > 1) query.run(prepared, run.last);  // batches keep no states
-    write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
-                  run.last);
-  }
-  if (!a.stats.empty()) {
-    nlohmann::json stats = query_stats(std::move(run.seconds), prepare_seconds, a.deadline_us);
-    stats["device"] = options.device.is_cuda() ? "cuda" : "cpu";
-    if (options.device.is_cuda()) stats["device_name"] = cuda_device_name(options.device.index);
-    stats["batch"] = a.batch;
-    stats["threads"] = thread_count();
-    stats["cloud_points"] = prepared.positions().size();
-    stats["level"] = level.sphere_count;
-    stats["measure"] = a.measure;
-    if (query.scale()) stats["scene"] = scene_report(*query.scale());
-    file::write_all(a.stats, stats.dump(2) + "\n");
-  }
+  a.replay.frames.empty() ? run_poses(tool, a, model, options)
+                          : run_replay(tool, a, model, options);
 }
 
 }  // namespace

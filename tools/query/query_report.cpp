@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace vpm::tools {
 
 std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
-                        Measure measure, const std::string& level_reason) {
+                        Measure measure, const std::string& level_reason,
+                        const std::optional<StepOfReplay>& replay) {
   nlohmann::ordered_json line;
   line["pose"] = pose_index;
+  if (replay) {
+    line["time"] = replay->time;
+    line["frame"] = replay->frame;
+  }
   line["volume"] = r.volume;
   line["volume_fraction"] = r.volume_fraction;
   line["force"] = {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z};
@@ -45,6 +51,15 @@ nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,
                          {"kept", static_cast<double>(kept) / static_cast<double>(seconds.size())}};
   }
   return stats;
+}
+
+void note_deviation(const Tool& tool, const std::string& what, double deviation) {
+  if (!(deviation > kRotationRounding)) return;
+  char text[96];
+  std::snprintf(text, sizeof text,
+                "rotations were up to %.2g away from orthonormal and have been normalised",
+                deviation);
+  tool.note((what.empty() ? "" : what + ": ") + text);
 }
 
 }  // namespace vpm::tools

@@ -9,7 +9,7 @@
 
 #include "libvpm/core/pose.h"
 
-namespace vpm::tools {
+namespace vpm {
 
 // Poses from a stream, one at a time, so that a pipe is answered line by line. Told apart by the
 // first line:
@@ -45,4 +45,4 @@ class PoseReader {
   double largest_deviation_ = 0;
 };
 
-}  // namespace vpm::tools
+}  // namespace vpm

@@ -1,4 +1,4 @@
-#include "tools/query/pose_reader.h"
+#include "libvpm/recording/pose_reader.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 
 #include "libvpm/core/error.h"
 
-namespace vpm::tools {
+namespace vpm {
 namespace {
 
 constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
@@ -44,7 +44,7 @@ PoseReader::PoseReader(const std::string& path)
     : name_(path == "-" ? "standard input" : path), stream_(path == "-" ? std::cin : file_) {
   if (path == "-") return;
   file_.open(path);
-  if (!file_) refuse(path + ": cannot be read; check the path of --poses");
+  if (!file_) refuse(path + ": cannot be read");
 }
 
 std::optional<std::string> PoseReader::next_line() {
@@ -118,4 +118,4 @@ Pose PoseReader::from_numbers(const std::vector<double>& n) {
   return pose;
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm

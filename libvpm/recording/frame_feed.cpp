@@ -1,0 +1,137 @@
+#include "libvpm/recording/frame_feed.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+
+namespace vpm {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::unique_ptr<const PreparedCloud> prepared(const RecordedFrame& frame, ImportOptions options) {
+  if (frame.camera) options.to_world = frame.camera;
+  const ImportedCloud imported = import_cloud(file::read_all(frame.path), frame.path, options);
+  return std::make_unique<const PreparedCloud>(imported.cloud);
+}
+
+}  // namespace
+
+PreparedChange prepare(const Recording& recording, FrameChange change,
+                       const ImportOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  PreparedChange result;
+  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.cloud; ++at) {
+    const RecordedFrame& frame = recording.frames[*at];
+    const auto fails = [&](FrameFault fault, const std::string& message) {
+      result.unusable.push_back({*at, fault, message});
+    };
+    if (frame.is_lost) {
+      fails(FrameFault::lost, frame.path + ": no pose of its camera");
+      continue;
+    }
+    try {
+      result.cloud = prepared(frame, options);
+      result.frame = *at;
+    } catch (const NothingMeasured& fault) {
+      fails(FrameFault::empty, fault.what());
+    } catch (const Error& fault) {
+      // What is wrong with the call is wrong for every frame.
+      if (fault.kind() != ErrorKind::refused) throw;
+      fails(FrameFault::broken, fault.what());
+    }
+  }
+  result.change = std::move(change);
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
+                     const ImportOptions& options)
+    : recording_(recording),
+      schedule_(recording, schedule),
+      cloud_(std::make_unique<const PreparedCloud>(Cloud{})),
+      thread_([this, copy = schedule_, options] { prepare_all(copy, options); }) {
+  next_ = schedule_.next();
+}
+
+FrameFeed::~FrameFeed() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  moved_.notify_all();
+  thread_.join();
+}
+
+void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options) {
+  try {
+    while (std::optional<FrameChange> change = schedule.next()) {
+      PreparedChange result = prepare(recording_, std::move(*change), options);
+      std::unique_lock lock(mutex_);
+      moved_.wait(lock, [&] { return stop_ || ready_.size() < kAhead; });
+      if (stop_) return;
+      ready_.push_back(std::move(result));
+      const auto done = std::move(done_);
+      done_.clear();
+      lock.unlock();
+      moved_.notify_all();
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+    moved_.notify_all();
+  }
+}
+
+void FrameFeed::wait_for_first() {
+  std::unique_lock lock(mutex_);
+  if (next_) moved_.wait(lock, [&] { return !ready_.empty() || failure_; });
+}
+
+PreparedChange FrameFeed::take() {
+  std::unique_lock lock(mutex_);
+  if (ready_.empty() && !failure_) {
+    const auto start = std::chrono::steady_clock::now();
+    moved_.wait(lock, [&] { return !ready_.empty() || failure_; });
+    ++counts_.waits;
+    counts_.longest_wait = std::max(counts_.longest_wait, seconds_since(start));
+  }
+  if (ready_.empty()) std::rethrow_exception(failure_);
+  PreparedChange change = std::move(ready_.front());
+  ready_.pop_front();
+  if (change.cloud) done_.push_back(std::move(cloud_));
+  lock.unlock();
+  moved_.notify_all();
+  return change;
+}
+
+void FrameFeed::count(const PreparedChange& taken) {
+  counts_.used += taken.cloud != nullptr;
+  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - (taken.cloud != nullptr);
+  counts_.late += taken.change.is_late;
+  for (const UnusableFrame& frame : taken.unusable) {
+    counts_.lost += frame.fault == FrameFault::lost;
+    counts_.empty += frame.fault == FrameFault::empty;
+    counts_.broken += frame.fault == FrameFault::broken;
+  }
+  counts_.seconds.push_back(taken.seconds);
+}
+
+const PreparedChange* FrameFeed::advance_to(std::size_t step) {
+  if (!next_ || step < next_->step) return nullptr;
+  taken_ = take();
+  next_ = schedule_.next();
+  count(taken_);
+  if (taken_.cloud) {
+    cloud_ = std::move(taken_.cloud);
+    frame_ = taken_.frame;
+  }
+  return &taken_;
+}
+
+}  // namespace vpm

@@ -1,0 +1,100 @@
+// Frames made ready for queries ahead of their time, on a thread of their own, so that a loop at
+// haptic rate does not wait for them. What a step gets depends on the data alone.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "libvpm/import/import_cloud.h"
+#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/recording/frame_schedule.h"
+
+namespace vpm {
+
+enum class FrameFault {
+  lost,    // no pose of the camera
+  empty,   // nothing measured in it
+  broken,  // not to be read
+};
+
+struct UnusableFrame {
+  std::size_t frame = 0;  // of the recording
+  FrameFault fault = FrameFault::broken;
+  std::string message;
+};
+
+// What the frames that come at one step bring: the newest that can be used.
+struct PreparedChange {
+  FrameChange change;
+  std::unique_ptr<const PreparedCloud> cloud;  // none: the loop goes on with the one it has
+  std::size_t frame = 0;                       // of the recording; where there is a cloud
+  std::vector<UnusableFrame> unusable;
+  double seconds = 0;  // from the file to the prepared cloud
+};
+
+// Reads and prepares, on the calling thread. `options`: how images become clouds; the cameras'
+// poses are the recording's.
+PreparedChange prepare(const Recording& recording, FrameChange change,
+                       const ImportOptions& options);
+
+// What the prepared frames of a loop were.
+struct FrameCounts {
+  std::size_t used = 0, unseen = 0;  // unseen: a newer one came before any step saw them
+  std::size_t late = 0, lost = 0, empty = 0, broken = 0;
+  std::size_t waits = 0;          // steps that had to wait for the preparation
+  double longest_wait = 0;        // s
+  std::vector<double> seconds{};  // of each preparation
+};
+
+class FrameFeed {
+ public:
+  // The recording must outlive the feed. Preparation begins at once.
+  FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
+            const ImportOptions& options);
+  ~FrameFeed();
+  FrameFeed(const FrameFeed&) = delete;
+  FrameFeed& operator=(const FrameFeed&) = delete;
+
+  // Waits until the first change is ready, so that a loop by the clock begins with a frame.
+  void wait_for_first();
+
+  // To be called for each step in turn. What comes with this step, or null. It has the cloud no
+  // more: that is cloud() now, until the next change.
+  const PreparedChange* advance_to(std::size_t step);
+
+  // Empty, and frame() nothing, before the first frame that can be used.
+  const PreparedCloud& cloud() const { return *cloud_; }
+  std::optional<std::size_t> frame() const { return frame_; }
+  const FrameCounts& counts() const { return counts_; }
+
+ private:
+  // Prepared changes that wait for their step. Each holds some 20 MB.
+  static constexpr std::size_t kAhead = 2;
+
+  void prepare_all(FrameSchedule schedule, const ImportOptions& options);
+  PreparedChange take();
+  void count(const PreparedChange& taken);
+
+  const Recording& recording_;
+  FrameSchedule schedule_;  // of the loop; the thread has a copy
+  std::optional<FrameChange> next_;
+  std::unique_ptr<const PreparedCloud> cloud_;
+  std::optional<std::size_t> frame_;
+  PreparedChange taken_;
+  FrameCounts counts_;
+
+  std::mutex mutex_;
+  std::condition_variable moved_;
+  std::deque<PreparedChange> ready_;
+  // Clouds that the loop has done with: to free one takes time that the loop does not have.
+  std::vector<std::unique_ptr<const PreparedCloud>> done_;
+  std::exception_ptr failure_;
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace vpm

@@ -1,0 +1,73 @@
+#include "libvpm/recording/frame_schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/error.h"
+
+namespace vpm {
+namespace {
+
+// Part of a step by which a frame may come after it and still be seen: times since 1970 are rounded
+// by as much.
+constexpr double kRounding = 1e-3;
+
+double median_interval(const std::vector<RecordedFrame>& frames) {
+  std::vector<double> intervals;
+  for (std::size_t k = 1; k < frames.size(); ++k)
+    intervals.push_back(frames[k].time - frames[k - 1].time);
+  if (intervals.empty()) return HUGE_VAL;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+}  // namespace
+
+FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& options)
+    : recording_(recording),
+      options_(options),
+      usual_interval_(median_interval(recording.frames)),
+      is_over_(recording.frames.empty()) {
+  if (is_over_) return;
+  if (options.repeat && !(recording.frames.back().time > recording.frames.front().time))
+    refuse("frames that all come at one time cannot be repeated");
+  time_ = turn_time_ = recording.frames.front().time;
+}
+
+double FrameSchedule::step_of_next() const {
+  const double steps = (time_ - options_.start + options_.latency) * options_.rate;
+  return std::max(std::ceil(steps - kRounding), 0.0);
+}
+
+void FrameSchedule::advance() {
+  const std::vector<RecordedFrame>& frames = recording_.frames;
+  const bool at_end = frame_ == (backwards_ ? 0 : frames.size() - 1);
+  if (at_end && !options_.repeat) {
+    is_over_ = true;
+    return;
+  }
+  if (at_end) {
+    backwards_ = !backwards_;
+    turn_ = frame_;
+    turn_time_ = time_;
+  }
+  const std::size_t next = backwards_ ? frame_ - 1 : frame_ + 1;
+  const double interval = std::abs(frames[next].time - frames[frame_].time);
+  time_ = turn_time_ + std::abs(frames[next].time - frames[turn_].time);
+  is_late_ = recording_.has_clock && interval > kLateAfter * usual_interval_;
+  frame_ = next;
+}
+
+std::optional<FrameChange> FrameSchedule::next() {
+  const double step = is_over_ ? HUGE_VAL : step_of_next();
+  if (!(step < static_cast<double>(options_.steps))) return std::nullopt;
+  FrameChange change{static_cast<std::size_t>(step), {}, is_late_};
+  while (!is_over_ && step_of_next() == step) {
+    change.frames.push_back(frame_);
+    advance();
+  }
+  return change;
+}
+
+}  // namespace vpm

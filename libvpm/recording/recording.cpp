@@ -1,0 +1,228 @@
+#include "libvpm/recording/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/import/file_text.h"
+#include "libvpm/recording/timed_path.h"
+
+namespace vpm {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  TextCursor cursor(text);
+  while (const auto line = cursor.line()) lines.push_back(line->substr(0, line->find('#')));
+  return lines;
+}
+
+// Of "time file" or "time file time file" the pair that belongs to the depth image.
+std::optional<std::pair<double, std::string>> entry_of(std::string_view line) {
+  const std::vector<std::string_view> words = split_words(line);
+  if (words.empty()) return std::nullopt;
+  const bool second = words.size() == 4 && words[3].find("depth") != std::string_view::npos;
+  const bool fits = words.size() == 2 || words.size() == 4;
+  const std::optional<double> time = fits ? to_number(words[second ? 2 : 0]) : std::nullopt;
+  if (!time || !std::isfinite(*time)) refuse("not a time and a file: " + std::string(line));
+  return std::pair(*time, std::string(words[second ? 3 : 1]));
+}
+
+void read_list(const fs::path& list, Recording& recording) {
+  const std::vector<std::byte> bytes = file::read_all(list.string());
+  std::size_t number = 0;
+  for (const std::string_view line : lines_of(as_text(bytes))) {
+    ++number;
+    try {
+      const auto entry = entry_of(line);
+      if (!entry) continue;
+      const fs::path path = list.parent_path() / entry->second;
+      if (fs::exists(path)) {
+        recording.frames.push_back({entry->first, path.string(), {}, false});
+      } else {
+        ++recording.missing;
+      }
+    } catch (const Error& fault) {
+      refuse(list.string() + ", line " + std::to_string(number) + ": " + fault.what());
+    }
+  }
+  if (recording.frames.empty())
+    refuse(list.string() + ": none of the " + std::to_string(recording.missing) +
+           " files that it names is there");
+}
+
+bool is_frame(const fs::path& path) {
+  const std::string kind = path.extension().string();
+  return kind == ".png" || kind == ".exr" || kind == ".pcd" || kind == ".ply";
+}
+
+std::string stem_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.substr(0, name.find('.'));
+}
+
+std::vector<fs::path> files_of(const fs::path& folder) {
+  std::vector<fs::path> files, depth;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!is_frame(entry.path()) || entry.is_directory()) continue;
+    files.push_back(entry.path());
+    if (entry.path().filename().string().find("depth") != std::string::npos)
+      depth.push_back(entry.path());
+  }
+  if (!depth.empty()) files = std::move(depth);
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// Of a name that is a number with a point in it.
+std::optional<double> time_in(const fs::path& path) {
+  const std::string name = path.stem().string();
+  if (name.find('.') == std::string::npos) return std::nullopt;
+  const std::optional<double> time = to_number(name);
+  return time && std::isfinite(*time) ? time : std::nullopt;
+}
+
+// The last digits before the first dot.
+std::optional<std::uint64_t> number_in(const fs::path& path) {
+  const std::string stem = stem_of(path);
+  const std::size_t last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) return std::nullopt;
+  const std::size_t before = stem.find_last_not_of("0123456789", last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  return to_count(std::string_view(stem).substr(first, last - first + 1));
+}
+
+void number_frames(const std::vector<fs::path>& files, double frame_rate, Recording& recording) {
+  std::vector<std::pair<std::uint64_t, fs::path>> numbered;
+  for (const fs::path& path : files) {
+    const std::optional<std::uint64_t> number = number_in(path);
+    if (!number)
+      refuse(path.string() +
+             ": its name is neither a time (12.345.png) nor has it a number "
+             "(frame-000001.png); give a list of \"time file\" lines instead");
+    numbered.emplace_back(*number, path);
+  }
+  std::sort(numbered.begin(), numbered.end());
+  const std::uint64_t first = numbered.front().first;
+  std::uint64_t stride = 0;
+  for (std::size_t k = 1; k < numbered.size(); ++k) {
+    const std::uint64_t gap = numbered[k].first - numbered[k - 1].first;
+    if (gap == 0)
+      refuse(numbered[k].second.string() + ": has the number of " +
+             numbered[k - 1].second.filename().string() + "; give a list of \"time file\" lines");
+    stride = stride == 0 ? gap : std::min(stride, gap);
+  }
+  recording.has_clock = false;
+  for (const auto& [number, path] : numbered) {
+    const double time = static_cast<double>(number - first) / frame_rate;
+    recording.frames.push_back({time, path.string(), {}, false});
+  }
+  if (stride > 0)
+    recording.missing = (numbered.back().first - first) / stride + 1 - numbered.size();
+}
+
+void read_folder(const fs::path& folder, double frame_rate, Recording& recording) {
+  for (const char* list : {"depth.txt", "associations.txt"}) {
+    if (fs::is_regular_file(folder / list)) return read_list(folder / list, recording);
+  }
+  const std::vector<fs::path> files = files_of(folder);
+  if (files.empty())
+    refuse(folder.string() +
+           ": no frames in it; wanted are .png, .exr, .pcd or .ply files, or "
+           "depth.txt with \"time file\" lines");
+  const bool timed = std::all_of(files.begin(), files.end(),
+                                 [](const fs::path& path) { return time_in(path).has_value(); });
+  if (!timed) return number_frames(files, frame_rate, recording);
+  for (const fs::path& path : files)
+    recording.frames.push_back({*time_in(path), path.string(), {}, false});
+}
+
+void place_by_path(const std::string& name, Recording& recording) {
+  PoseReader reader(name);
+  const TimedPath path(reader);
+  recording.largest_deviation = reader.largest_deviation();
+  recording.camera_source = name;
+  if (!path.has_times() && path.poses().size() != recording.frames.size())
+    refuse(name + ": " + std::to_string(path.poses().size()) + " poses without times for " +
+           std::to_string(recording.frames.size()) + " frames; give one for each, or times");
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    RecordedFrame& frame = recording.frames[k];
+    if (!path.has_times()) {
+      frame.camera = path.poses()[k];
+    } else if (frame.time < path.start() - kPoseTolerance ||
+               frame.time > path.end() + kPoseTolerance) {
+      frame.is_lost = true;
+    } else {
+      frame.camera = path.at(frame.time);
+    }
+  }
+}
+
+fs::path pose_beside(const RecordedFrame& frame) {
+  const fs::path path(frame.path);
+  return path.parent_path() / (stem_of(path) + ".pose.txt");
+}
+
+void place_by_files(Recording& recording) {
+  for (RecordedFrame& frame : recording.frames) {
+    try {
+      PoseReader reader(pose_beside(frame).string());
+      frame.camera = reader.next();
+      recording.largest_deviation =
+          std::max(recording.largest_deviation, reader.largest_deviation());
+    } catch (const Error&) {  // trackers write poses that are none where they are lost
+    }
+    frame.is_lost = !frame.camera;
+  }
+  recording.camera_source = ".pose.txt beside the frames";
+}
+
+void place_cameras(const fs::path& folder, const RecordingOptions& options, Recording& recording) {
+  const auto& frames = recording.frames;
+  if (!options.camera_poses.empty()) {
+    place_by_path(options.camera_poses, recording);
+  } else if (options.camera) {
+    for (RecordedFrame& frame : recording.frames) frame.camera = options.camera;
+  } else if (std::any_of(frames.begin(), frames.end(), [](const RecordedFrame& frame) {
+               return fs::exists(pose_beside(frame));
+             })) {
+    place_by_files(recording);
+  } else if (recording.has_clock && fs::is_regular_file(folder / "groundtruth.txt")) {
+    place_by_path((folder / "groundtruth.txt").string(), recording);
+  }
+}
+
+void read_intrinsics(const fs::path& path, Recording& recording) {
+  if (!fs::is_regular_file(path)) return;
+  const std::vector<std::byte> bytes = file::read_all(path.string());
+  std::vector<double> n;
+  for (const std::string_view word : split_words(as_text(bytes)))
+    n.push_back(to_number(word).value_or(NAN));
+  if (n.size() != 9 || n[1] != 0 || n[3] != 0 || n[6] != 0 || n[7] != 0 || n[8] != 1)
+    refuse(path.string() + ": not a camera's matrix fx 0 cx 0 fy cy 0 0 1; give --intrinsics");
+  recording.intrinsics = Intrinsics{n[0], n[4], n[2], n[5]};
+}
+
+}  // namespace
+
+Recording read_recording(const std::string& path, const RecordingOptions& options) {
+  const bool is_folder = fs::is_directory(path);
+  const fs::path folder = is_folder ? fs::path(path) : fs::path(path).parent_path();
+  Recording recording;
+  if (is_folder) {
+    read_folder(folder, options.frame_rate, recording);
+  } else {
+    read_list(path, recording);
+  }
+  std::stable_sort(recording.frames.begin(), recording.frames.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  place_cameras(folder, options, recording);
+  if (is_folder) read_intrinsics(folder / "camera-intrinsics.txt", recording);
+  return recording;
+}
+
+}  // namespace vpm

@@ -1,0 +1,51 @@
+#include "libvpm/recording/timed_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libvpm/core/error.h"
+#include "libvpm/haptics/rotation_vector.h"
+
+namespace vpm {
+
+TimedPath::TimedPath(PoseReader& reader) {
+  while (const std::optional<Pose> pose = reader.next()) {
+    if (reader.time()) {
+      times_.push_back(*reader.time());
+      if (!std::isfinite(times_.back())) refuse(reader.place() + ": the time is not finite");
+      if (times_.size() > 1 && !(times_.back() > times_[times_.size() - 2]))
+        refuse(reader.place() + ": times must ascend");
+    }
+    poses_.push_back(*pose);
+    if (!times_.empty() && times_.size() != poses_.size())
+      refuse(reader.place() + ": either every pose has a time or none");
+  }
+  if (poses_.empty()) refuse(reader.place() + ": no pose in it");
+}
+
+Pose TimedPath::at(double time) const {
+  const auto after = std::upper_bound(times_.begin(), times_.end(), time);
+  if (after == times_.begin()) return poses_.front();
+  if (after == times_.end()) return poses_.back();
+  const std::size_t next = static_cast<std::size_t>(after - times_.begin());
+  const Pose &from = poses_[next - 1], &to = poses_[next];
+  const double part = (time - times_[next - 1]) / (times_[next] - times_[next - 1]);
+  return {interpolate(from.rotation, to.rotation, part),
+          from.translation + part * (to.translation - from.translation)};
+}
+
+SampledPath::SampledPath(TimedPath path, double rate) : path_(std::move(path)), rate_(rate) {
+  constexpr double kMostSteps = 1e9;
+  const double steps = path_.has_times()
+                           ? std::floor((path_.end() - path_.start()) * rate * (1 + 1e-12)) + 1
+                           : static_cast<double>(path_.poses().size());
+  if (!(steps <= kMostSteps))
+    refuse("the path is longer than 10^9 steps at this rate; are its times seconds?");
+  steps_ = static_cast<std::size_t>(steps);
+}
+
+Pose SampledPath::pose(std::size_t step) const {
+  return path_.has_times() ? path_.at(path_.start() + time(step)) : path_.poses()[step];
+}
+
+}  // namespace vpm

@@ -1,0 +1,138 @@
+#include "libvpm/recording/recording.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "tests/file/temporary_folder.h"
+#include "tests/import/test_files.h"
+
+namespace vpm {
+namespace {
+
+class ARecording : public file::TemporaryFolder {
+ protected:
+  void write(const std::string& name, const std::string& text = "x") {
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+    file::write_all(path(name), text);
+  }
+  Recording read(const RecordingOptions& options = {}) {
+    return read_recording(path("."), options);
+  }
+  std::vector<double> times() {
+    std::vector<double> times;
+    for (const RecordedFrame& frame : read().frames) times.push_back(frame.time);
+    return times;
+  }
+};
+
+constexpr const char* kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+
+TEST_F(ARecording, OfNumberedFramesHasNumbersForTimes) {
+  for (const char* name : {"frame-000009", "frame-000010", "frame-000012"}) {
+    write(std::string(name) + ".depth.png");
+    write(std::string(name) + ".color.png");
+    write(std::string(name) + ".pose.txt", kIdentity);
+  }
+  const Recording r = read({10, "", {}});
+  ASSERT_EQ(r.frames.size(), 3u);
+  EXPECT_FALSE(r.has_clock);
+  EXPECT_EQ(r.missing, 1u);
+  EXPECT_DOUBLE_EQ(r.frames[1].time, 0.1);
+  EXPECT_DOUBLE_EQ(r.frames[2].time, 0.3);
+  for (const RecordedFrame& frame : r.frames) {
+    EXPECT_TRUE(frame.camera);
+    EXPECT_NE(frame.path.find("depth"), std::string::npos);
+  }
+}
+
+TEST_F(ARecording, OfEveryThirdFrameMissesNone) {
+  for (const char* name : {"3.png", "6.png", "9.png"}) write(name);
+  EXPECT_EQ(read().missing, 0u);
+}
+
+TEST_F(ARecording, KnowsTimesInNamesAndInLists) {
+  write("12.500000.png");
+  write("7.25.png");
+  EXPECT_EQ(times(), (std::vector<double>{7.25, 12.5}));
+  write("depth.txt", "# comment\n8 7.25.png\n9.5 12.500000.png\n10 gone.png\n");
+  EXPECT_EQ(times(), (std::vector<double>{8, 9.5}));
+  EXPECT_EQ(read().missing, 1u);
+  std::filesystem::remove(path("depth.txt"));
+  write("depth/a.png");
+  write("associations.txt", "1 rgb/a.png 1.5 depth/a.png\n");
+  EXPECT_EQ(times(), (std::vector<double>{1.5}));
+  write("other.txt", "2.5 depth/a.png 2 rgb/a.png\r\n");
+  EXPECT_EQ(read_recording(path("other.txt"), {}).frames.front().time, 2.5);
+}
+
+TEST_F(ARecording, LosesOnlyFramesWithoutAPoseOfTheirCamera) {
+  for (int k = 0; k < 4; ++k) write(std::to_string(k) + ".png");
+  write("0.pose.txt", kIdentity);
+  write("1.pose.txt", "nan nan nan nan\nnan nan nan nan\nnan nan nan nan\nnan nan nan nan\n");
+  write("3.pose.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  const Recording r = read();
+  const bool lost[] = {false, true, true, false};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(r.frames[k].is_lost, lost[k]) << k;
+  EXPECT_EQ(r.frames[3].camera->translation, (Vec3{5, 0, 0}));
+}
+
+TEST_F(ARecording, TakesTheCamerasPathAtTheFramesTimes) {
+  write("depth.txt", "1 a.png\n1.5 a.png\n2.01 a.png\n3 a.png\n");
+  write("a.png");
+  write("groundtruth.txt", "1 0 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
+  const Recording r = read();
+  EXPECT_EQ(r.frames[1].camera->translation, (Vec3{1, 0, 0}));
+  EXPECT_EQ(r.frames[2].camera->translation, (Vec3{2, 0, 0}));  // near enough to the last
+  EXPECT_TRUE(r.frames[3].is_lost);
+  write("mine.txt", "7 0 0 0 0 0 1\n");
+  EXPECT_THROW(read({30, path("mine.txt"), {}}), Error);  // one pose, four frames
+  write("mine.txt", "7 0 0 0 0 0 1\n7 0 0 0 0 0 1\n8 0 0 0 0 0 1\n9 0 0 0 0 0 1\n");
+  EXPECT_EQ(read({30, path("mine.txt"), {}}).frames[2].camera->translation, (Vec3{8, 0, 0}));
+}
+
+TEST_F(ARecording, KnowsItsCamera) {
+  write("1.png");
+  EXPECT_FALSE(read().intrinsics);
+  write("camera-intrinsics.txt", "585.0 0 320\n0 584 240\n0 0 1\n");
+  const Recording r = read();
+  EXPECT_EQ(r.intrinsics->fx, 585);
+  EXPECT_EQ(r.intrinsics->fy, 584);
+  EXPECT_EQ(r.intrinsics->cx, 320);
+  EXPECT_EQ(r.intrinsics->cy, 240);
+  write("camera-intrinsics.txt", "585 0 320");
+  EXPECT_THROW(read(), Error);
+}
+
+TEST_F(ARecording, IsRefusedWithTheReason) {
+  const auto says_why = [&](const std::string& why) { return says(refusal([&] { read(); }), why); };
+  EXPECT_TRUE(says_why("no frames in it"));
+  write("one.png");
+  EXPECT_TRUE(says_why("neither a time"));
+  std::filesystem::remove(path("one.png"));
+  write("a1.png");
+  write("b1.png");
+  EXPECT_TRUE(says_why("has the number of a1.png"));
+  write("depth.txt", "1 a1.png\nx b1.png\n");
+  EXPECT_TRUE(says_why("line 2: not a time and a file"));
+  write("depth.txt", "1 gone.png\n");
+  EXPECT_TRUE(says_why("none of the 1 files"));
+  EXPECT_TRUE(says(refusal([&] { read_recording(path("gone"), {}); }), "No such file"));
+}
+
+TEST(SharedRecording, OfTheRedKitchenIsWhole) {
+  const std::string folder = VPM_SOURCE_DIR "/../shared/data/depth/redkitchen_seq";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data here";
+  const Recording r = read_recording(folder, {});
+  ASSERT_EQ(r.frames.size(), 15u);
+  EXPECT_EQ(r.missing, 0u);
+  EXPECT_EQ(r.intrinsics->fx, 585);
+  EXPECT_NEAR(norm(r.frames.back().camera->translation - r.frames.front().camera->translation), 0.2,
+              0.01);
+  EXPECT_LT(r.largest_deviation, 4e-4);
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,56 @@
+#include "libvpm/recording/timed_path.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "tests/file/temporary_folder.h"
+
+namespace vpm {
+namespace {
+
+class ATimedPath : public file::TemporaryFolder {
+ protected:
+  TimedPath path_of(const std::string& text) {
+    file::write_all(path("path.txt"), text);
+    PoseReader reader(path("path.txt"));
+    return TimedPath(reader);
+  }
+};
+
+TEST_F(ATimedPath, GoesStraightAndTurnsEvenlyBetweenPoses) {
+  const double half = std::sqrt(0.5);  // a quarter turn about z
+  const TimedPath quarter = path_of("10 1 0 0 0 0 0 1\n12 3 0 4 0 0 " + std::to_string(half) + " " +
+                                    std::to_string(half) + "\n");
+  for (const double part : {0.0, 0.25, 0.5, 0.9, 1.0}) {
+    const Pose pose = quarter.at(10 + 2 * part);
+    EXPECT_NEAR(pose.translation.x, 1 + 2 * part, 1e-12);
+    EXPECT_NEAR(pose.translation.z, 4 * part, 1e-12);
+    EXPECT_NEAR(pose.rotation.row0.x, std::cos(part * std::numbers::pi / 2), 1e-6);
+  }
+  EXPECT_EQ(quarter.at(0).translation, (Vec3{1, 0, 0}));
+  EXPECT_EQ(quarter.at(99).translation, (Vec3{3, 0, 4}));
+}
+
+TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
+  const SampledPath sampled(path_of("5 0 0 0 0 0 0 1\n5.5 1 0 0 0 0 0 1\n"), 1000);
+  ASSERT_EQ(sampled.steps(), 501u);
+  EXPECT_NEAR(sampled.pose(500).translation.x, 1, 1e-12);
+  EXPECT_NEAR(sampled.pose(250).translation.x, 0.5, 1e-9);
+  const SampledPath untimed(path_of("0 0 0 0 0 0 1\n1 0 0 0 0 0 1\n"), 1000);
+  EXPECT_EQ(untimed.steps(), 2u);
+  EXPECT_EQ(untimed.time(1), 0.001);
+}
+
+TEST_F(ATimedPath, RefusesTimesThatAreNone) {
+  for (const char* text :
+       {"", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
+        "1 0 0 0 0 0 0 1\n0 0 0 0 0 0 1\n", "nan 0 0 0 0 0 0 1\n"})
+    EXPECT_THROW(path_of(text), Error) << text;
+  EXPECT_THROW(SampledPath(path_of("0 0 0 0 0 0 0 1\n1e9 0 0 0 0 0 0 1\n"), 1000), Error);
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,48 @@
+#include "tools/common/import_arguments.h"
+
+#include <cmath>
+
+#include "libvpm/core/error.h"
+
+namespace vpm::tools {
+
+void declare(CLI::App& app, ImportArguments& a) {
+  app.add_option("--intrinsics", a.intrinsics,
+                 "fx,fy,cx,cy of the camera, pixels; an organised PCD tells its own")
+      ->delimiter(',')
+      ->expected(4)
+      ->allow_extra_args(false);
+  app.add_option("--depth-scale", a.depth_scale, "Units of the file per metre (PNG: 1000, else 1)");
+  app.add_option("--method", a.method, "Normals by: inverse-depth, or pca as printed in 2017")
+      ->check(CLI::IsMember({"inverse-depth", "pca"}))
+      ->capture_default_str();
+  app.add_option("--window", a.window, "Side of the window of a normal, pixels, odd, 3 to 31")
+      ->capture_default_str();
+  app.add_option("--edge-gate", a.edge_gate,
+                 "Difference of inverse depth, relative, that is still one surface; 0: no edges")
+      ->capture_default_str();
+  app.add_option("--camera-pose", a.camera_pose,
+                 "Camera (or the cloud's frame) in the world: tx,ty,tz,qx,qy,qz,qw");
+}
+
+ImportOptions import_options(const Tool& tool, const ImportArguments& a) {
+  if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
+    throw Error(ErrorKind::usage, "--depth-scale must be finite and greater than 0");
+  ImportOptions options;
+  options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
+  check_normal_options(options.normals);
+  options.units_per_metre = a.depth_scale;
+  if (!a.intrinsics.empty()) {
+    options.intrinsics = {a.intrinsics[0], a.intrinsics[1], a.intrinsics[2], a.intrinsics[3]};
+    check_intrinsics(*options.intrinsics);
+  }
+  if (!a.camera_pose.empty()) {
+    double deviation = 0;
+    options.to_world = pose_from_text(a.camera_pose, &deviation);
+    if (deviation > kRotationRounding)
+      tool.note("--camera-pose: its quaternion is not of unit length and has been normalised");
+  }
+  return options;
+}
+
+}  // namespace vpm::tools

@@ -1,0 +1,77 @@
+// vpm-query --frames: a recorded stream of frames against a path of the tool, in step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "libvpm/haptics/virtual_coupling.h"
+#include "libvpm/recording/frame_feed.h"
+#include "libvpm/recording/loop_clock.h"
+#include "libvpm/recording/timed_path.h"
+#include "tools/common/import_arguments.h"
+#include "tools/query/level_query.h"
+#include "tools/query/result_sink.h"
+
+namespace vpm::tools {
+
+struct ReplayArguments {
+  std::string frames, trajectory, camera_poses;
+  std::optional<double> rate;  // steps per second; kRate where not given
+  double frame_rate = 30;      // of numbered frames
+  double frame_latency = 0;    // s
+  bool align_starts = false, repeat_frames = false, realtime = false;
+  ImportArguments import;
+
+  static constexpr double kRate = 1000;
+};
+
+void declare(CLI::App& app, ReplayArguments& arguments);
+
+class Replay {
+ public:
+  // Reads the recording and the path, which outlive nothing else. Throws what they throw, and
+  // Error(refused) where they share no time or no frame can be used.
+  Replay(const Tool& tool, const ReplayArguments& arguments, double rate);
+
+  const SampledPath& path() const { return path_; }
+  // The first frame that can be used: what levels are chosen by.
+  const PreparedCloud& first_cloud() const { return *first_cloud_; }
+
+  // Step by step, a line of results each; what happens to frames is said as it happens.
+  void run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+           ResultSink& sink);
+
+  // After run().
+  const Pose& last_pose() const { return last_pose_; }
+  const PreparedCloud& last_cloud() const { return feed_->cloud(); }
+  const std::vector<double>& query_seconds() const { return query_seconds_; }
+  double prepare_seconds() const;  // median of the frames
+  // "replay" of --stats. `deadline`: s.
+  nlohmann::json report(double deadline) const;
+
+ private:
+  void note_sources() const;
+  double start_time() const;
+  void find_first_cloud();
+  void say(const PreparedChange& change);
+  void say_at_end() const;
+  std::string frame_name() const;
+
+  const Tool& tool_;
+  const ReplayArguments& arguments_;
+  double rate_;
+  Recording recording_;
+  SampledPath path_;
+  ImportOptions import_;
+  ScheduleOptions schedule_;
+  std::unique_ptr<const PreparedCloud> first_cloud_;
+  std::unique_ptr<FrameFeed> feed_;
+  std::optional<LoopClock> clock_;
+  Pose last_pose_;
+  std::vector<double> query_seconds_;
+  std::size_t said_ = 0, steps_without_frame_ = 0;
+  double wall_seconds_ = 0;
+};
+
+}  // namespace vpm::tools
