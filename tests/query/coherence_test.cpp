@@ -105,6 +105,89 @@ TEST(CoherentPoses, FollowFramesThatChange) {
   EXPECT_EQ(query.run(PreparedCloud(wall_at(3)), path[k]).volume, 0);
 }
 
+// A wall as a small camera sees it from `camera`; the wall is the plane of this z.
+Cloud small_view(double z, const Pose& camera = {}) {
+  synthetic::Scene scene = synthetic::make_scene("wall");
+  scene.surface = synthetic::make_wall({0, 0, z}, {0, 0, -1});
+  scene.camera = {{131.25, 131.25, 79.5, 59.5}, 160, 120, camera};
+  return see(scene);
+}
+
+// A loop of 33 queries for each frame, while a wall comes over the tool, passes it and goes back.
+template <class MakeFrame>
+void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
+  constexpr int kQueriesPerFrame = 33;
+  constexpr double kWallStep = 0.015;
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  Query query(tool, coherent()), alone(tool, {});
+  int cut = 0, wholly_behind = 0, k = 0;
+  const auto query_frame = [&](double z) {
+    const PreparedCloud cloud(make_frame(z));
+    for (int n = 0; n < kQueriesPerFrame; ++n, ++k) {
+      const Pose pose{generic_rotation(), {0.01 * std::sin(0.03 * k), -0.008, 1}};
+      const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
+      if (seen_alone.boundary > 0 || z > 1) {
+        ++cut;
+        ASSERT_TRUE(equal(r, seen_alone)) << z << ' ' << n;
+      } else {
+        ++wholly_behind;
+        ASSERT_EQ(seen_alone.volume, 0);
+        ASSERT_NEAR(r.volume_fraction, 1, 1e-12) << z << ' ' << n;
+      }
+    }
+  };
+  for (double z = 1.11; z > 0.89; z -= kWallStep) query_frame(z);
+  for (double z = 0.89; z < 1.11; z += kWallStep) query_frame(z);
+  EXPECT_GT(cut, 5 * kQueriesPerFrame);
+  EXPECT_GT(wholly_behind, kQueriesPerFrame);
+}
+
+TEST(CoherentPoses, AreRightInAMovingScene) {
+  expect_right_in_a_moving_scene([](double z) { return small_view(z); });
+}
+
+TEST(CoherentPoses, AreRightInAMovingSceneOfPoints) {
+  expect_right_in_a_moving_scene([](double z) { return testing::without_camera(small_view(z)); });
+}
+
+// The memory is of places in the world, not of pixels.
+TEST(CoherentPoses, AreRightWhileTheCameraMoves) {
+  expect_right_in_a_moving_scene([](double z) {
+    const double angle = 2 * (z - 1);
+    const Rotation turned =
+        rotation_from_quaternion({0, std::sin(angle / 2), 0, std::cos(angle / 2)});
+    return small_view(z, {turned, {-0.3 * angle, 0.2 * angle, 0.1 * angle}});
+  });
+}
+
+// What frames of before said of a tool deep inside ends with the frame that shows it to be free, or
+// shows nothing; no later frame brings it back.
+TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  const PreparedCloud wall(small_view(1)), far_wall(small_view(2)), hand(small_view(0.4)),
+      nothing(small_view(-1));
+  const Pose deep{generic_rotation(), {0, 0, 1.2}};
+  ASSERT_GT(wall.positions().size(), 0u);
+  ASSERT_EQ(nothing.positions().size(), 0u);
+  for (const PreparedCloud* other : {&far_wall, &hand, &nothing}) {
+    Query query(tool, coherent());
+    for (double z = 0.85; z < 1.2; z += kStep) query.run(wall, {generic_rotation(), {0, 0, z}});
+    ASSERT_NEAR(query.run(wall, deep).volume_fraction, 1, 1e-12);
+    EXPECT_EQ(query.run(*other, deep).volume, 0);
+    EXPECT_EQ(query.run(*other, deep).volume, 0);
+    EXPECT_EQ(query.run(wall, deep).volume, 0);
+  }
+}
+
+// A wall that jumps over the tool within a frame has not been seen to pass it.
+TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
+  const ToolModel tool = lattice_cube(kEdge, 6, 3);
+  Query query(tool, coherent());
+  const Pose pose{generic_rotation(), {0, 0, 1}};
+  EXPECT_EQ(query.run(PreparedCloud(small_view(1.2)), pose).volume, 0);
+  EXPECT_EQ(query.run(PreparedCloud(small_view(0.8)), pose).volume, 0);
+}
+
 TEST(CoherentPoses, AreRefusedWhereTheyMeanNothing) {
   const ToolModel tool = lattice_cube(kEdge, 2, 2);
   QueryOptions options = coherent();
