@@ -180,48 +180,79 @@ class CellMeasure {
     return any_hidden;
   }
 
+  // Whether a place of the surface may be another one's than that which cuts the cell.
+  VPM_HD bool is_hidden(Vec3 foot) const {
+    const double beyond = (kSheetReach - 1) * cell_.reach;
+    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
+    return squared_norm(foot - center_) > near * near;
+  }
+
+  // One piece as the surface shows it.
+  struct PieceLook {
+    Vec3 x;
+    Reading reading;
+    bool is_inside = false;  // a part of it at least; the rest is said of such only
+    bool is_far = false;     // further behind the surface than the tool's reach
+    bool is_hidden = false;  // by another surface than that of the cell, maybe
+  };
+  VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point = kNoPoint) const {
+    PieceLook look;
+    look.x = to_surface_ * piece.at;
+    look.reading = surface_.read(look.x, point);
+    look.is_inside = look.reading.known && look.reading.distance < piece.radius;
+    if (!look.is_inside) return look;
+    look.is_far = is_far(look.x, look.reading.foot);
+    look.is_hidden = is_hidden(look.reading.foot);
+    return look;
+  }
+  // Whether the cell's own plane vouches for a hidden piece.
+  VPM_HD bool is_vouched_for(const PieceLook& look, const ContactPlane& plane) const {
+    return plane.vouches_for(relative(look.x), relative(look.reading.foot),
+                             tool_reach_ / cell_.reach);
+  }
+  VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
+    return look.reading.distance > -piece.radius;
+  }
+  VPM_HD static double weight_inside(const SharePiece& piece, const PieceLook& look) {
+    return piece.weight *
+           (is_cut(piece, look) ? ball_fraction_inside(look.reading.distance / piece.radius) : 1);
+  }
+  // Adds a piece that is inside.
+  VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
+    const Vec3 normal =
+        is_cut(piece, look) ? look.reading.normal : surface_.closest_normal(look.x, look.reading);
+    sum.add(weight_inside(piece, look), normal, arm(piece.at));
+  }
+  VPM_HD void add_to_plane(const PieceLook& look, ContactPlane& plane) const {
+    plane.add(look.reading.normal, relative(look.reading.foot));
+  }
+
   // Adds what one piece contributes to run(): first of all pieces that are seen, then, knowing the
   // plane, of those that are hidden. Returns whether the piece was left for the second pass.
   VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
-    const Vec3 x = to_surface_ * piece.at;
-    const Reading reading = surface_.read(x, result.point);
-    result.point = reading.point;
-    if (!reading.known || reading.distance >= piece.radius) return false;
-    result.is_far |= is_far(x, reading.foot);
-    const bool hidden = is_hidden(reading.foot);
-    if (hidden != (pass == Pass::hidden)) return hidden;
-    if (hidden &&
-        !result.plane.vouches_for(relative(x), relative(reading.foot), tool_reach_ / cell_.reach)) {
-      return false;
-    }
-    double fraction = 1;
-    Vec3 normal = reading.normal;
-    if (reading.distance > -piece.radius) {
-      fraction = ball_fraction_inside(reading.distance / piece.radius);
-      if (!hidden) result.plane.add(normal, relative(reading.foot));
-    } else {
-      normal = surface_.closest_normal(x, reading);
-    }
-    result.sum.add(piece.weight * fraction, normal, arm(piece.at));
+    const PieceLook look = look_at(piece, result.point);
+    result.point = look.reading.point;
+    if (!look.is_inside) return false;
+    result.is_far |= look.is_far;
+    if (look.is_hidden != (pass == Pass::hidden)) return look.is_hidden;
+    if (look.is_hidden && !is_vouched_for(look, result.plane)) return false;
+    if (is_cut(piece, look) && !look.is_hidden) add_to_plane(look, result.plane);
+    add(piece, look, result.sum);
     return false;
   }
 
   // Adds what one piece contributes to reached().
   template <class Nearest>
   VPM_HD void add_reached(const Nearest& nearest, const SharePiece& piece, ToolSum& sum) const {
-    const Vec3 x = to_surface_ * piece.at;
-    const Reading reading = surface_.read(x);
-    if (!reading.known || reading.distance >= piece.radius) return;
-    if (is_far(x, reading.foot)) {
+    const PieceLook look = look_at(piece);
+    if (!look.is_inside) return;
+    if (look.is_far) {
       const CutShare cut = nearest();
-      if (!cut.plane.vouches_for(cut.relative(x), cut.relative(reading.foot),
+      if (!cut.plane.vouches_for(cut.relative(look.x), cut.relative(look.reading.foot),
                                  tool_reach_ / cut.reach))
         return;
     }
-    const bool inner = reading.distance <= -piece.radius;
-    const double fraction = inner ? 1 : ball_fraction_inside(reading.distance / piece.radius);
-    sum.add(piece.weight * fraction, inner ? surface_.closest_normal(x, reading) : reading.normal,
-            arm(piece.at));
+    add(piece, look, sum);
   }
 
   // The plane that crosses a flat block, in the tool's axes about its centre of mass.
@@ -257,11 +288,6 @@ class CellMeasure {
   VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
   VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
     return squared_norm(foot - x) > tool_reach_ * tool_reach_;
-  }
-  VPM_HD bool is_hidden(Vec3 foot) const {
-    const double beyond = (kSheetReach - 1) * cell_.reach;
-    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
-    return squared_norm(foot - center_) > near * near;
   }
 
   VPM_HD void add_flat(const CellBlock& block, const BlockLook& look, CellResult& result) const {

@@ -184,8 +184,14 @@ struct DepthSurface {
   // Whether the surface in a ball that was looked at is one plane, as far as the range of its
   // pixels tells: the plane at its centre must predict their least and greatest inverse depth.
   VPM_HD bool is_flat(const Look& look, Vec3 center, double radius, TangentPlane& plane) const {
-    if (look.leaves_image || !(look.range.low > 0)) return false;
-    const Reading reading = read(center);
+    return may_be_flat(look) && is_flat(look, read(center), radius, plane);
+  }
+  VPM_HD bool may_be_flat(const Look& look) const {
+    return !look.leaves_image && look.range.low > 0;
+  }
+  // The same of a look that may be flat, with the reading at the ball's centre.
+  VPM_HD bool is_flat(const Look& look, const Reading& reading, double radius,
+                      TangentPlane& plane) const {
     if (!reading.known) return false;
     plane = {reading.normal, reading.foot};
     if (look.pixels.u1 - look.pixels.u0 <= kFewPixels &&

@@ -121,6 +121,8 @@ struct DiskSurface {
     return look_at_ball(center, radius).side;
   }
   VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
+  VPM_HD bool may_be_flat(const Look&) const { return false; }
+  VPM_HD bool is_flat(const Look&, const Reading&, double, TangentPlane&) const { return false; }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
 };
 

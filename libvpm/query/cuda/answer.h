@@ -1,16 +1,30 @@
 // From the threads of a query to the program that waits for it.
 #pragma once
 
+#include <cstddef>
+
 #include "libvpm/query/cuda/team.h"
 #include "libvpm/query/cuda/views.h"
 
 namespace vpm::cuda {
 
-// Where the host looks for a result, in its own memory: it is there once `sequence` is the query's.
+// Where the host looks for a result, in its own memory: the words of a RawResult, each with the
+// query's number above it. So no word must wait for another on its way over the bus.
 struct Answer {
-  RawResult result;
-  unsigned sequence = 0;
+  static constexpr unsigned kWords = 17;
+  static_assert(offsetof(RawResult, points) + sizeof(std::uint32_t) == kWords * 4);
+
+  std::uint64_t words[kWords] = {};
 };
+
+// By the threads of a block, from its shared memory.
+__device__ inline void send(const RawResult& result, Answer* answer, unsigned sequence) {
+  const auto* const words = reinterpret_cast<const std::uint32_t*>(&result);
+  const unsigned k = threadIdx.x;
+  if (k < Answer::kWords)
+    *static_cast<volatile std::uint64_t*>(&answer->words[k]) =
+        std::uint64_t{sequence} << 32 | words[k];
+}
 
 // Sums of one query over its blocks. All 0 between launches: the last block clears them.
 struct Totals {
@@ -32,7 +46,7 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
 #pragma unroll
   for (int k = 0; k < kValues; ++k) {
     const std::int64_t sum = warp.sum(mine[k]);
-    if (warp.leads()) values[k][warp.index()] = sum;
+    if (warp.leads()) values[k][threadIdx.x / 32] = sum;
   }
   __syncthreads();
   if (threadIdx.x >= kValues) return;
@@ -52,20 +66,18 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   }
 }
 
-// Called by all threads of each block of a launch with the block's part. The last block sends the
-// answer and clears `totals`; it returns true there, for thread 0.
-__device__ inline bool finish(const RawResult& part, Totals& totals, Answer* answer,
-                              unsigned sequence) {
-  add_block(part, totals.result);
-  __threadfence();
+// By all threads of a block: whether it is the last one of the launch to come here; what the others
+// did before is seen then.
+__device__ inline bool is_last_block(unsigned& done) {
+  __shared__ bool last;
   __syncthreads();
-  if (threadIdx.x != 0 || atomicAdd(&totals.done, 1U) != gridDim.x - 1) return false;
-  __threadfence();
-  answer->result = *const_cast<const RawResult*>(&totals.result);
-  __threadfence_system();
-  *static_cast<volatile unsigned*>(&answer->sequence) = sequence;
-  totals = Totals{};
-  return true;
+  if (threadIdx.x == 0) {
+    __threadfence();
+    last = atomicAdd(&done, 1U) == gridDim.x - 1;
+    __threadfence();
+  }
+  __syncthreads();
+  return last;
 }
 
 }  // namespace vpm::cuda

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 
+#include "libvpm/query/cuda/answer.h"
 #include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/cuda/team.h"
 
@@ -37,17 +39,24 @@ inline unsigned teams_that_fit(std::size_t bytes_of_team) {
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }
 
-// Looks at the host's own memory until the device has written `sequence` there; that is quicker
-// than waiting for the stream.
-inline void wait_for(const unsigned& written, unsigned sequence, cudaStream_t stream) {
+// Looks at the host's own memory until the device has written the whole answer there; that is
+// quicker than waiting for the stream.
+inline RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream) {
   constexpr unsigned kLooksPerCheck = 1U << 16;  // whether the launch has failed
-  const volatile unsigned& seen = written;
-  for (unsigned looks = 1; seen != sequence; ++looks) {
-    if (looks % kLooksPerCheck != 0) continue;
-    const cudaError_t status = cudaStreamQuery(stream);
-    if (status != cudaErrorNotReady) check(status);
+  std::uint32_t words[Answer::kWords];
+  unsigned looks = 0;
+  for (unsigned k = 0; k < Answer::kWords;) {
+    const std::uint64_t word = *static_cast<const volatile std::uint64_t*>(&answer.words[k]);
+    if (word >> 32 == sequence) {
+      words[k++] = static_cast<std::uint32_t>(word);
+    } else if (++looks % kLooksPerCheck == 0) {
+      const cudaError_t status = cudaStreamQuery(stream);
+      if (status != cudaErrorNotReady) check(status);
+    }
   }
-  __atomic_thread_fence(__ATOMIC_ACQUIRE);
+  RawResult result;
+  std::memcpy(static_cast<void*>(&result), words, sizeof(words));
+  return result;
 }
 
 }  // namespace vpm::cuda

@@ -9,24 +9,6 @@
 namespace vpm::cuda {
 namespace {
 
-std::vector<Unit> units_of(const Level& level) {
-  std::vector<Unit> units;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
-    if (begin == end) units.push_back({i, Unit::kNoBlock});
-    for (std::uint32_t b = begin; b < end; ++b) units.push_back({i, b});
-  }
-  return units;
-}
-
-std::vector<std::uint32_t> divided_shares(const Level& level) {
-  std::vector<std::uint32_t> divided;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    if (level.block_begin[i + 1] - level.block_begin[i] > 1) divided.push_back(i);
-  }
-  return divided;
-}
-
 std::vector<std::uint32_t> clusters_of_shares(const ShareClusters& clusters) {
   std::vector<std::uint32_t> cluster_of(clusters.shares.size());
   for (std::uint32_t c = 0; c < clusters.clusters.size(); ++c) {
@@ -34,6 +16,55 @@ std::vector<std::uint32_t> clusters_of_shares(const ShareClusters& clusters) {
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) cluster_of[clusters.shares[k]] = c;
   }
   return cluster_of;
+}
+
+std::vector<Unit> units_of(const ToolModel& tool, const Level& level,
+                           const ShareClusters& clusters) {
+  const std::vector<std::uint32_t> cluster_of = clusters_of_shares(clusters);
+  std::vector<Unit> units;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const ShareCluster& cluster = clusters.clusters[cluster_of[i]];
+    const Vec3 center = tool.spheres[i].center - tool.center_of_mass;
+    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
+    Unit unit;
+    unit.balls[Unit::of_cluster] = {cluster.center, cluster.reach};
+    unit.balls[Unit::of_share] = {center, level.share_reach[i]};
+    unit.balls[Unit::of_sphere] = {center, tool.spheres[i].radius};
+    unit.share = i;
+    if (end - begin > 1) unit.flags |= Unit::is_divided;
+    if (is_compact(level.share_reach[i], tool.reach)) unit.flags |= Unit::is_compact;
+    if (begin == end) units.push_back(unit), units.back().flags |= Unit::is_head;
+    for (std::uint32_t b = begin; b < end; ++b) {
+      const CellBlock& block = level.blocks[b];
+      unit.balls[Unit::of_block] = {widen(block.center), block.radius};
+      unit.block = b;
+      unit.begin = block.begin;
+      unit.end = block.end;
+      units.push_back(unit);
+      units.back().flags |= Unit::has_block | (b == begin ? Unit::is_head : 0U);
+    }
+  }
+  return units;
+}
+
+// Those of which a divided share may be measured.
+std::uint32_t divided_pieces_of(const Level& level) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
+    if (end - begin > 1)
+      count += level.blocks[end - 1].end - level.blocks[begin].begin + (end - begin);
+  }
+  return count;
+}
+
+std::vector<Edge> edges_of(const SphereGraph& graph) {
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 0; i + 1 < graph.begin.size(); ++i) {
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
+      if (graph.neighbors[k] < i) edges.push_back({i, graph.neighbors[k]});
+  }
+  return edges;
 }
 
 std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
@@ -60,18 +91,14 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       centers_(centers_of(tool, level)),
       reach_(level.share_reach),
       block_begin_(level.block_begin),
-      edge_begin_(level.graph.begin),
-      neighbors_(level.graph.neighbors),
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
-      cluster_of_(clusters_of_shares(clusters)),
-      divided_(divided_shares(level)),
       blocks_(level.blocks),
       block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
       samples_(level.samples),
-      units_(units_of(level)),
-      clusters_(clusters.clusters) {
+      units_(units_of(tool, level, clusters)),
+      edges_(edges_of(level.graph)) {
   view_.count = level.sphere_count;
   view_.unit_count = static_cast<std::uint32_t>(units_.size());
   view_.spheres = spheres_.get();
@@ -82,13 +109,10 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.block_masses = block_masses_.get();
   view_.samples = samples_.get();
   view_.units = units_.get();
-  view_.divided = divided_.get();
-  view_.divided_count = static_cast<std::uint32_t>(divided_.size());
-  view_.clusters = clusters_.get();
-  view_.cluster_of = cluster_of_.get();
   view_.share_masses = share_masses_.get();
-  view_.edge_begin = edge_begin_.get();
-  view_.neighbors = neighbors_.get();
+  view_.edges = edges_.get();
+  view_.edge_count = static_cast<std::uint32_t>(edges_.size());
+  view_.divided_pieces = divided_pieces_of(level);
   view_.grid = view_of(level.grid);
   view_.grid.begin = grid_begin_.get();
   view_.grid.spheres = grid_spheres_.get();

@@ -36,13 +36,12 @@ class DeviceLevel {
   DeviceArray<Sphere> spheres_;
   DeviceArray<Vec3> centers_;
   DeviceArray<double> reach_;
-  DeviceArray<std::uint32_t> block_begin_, edge_begin_, neighbors_, grid_begin_, grid_spheres_,
-      cluster_of_, divided_;
+  DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_;
   DeviceArray<CellBlock> blocks_;
   DeviceArray<BlockMass> block_masses_, share_masses_;
   DeviceArray<CellSample> samples_;
   DeviceArray<Unit> units_;
-  DeviceArray<ShareCluster> clusters_;
+  DeviceArray<Edge> edges_;
   LevelView view_;
 };
 

@@ -1,5 +1,4 @@
-// The cloud's points that lie strictly inside spheres of a tool, as libvpm/query/points_inside.h
-// walks them.
+// How many of the cloud's points lie strictly inside each sphere of a tool.
 #pragma once
 
 #include "libvpm/query/cuda/team.h"
@@ -7,40 +6,58 @@
 
 namespace vpm::cuda {
 
-// Calls visit(sphere, point, x), x in tool coordinates, for every sphere that holds the point.
-template <class Visit>
-__device__ void try_point(const LevelView& level, const PointsView& points, const Pose& to_tool,
-                          std::uint32_t point, const Visit& visit) {
-  const Vec3 x = to_tool * widen(points.positions[point]);
-  for_spheres_at(level.grid, level.spheres, x,
-                 [&](std::uint32_t sphere) { visit(sphere, point, x); });
+// Adds one to the count of each sphere that holds the point. All threads of a warp together;
+// `active`: this thread has a point.
+__device__ inline void count_point(const LevelView& level, const PointsView& points,
+                                   const Pose& to_tool, std::uint32_t point, bool active,
+                                   std::uint32_t* counts) {
+  constexpr std::uint32_t kNone = 0xffffffffU;
+  std::uint32_t found = kNone;
+  if (active) {
+    const Vec3 x = to_tool * widen(points.positions[point]);
+    for_spheres_at(level.grid, level.spheres, x, [&](std::uint32_t sphere) {
+      if (found != kNone) atomicAdd(&counts[found], 1U);
+      found = sphere;
+    });
+  }
+  // Neighbouring pixels lie in few spheres: one addition for each.
+  for (unsigned rest = __ballot_sync(~0U, found != kNone); rest != 0;) {
+    const int leader = __ffs(static_cast<int>(rest)) - 1;
+    const unsigned same = __ballot_sync(~0U, found == __shfl_sync(~0U, found, leader));
+    if (static_cast<int>(threadIdx.x % 32) == leader) atomicAdd(&counts[found], __popc(same));
+    rest &= ~same;
+  }
 }
 
-// The same for this thread's part of the points.
-template <class Visit>
-__device__ void for_points_inside(const LevelView& level, const PointsView& points,
-                                  const PoseFrame& frame, Share share, const Visit& visit) {
-  if (share.parts == 0) return;
-  const std::uint32_t first = share.part * blockDim.x + threadIdx.x;
-  const std::uint32_t step = share.parts * blockDim.x;
+// For a part of the points that the pose can reach, by all threads of a block.
+__device__ inline void count_points(const LevelView& level, const PointsView& points,
+                                    const PoseFrame& frame, Part part, std::uint32_t* counts) {
+  const std::uint32_t warp = part.part * (blockDim.x / 32) + threadIdx.x / 32;
+  const std::uint32_t warps = part.parts * (blockDim.x / 32), lane = threadIdx.x % 32;
   const double reach_squared = level.spheres_reach * level.spheres_reach;
   if (points.width > 0) {
     const PixelRectangle r = frame.pixels;
     if (r.u0 > r.u1 || r.v0 > r.v1) return;
     const auto columns = static_cast<std::uint32_t>(r.u1 - r.u0 + 1);
-    const std::uint32_t count = columns * static_cast<std::uint32_t>(r.v1 - r.v0 + 1);
-    for (std::uint32_t k = first; k < count; k += step) {
-      const std::uint32_t pixel = (r.v0 + k / columns) * points.width + r.u0 + k % columns;
+    const std::uint32_t per_row = (columns + 31) / 32;
+    const std::uint32_t count = per_row * static_cast<std::uint32_t>(r.v1 - r.v0 + 1);
+    for (std::uint32_t k = warp; k < count; k += warps) {
+      const std::uint32_t row = k / per_row, column = 32 * (k - row * per_row) + lane;
+      const std::uint32_t pixel = (r.v0 + row) * points.width + r.u0 + column;
       // Not so where the pixel has no point.
-      if (squared_norm(widen(points.positions[pixel]) - frame.center) <= reach_squared)
-        try_point(level, points, frame.to_tool, pixel, visit);
+      const bool active = column < columns && squared_norm(widen(points.positions[pixel]) -
+                                                           frame.center) <= reach_squared;
+      count_point(level, points, frame.to_tool, pixel, active, counts);
     }
     return;
   }
   constexpr std::uint32_t kLeaf = DiskSurface::kLeafSize;
-  for (std::uint32_t k = first; k < points.count; k += step) {
-    if (DiskSurface::squared_distance(points.leaves[k / kLeaf], frame.center) <= reach_squared)
-      try_point(level, points, frame.to_tool, k, visit);
+  for (std::uint32_t first = 32 * warp; first < points.count; first += 32 * warps) {
+    const std::uint32_t k = first + lane;
+    const bool active =
+        k < points.count &&
+        DiskSurface::squared_distance(points.leaves[k / kLeaf], frame.center) <= reach_squared;
+    count_point(level, points, frame.to_tool, k, active, counts);
   }
 }
 

@@ -1,10 +1,11 @@
 #include <algorithm>
 
-#include "libvpm/query/cuda/answer.h"
+#include "libvpm/query/cuda/flood.h"
 #include "libvpm/query/cuda/launch.h"
 #include "libvpm/query/cuda/on_device.h"
-#include "libvpm/query/cuda/refined.h"
+#include "libvpm/query/cuda/points.h"
 #include "libvpm/query/cuda/refined_measure.h"
+#include "libvpm/query/cuda/share_measure.h"
 
 namespace vpm::cuda {
 namespace {
@@ -17,67 +18,110 @@ struct RefinedLaunch {
   RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
 };
 
-// The memory of one of several teams.
+// The memory of one of several teams, each of one block.
 __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& level,
                                  std::size_t team) {
-  const std::size_t shares = team * level.count, units = team * level.unit_count;
+  const std::size_t shares = team * level.count;
   RefinedSpace space;
-  space.kinds = first.kinds + shares;
-  space.gaps = first.gaps + shares;
   for (int turn = 0; turn < 2; ++turn) {
-    const MeasuredShares& from = first.measured[turn];
-    space.measured[turn] = {from.sums + shares, from.planes + shares, from.marks + shares};
+    const ShareNotes& from = first.notes[turn];
+    space.notes[turn] = {from.words + shares, from.points + shares, from.sums + shares,
+                         from.planes + shares};
   }
+  space.gaps = first.gaps + shares;
   space.parents = first.parents + shares + team;
-  space.states = first.states + shares;
   space.cut = first.cut + shares;
-  space.flats = first.flats + units;
-  space.many = first.many + units;
-  space.few = first.few + units;
-  space.pieces = first.pieces + units;
-  space.shares = first.shares + units;
+  space.hidden = first.hidden + team * level.divided_pieces;
+  space.flats = first.flats + team * 2 * TaskLists::kTasks;
   return space;
 }
 
-template <class Surface, class Team>
-__device__ RawResult points_of(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
-                               Team& team) {
-  RawResult part;
-  for_points_inside(launch.level, launch.points, frame, team.points(),
-                    [&](std::uint32_t sphere, std::uint32_t, Vec3) {
-                      part.points += RefinedQuery<Surface, Team>::counts_points(
-                          launch.level, launch.surface, frame, sphere);
-                    });
-  return part;
+// Memory of a block; the steps of a query follow each other.
+union BlockShared {
+  MeasureShared measure;
+  FloodShared flood;
+};
+
+// The first step of one query by all blocks of a launch: `sphere_blocks` deal with spheres, the
+// others with points.
+template <class Surface>
+__device__ void measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                               unsigned sphere_blocks, unsigned turn, RefinedCounters& counters,
+                               BlockShared& shared) {
+  if (blockIdx.x < sphere_blocks) {
+    ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
+                          counters, {blockIdx.x, sphere_blocks}, shared.measure)
+        .run();
+  } else {
+    count_points(launch.level, launch.points, frame,
+                 {blockIdx.x - sphere_blocks, gridDim.x - sphere_blocks},
+                 launch.space.notes[turn % 2].points);
+  }
 }
 
+// One query; the last block to come finishes it alone. For levels of few shares.
+template <class Surface>
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    one_pose_small(const __grid_constant__ RefinedLaunch<Surface> launch,
+                   const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
+                   RefinedCounters* counters, Answer* answer, unsigned sequence) {
+  __shared__ BlockShared shared;
+  __shared__ RawResult total;
+  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+  if (threadIdx.x == 0) total = RawResult{};
+  if (!is_last_block(totals->done)) return;
+  BlockTeam team;
+  const RawResult part =
+      Flood<Surface, BlockTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
+                                sequence, *counters, team, &shared.flood)
+          .run();
+  add_block(part, total);
+  __syncthreads();
+  send(total, answer, sequence);
+  if (threadIdx.x == 0) {
+    totals->done = 0;
+    *counters = RefinedCounters{};
+  }
+}
+
+// One query by all blocks of a cooperative launch.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
              const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
              RefinedCounters* counters, Answer* answer, unsigned sequence) {
-  GridTeam team(&totals->arrived, sphere_blocks);
-  RawResult part;
-  if (team.spheres().parts > 0) {
-    part = RefinedQuery<Surface, GridTeam>(launch.level, launch.surface, frame, launch.space,
-                                           sequence, *counters, team)
-               .run();
-  } else {
-    part = points_of(launch, frame, team);
+  __shared__ BlockShared shared;
+  __shared__ RawResult total;
+  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+  GridTeam team(&totals->arrived);
+  team.sync();
+  const RawResult part = Flood<Surface, GridTeam>(launch.level, launch.surface, frame.to_surface,
+                                                  launch.space, sequence, *counters, team, nullptr)
+                             .run();
+  add_block(part, totals->result);
+  if (!is_last_block(totals->done)) return;
+  if (threadIdx.x == 0) {
+    total = totals->result;
+    *totals = Totals{};
+    *counters = RefinedCounters{};
   }
-  if (finish(part, *totals, answer, sequence)) *counters = RefinedCounters{};
+  __syncthreads();
+  send(total, answer, sequence);
 }
 
+// Each block a query of its own, one after another.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     many_poses(const __grid_constant__ RefinedLaunch<Surface> launch,
                const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
                RawResult* results) {
+  __shared__ BlockShared shared;
   __shared__ PoseFrame frame;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
   const LevelView& level = launch.level;
   const RefinedSpace space = space_of(launch.space, level, blockIdx.x);
+  FloodShared* const near = level.count <= kFloodShares ? &shared.flood : nullptr;
   BlockTeam team;
   unsigned turn = 0;
   for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
@@ -88,78 +132,72 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
       total = RawResult{};
     }
     __syncthreads();
-    RawResult part =
-        RefinedQuery<Surface, BlockTeam>(level, launch.surface, frame, space, turn, counters, team)
-            .run();
-    part.points = points_of(launch, frame, team).points;
+    count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
+    ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
+                          shared.measure)
+        .run();
+    __syncthreads();
+    const RawResult part = Flood<Surface, BlockTeam>(level, launch.surface, frame.to_surface, space,
+                                                     turn, counters, team, near)
+                               .run();
     add_block(part, total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
   // The next launch begins with turn 0 again.
   for (std::uint32_t i = threadIdx.x; i < level.count; i += blockDim.x) {
-    space.measured[0].clear(i);
-    space.measured[1].clear(i);
+    space.notes[0].clear(i, true);
+    space.notes[1].clear(i, true);
   }
 }
 
-// Memory of a number of teams.
+// Memory of a number of teams, of one or more blocks each.
 class RefinedMemory {
  public:
-  RefinedMemory(const LevelView& level, std::size_t teams)
-      : kinds_(level.count * teams),
-        gaps_(level.count * teams),
+  RefinedMemory(const LevelView& level, std::size_t teams, std::size_t blocks)
+      : words_(2 * level.count * teams),
+        points_(2 * level.count * teams),
         sums_(2 * level.count * teams),
         planes_(2 * level.count * teams),
-        marks_(2 * level.count * teams),
+        gaps_(level.count * teams),
         parents_((std::size_t{level.count} + 1) * teams),
-        states_(level.count * teams),
         cut_(level.count * teams),
-        flats_(level.unit_count * teams),
-        many_(level.unit_count * teams),
-        few_(level.unit_count * teams),
-        pieces_(level.unit_count * teams),
-        shares_(level.unit_count * teams) {
+        hidden_(level.divided_pieces * teams),
+        flats_(2 * TaskLists::kTasks * blocks) {
+    words_.clear();
+    points_.clear();
     sums_.clear();
     planes_.clear();
-    marks_.clear();
-    states_.clear();
   }
 
   RefinedSpace space() const {
-    const std::size_t half = marks_.size() / 2;
-    return {kinds_.get(),
+    const std::size_t half = words_.size() / 2;
+    return {{{words_.get(), points_.get(), sums_.get(), planes_.get()},
+             {words_.get() + half, points_.get() + half, sums_.get() + half, planes_.get() + half}},
             gaps_.get(),
-            {{sums_.get(), planes_.get(), marks_.get()},
-             {sums_.get() + half, planes_.get() + half, marks_.get() + half}},
             parents_.get(),
-            states_.get(),
             cut_.get(),
-            flats_.get(),
-            many_.get(),
-            few_.get(),
-            pieces_.get(),
-            shares_.get()};
+            hidden_.get(),
+            flats_.get()};
   }
 
+  // Of a team of one block.
   static std::size_t bytes_of_team(const LevelView& level) {
-    constexpr std::size_t kOfShare = 2 * sizeof(std::uint8_t) + sizeof(double) +
-                                     2 * (sizeof(ToolSum) + sizeof(ContactPlane)) +
-                                     4 * sizeof(std::uint32_t);
-    constexpr std::size_t kOfUnit = 4 * sizeof(std::uint32_t) + sizeof(FlatLook);
-    return level.count * kOfShare + level.unit_count * kOfUnit;
+    constexpr std::size_t kOfShare =
+        2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
+        2 * sizeof(std::uint32_t);
+    return level.count * kOfShare + level.divided_pieces * sizeof(HiddenPiece) +
+           2 * TaskLists::kTasks * sizeof(FlatLook);
   }
 
  private:
-  DeviceArray<std::uint8_t> kinds_;
-  DeviceArray<double> gaps_;
+  DeviceArray<std::uint32_t> words_, points_;
   DeviceArray<ToolSum> sums_;
   DeviceArray<ContactPlane> planes_;
-  DeviceArray<unsigned> marks_;
-  DeviceArray<std::uint32_t> parents_;
-  DeviceArray<SphereState> states_;
+  DeviceArray<double> gaps_;
+  DeviceArray<std::uint32_t> parents_, cut_;
+  DeviceArray<HiddenPiece> hidden_;
   DeviceArray<FlatLook> flats_;
-  DeviceArray<std::uint32_t> cut_, many_, few_, pieces_, shares_;
 };
 
 class RefinedOnDevice : public DeviceMeasure {
@@ -168,7 +206,7 @@ class RefinedOnDevice : public DeviceMeasure {
       : device_(device),
         tool_(tool),
         level_(tool, level),
-        memory_(level_.view(), 1),
+        memory_(level_.view(), 1, processors_),
         totals_(1),
         counters_(1),
         answer_(1) {
@@ -185,8 +223,7 @@ class RefinedOnDevice : public DeviceMeasure {
       launch(cloud_->depth_surface(), frame);
     else
       launch(cloud_->disk_surface(), frame);
-    wait_for(answer_.host()->sequence, sequence_, stream_.get());
-    return result_of(answer_.host()->result);
+    return result_of(wait_for(*answer_.host(), sequence_, stream_.get()));
   }
 
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -212,8 +249,14 @@ class RefinedOnDevice : public DeviceMeasure {
   void read_states(std::vector<SphereState>& states) override {
     const CurrentDevice current(device_);
     check(cudaStreamSynchronize(stream_.get()));
-    check(cudaMemcpy(states.data(), memory_.space().states, states.size() * sizeof(SphereState),
-                     cudaMemcpyDeviceToHost));
+    std::vector<std::uint32_t> words(states.size());
+    check(cudaMemcpy(words.data(), memory_.space().notes[sequence_ % 2].words,
+                     words.size() * sizeof(std::uint32_t), cudaMemcpyDeviceToHost));
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i] = (words[i] & kCounted) == 0 ? SphereState::outside
+                  : (words[i] & kCut) != 0   ? SphereState::boundary
+                                             : SphereState::inside;
+    }
   }
 
  private:
@@ -223,7 +266,7 @@ class RefinedOnDevice : public DeviceMeasure {
 
     explicit Batch(const LevelView& level)
         : teams(teams_that_fit(RefinedMemory::bytes_of_team(level))),
-          memory(level, teams),
+          memory(level, teams, teams),
           poses(kPoses),
           results(kPoses),
           answers(kPoses) {
@@ -251,8 +294,13 @@ class RefinedOnDevice : public DeviceMeasure {
     Answer* answer = answer_.device();
     unsigned sphere_blocks = processors_, sequence = ++sequence_;
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
-    check(cudaLaunchCooperativeKernel(one_pose<Surface>, kBlocksPerProcessor * processors_,
-                                      kThreads, values, 0, stream_.get()));
+    const unsigned blocks = kBlocksPerProcessor * processors_;
+    if (level_.view().count <= kFloodShares) {
+      check(cudaLaunchKernel(one_pose_small<Surface>, blocks, kThreads, values, 0, stream_.get()));
+    } else {
+      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks, kThreads, values, 0,
+                                        stream_.get()));
+    }
   }
 
   template <class Surface>

@@ -1,7 +1,4 @@
 // The threads that answer one query: all blocks of a launch together, or one block alone.
-//
-// Spheres and points are dealt out to parts of the team. A part is one block, so what a block notes
-// for itself needs no more than __syncthreads().
 #pragma once
 
 #include <cuda/atomic>
@@ -13,40 +10,33 @@ namespace vpm::cuda {
 // Most threads of a block, and blocks of one multiprocessor that they leave room for.
 inline constexpr unsigned kThreads = 256, kBlocksPerProcessor = 2;
 
-struct Share {
-  unsigned part = 0, parts = 0;  // parts == 0: this block has none of that work
+// Work dealt out to blocks: row k to part k % parts.
+struct Part {
+  unsigned part = 0, parts = 1;
 };
 
 // A block alone.
 class BlockTeam {
  public:
-  __device__ Share spheres() const { return {0, 1}; }
-  __device__ Share points() const { return {0, 1}; }
+  __device__ unsigned thread() const { return threadIdx.x; }
+  __device__ unsigned threads() const { return blockDim.x; }
   __device__ void sync() { __syncthreads(); }
 };
 
-// All blocks of a cooperative launch: the first `sphere_blocks` deal with spheres and meet in
-// sync(), the others with points.
+// All blocks of a cooperative launch.
 class GridTeam {
  public:
-  __device__ GridTeam(unsigned* arrived, unsigned sphere_blocks)
-      : arrived_(arrived), sphere_blocks_(sphere_blocks) {}
-  __device__ Share spheres() const {
-    return blockIdx.x < sphere_blocks_ ? Share{blockIdx.x, sphere_blocks_} : Share{};
-  }
-  __device__ Share points() const {
-    return blockIdx.x < sphere_blocks_
-               ? Share{}
-               : Share{blockIdx.x - sphere_blocks_, gridDim.x - sphere_blocks_};
-  }
+  __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
+  __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
+  __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
   __device__ void sync() {
     __syncthreads();
-    target_ += sphere_blocks_;
+    target_ += gridDim.x;
     if (threadIdx.x == 0) {
       ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device> arrived(*arrived_);
       __threadfence();
       arrived.fetch_add(1, ::cuda::memory_order_relaxed);
-      while (arrived.load(::cuda::memory_order_acquire) < target_) {
+      while (arrived.load(::cuda::memory_order_relaxed) < target_) {
       }
       __threadfence();
     }
@@ -55,10 +45,10 @@ class GridTeam {
 
  private:
   unsigned* arrived_;  // 0 at the start of a launch
-  unsigned sphere_blocks_, target_ = 0;
+  unsigned target_ = 0;
 };
 
-// Threads of a warp that work on one share together; `width` is a power of two.
+// Threads of a warp that work together; `width` is a power of two.
 struct Tile {
   unsigned width, lane, mask;
 
@@ -67,8 +57,6 @@ struct Tile {
     const unsigned first = threadIdx.x % 32 - lane;
     mask = (width == 32 ? ~0U : (1U << width) - 1) << first;
   }
-  __device__ unsigned index() const { return threadIdx.x / width; }
-  __device__ unsigned count() const { return blockDim.x / width; }
   __device__ bool leads() const { return lane == 0; }
   __device__ bool any(bool value) const { return __any_sync(mask, value) != 0; }
   template <class T>
@@ -80,32 +68,37 @@ struct Tile {
       value += __shfl_xor_sync(mask, value, static_cast<int>(other), static_cast<int>(width));
     return value;
   }
-  template <int Bits>
-  __device__ void add_up(FixedSum<Bits>& value) const {
-    value.value = sum(value.value);
-  }
-  __device__ void add_up(ToolSum& s) const {
-    add_up(s.volume);
-    for (int k = 0; k < 3; ++k) add_up(s.force[k]), add_up(s.torque[k]);
-  }
-  __device__ void add_up(ContactPlane& p) const {
-    for (int k = 0; k < 3; ++k) add_up(p.normal[k]), add_up(p.foot[k]);
-    p.count = sum(p.count);
-  }
 };
 
-// Adds up over a block; the sum is there for thread 0.
-__device__ inline std::int64_t sum_of_block(std::int64_t value) {
-  __shared__ std::int64_t warps[kThreads / 32];
-  const Tile warp(32);
-  value = warp.sum(value);
-  __syncthreads();
-  if (warp.leads()) warps[warp.index()] = value;
-  __syncthreads();
-  std::int64_t total = 0;
-  if (threadIdx.x == 0)
-    for (unsigned w = 0; w < blockDim.x / 32; ++w) total += warps[w];
-  return total;
+// The terms of a ToolSum or ContactPlane as they lie in memory.
+inline constexpr int kTerms = 7;
+template <class Sum>
+__device__ std::int64_t* terms_of(Sum& sum) {
+  static_assert(sizeof(Sum) == kTerms * sizeof(std::int64_t));
+  return reinterpret_cast<std::int64_t*>(&sum);
+}
+
+// Adds up over a tile, for all its threads.
+template <class Sum>
+__device__ void add_up(const Tile& tile, Sum& sum) {
+  std::int64_t* const terms = terms_of(sum);
+  // Terms at once, so that they wait together.
+#pragma unroll 1
+  for (unsigned other = tile.width / 2; other > 0; other /= 2) {
+#pragma unroll
+    for (int k = 0; k < kTerms; ++k)
+      terms[k] += __shfl_xor_sync(tile.mask, terms[k], static_cast<int>(other),
+                                  static_cast<int>(tile.width));
+  }
+}
+
+template <class Sum>
+__device__ void add_atomically(Sum part, Sum& sum) {
+  const std::int64_t* const terms = terms_of(part);
+  auto* const totals = reinterpret_cast<unsigned long long*>(terms_of(sum));
+#pragma unroll
+  for (int k = 0; k < kTerms; ++k)
+    if (terms[k] != 0) atomicAdd(totals + k, static_cast<unsigned long long>(terms[k]));
 }
 
 }  // namespace vpm::cuda

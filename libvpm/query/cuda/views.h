@@ -12,31 +12,45 @@
 
 namespace vpm::cuda {
 
-// One block of a share, or a share that has none: what is measured by itself.
-struct Unit {
-  std::uint32_t share = 0, block = 0;  // block: kNoBlock if there is none
+struct UnitBall {
+  Vec3 center;  // about the centre of mass
+  double radius = 0;
+};
 
-  static constexpr std::uint32_t kNoBlock = 0xffffffffU;
+// One block of a share, or a share that has none: what is classified by itself. All that this needs
+// lies together, since it is read once, by lanes that wait for it.
+struct alignas(32) Unit {
+  enum Ball { of_cluster, of_share, of_block, of_sphere, kBalls };
+  enum Flag : std::uint32_t {
+    is_head = 1,     // the first of its share
+    is_divided = 2,  // one of several
+    is_compact = 4,  // its share is (share_clusters.h)
+    has_block = 8,
+  };
+  UnitBall balls[kBalls];
+  std::uint32_t share = 0, block = 0, begin = 0, end = 0;  // samples of the block
+  std::uint32_t flags = 0;
+};
+
+// An edge of the graph; the spheres' indices.
+struct Edge {
+  std::uint32_t larger = 0, smaller = 0;
 };
 
 // One level of a tool.
 struct LevelView {
-  std::uint32_t count = 0, unit_count = 0;  // `count` of spheres
+  std::uint32_t count = 0, unit_count = 0, edge_count = 0;  // `count` of spheres
+  std::uint32_t divided_pieces = 0;                         // samples and blocks of divided shares
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
   const std::uint32_t* block_begin = nullptr;
   const CellBlock* blocks = nullptr;
   const BlockMass* block_masses = nullptr;
+  const BlockMass* share_masses = nullptr;
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
-  const std::uint32_t* divided = nullptr;  // shares of several units
-  std::uint32_t divided_count = 0;
-  const ShareCluster* clusters = nullptr;
-  const std::uint32_t* cluster_of = nullptr;  // of each share
-  const BlockMass* share_masses = nullptr;
-  const std::uint32_t* edge_begin = nullptr;
-  const std::uint32_t* neighbors = nullptr;
+  const Edge* edges = nullptr;
   GridView grid;
   Vec3 center_of_mass;
   double tool_reach = 0;
@@ -45,13 +59,6 @@ struct LevelView {
   __host__ __device__ CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
             centers[i], reach[i]};
-  }
-  // Whether a share is measured in several units.
-  __host__ __device__ bool is_divided(std::uint32_t i) const {
-    return block_begin[i + 1] - block_begin[i] > 1;
-  }
-  __host__ __device__ bool is_head(const Unit& unit) const {
-    return unit.block == Unit::kNoBlock || unit.block == block_begin[unit.share];
   }
 };
 

@@ -1,0 +1,381 @@
+// The first step of a query: what each share is to the surface, and its sums.
+//
+// A unit (block of a share) is classified by four lanes, each of which looks at one ball: that of
+// its cluster, its share, the block, the sphere. What is to be measured is listed as tasks in
+// shared memory, and warps take these: a lane for each sample, or for each piece that is taken
+// whole.
+#pragma once
+
+#include "libvpm/query/cuda/shares.h"
+
+namespace vpm::cuda {
+
+// Pieces of a share to be measured together.
+struct Task {
+  enum Form : std::uint32_t { samples, block, whole_block, whole_share };
+  static constexpr std::uint32_t kForms = 3, kOfDivided = 4, kOfHidden = 8;
+
+  std::uint32_t share, flags;  // a Form and those
+  std::uint32_t begin, count;  // samples; otherwise `begin` is the block or share
+
+  __device__ Form form() const { return static_cast<Form>(flags & kForms); }
+  __device__ bool is_whole() const { return form() >= whole_block; }
+};
+
+// Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
+struct TaskLists {
+  enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
+  static constexpr unsigned kTasks = 384;  // room in a list
+  static constexpr unsigned kNarrow = 8, kWide = 32;
+
+  Task tasks[kLists][kTasks];
+  unsigned counts[kLists];
+  unsigned next_bundle;
+
+  __device__ static unsigned width(unsigned list) {
+    return list == pieces ? 1 : list == samples_narrow || list == flat_narrow ? kNarrow : kWide;
+  }
+  __device__ static bool is_flat(unsigned list) { return list == flat_wide || list == flat_narrow; }
+  __device__ unsigned add(unsigned list, const Task& task) {
+    const unsigned slot = atomicAdd(&counts[list], 1U);
+    tasks[list][slot] = task;
+    return slot;
+  }
+};
+
+// Memory that the threads of a block share.
+struct MeasureShared {
+  TaskLists lists;
+  double terms[4][kThreads];  // of sums in the samples' order
+};
+
+template <class Surface>
+class ShareMeasure {
+ public:
+  __device__ ShareMeasure(const LevelView& level, const Surface& surface, const Pose& to_surface,
+                          const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
+                          Part part, MeasureShared& shared)
+      : level_(level),
+        surface_(surface),
+        to_surface_(to_surface),
+        space_(space),
+        notes_(space.notes[turn % 2]),
+        next_(space.notes[(turn + 1) % 2]),
+        counters_(counters),
+        part_(part),
+        lists_(shared.lists),
+        terms_(shared.terms) {}
+
+  // By all threads of the block, for its part of the units.
+  __device__ void run() {
+    if (part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
+    const unsigned units_per_round = blockDim.x / Unit::kBalls;
+    const unsigned rows = (level_.unit_count + part_.parts - 1) / part_.parts;
+    clear_lists();
+    for (unsigned row = 0; row < rows; row += units_per_round) {
+      const unsigned u = (row + threadIdx.x / Unit::kBalls) * part_.parts + part_.part;
+      classify(u < level_.unit_count ? u : 0, u < level_.unit_count);
+      __syncthreads();
+      const bool last = row + units_per_round >= rows;
+      if (!last && has_room(units_per_round)) continue;
+      measure_tasks();
+      __syncthreads();
+      if (!last) clear_lists();
+    }
+  }
+
+ private:
+  using Measure = CellMeasure<Surface>;
+
+  __device__ void clear_lists() {
+    if (threadIdx.x < TaskLists::kLists) lists_.counts[threadIdx.x] = 0;
+    if (threadIdx.x == TaskLists::kLists) lists_.next_bundle = 0;
+    __syncthreads();
+  }
+  // For what so many units may add: samples_wide takes two tasks of each.
+  __device__ bool has_room(unsigned units) const {
+    bool room = true;
+    for (unsigned k = 0; k < TaskLists::kLists; ++k)
+      room &= lists_.counts[k] + 2 * units <= TaskLists::kTasks;
+    return room;
+  }
+  __device__ Measure measure_of(const CellView& view) const {
+    return {surface_, to_surface_, level_.tool_reach, view};
+  }
+  __device__ FlatLook& flat(unsigned list, unsigned slot) const {
+    const unsigned row = 2 * part_.part + (list == TaskLists::flat_wide);
+    return space_.flats[row * TaskLists::kTasks + slot];
+  }
+
+  __device__ void classify(std::uint32_t index, bool active);
+  __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
+  __device__ void list_block(const Unit& unit, Vec3 center, Side side, bool is_flat,
+                             const TangentPlane& tangent, std::uint32_t flags);
+  __device__ void measure_tasks();
+  __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
+  struct Pieces {
+    bool any_hidden = false, any_inside = false;
+    bool hidden_counts = false;  // a hidden piece of a divided share has some volume
+  };
+  __device__ void add_pieces(const Tile& tile, const Measure& measure, const Task& task,
+                             CellResult& result, Pieces& pieces);
+  __device__ void add_piece(const Measure& measure, const Task& task, std::uint32_t k,
+                            typename Measure::Pass pass, CellResult& result, Pieces& pieces);
+  __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatLook& flat,
+                           const Task& task, CellResult& result);
+  __device__ void note_task(const Task& task, const CellResult& result, bool hidden_counts);
+
+  const LevelView& level_;
+  const Surface& surface_;
+  const Pose& to_surface_;
+  const RefinedSpace& space_;
+  const ShareNotes &notes_, &next_;
+  RefinedCounters& counters_;
+  Part part_;
+  TaskLists& lists_;
+  double (&terms_)[4][kThreads];
+};
+
+// By the four lanes of a unit, all threads of a warp together; `active`: there is such a unit.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::classify(std::uint32_t index, bool active) {
+  const Unit& unit = level_.units[index];
+  const Tile lanes(Unit::kBalls);
+  const UnitBall ball = unit.balls[lanes.lane];
+  const std::uint32_t flags = unit.flags;
+  const bool head = (flags & Unit::is_head) != 0, divided = (flags & Unit::is_divided) != 0;
+  const Vec3 at = to_surface_ * ball.center;
+  const auto look = surface_.look_at_ball(at, ball.radius);
+  const auto side_of = [&](unsigned lane) {
+    return static_cast<Side>(lanes.from(static_cast<unsigned>(look.side), lane));
+  };
+  const Side of_cluster = side_of(Unit::of_cluster), of_share = side_of(Unit::of_share);
+  const Side of_sphere = side_of(Unit::of_sphere);
+  const Side side = of_cluster == Side::mixed ? of_share : of_cluster;
+  // No place of such a cluster is further behind the surface than the tool's reach.
+  const bool near = lanes.from(lanes.lane == Unit::of_cluster && look.side == Side::behind &&
+                                   surface_.largest_gap(look, at, ball.radius) < level_.tool_reach,
+                               Unit::of_cluster);
+
+  const bool reads_share = lanes.lane == Unit::of_share && side != Side::free;
+  const bool reads_block = lanes.lane == Unit::of_block && side == Side::mixed &&
+                           (flags & Unit::has_block) != 0 && look.side == Side::mixed &&
+                           surface_.may_be_flat(look);
+  Reading reading;
+  if (reads_share || reads_block) reading = surface_.read(at, look.point);
+
+  const double gap = squared_gap(at, reading);
+  const bool hidden = lanes.from(!near && is_hidden_share(gap, level_.tool_reach), Unit::of_share);
+  const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
+  const bool whole = side == Side::behind || (side == Side::uncut && behind);
+  if (!active) return;
+  if (lanes.lane == Unit::of_share && head) {
+    std::uint32_t word = whole ? kWhole : 0;
+    if (side == Side::mixed && of_sphere == Side::mixed) word |= kCountsPoints;
+    if ((whole || side == Side::mixed) && hidden) word |= kHidden;
+    if (hidden && (whole || (side == Side::mixed && divided))) atomicAdd(&counters_.hidden, 1U);
+    note_share(unit, word, gap);
+  }
+  if (lanes.lane != Unit::of_block) return;
+  const std::uint32_t of = (divided ? Task::kOfDivided : 0U) | (hidden ? Task::kOfHidden : 0U);
+  if (side == Side::mixed && (flags & Unit::has_block) != 0) {
+    TangentPlane tangent;
+    const bool is_flat = reads_block && surface_.is_flat(look, reading, ball.radius, tangent) &&
+                         !measure_of({.center = unit.balls[Unit::of_share].center,
+                                      .reach = unit.balls[Unit::of_share].radius})
+                              .is_hidden(tangent.foot);
+    list_block(unit, at, look.side, is_flat, tangent, of);
+  } else if (whole && (flags & Unit::is_compact) != 0) {
+    if (head) lists_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
+  } else if (whole) {
+    const unsigned count = (flags & Unit::has_block) != 0 ? 1 : 0;
+    lists_.add(TaskLists::pieces, {unit.share, of | Task::whole_block, unit.block, count});
+  }
+}
+
+template <class Surface>
+__device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_t word,
+                                                  double gap) {
+  const std::uint32_t i = unit.share;
+  if (word != 0) atomicOr(&notes_.words[i], word);
+  space_.gaps[i] = gap;
+  space_.parents[i + 1] = i + 1;
+  next_.clear(i, (unit.flags & Unit::is_divided) != 0);
+}
+
+// Lists a block of a mixed share.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Vec3 center, Side side,
+                                                  bool is_flat, const TangentPlane& tangent,
+                                                  std::uint32_t of) {
+  if (side == Side::free) return;
+  if (side != Side::mixed) {
+    lists_.add(TaskLists::pieces, {unit.share, of | Task::block, unit.block, 1});
+    return;
+  }
+  const std::uint32_t begin = unit.begin, count = unit.end - begin;
+  const bool narrow = count <= TaskLists::kNarrow;
+  if (is_flat) {
+    const unsigned list = narrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
+    const unsigned slot = lists_.add(list, {unit.share, of | Task::samples, begin, count});
+    flat(list, slot) = {tangent, center};
+  } else if (narrow) {
+    lists_.add(TaskLists::samples_narrow, {unit.share, of | Task::samples, begin, count});
+  } else if ((of & Task::kOfDivided) != 0 && count <= 2 * TaskLists::kWide) {
+    const std::uint32_t half = (count + 1) / 2;
+    lists_.add(TaskLists::samples_wide, {unit.share, of | Task::samples, begin, half});
+    lists_.add(TaskLists::samples_wide,
+               {unit.share, of | Task::samples, begin + half, count - half});
+  } else {
+    lists_.add(TaskLists::samples_wide, {unit.share, of | Task::samples, begin, count});
+  }
+}
+
+// Warps take bundles of tasks of one list, as many as have room in a warp; those that take longest
+// first.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::measure_tasks() {
+  for (;;) {
+    unsigned bundle = 0;
+    if (threadIdx.x % 32 == 0) bundle = atomicAdd(&lists_.next_bundle, 1U);
+    bundle = __shfl_sync(~0U, bundle, 0);
+    unsigned list = 0;
+    for (; list < TaskLists::kLists; ++list) {
+      const unsigned tasks = 32 / TaskLists::width(list);
+      const unsigned bundles = (lists_.counts[list] + tasks - 1) / tasks;
+      if (bundle < bundles) break;
+      bundle -= bundles;
+    }
+    if (list == TaskLists::kLists) return;
+    const Tile tile(TaskLists::width(list));
+    const unsigned slot = bundle * (32 / tile.width) + threadIdx.x % 32 / tile.width;
+    if (slot < lists_.counts[list]) measure(tile, list, slot, lists_.tasks[list][slot]);
+    __syncwarp();
+  }
+}
+
+template <class Surface>
+__device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, unsigned slot,
+                                               const Task& task) {
+  const std::uint32_t i = task.share;
+  const Measure measure = measure_of({.center = level_.centers[i], .reach = level_.reach[i]});
+  CellResult result;
+  Pieces pieces;
+  if (TaskLists::is_flat(list))
+    add_flat(tile, measure, flat(list, slot), task, result);
+  else
+    add_pieces(tile, measure, task, result, pieces);
+  if (tile.leads()) note_task(task, result, pieces.hidden_counts);
+}
+
+// The result is there for the first thread of the tile.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::add_pieces(const Tile& tile, const Measure& measure,
+                                                  const Task& task, CellResult& result,
+                                                  Pieces& pieces) {
+  using Pass = typename Measure::Pass;
+  const bool divided = (task.flags & Task::kOfDivided) != 0;
+#pragma unroll 1
+  for (Pass pass = Pass::seen;; pass = Pass::hidden) {
+#pragma unroll 1
+    for (std::uint32_t k = tile.lane; k < task.count; k += tile.width)
+      add_piece(measure, task, task.begin + k, pass, result, pieces);
+    __syncwarp(tile.mask);
+    if (pass == Pass::hidden) break;
+    if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
+    if (divided || !tile.any(pieces.any_hidden)) break;
+  }
+  if (tile.any(pieces.any_inside)) add_up(tile, result.sum);
+  result.is_far = tile.any(result.is_far);
+  pieces.hidden_counts = tile.any(pieces.hidden_counts);
+}
+
+// What one piece adds to CellMeasure::run() or, where its share is whole, to reached().
+template <class Surface>
+__device__ void ShareMeasure<Surface>::add_piece(const Measure& measure, const Task& task,
+                                                 std::uint32_t k, typename Measure::Pass pass,
+                                                 CellResult& result, Pieces& pieces) {
+  using Pass = typename Measure::Pass;
+  const Task::Form form = task.form();
+  const SharePiece piece =
+      form == Task::samples
+          ? piece_of(level_.samples[k])
+          : piece_of((form == Task::whole_share ? level_.share_masses : level_.block_masses)[k]);
+  const typename Measure::PieceLook look = measure.look_at(piece);
+  if (!look.is_inside) return;
+  result.is_far |= look.is_far;
+  if (!task.is_whole()) {
+    if (look.is_hidden != (pass == Pass::hidden)) {
+      pieces.any_hidden |= look.is_hidden;
+      if (!look.is_hidden || (task.flags & Task::kOfDivided) == 0) return;
+      pieces.hidden_counts |= ToolSum::Sum::round(measure.weight_inside(piece, look)) > 0;
+      space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)] = {
+          task.share, form == Task::samples ? k : k | HiddenPiece::kIsBlock};
+      return;
+    }
+    if (look.is_hidden && !measure.is_vouched_for(look, result.plane)) return;
+    if (!look.is_hidden && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);
+  }
+  pieces.any_inside = true;
+  measure.add(piece, look, result.sum);
+}
+
+// The weights of the samples by all threads, their sums in the samples' order by four. The result
+// is there for the first thread of the tile.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure& measure,
+                                                const FlatLook& flat, const Task& task,
+                                                CellResult& result) {
+  typename Measure::BlockLook look;
+  look.tangent = flat.tangent;
+  look.center = flat.center;
+  const typename Measure::FlatCut cut = measure.flat_cut(look);
+  const unsigned slot = threadIdx.x - tile.lane;
+  bool is_cut = false;
+  double sum = 0;  // of this thread's row of terms
+#pragma unroll 1
+  for (std::uint32_t begin = 0; begin < task.count; begin += tile.width) {
+    const std::uint32_t k = begin + tile.lane;
+    const CellSample sample = level_.samples[task.begin + (k < task.count ? k : 0)];
+    const double inside = k < task.count ? measure.weight_inside(sample, cut, is_cut) : 0;
+    const Vec3 moment = inside != 0 ? inside * widen(sample.center) : Vec3{};
+    terms_[0][slot + tile.lane] = inside;
+    terms_[1][slot + tile.lane] = moment.x;
+    terms_[2][slot + tile.lane] = moment.y;
+    terms_[3][slot + tile.lane] = moment.z;
+    __syncwarp(tile.mask);
+    const unsigned count = min(tile.width, task.count - begin);
+    if (tile.lane < 4) {
+#pragma unroll 4
+      for (unsigned t = 0; t < count; ++t) sum += terms_[tile.lane][slot + t];
+    }
+    __syncwarp(tile.mask);
+  }
+  is_cut = tile.any(is_cut);
+  const double sums[4] = {tile.from(sum, 0), tile.from(sum, 1), tile.from(sum, 2),
+                          tile.from(sum, 3)};
+  if (tile.leads()) measure.add_flat(look, sums[0], {sums[1], sums[2], sums[3]}, is_cut, result);
+}
+
+// By one thread, what all threads of its tile have found.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::note_task(const Task& task, const CellResult& result,
+                                                 bool hidden_counts) {
+  const std::uint32_t i = task.share;
+  const bool cut = result.plane.count > 0;
+  const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || hidden_counts);
+  std::uint32_t bits = cut ? kCut : partial ? kPartial : 0;
+  if (result.is_far && !cut) bits |= kUnsure;
+  if ((bits & kUnsure) != 0) atomicAdd(&counters_.unsure, 1U);
+  if (bits != 0) atomicOr(&notes_.words[i], bits);
+  if ((task.flags & Task::kOfDivided) != 0 && task.form() != Task::whole_share) {
+    add_atomically(result.sum, notes_.sums[i]);
+    if (cut) add_atomically(result.plane, notes_.planes[i]);
+    return;
+  }
+  if (partial && !cut && (task.flags & Task::kOfHidden) != 0) atomicAdd(&counters_.hidden, 1U);
+  notes_.sums[i] = result.sum;
+  if (cut) notes_.planes[i] = result.plane;
+}
+
+}  // namespace vpm::cuda

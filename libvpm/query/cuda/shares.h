@@ -1,0 +1,79 @@
+// What a query notes of the shares: one word each, sums, and what later steps need.
+#pragma once
+
+#include "libvpm/query/cuda/team.h"
+#include "libvpm/query/cuda/views.h"
+#include "libvpm/query/passage.h"
+
+namespace vpm::cuda {
+
+// The bits of a share's word. Several threads may add to the word of a divided share.
+enum ShareBit : std::uint32_t {
+  kCut = 1,      // the surface passes through a piece
+  kPartial = 2,  // pieces are inside, as far as the sum says
+  kWhole = 4,    // behind the surface
+  kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
+  kUnsure = 16,  // so it does of a piece
+  kCountsPoints = 32,  // the surface may pass the sphere
+  kCounted = 64,       // in the result, as boundary or as inside
+};
+
+__device__ inline bool may_be_inside(std::uint32_t word) {
+  return (word & kCut) == 0 && (word & (kPartial | kWhole)) != 0;
+}
+__device__ inline bool is_passable(std::uint32_t word) {
+  return may_be_inside(word) && (word & kHidden) == 0;
+}
+
+// Of each share. Words and points, and sums and planes of divided shares, are 0 at the start of a
+// query: many add to them.
+struct ShareNotes {
+  std::uint32_t* words = nullptr;
+  std::uint32_t* points = nullptr;  // of the cloud, in the sphere
+  ToolSum* sums = nullptr;
+  ContactPlane* planes = nullptr;  // of cut shares
+
+  __device__ void clear(std::uint32_t i, bool divided) const {
+    words[i] = 0;
+    points[i] = 0;
+    if (!divided) return;
+    sums[i] = ToolSum{};
+    planes[i] = ContactPlane{};
+  }
+};
+
+// The plane that crosses a flat block.
+struct FlatLook {
+  TangentPlane tangent;
+  Vec3 center;  // of the block
+};
+
+// A piece of a divided share whose own plane must vouch for it.
+struct HiddenPiece {
+  std::uint32_t share = 0, piece = 0;  // a sample, or a block as a whole
+  static constexpr std::uint32_t kIsBlock = 0x80000000U;
+};
+
+// Memory of one query.
+struct RefinedSpace {
+  ShareNotes notes[2];               // of this query and, cleared by it, of the next: by turns
+  double* gaps = nullptr;            // squared_gap of shares that may be inside
+  std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
+  std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
+  HiddenPiece* hidden = nullptr;
+  FlatLook* flats = nullptr;  // of each block's list of flat tasks
+};
+
+// Counters of a query; 0 at the start.
+struct RefinedCounters {
+  unsigned hidden = 0;         // shares
+  unsigned unsure = 0;         // shares, at most as many
+  unsigned hidden_pieces = 0;  // of divided shares
+  unsigned cut = 0;            // as far as they are listed
+};
+
+__device__ inline unsigned read(const unsigned& counter) {
+  return *const_cast<const volatile unsigned*>(&counter);
+}
+
+}  // namespace vpm::cuda
