@@ -113,8 +113,51 @@ def for_scene(report):
                   "packing for the scene"], rows)
 
 
+def replay(report):
+    queries = {(r["what"], r["spheres"], r["threads"]): r for r in report["results"] if r["part"] == "query"}
+    names = {"refined": "frame prepared", "refined, cold cloud": "frame not prepared",
+             "distance grid": "dense distance grid of the tool, penalty force, no volume",
+             "voxel count": "OpenVDB voxel count, volume, no force"}
+    rows = []
+    for what, name in names.items():
+        for spheres in sorted({n for (w, n, _) in queries if w == what}):
+            of = [queries[what, spheres, threads] for threads in (1, 2)]
+            rows.append([name, thousands(spheres) if spheres else ""]
+                        + [f"{r['median_us']:.0f} / {r['p99_us']:.0f}" for r in of])
+    text = table(["query, 5 % of the tool inside", "spheres", "µs median / p99, 1 thread", "2 threads"], rows)
+    for r in (r for r in report["results"] if r["part"] == "coherent"):
+        text += (f"\n\nCoherent poses {r['step_mm']:g} mm apart, {thousands(r['spheres'])} spheres: {r['ratio']:.2f} of the"
+                 f" time of the same poses alone, {'the same' if r['same_bits'] else 'OTHER'} bits.")
+    for r in (r for r in report["results"] if r["part"] == "outside"):
+        text += (f"\n\nTwice the points ({r['cloud']}, {thousands(r['points'])} to {thousands(r['points_doubled'])}), those"
+                 f" added out of reach: {100 * r['change']:+.1f} % of the time.")
+    return text
+
+
+def replay_frames(report):
+    frames = {}
+    for r in (r for r in report["results"] if r["part"] == "frame"):
+        frames.setdefault(r["what"], {})[r["threads"]] = r
+    return table(["frame of 640 x 480", "ms, 1 thread", "2 threads"],
+                 [[what] + [f"{of[threads]['median_ms']:.2f}" for threads in (1, 2)] for what, of in frames.items()])
+
+
+def replay_stream(report):
+    rows = [[thousands(r["spheres"]), thousands(r["steps"]), r["frames"]]
+            + [f"{r[key]:.0f}" for key in ("p50_us", "p99_us", "p99.9_us", "max_us")]
+            + [r["deadline_misses"], f"{r['prepare_ms']:.1f}", f"{r['real_time_factor']:.1f}"]
+            for r in report["results"] if r["part"] == "stream"]
+    soak = next(r for r in report["results"] if r["part"] == "soak")
+    return table([f"{report['settings']['recording']}: spheres", "steps", "frames", "µs: median", "p99", "p99.9", "max",
+                  "over 1 ms", "frame from its file, ms", "× real time"], rows) + (
+        f"\n\nSoak: {thousands(soak['queries'])} queries over {thousands(soak['frames'])} frames:"
+        f" {soak['memory_before_mb']:.0f} MB after the first round, {soak['memory_after_mb']:.0f} MB at the end;"
+        f" {soak['rounds_with_other_results']} of {soak['rounds']} rounds with other results.")
+
+
 PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
-                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing")},
+                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"), "replay": (replay, "replay"),
+                       "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
 
@@ -122,6 +165,8 @@ def filled(page, text):
     for name, (make, suite) in PAGES[page].items():
         begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
         report = results(suite)
+        if report is None and begin not in text:
+            continue  # neither measured nor written of yet
         if report is None or begin not in text:
             sys.exit(f"result_tables.py: no tests/results/{suite}.json, or no {begin} in {page}")
         before, rest = text.split(begin)

@@ -1,6 +1,7 @@
 // Recorded motions between their poses.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
@@ -13,6 +14,9 @@ class TimedPath {
   // Where poses have times these must ascend. Throws Error(refused): no pose, times that do not
   // ascend or that only some have, and what the reader throws.
   explicit TimedPath(PoseReader& reader);
+  // As many times, ascending, as poses, or none; at least one pose.
+  TimedPath(std::vector<double> times, std::vector<Pose> poses)
+      : times_(std::move(times)), poses_(std::move(poses)) {}
 
   bool has_times() const { return !times_.empty(); }
   double start() const { return times_.front(); }  // s, of paths with times

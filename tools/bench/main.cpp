@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes, data;
   bool quick = false, all = false;
-  tool.app().add_option("suite", suite, "accuracy, extremes, packing, timing or tradeoff");
+  tool.app().add_option("suite", suite, "accuracy, extremes, packing, replay, timing or tradeoff");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
@@ -19,8 +19,10 @@ int main(int argc, char** argv) {
                       "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
   tool.app().add_option("--meshes", meshes,
                         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
-  tool.app().add_option("--data", data,
-                        "accuracy --all: folder whose depth/ holds recorded depth images");
+  tool.app().add_option(
+      "--data", data,
+      "accuracy --all, replay: folder whose depth/ holds recorded depth images; replay: or "
+      "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(

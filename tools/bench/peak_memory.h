@@ -7,4 +7,7 @@ namespace vpm::bench {
 void reset_peak_memory();
 double peak_memory_mb();
 
+// What it holds now, without what has been freed, MB; 0 likewise.
+double resident_memory_mb();
+
 }  // namespace vpm::bench

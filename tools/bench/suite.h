@@ -13,7 +13,8 @@ struct SuiteOptions {
   bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes
   std::function<void(double fraction)> progress;
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
-  std::string data = {};    // accuracy --all: folder of recorded depth images; empty: none
+  std::string data = {};    // accuracy --all: folder of recorded depth images; replay: likewise, or
+                            // a recording; empty: none
 };
 
 // Throws Error(usage) naming the suites there are.
@@ -35,5 +36,9 @@ Report run_tradeoff(const SuiteOptions& options);
 // Packings beside greedy packers on voxels, growth, and the cost from 10^2 to 10^5 spheres (10^6
 // with `all`).
 Report run_packing(const SuiteOptions& options);
+
+// A haptic loop on a recorded stream: queries of warm and cold clouds beside what is written by
+// hand, coherent poses, preparation of frames, a path through the stream, a soak of 10^6 queries.
+Report run_replay(const SuiteOptions& options);
 
 }  // namespace vpm::bench

@@ -1,0 +1,117 @@
+// vpm-bench replay: a haptic loop on a recorded stream of frames.
+
+#include <stdlib.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/scenes.h"
+#include "libvpm/synthetic/shapes.h"
+#include "tools/bench/penetration_case.h"
+#include "tools/bench/replay_parts.h"
+#include "tools/bench/suite.h"
+
+namespace vpm::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// An organised PCD of what a camera sees.
+std::string pcd_of(const DepthImage& depth, const Intrinsics& k) {
+  const std::string size = std::to_string(depth.width), rows = std::to_string(depth.height);
+  std::string text = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+                     size + "\nHEIGHT " + rows + "\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " +
+                     std::to_string(depth.depth.size()) + "\nDATA binary\n";
+  for (std::uint32_t v = 0; v < depth.height; ++v) {
+    for (std::uint32_t u = 0; u < depth.width; ++u) {
+      const float z = depth.depth[depth.index(u, v)];
+      const Vec3f p = z > 0 ? narrow(unproject(k, u, v, z)) : Vec3f{NAN, NAN, NAN};
+      for (const float x : {p.x, p.y, p.z})
+        text.append(reinterpret_cast<const char*>(&x), sizeof x);
+    }
+  }
+  return text;
+}
+
+// Where there is no recording: a camera that goes past a ball, 15 frames with Kinect noise, in a
+// folder that goes with this.
+class SyntheticRecording {
+ public:
+  SyntheticRecording() {
+    std::string name = (fs::temp_directory_path() / "vpm-replay-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw Error(ErrorKind::cannot_write, "cannot make a folder like " + name);
+    folder_ = name;
+    synthetic::Scene scene = synthetic::make_scene("ball");
+    constexpr int kFrames = 15;
+    constexpr double kStep = 0.01;  // m between frames
+    for (int k = 0; k < kFrames; ++k) {
+      scene.camera.to_world.translation = {kStep * k, 0, 0};
+      const std::string stem = (folder_ / ("frame-" + std::to_string(100 + k))).string();
+      const DepthImage depth = synthetic::render_with_kinect_noise(
+          *scene.surface, scene.camera, static_cast<std::uint64_t>(k) + 1);
+      file::write_all(stem + ".pcd", pcd_of(depth, scene.camera.intrinsics));
+      file::write_all(stem + ".pose.txt",
+                      "1 0 0 " + std::to_string(kStep * k) + "\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+    }
+    const Intrinsics& i = scene.camera.intrinsics;
+    file::write_all((folder_ / "camera-intrinsics.txt").string(),
+                    std::to_string(i.fx) + " 0 " + std::to_string(i.cx) + "\n0 " +
+                        std::to_string(i.fy) + " " + std::to_string(i.cy) + "\n0 0 1\n");
+  }
+  ~SyntheticRecording() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  SyntheticRecording(const SyntheticRecording&) = delete;
+  SyntheticRecording& operator=(const SyntheticRecording&) = delete;
+  std::string folder() const { return folder_.string(); }
+
+ private:
+  fs::path folder_;
+};
+
+// The red kitchen of a folder of depth images, or the folder itself.
+std::string recording_in(const std::string& data) {
+  const fs::path kitchen = fs::path(data) / "depth" / "redkitchen_seq";
+  return fs::is_directory(kitchen) ? kitchen.string() : data;
+}
+
+ReplayTool make_replay_tool(bool quick) {
+  const std::vector<std::uint32_t> levels = quick ? std::vector<std::uint32_t>{250, 1000}
+                                                  : std::vector<std::uint32_t>{1000, 17000, 100000};
+  const Solid solid = synthetic::make_twisted_torus(0.09, 0.05, 3, 900);
+  return {solid, make_tool(solid, levels), levels};
+}
+
+}  // namespace
+
+Report run_replay(const SuiteOptions& options) {
+  Report report;
+  report.suite = "replay";
+  std::optional<SyntheticRecording> synthetic;
+  if (options.data.empty()) synthetic.emplace();
+  const std::string folder = synthetic ? synthetic->folder() : recording_in(options.data);
+  const ReplayTool tool = make_replay_tool(options.quick);
+  report.settings = {{"quick", options.quick},
+                     {"shape", "twisted torus, 0.25 m"},
+                     {"spheres", tool.levels},
+                     {"recording", synthetic ? "synthetic" : fs::path(folder).filename().string()}};
+  const std::function<void()> parts[] = {[&] { time_frames(options.quick, report); },
+                                         [&] { time_queries(tool, options.quick, report); },
+                                         [&] { time_coherence(tool, options.quick, report); },
+                                         [&] { time_points_outside(tool, options.quick, report); },
+                                         [&] { run_stream(tool, folder, options.quick, report); },
+                                         [&] { run_soak(tool, folder, options.quick, report); }};
+  int done = 0;
+  for (const auto& part : parts) {
+    part();
+    if (options.progress) options.progress(++done / static_cast<double>(std::size(parts)));
+  }
+  return report;
+}
+
+}  // namespace vpm::bench

@@ -1,0 +1,262 @@
+// The parts of `vpm-bench replay` on one frame of a scene that is always at hand.
+
+#include <cmath>
+#include <cstdio>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/scenes.h"
+#include "tools/bench/penetration_case.h"
+#include "tools/bench/replay_parts.h"
+#include "tools/bench/replay_peers.h"
+
+namespace vpm::bench {
+namespace {
+
+constexpr std::uint64_t kNoiseSeed = 1;
+constexpr double kInside = 0.05;  // of the tool's volume
+
+synthetic::Scene the_scene() {
+  return synthetic::make_scene("tilted-wall");
+}
+
+DepthImage noisy_depth(const synthetic::Scene& scene) {
+  return synthetic::render_with_kinect_noise(*scene.surface, scene.camera, kNoiseSeed);
+}
+
+// Where kInside of the tool is inside, by bisection along the optical axis.
+Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
+  Query query(tool, {});
+  double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
+  constexpr int kHalvings = 30;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double z = 0.5 * (clear + deep);
+    (query.run(cloud, {turned(), {0, 0, z}}).volume_fraction > kInside ? deep : clear) = z;
+  }
+  return {turned(), {0, 0, deep}};
+}
+
+// Around the pose by this radius: no two queries are the same.
+std::vector<Pose> circle(const Pose& middle, double radius, int poses) {
+  std::vector<Pose> path(static_cast<std::size_t>(poses), middle);
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const double angle = 2 * kPi * static_cast<double>(k) / poses;
+    path[k].translation += Vec3{radius * std::cos(angle), radius * std::sin(angle), 0};
+  }
+  return path;
+}
+
+void add_query(Report& report, const std::string& what, std::uint32_t spheres, int threads,
+               const Durations& d, double volume_fraction) {
+  report.results.push_back({{"part", "query"},
+                            {"what", what},
+                            {"spheres", spheres},
+                            {"threads", threads},
+                            {"median_us", 1e6 * d.quantile(0.5)},
+                            {"p99_us", 1e6 * d.quantile(0.99)},
+                            {"volume_fraction", volume_fraction},
+                            {"runs", d.size()}});
+  char line[160];
+  std::snprintf(line, sizeof line, "%-22s %7u spheres, %d thread%s %10.1f us (p99 %.1f)\n",
+                what.c_str(), spheres, threads, threads > 1 ? "s:" : ": ", 1e6 * d.quantile(0.5),
+                1e6 * d.quantile(0.99));
+  report.summary += line;
+}
+
+// Every second call is of the other: whatever the machine does meanwhile happens to both.
+std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
+                                              const std::function<void(int)>& first,
+                                              const std::function<void(int)>& second) {
+  std::vector<double> a, b;
+  for (int k = 0; k < warm_up + calls; ++k) {
+    for (auto [body, seconds] : {std::pair(&first, &a), std::pair(&second, &b)}) {
+      const auto start = std::chrono::steady_clock::now();
+      (*body)(k);
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+      if (k >= warm_up) seconds->push_back(took.count());
+    }
+  }
+  return {Durations(std::move(a)), Durations(std::move(b))};
+}
+
+bool same_bits(const Result& a, const Result& b) {
+  return a.volume == b.volume && a.wrench.force == b.wrench.force &&
+         a.wrench.torque == b.wrench.torque && a.boundary == b.boundary && a.inside == b.inside;
+}
+
+// A wall by a camera of this width; what it sees on the left is always the same.
+Cloud wide_view(std::uint32_t width, bool keeps_camera) {
+  synthetic::Scene scene = synthetic::make_scene("wall");
+  scene.camera.width = width;
+  Cloud cloud =
+      make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{});
+  if (!keeps_camera) {
+    cloud.sensor.reset();
+    cloud.pixels.clear();
+  }
+  return cloud;
+}
+
+}  // namespace
+
+Durations timed(int calls, int warm_up, const std::function<void(int call)>& body) {
+  std::vector<double> seconds;
+  for (int k = 0; k < warm_up + calls; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    body(k);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    if (k >= warm_up) seconds.push_back(took.count());
+  }
+  return Durations(std::move(seconds));
+}
+
+void time_queries(const ReplayTool& tool, bool quick, Report& report) {
+  const synthetic::Scene scene = the_scene();
+  const DepthImage depth = noisy_depth(scene);
+  const Cloud cloud = make_cloud(depth, scene.camera, NormalOptions{});
+  const PreparedCloud prepared(cloud);
+  const Peers peers(tool.solid);
+  const PixelCloud pixels = make_pixel_cloud(depth, scene.camera);
+  constexpr double kRadius = 1e-3;
+  const std::vector<Pose> poses = circle(pose_inside(tool.model, prepared), kRadius, 64);
+  const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
+  const int calls = quick ? 64 : 1280, few = quick ? 3 : 31, warm_up = 16;
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    for (const std::uint32_t level : tool.levels) {
+      Query query(tool.model, {.level = level});
+      Result result;
+      const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
+      const Durations of_warm = timed(calls, warm_up, warm);
+      add_query(report, "refined", level, threads, of_warm, result.volume_fraction);
+      const Durations of_cold = timed(few, 1, [&](int k) {
+        const PreparedCloud anew(cloud);
+        result = query.run(anew, pose(k));
+      });
+      add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
+    }
+    const Camera& camera = scene.camera;
+    const auto to_camera = [&](int k) { return relative_to(camera.to_world, pose(k)); };
+    Wrench force;
+    add_query(report, "distance grid", 0, threads,
+              timed(calls, warm_up, [&](int k) { force = peers.penalty(pixels, to_camera(k)); }),
+              0);
+    double volume = 0;
+    const Durations of_count = timed(quick ? 16 : 320, warm_up, [&](int k) {
+      volume = peers.count_voxels(pixels, to_camera(k));
+    });
+    add_query(report, "voxel count", 0, threads, of_count, volume / tool.model.volume);
+  }
+  set_thread_count(0);
+  report.settings["query"] = {{"points", prepared.positions().size()},
+                              {"scene", scene.name},
+                              {"noise", "kinect"},
+                              {"inside", kInside},
+                              {"peer_voxels", kPeerVoxels}};
+}
+
+void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
+  const synthetic::Scene scene = the_scene();
+  const PreparedCloud cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
+  constexpr double kStep = 0.5e-3, kRadius = 20e-3;
+  const int poses = static_cast<int>(2 * kPi * kRadius / kStep);
+  const std::vector<Pose> path = circle(pose_inside(tool.model, cloud), kRadius, poses);
+  set_thread_count(1);
+  for (const std::uint32_t level : tool.levels) {
+    Query stateless(tool.model, {.level = level}),
+        coherent(tool.model, {.level = level, .coherent = true});
+    Result alone, following;
+    bool same = true;
+    const auto pose = [&](int k) { return path[static_cast<std::size_t>(k) % path.size()]; };
+    const auto [a, b] = timed_in_turn((quick ? 1 : 8) * poses, poses / 4,
+                                      [&](int k) { alone = stateless.run(cloud, pose(k)); },
+                                      [&](int k) {
+                                        following = coherent.run(cloud, pose(k));
+                                        same = same && same_bits(alone, following);
+                                      });
+    const double ratio = b.mean() / a.mean();
+    report.results.push_back({{"part", "coherent"},
+                              {"spheres", level},
+                              {"step_mm", 1e3 * kStep},
+                              {"stateless_us", 1e6 * a.mean()},
+                              {"coherent_us", 1e6 * b.mean()},
+                              {"ratio", ratio},
+                              {"same_bits", same},
+                              {"runs", a.size()}});
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "coherent               %7u spheres: %.1f us, stateless %.1f us: %.2f, %s bits\n",
+                  level, 1e6 * b.mean(), 1e6 * a.mean(), ratio, same ? "same" : "OTHER");
+    report.summary += line;
+  }
+  set_thread_count(0);
+}
+
+void time_points_outside(const ReplayTool& tool, bool quick, Report& report) {
+  set_thread_count(1);
+  for (const bool camera : {true, false}) {
+    const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
+    const std::uint32_t level = tool.levels[camera ? 1 : 0];
+    const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
+    Query query(tool.model, {.level = level});
+    const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
+    const auto [a, b] = timed_in_turn(
+        quick ? 64 : 1280, 8, [&](int k) { query.run(once, pose(k)); },
+        [&](int k) { query.run(twice, pose(k)); });
+    const double change = b.quantile(0.5) / a.quantile(0.5) - 1;
+    report.results.push_back({{"part", "outside"},
+                              {"cloud", camera ? "camera" : "points"},
+                              {"spheres", level},
+                              {"points", once.positions().size()},
+                              {"points_doubled", twice.positions().size()},
+                              {"once_us", 1e6 * a.quantile(0.5)},
+                              {"doubled_us", 1e6 * b.quantile(0.5)},
+                              {"change", change},
+                              {"runs", a.size()}});
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "twice the points, %s %7u spheres: %.1f us, before %.1f us: %+.1f %%\n",
+                  camera ? "camera" : "points", level, 1e6 * b.quantile(0.5), 1e6 * a.quantile(0.5),
+                  100 * change);
+    report.summary += line;
+  }
+  set_thread_count(0);
+}
+
+void time_frames(bool quick, Report& report) {
+  const synthetic::Scene scene = the_scene();
+  const DepthImage depth = noisy_depth(scene);
+  const int calls = quick ? 5 : 101, warm_up = 2;
+  for (const int threads : {1, 2}) {
+    set_thread_count(threads);
+    const auto add = [&](const std::string& what, const std::function<void(int)>& body) {
+      const Durations d = timed(calls, warm_up, body);
+      report.results.push_back({{"part", "frame"},
+                                {"what", what},
+                                {"threads", threads},
+                                {"median_ms", 1e3 * d.quantile(0.5)},
+                                {"p99_ms", 1e3 * d.quantile(0.99)},
+                                {"runs", d.size()}});
+      char line[120];
+      std::snprintf(line, sizeof line, "frame: %-24s %d thread%s %8.2f ms\n", what.c_str(), threads,
+                    threads > 1 ? "s:" : ": ", 1e3 * d.quantile(0.5));
+      report.summary += line;
+    };
+    const Intrinsics& k = scene.camera.intrinsics;
+    std::vector<Vec3f> normals;
+    NormalOptions pca;
+    pca.method = NormalMethod::pca;
+    add("normals pca", [&](int) { normals = estimate_normals(depth, k, pca); });
+    add("normals inverse-depth", [&](int) { normals = estimate_normals(depth, k, {}); });
+    Cloud cloud;
+    add("cloud assembly", [&](int) { cloud = assemble_cloud(depth, scene.camera, normals); });
+    add("cloud preparation", [&](int) { PreparedCloud prepared(cloud); });
+    add("all, inverse-depth",
+        [&](int) { PreparedCloud prepared(make_cloud(depth, scene.camera, NormalOptions{})); });
+  }
+  set_thread_count(0);
+}
+
+}  // namespace vpm::bench
