@@ -30,8 +30,9 @@ FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& 
       usual_interval_(median_interval(recording.frames)),
       is_over_(recording.frames.empty()) {
   if (is_over_) return;
-  if (options.repeat && !(recording.frames.back().time > recording.frames.front().time))
-    refuse("frames that all come at one time cannot be repeated");
+  const double lasts = recording.frames.back().time - recording.frames.front().time;
+  if (options.repeat && !(lasts * options.rate >= 1))
+    refuse("frames that all come within one step cannot be repeated");
   time_ = turn_time_ = recording.frames.front().time;
 }
 

@@ -30,7 +30,8 @@ class FrameSchedule {
   // late. Numbered frames are never late, but missing.
   static constexpr double kLateAfter = 1.5;
 
-  // `recording` must outlive the schedule.
+  // `recording` must outlive the schedule. Throws Error(refused) where frames that all come within
+  // one step are to be repeated.
   FrameSchedule(const Recording& recording, const ScheduleOptions& options);
 
   // Nothing where no frame comes before the loop ends.

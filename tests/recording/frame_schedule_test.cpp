@@ -79,6 +79,8 @@ TEST(FrameSchedule, RepeatsBackAndForth) {
   EXPECT_EQ(frames, (std::vector<std::size_t>{0, 1, 2, 1, 0, 1, 2}));
   const Recording one = frames_at({0});
   EXPECT_THROW(FrameSchedule(one, {10, 10, 0, 0, true}), Error);
+  const Recording short_one = frames_at({0, 1e-9});  // a million of them would come at each step
+  EXPECT_THROW(FrameSchedule(short_one, {1000, 10, 0, 0, true}), Error);
 }
 
 TEST(FrameSchedule, AFrameAfterALongGapIsLate) {
