@@ -1,6 +1,7 @@
 // The second step of a query: the flood, and the sum of what it reaches.
 //
-// Shares that the flood may pass are joined where the graph has an edge, and with the entry where a
+// In a block's own memory the flood goes from share to share until nothing changes. Otherwise,
+// shares that the flood may pass are joined where the graph has an edge, and with the entry where a
 // cut share lets the flood in. What is joined with the entry is inside. The team meets between
 // joining and adding up; where another surface may hide something, which is rare, more often.
 #pragma once
@@ -12,17 +13,20 @@ namespace vpm::cuda {
 
 // Shares of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodShares = 3072;
+inline constexpr std::uint32_t kFloodEdges = 4096;  // of such a level
 struct FloodShared {
-  std::uint32_t words[kFloodShares], parents[kFloodShares + 1];
+  std::uint32_t words[kFloodShares];
+  Edge edges[kFloodEdges];     // from the front: between shares that the flood may pass
+  unsigned passages, entries;  // from the back: by which it may enter
 };
 
 template <class Surface, class Team>
 class Flood {
  public:
-  // `near` may be null: otherwise the level has no more than kFloodShares.
+  // `in_shared`: the level has no more than kFloodShares and kFloodEdges.
   __device__ Flood(const LevelView& level, const Surface& surface, const Pose& to_surface,
                    const RefinedSpace& space, unsigned turn, RefinedCounters& counters, Team& team,
-                   FloodShared* near)
+                   FloodShared& shared, bool in_shared)
       : level_(level),
         surface_(surface),
         to_surface_(to_surface),
@@ -30,15 +34,17 @@ class Flood {
         notes_(space.notes[turn % 2]),
         counters_(counters),
         team_(team),
-        words_(near != nullptr ? near->words : notes_.words),
-        flood_(near != nullptr ? near->parents : space.parents) {
-    if (near != nullptr) bring_near();
+        shared_(shared),
+        in_shared_(in_shared),
+        words_(in_shared ? shared.words : notes_.words),
+        flood_(space.parents) {
+    if (in_shared) bring_to_shared();
   }
 
   // This thread's part of the result. All threads of the team.
   __device__ RawResult run() {
-    const bool hidden = read(counters_.hidden) > 0;
-    if (hidden || read(counters_.unsure) > 0) {
+    const bool hidden = read(counters_.hidden) > 0, unsure = read(counters_.unsure) > 0;
+    if (hidden || unsure) {
       list_cut();
       team_.sync();
     }
@@ -46,24 +52,26 @@ class Flood {
       decide_hidden();
       team_.sync();
     }
-    for (std::uint32_t e = team_.thread(); e < level_.edge_count; e += team_.threads())
-      join(level_.edges[e]);
     const unsigned pieces = read(counters_.hidden_pieces);
     for (std::uint32_t k = team_.threads() - 1 - team_.thread(); k < pieces; k += team_.threads())
       add_hidden_piece(space_.hidden[k]);
+    if (in_shared_)
+      flood_in_shared();
+    else
+      join_shares();
     team_.sync();
-    return add_up_shares();
+    RawResult result = add_up_shares();
+    if (unsure) add_up_unsure(result);
+    return result;
   }
 
  private:
   using Measure = CellMeasure<Surface>;
 
-  __device__ void bring_near() {
-    for (std::uint32_t i = threadIdx.x; i < level_.count; i += blockDim.x) {
+  __device__ void bring_to_shared() {
+    if (threadIdx.x == 0) shared_.passages = shared_.entries = 0;
+    for (std::uint32_t i = threadIdx.x; i < level_.count; i += blockDim.x)
       words_[i] = notes_.words[i];
-      flood_.reset(i + 1);
-    }
-    if (threadIdx.x == 0) flood_.reset(0);
     __syncthreads();
   }
   __device__ Vec3 center(std::uint32_t i) const { return to_surface_ * level_.centers[i]; }
@@ -71,19 +79,26 @@ class Flood {
     return {notes_.planes[cut], center(cut), level_.reach[cut]};
   }
   __device__ bool is_inside(std::uint32_t i, std::uint32_t word) const {
-    return is_passable(word) && flood_.root(i + 1) == 0;
+    return in_shared_ ? (word & kReached) != 0 : is_passable(word) && flood_.root(i + 1) == 0;
   }
 
-  __device__ void join(const Edge& edge) const;
-  __device__ void enter(std::uint32_t cut, std::uint32_t sphere) const;
+  // Calls join(i, j) for every edge between shares that the flood may pass, enter(cut, i) for those
+  // by which it may enter.
+  template <class Join, class Enter>
+  __device__ void for_edges(const Join& join, const Enter& enter) const;
+  __device__ void join_shares() const;
+  __device__ void flood_in_shared();
+  __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
   __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t sphere) const;
   __device__ __noinline__ void add_hidden_piece(const HiddenPiece& hidden) const;
   __device__ __noinline__ void list_cut();
   __device__ __noinline__ void decide_hidden();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
   __device__ RawResult add_up_shares() const;
-  __device__ __noinline__ ToolSum sum_of_share(const Tile& warp, std::uint32_t sphere,
-                                               std::uint32_t word) const;
+  __device__ void add_share(std::uint32_t sphere, std::uint32_t word, ToolSum sum,
+                            RawResult& result) const;
+  __device__ __noinline__ void add_up_unsure(RawResult& result) const;
+  __device__ ToolSum sum_of_share(const Tile& warp, std::uint32_t sphere, std::uint32_t word) const;
 
   const LevelView& level_;
   const Surface& surface_;
@@ -92,25 +107,93 @@ class Flood {
   const ShareNotes& notes_;
   RefinedCounters& counters_;
   Team& team_;
+  FloodShared& shared_;
+  bool in_shared_;
   std::uint32_t* words_;
   UnionFind flood_;  // node 0 is the entry, node i + 1 share i
 };
 
 template <class Surface, class Team>
-__device__ void Flood<Surface, Team>::join(const Edge& edge) const {
-  const std::uint32_t a = words_[edge.larger], b = words_[edge.smaller];
-  if (is_passable(a) && is_passable(b))
-    flood_.join(edge.larger + 1, edge.smaller + 1);
-  else if ((a & kCut) != 0 && is_passable(b))
-    enter(edge.larger, edge.smaller);
-  else if ((b & kCut) != 0 && is_passable(a))
-    enter(edge.smaller, edge.larger);
+template <class Join, class Enter>
+__device__ void Flood<Surface, Team>::for_edges(const Join& join, const Enter& enter) const {
+  constexpr unsigned kTogether = 4;  // edges whose reads wait together
+  for (std::uint32_t first = team_.thread(); first < level_.edge_count;
+       first += kTogether * team_.threads()) {
+    Edge edges[kTogether];
+    std::uint32_t words[kTogether][2];
+#pragma unroll
+    for (unsigned k = 0; k < kTogether; ++k) {
+      const std::uint32_t e = first + k * team_.threads();
+      edges[k] = level_.edges[e < level_.edge_count ? e : first];
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kTogether; ++k) {
+      words[k][0] = words_[edges[k].larger];
+      words[k][1] = words_[edges[k].smaller];
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kTogether; ++k) {
+      if (first + k * team_.threads() >= level_.edge_count) break;
+      const std::uint32_t i = edges[k].larger, j = edges[k].smaller;
+      if (is_passable(words[k][0]) && is_passable(words[k][1]))
+        join(i, j);
+      else if ((words[k][0] & kCut) != 0 && is_passable(words[k][1]))
+        enter(i, j);
+      else if ((words[k][1] & kCut) != 0 && is_passable(words[k][0]))
+        enter(j, i);
+    }
+  }
 }
 
 template <class Surface, class Team>
-__device__ void Flood<Surface, Team>::enter(std::uint32_t cut, std::uint32_t i) const {
-  if (lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) || lies_behind(cut, i))
-    flood_.join(0, i + 1);
+__device__ void Flood<Surface, Team>::join_shares() const {
+  for_edges([&](std::uint32_t i, std::uint32_t j) { flood_.join(i + 1, j + 1); },
+            [&](std::uint32_t cut, std::uint32_t i) {
+              if (enters(cut, i)) flood_.join(0, i + 1);
+            });
+}
+
+// Edges that matter are listed first; in each round the flood passes all of them.
+template <class Surface, class Team>
+__device__ void Flood<Surface, Team>::flood_in_shared() {
+  for_edges(
+      [&](std::uint32_t i, std::uint32_t j) {
+        shared_.edges[atomicAdd(&shared_.passages, 1U)] = {i, j};
+      },
+      [&](std::uint32_t cut, std::uint32_t i) {
+        shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
+      });
+  __syncthreads();
+  const unsigned entries = shared_.entries, passages = shared_.passages;
+  for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
+    const Edge entry = shared_.edges[kFloodEdges - 1 - k];
+    if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], kReached);
+  }
+  bool changes = true;
+  while (__syncthreads_or(changes) != 0) {
+    constexpr unsigned kMost = kFloodEdges / kThreads;
+    unsigned crossed = 0;  // a bit for each edge of this thread
+#pragma unroll 4
+    for (unsigned n = 0; n < kMost; ++n) {
+      const unsigned k = threadIdx.x + n * blockDim.x;
+      if (k >= passages) break;
+      const Edge edge = shared_.edges[k];
+      crossed |= ((words_[edge.larger] ^ words_[edge.smaller]) & kReached) != 0 ? 1U << n : 0U;
+    }
+    __syncthreads();
+    changes = crossed != 0;
+    for (; crossed != 0; crossed &= crossed - 1) {
+      const Edge edge =
+          shared_.edges[threadIdx.x + (__ffs(static_cast<int>(crossed)) - 1) * blockDim.x];
+      atomicOr(&words_[edge.larger], kReached);
+      atomicOr(&words_[edge.smaller], kReached);
+    }
+  }
+}
+
+template <class Surface, class Team>
+__device__ bool Flood<Surface, Team>::enters(std::uint32_t cut, std::uint32_t i) const {
+  return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) || lies_behind(cut, i);
 }
 
 template <class Surface, class Team>
@@ -180,28 +263,35 @@ __device__ void Flood<Surface, Team>::decide_hidden() {
 template <class Surface, class Team>
 __device__ RawResult Flood<Surface, Team>::add_up_shares() const {
   RawResult result;
-  const Tile warp(32);
-  for (std::uint32_t first = team_.thread() - warp.lane; first < level_.count;
-       first += team_.threads()) {
-    const std::uint32_t i = first + warp.lane;
-    const std::uint32_t word = i < level_.count ? words_[i] : 0;
-    const bool cut = (word & kCut) != 0, inside = is_inside(i, word);
-    ToolSum sum;
-    if (cut || inside) sum = notes_.sums[i];
+  for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
+    const std::uint32_t word = words_[i];
     if ((word & kCountsPoints) != 0) result.points += notes_.points[i];
-    for (unsigned rest = __ballot_sync(~0U, inside && (word & kUnsure) != 0); rest != 0;
-         rest &= rest - 1) {
-      const auto lane = static_cast<unsigned>(__ffs(static_cast<int>(rest)) - 1);
-      const ToolSum all = sum_of_share(warp, first + lane, warp.from(word, lane));
-      if (warp.lane == lane) sum = all;
-    }
-    // The flood also passes through the hidden.
-    if (!cut && sum.volume.value == 0) continue;
-    notes_.words[i] = word | kCounted;
-    result.sum.add(sum);
-    ++(cut ? result.boundary : result.inside);
+    if ((word & kCut) != 0 || (may_be_inside(word) && (word & kUnsure) == 0))
+      add_share(i, word, notes_.sums[i], result);
   }
   return result;
+}
+
+// A share counts if it is cut, or the flood reaches it; the flood also passes through the hidden.
+template <class Surface, class Team>
+__device__ void Flood<Surface, Team>::add_share(std::uint32_t i, std::uint32_t word, ToolSum sum,
+                                                RawResult& result) const {
+  const bool cut = (word & kCut) != 0;
+  if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
+  notes_.words[i] = word | kCounted;
+  result.sum.add(sum);
+  ++(cut ? result.boundary : result.inside);
+}
+
+template <class Surface, class Team>
+__device__ void Flood<Surface, Team>::add_up_unsure(RawResult& result) const {
+  const Tile warp(32);
+  for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
+    const std::uint32_t word = words_[i];
+    if ((word & kUnsure) == 0 || !is_inside(i, word)) continue;
+    const ToolSum sum = sum_of_share(warp, i, word);
+    if (warp.leads()) add_share(i, word, sum, result);
+  }
 }
 
 // An inside share of which pieces are far behind the surface: the nearest cut share vouches for

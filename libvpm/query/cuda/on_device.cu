@@ -9,42 +9,50 @@
 namespace vpm::cuda {
 namespace {
 
-std::vector<std::uint32_t> clusters_of_shares(const ShareClusters& clusters) {
-  std::vector<std::uint32_t> cluster_of(clusters.shares.size());
-  for (std::uint32_t c = 0; c < clusters.clusters.size(); ++c) {
-    const ShareCluster& cluster = clusters.clusters[c];
-    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) cluster_of[clusters.shares[k]] = c;
+void add_units(const ToolModel& tool, const Level& level, std::uint32_t i,
+               std::vector<Unit>& units) {
+  const Vec3 center = tool.spheres[i].center - tool.center_of_mass;
+  const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
+  Unit unit;
+  unit.balls[Unit::of_share] = {center, level.share_reach[i]};
+  unit.balls[Unit::of_sphere] = {center, tool.spheres[i].radius};
+  unit.share = i;
+  if (end - begin > 1) unit.flags |= Unit::is_divided;
+  if (is_compact(level.share_reach[i], tool.reach)) unit.flags |= Unit::is_compact;
+  if (begin == end) units.push_back(unit), units.back().flags |= Unit::is_head;
+  for (std::uint32_t b = begin; b < end; ++b) {
+    const CellBlock& block = level.blocks[b];
+    unit.balls[Unit::of_block] = {widen(block.center), block.radius};
+    unit.block = b;
+    unit.begin = block.begin;
+    unit.end = block.end;
+    units.push_back(unit);
+    units.back().flags |= Unit::has_block | (b == begin ? Unit::is_head : 0U);
   }
-  return cluster_of;
 }
 
-std::vector<Unit> units_of(const ToolModel& tool, const Level& level,
-                           const ShareClusters& clusters) {
-  const std::vector<std::uint32_t> cluster_of = clusters_of_shares(clusters);
+// Cluster by cluster.
+std::vector<Unit> units_of(const ToolModel& tool, const Level& level, const ShareClusters& clusters,
+                           std::vector<Chunk>& chunks) {
   std::vector<Unit> units;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    const ShareCluster& cluster = clusters.clusters[cluster_of[i]];
-    const Vec3 center = tool.spheres[i].center - tool.center_of_mass;
-    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
-    Unit unit;
-    unit.balls[Unit::of_cluster] = {cluster.center, cluster.reach};
-    unit.balls[Unit::of_share] = {center, level.share_reach[i]};
-    unit.balls[Unit::of_sphere] = {center, tool.spheres[i].radius};
-    unit.share = i;
-    if (end - begin > 1) unit.flags |= Unit::is_divided;
-    if (is_compact(level.share_reach[i], tool.reach)) unit.flags |= Unit::is_compact;
-    if (begin == end) units.push_back(unit), units.back().flags |= Unit::is_head;
-    for (std::uint32_t b = begin; b < end; ++b) {
-      const CellBlock& block = level.blocks[b];
-      unit.balls[Unit::of_block] = {widen(block.center), block.radius};
-      unit.block = b;
-      unit.begin = block.begin;
-      unit.end = block.end;
-      units.push_back(unit);
-      units.back().flags |= Unit::has_block | (b == begin ? Unit::is_head : 0U);
-    }
+  for (const ShareCluster& cluster : clusters.clusters) {
+    auto begin = static_cast<std::uint32_t>(units.size());
+    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
+      add_units(tool, level, clusters.shares[k], units);
+    const auto end = static_cast<std::uint32_t>(units.size());
+    for (; begin < end; begin += Chunk::kUnits)
+      chunks.push_back(
+          {{cluster.center, cluster.reach}, begin, std::min(begin + Chunk::kUnits, end)});
   }
   return units;
+}
+
+std::vector<std::uint32_t> divided_shares(const Level& level) {
+  std::vector<std::uint32_t> divided;
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    if (level.block_begin[i + 1] - level.block_begin[i] > 1) divided.push_back(i);
+  }
+  return divided;
 }
 
 // Those of which a divided share may be measured.
@@ -97,10 +105,16 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
       samples_(level.samples),
-      units_(units_of(tool, level, clusters)),
+      divided_(divided_shares(level)),
       edges_(edges_of(level.graph)) {
+  std::vector<Chunk> chunks;
+  units_ = DeviceArray<Unit>(units_of(tool, level, clusters, chunks));
+  chunks_ = DeviceArray<Chunk>(chunks);
   view_.count = level.sphere_count;
-  view_.unit_count = static_cast<std::uint32_t>(units_.size());
+  view_.chunks = chunks_.get();
+  view_.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  view_.divided = divided_.get();
+  view_.divided_count = static_cast<std::uint32_t>(divided_.size());
   view_.spheres = spheres_.get();
   view_.centers = centers_.get();
   view_.reach = reach_.get();

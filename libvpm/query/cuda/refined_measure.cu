@@ -36,6 +36,11 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   return space;
 }
 
+// Whether one block floods a level in its own memory.
+__host__ __device__ bool is_small(const LevelView& level) {
+  return level.count <= kFloodShares && level.edge_count <= kFloodEdges;
+}
+
 // Memory of a block; the steps of a query follow each other.
 union BlockShared {
   MeasureShared measure;
@@ -73,7 +78,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   BlockTeam team;
   const RawResult part =
       Flood<Surface, BlockTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
-                                sequence, *counters, team, &shared.flood)
+                                sequence, *counters, team, shared.flood, true)
           .run();
   add_block(part, total);
   __syncthreads();
@@ -95,9 +100,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
   GridTeam team(&totals->arrived);
   team.sync();
-  const RawResult part = Flood<Surface, GridTeam>(launch.level, launch.surface, frame.to_surface,
-                                                  launch.space, sequence, *counters, team, nullptr)
-                             .run();
+  const RawResult part =
+      Flood<Surface, GridTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
+                               sequence, *counters, team, shared.flood, false)
+          .run();
   add_block(part, totals->result);
   if (!is_last_block(totals->done)) return;
   if (threadIdx.x == 0) {
@@ -121,7 +127,6 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   __shared__ RawResult total;
   const LevelView& level = launch.level;
   const RefinedSpace space = space_of(launch.space, level, blockIdx.x);
-  FloodShared* const near = level.count <= kFloodShares ? &shared.flood : nullptr;
   BlockTeam team;
   unsigned turn = 0;
   for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
@@ -137,18 +142,16 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
                           shared.measure)
         .run();
     __syncthreads();
-    const RawResult part = Flood<Surface, BlockTeam>(level, launch.surface, frame.to_surface, space,
-                                                     turn, counters, team, near)
-                               .run();
+    const RawResult part =
+        Flood<Surface, BlockTeam>(level, launch.surface, frame.to_surface, space, turn, counters,
+                                  team, shared.flood, is_small(level))
+            .run();
     add_block(part, total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
   // The next launch begins with turn 0 again.
-  for (std::uint32_t i = threadIdx.x; i < level.count; i += blockDim.x) {
-    space.notes[0].clear(i, true);
-    space.notes[1].clear(i, true);
-  }
+  for (const ShareNotes& notes : space.notes) notes.clear(level, threadIdx.x, blockDim.x);
 }
 
 // Memory of a number of teams, of one or more blocks each.
@@ -295,7 +298,7 @@ class RefinedOnDevice : public DeviceMeasure {
     unsigned sphere_blocks = processors_, sequence = ++sequence_;
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
     const unsigned blocks = kBlocksPerProcessor * processors_;
-    if (level_.view().count <= kFloodShares) {
+    if (is_small(level_.view())) {
       check(cudaLaunchKernel(one_pose_small<Surface>, blocks, kThreads, values, 0, stream_.get()));
     } else {
       check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks, kThreads, values, 0,

@@ -1,7 +1,8 @@
 // The first step of a query: what each share is to the surface, and its sums.
 //
-// A unit (block of a share) is classified by four lanes, each of which looks at one ball: that of
-// its cluster, its share, the block, the sphere. What is to be measured is listed as tasks in
+// What a cluster of shares is to the surface is decided first, by a thread for each chunk of its
+// units. A unit (block of a share) is classified by four lanes, which look at the balls of its
+// share, the block and the sphere. What is to be measured is listed as tasks in
 // shared memory, and warps take these: a lane for each sample, or for each piece that is taken
 // whole.
 #pragma once
@@ -25,7 +26,7 @@ struct Task {
 // Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
 struct TaskLists {
   enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
-  static constexpr unsigned kTasks = 384;  // room in a list
+  static constexpr unsigned kTasks = 352;  // room in a list
   static constexpr unsigned kNarrow = 8, kWide = 32;
 
   Task tasks[kLists][kTasks];
@@ -43,8 +44,23 @@ struct TaskLists {
   }
 };
 
+// A unit that may count, with what is known of its cluster.
+struct SeenUnit {
+  std::uint32_t bits;
+
+  __device__ static SeenUnit of(std::uint32_t index, Side side, bool is_near) {
+    return {index << 3 | static_cast<std::uint32_t>(side) << 1 | (is_near ? 1U : 0U)};
+  }
+  __device__ std::uint32_t index() const { return bits >> 3; }
+  __device__ Side side() const { return static_cast<Side>(bits >> 1 & 3); }
+  // No place of the cluster is further behind the surface than the tool's reach.
+  __device__ bool is_near() const { return (bits & 1) != 0; }
+};
+
 // Memory that the threads of a block share.
 struct MeasureShared {
+  SeenUnit seen[kThreads * Chunk::kUnits];
+  unsigned seen_count;
   TaskLists lists;
   double terms[4][kThreads];  // of sums in the samples' order
 };
@@ -63,31 +79,60 @@ class ShareMeasure {
         next_(space.notes[(turn + 1) % 2]),
         counters_(counters),
         part_(part),
-        lists_(shared.lists),
-        terms_(shared.terms) {}
+        shared_(shared),
+        lists_(shared.lists) {}
 
-  // By all threads of the block, for its part of the units.
+  // By all threads of the block, for its part of the chunks.
   __device__ void run() {
     if (part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
-    const unsigned units_per_round = blockDim.x / Unit::kBalls;
-    const unsigned rows = (level_.unit_count + part_.parts - 1) / part_.parts;
+    next_.clear(level_, part_.part * blockDim.x + threadIdx.x, part_.parts * blockDim.x);
     clear_lists();
-    for (unsigned row = 0; row < rows; row += units_per_round) {
-      const unsigned u = (row + threadIdx.x / Unit::kBalls) * part_.parts + part_.part;
-      classify(u < level_.unit_count ? u : 0, u < level_.unit_count);
+    const unsigned step = blockDim.x * part_.parts;
+    for (unsigned first = part_.part; first < level_.chunk_count; first += step) {
+      const unsigned c = first + threadIdx.x * part_.parts;
+      if (c < level_.chunk_count) look_at(level_.chunks[c]);
       __syncthreads();
-      const bool last = row + units_per_round >= rows;
-      if (!last && has_room(units_per_round)) continue;
-      measure_tasks();
+      classify_seen();
       __syncthreads();
-      if (!last) clear_lists();
+      if (threadIdx.x == 0) shared_.seen_count = 0;
+      __syncthreads();
     }
+    measure_tasks();
   }
 
  private:
   using Measure = CellMeasure<Surface>;
+  static constexpr unsigned kLanes = 4;  // of a unit
 
   __device__ void clear_lists() {
+    if (threadIdx.x == 0) shared_.seen_count = 0;
+    clear_task_lists();
+  }
+  __device__ void look_at(const Chunk& chunk) {
+    const Vec3 at = to_surface_ * chunk.ball.center;
+    const auto look = surface_.look_at_ball(at, chunk.ball.radius);
+    if (look.side == Side::free) return;
+    const bool near = look.side == Side::behind &&
+                      surface_.largest_gap(look, at, chunk.ball.radius) < level_.tool_reach;
+    unsigned slot = atomicAdd(&shared_.seen_count, chunk.end - chunk.begin);
+    for (std::uint32_t u = chunk.begin; u < chunk.end; ++u)
+      shared_.seen[slot++] = SeenUnit::of(u, look.side, near);
+  }
+  // By rounds, as long as their tasks have room.
+  __device__ void classify_seen() {
+    const unsigned per_round = blockDim.x / kLanes, count = shared_.seen_count;
+    for (unsigned first = 0; first < count; first += per_round) {
+      const unsigned k = first + threadIdx.x / kLanes;
+      if (first + threadIdx.x / 32 * (32 / kLanes) < count)  // of the warp
+        classify(shared_.seen[k < count ? k : first], k < count);
+      __syncthreads();
+      if (__syncthreads_and(has_room(per_round)) != 0) continue;
+      measure_tasks();
+      __syncthreads();
+      clear_task_lists();
+    }
+  }
+  __device__ void clear_task_lists() {
     if (threadIdx.x < TaskLists::kLists) lists_.counts[threadIdx.x] = 0;
     if (threadIdx.x == TaskLists::kLists) lists_.next_bundle = 0;
     __syncthreads();
@@ -107,7 +152,7 @@ class ShareMeasure {
     return space_.flats[row * TaskLists::kTasks + slot];
   }
 
-  __device__ void classify(std::uint32_t index, bool active);
+  __device__ void classify(SeenUnit seen, bool active);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void list_block(const Unit& unit, Vec3 center, Side side, bool is_flat,
                              const TangentPlane& tangent, std::uint32_t flags);
@@ -132,30 +177,26 @@ class ShareMeasure {
   const ShareNotes &notes_, &next_;
   RefinedCounters& counters_;
   Part part_;
+  MeasureShared& shared_;
   TaskLists& lists_;
-  double (&terms_)[4][kThreads];
 };
 
-// By the four lanes of a unit, all threads of a warp together; `active`: there is such a unit.
+// By the lanes of each unit, all threads of a warp together; `active`: it is to be noted.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::classify(std::uint32_t index, bool active) {
-  const Unit& unit = level_.units[index];
-  const Tile lanes(Unit::kBalls);
-  const UnitBall ball = unit.balls[lanes.lane];
+__device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
+  const Tile lanes(kLanes);
+  const Unit& unit = level_.units[seen.index()];
+  const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const std::uint32_t flags = unit.flags;
   const bool head = (flags & Unit::is_head) != 0, divided = (flags & Unit::is_divided) != 0;
   const Vec3 at = to_surface_ * ball.center;
-  const auto look = surface_.look_at_ball(at, ball.radius);
+  decltype(surface_.look_at_ball(at, ball.radius)) look;
+  if (seen.side() == Side::mixed) look = surface_.look_at_ball(at, ball.radius);
   const auto side_of = [&](unsigned lane) {
     return static_cast<Side>(lanes.from(static_cast<unsigned>(look.side), lane));
   };
-  const Side of_cluster = side_of(Unit::of_cluster), of_share = side_of(Unit::of_share);
-  const Side of_sphere = side_of(Unit::of_sphere);
-  const Side side = of_cluster == Side::mixed ? of_share : of_cluster;
-  // No place of such a cluster is further behind the surface than the tool's reach.
-  const bool near = lanes.from(lanes.lane == Unit::of_cluster && look.side == Side::behind &&
-                                   surface_.largest_gap(look, at, ball.radius) < level_.tool_reach,
-                               Unit::of_cluster);
+  const Side of_share = side_of(Unit::of_share), of_sphere = side_of(Unit::of_sphere);
+  const Side side = seen.side() == Side::mixed ? of_share : seen.side();
 
   const bool reads_share = lanes.lane == Unit::of_share && side != Side::free;
   const bool reads_block = lanes.lane == Unit::of_block && side == Side::mixed &&
@@ -165,7 +206,8 @@ __device__ void ShareMeasure<Surface>::classify(std::uint32_t index, bool active
   if (reads_share || reads_block) reading = surface_.read(at, look.point);
 
   const double gap = squared_gap(at, reading);
-  const bool hidden = lanes.from(!near && is_hidden_share(gap, level_.tool_reach), Unit::of_share);
+  const bool hidden =
+      lanes.from(!seen.is_near() && is_hidden_share(gap, level_.tool_reach), Unit::of_share);
   const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
   const bool whole = side == Side::behind || (side == Side::uncut && behind);
   if (!active) return;
@@ -200,7 +242,6 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
   if (word != 0) atomicOr(&notes_.words[i], word);
   space_.gaps[i] = gap;
   space_.parents[i + 1] = i + 1;
-  next_.clear(i, (unit.flags & Unit::is_divided) != 0);
 }
 
 // Lists a block of a mixed share.
@@ -339,15 +380,15 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
     const CellSample sample = level_.samples[task.begin + (k < task.count ? k : 0)];
     const double inside = k < task.count ? measure.weight_inside(sample, cut, is_cut) : 0;
     const Vec3 moment = inside != 0 ? inside * widen(sample.center) : Vec3{};
-    terms_[0][slot + tile.lane] = inside;
-    terms_[1][slot + tile.lane] = moment.x;
-    terms_[2][slot + tile.lane] = moment.y;
-    terms_[3][slot + tile.lane] = moment.z;
+    shared_.terms[0][slot + tile.lane] = inside;
+    shared_.terms[1][slot + tile.lane] = moment.x;
+    shared_.terms[2][slot + tile.lane] = moment.y;
+    shared_.terms[3][slot + tile.lane] = moment.z;
     __syncwarp(tile.mask);
     const unsigned count = min(tile.width, task.count - begin);
     if (tile.lane < 4) {
 #pragma unroll 4
-      for (unsigned t = 0; t < count; ++t) sum += terms_[tile.lane][slot + t];
+      for (unsigned t = 0; t < count; ++t) sum += shared_.terms[tile.lane][slot + t];
     }
     __syncwarp(tile.mask);
   }

@@ -15,7 +15,8 @@ enum ShareBit : std::uint32_t {
   kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
   kUnsure = 16,  // so it does of a piece
   kCountsPoints = 32,  // the surface may pass the sphere
-  kCounted = 64,       // in the result, as boundary or as inside
+  kReached = 64,       // by the flood; only where one block floods alone
+  kCounted = 128,      // in the result, as boundary or as inside
 };
 
 __device__ inline bool may_be_inside(std::uint32_t word) {
@@ -33,12 +34,13 @@ struct ShareNotes {
   ToolSum* sums = nullptr;
   ContactPlane* planes = nullptr;  // of cut shares
 
-  __device__ void clear(std::uint32_t i, bool divided) const {
-    words[i] = 0;
-    points[i] = 0;
-    if (!divided) return;
-    sums[i] = ToolSum{};
-    planes[i] = ContactPlane{};
+  // By a part of the threads: `first`, `first` + `step`, ...
+  __device__ void clear(const LevelView& level, std::uint32_t first, std::uint32_t step) const {
+    for (std::uint32_t i = first; i < level.count; i += step) words[i] = 0, points[i] = 0;
+    for (std::uint32_t k = first; k < level.divided_count; k += step) {
+      sums[level.divided[k]] = ToolSum{};
+      planes[level.divided[k]] = ContactPlane{};
+    }
   }
 };
 

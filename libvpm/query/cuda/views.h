@@ -20,7 +20,7 @@ struct UnitBall {
 // One block of a share, or a share that has none: what is classified by itself. All that this needs
 // lies together, since it is read once, by lanes that wait for it.
 struct alignas(32) Unit {
-  enum Ball { of_cluster, of_share, of_block, of_sphere, kBalls };
+  enum Ball { of_share, of_block, of_sphere, kBalls };
   enum Flag : std::uint32_t {
     is_head = 1,     // the first of its share
     is_divided = 2,  // one of several
@@ -32,15 +32,22 @@ struct alignas(32) Unit {
   std::uint32_t flags = 0;
 };
 
+// Units of one cluster that a warp classifies together.
+struct Chunk {
+  static constexpr unsigned kUnits = 8;
+  UnitBall ball;  // of the cluster
+  std::uint32_t begin = 0, end = 0;
+};
+
 // An edge of the graph; the spheres' indices.
 struct Edge {
-  std::uint32_t larger = 0, smaller = 0;
+  std::uint32_t larger, smaller;
 };
 
 // One level of a tool.
 struct LevelView {
-  std::uint32_t count = 0, unit_count = 0, edge_count = 0;  // `count` of spheres
-  std::uint32_t divided_pieces = 0;                         // samples and blocks of divided shares
+  std::uint32_t count = 0, chunk_count = 0, edge_count = 0;  // `count` of spheres
+  std::uint32_t divided_pieces = 0;                          // samples and blocks of divided shares
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
@@ -50,6 +57,9 @@ struct LevelView {
   const BlockMass* share_masses = nullptr;
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
+  const Chunk* chunks = nullptr;
+  const std::uint32_t* divided = nullptr;  // shares of several units
+  std::uint32_t divided_count = 0;
   const Edge* edges = nullptr;
   GridView grid;
   Vec3 center_of_mass;
