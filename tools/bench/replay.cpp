@@ -81,10 +81,13 @@ std::string recording_in(const std::string& data) {
 }
 
 ReplayTool make_replay_tool(bool quick) {
-  const std::vector<std::uint32_t> levels = quick ? std::vector<std::uint32_t>{250, 1000}
+  constexpr std::uint32_t kSoakLevel = 250;
+  const std::vector<std::uint32_t> levels = quick ? std::vector<std::uint32_t>{kSoakLevel, 1000}
                                                   : std::vector<std::uint32_t>{1000, 17000, 100000};
+  std::vector<std::uint32_t> all = levels;
+  if (!quick) all.insert(all.begin(), kSoakLevel);
   const Solid solid = synthetic::make_twisted_torus(0.09, 0.05, 3, 900);
-  return {solid, make_tool(solid, levels), levels};
+  return {solid, make_tool(solid, all), levels, kSoakLevel};
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ namespace vpm::bench {
 struct ReplayTool {
   Solid solid;
   ToolModel model;
-  std::vector<std::uint32_t> levels;  // ascending
+  std::vector<std::uint32_t> levels;  // ascending; those to be timed
+  std::uint32_t soak_level = 0;       // a quick one: memory and drift do not depend on it
 };
 
 // Seconds of each call, after `warm_up` calls that do not count.

@@ -212,17 +212,17 @@ void run_soak(const ReplayTool& tool, const std::string& folder, bool quick, Rep
   const Stream stream = read_stream(folder);
   const std::size_t rounds = quick ? 3 : 100, queries = quick ? 2000 : 10000;
   const SampledPath path(haptic_path(*prepare_frame(stream, 0).cloud, tool.model,
-                                     static_cast<double>(queries - 1) / kRate),
+                                     static_cast<double>(queries) / kRate),
                          kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
-  Query query(tool.model, {.level = tool.levels.front(), .coherent = true});
+  Query query(tool.model, {.level = tool.soak_level, .coherent = true});
   const std::uint64_t hash = soak_round(stream, path, query);
   const double before = resident_memory_mb();
   std::size_t others = 0;
   for (std::size_t k = 1; k < rounds; ++k) others += soak_round(stream, path, query) != hash;
   const double after = resident_memory_mb();
   report.results.push_back({{"part", "soak"},
-                            {"spheres", tool.levels.front()},
+                            {"spheres", tool.soak_level},
                             {"queries", rounds * path.steps()},
                             {"frames", rounds * stream.recording.frames.size()},
                             {"rounds", rounds},
