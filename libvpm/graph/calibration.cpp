@@ -63,8 +63,11 @@ struct Cut {
   Sphere ball;  // radius 0: a plane
   double truth = 0;
 
-  double distance(Vec3 x) const {
-    return ball.radius > 0 ? norm(x - ball.center) - ball.radius : dot(normal, x) - offset;
+  // As the measure sees it from this place: it takes one tangent plane for a block of samples.
+  Cut tangent_at(Vec3 x) const {
+    if (!(ball.radius > 0)) return *this;
+    const Vec3 away = normalized_or_zero(x - ball.center);
+    return {away, dot(away, ball.center) + ball.radius, {}, truth};
   }
 };
 
@@ -101,10 +104,16 @@ std::vector<Cut> make_cuts(const Solid& solid) {
 
 double fraction_inside(const Level& level, const Cut& cut) {
   double sum = 0;
-  for (const CellSample& s : level.samples) {
-    const double distance = cut.distance(widen(s.center)), radius = s.radius;
-    if (distance < radius)
-      sum += distance > -radius ? s.weight * ball_fraction_inside(distance / radius) : s.weight;
+  for (const CellBlock& block : level.blocks) {
+    const Cut plane = cut.tangent_at(widen(block.center));
+    for (std::uint32_t k = block.begin; k < block.end; ++k) {
+      const CellSample& s = level.samples[k];
+      const double distance = dot(plane.normal, widen(s.center)) - plane.offset;
+      if (distance < s.radius) {
+        sum +=
+            distance > -s.radius ? s.weight * ball_fraction_inside(distance / s.radius) : s.weight;
+      }
+    }
   }
   return sum;
 }
