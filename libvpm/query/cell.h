@@ -90,6 +90,10 @@ VPM_HD inline SharePiece piece_of(const CellSample& sample) {
   return {widen(sample.center), sample.radius, sample.weight};
 }
 
+// A block sees one plane where that is right to its radius, and to this part of the tool's reach:
+// blocks of few large shares are wider than what they may overlook.
+inline constexpr double kFlatness = 0.1;
+
 template <class Surface>
 class CellMeasure {
  public:
@@ -139,7 +143,13 @@ class CellMeasure {
 
   // The side of one block of the cell.
   VPM_HD Side side_of(const CellBlock& block) const {
-    return surface_.side_of_ball(to_surface_ * widen(block.center), block.radius);
+    return surface_.look_at_ball(to_surface_ * widen(block.center), block.radius).side;
+  }
+
+  // How well one plane must fit to serve a whole block, m.
+  VPM_HD double flat_tolerance(double block_radius) const {
+    const double most = kFlatness * tool_reach_;
+    return block_radius < most ? block_radius : most;
   }
 
   // How the surface meets one block of the cell.
@@ -156,9 +166,10 @@ class CellMeasure {
     const auto look = surface_.look_at_ball(result.center, block.radius);
     result.side = look.side;
     result.point = look.point;
-    result.is_flat = look.side == Side::mixed &&
-                     surface_.is_flat(look, result.center, block.radius, result.tangent) &&
-                     !is_hidden(result.tangent.foot);
+    result.is_flat =
+        look.side == Side::mixed &&
+        surface_.is_flat(look, result.center, flat_tolerance(block.radius), result.tangent) &&
+        !is_hidden(result.tangent.foot);
     return result;
   }
 

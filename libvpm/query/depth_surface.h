@@ -35,9 +35,8 @@ struct DepthSurface {
 
   // Over so few pixels only a jump is told from noise.
   static constexpr std::int32_t kFewPixels = 4;
-  // A block of the tool sees one plane where what it predicts for the range of the pixels is right
-  // to this part of the block's radius.
-  static constexpr double kFlatness = 1.0;
+  // A ball of more pixels is not asked pixel by pixel: its parts are, soon.
+  static constexpr std::int64_t kMostPixels = 1024;
 
   Intrinsics k;
   std::int32_t width = 0, height = 0;
@@ -144,7 +143,13 @@ struct DepthSurface {
   };
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
-    return look_at_ball(center, radius).side;
+    return side_of(look_at_ball(center, radius), center, radius);
+  }
+  // The same of a ball that was looked at. Tiles show what lies beside it too: where they do not
+  // decide, its pixels tell whether it is free.
+  VPM_HD Side side_of(const Look& look, Vec3 center, double radius) const {
+    return look.side == Side::mixed && is_seen_past(look, center.z + radius) ? Side::free
+                                                                             : look.side;
   }
 
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
@@ -182,15 +187,16 @@ struct DepthSurface {
   }
 
   // Whether the surface in a ball that was looked at is one plane, as far as the range of its
-  // pixels tells: the plane at its centre must predict their least and greatest inverse depth.
-  VPM_HD bool is_flat(const Look& look, Vec3 center, double radius, TangentPlane& plane) const {
-    return may_be_flat(look) && is_flat(look, read(center), radius, plane);
+  // pixels tells: the plane at its centre must predict their least and greatest depth to
+  // `tolerance`, m.
+  VPM_HD bool is_flat(const Look& look, Vec3 center, double tolerance, TangentPlane& plane) const {
+    return may_be_flat(look) && is_flat(look, read(center), tolerance, plane);
   }
   VPM_HD bool may_be_flat(const Look& look) const {
     return !look.leaves_image && look.range.low > 0;
   }
   // The same of a look that may be flat, with the reading at the ball's centre.
-  VPM_HD bool is_flat(const Look& look, const Reading& reading, double radius,
+  VPM_HD bool is_flat(const Look& look, const Reading& reading, double tolerance,
                       TangentPlane& plane) const {
     if (!reading.known) return false;
     plane = {reading.normal, reading.foot};
@@ -205,9 +211,9 @@ struct DepthSurface {
     const double middle = per_u * u + per_v * v + plane.normal.z * per_height;
     const double spread =
         0.5 * (std::fabs(per_u) * (t.u1 - t.u0) + std::fabs(per_v) * (t.v1 - t.v0));
-    const double tolerance = kFlatness * radius / (plane.foot.z * plane.foot.z);
-    return std::fabs(middle - spread - look.range.low) <= tolerance &&
-           std::fabs(middle + spread - look.range.high) <= tolerance;
+    const double allowed = tolerance / (plane.foot.z * plane.foot.z);
+    return std::fabs(middle - spread - look.range.low) <= allowed &&
+           std::fabs(middle + spread - look.range.high) <= allowed;
   }
 
   // Bound of the distance from any place in a ball that was looked at to the foot of its reading.
@@ -218,6 +224,19 @@ struct DepthSurface {
   }
 
  private:
+  // Whether no pixel shows a surface nearer than `depth`: the middle one first, which mostly
+  // says no.
+  VPM_HD bool is_seen_past(const Look& look, double depth) const {
+    const PixelRectangle& p = look.pixels;
+    if (std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) > kMostPixels) return false;
+    if (!(depth * inverse_depth((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
+    for (std::int32_t v = p.v0; v <= p.v1; ++v) {
+      for (std::int32_t u = p.u0; u <= p.u1; ++u)
+        if (!(depth * inverse_depth(u, v) < 1)) return false;
+    }
+    return true;
+  }
+
   // Takes the range of the look's pixels from at most 3 by 3 tiles.
   VPM_HD void cover(Look& look) const {
     const PixelRectangle& p = look.pixels;

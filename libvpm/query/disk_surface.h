@@ -120,6 +120,7 @@ struct DiskSurface {
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return look_at_ball(center, radius).side;
   }
+  VPM_HD Side side_of(const Look& look, Vec3, double) const { return look.side; }
   VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
   VPM_HD bool may_be_flat(const Look&) const { return false; }
   VPM_HD bool is_flat(const Look&, const Reading&, double, TangentPlane&) const { return false; }

@@ -81,6 +81,20 @@ INSTANTIATE_TEST_SUITE_P(Scenes, RefinedScene,
                            return name + (variant.param.camera ? "Camera" : "Points");
                          });
 
+// A block of a large share is wider than the step is high.
+TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
+  const synthetic::Scene scene = synthetic::make_scene("step");
+  const PreparedCloud cloud(see(scene));
+  const ToolModel tool = lattice_cube(kEdge, 2, 8);
+  const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
+  Query query(tool, {});
+  for (int k = 0; k < 40; ++k) {
+    const Pose pose{generic_rotation(), {-0.07 + 0.004 * k, 0.01, 0.93 + 0.002 * (k % 7)}};
+    const double truth = solid.penetration(pose, *scene.surface).volume;
+    EXPECT_NEAR(query.run(cloud, pose).volume, truth, 0.01 * tool.volume) << k;
+  }
+}
+
 TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);

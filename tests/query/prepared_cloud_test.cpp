@@ -43,6 +43,29 @@ TEST(PreparedCloud, RangesHoldEveryPointOfABall) {
   }
 }
 
+// Tiles of the image cover more than a ball does: what they show nearby must not count.
+TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
+  const PreparedCloud prepared(see(synthetic::make_scene("step")));
+  const DepthSurface surface = prepared.depth_surface();
+  int free = 0, beside_the_step = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 center{-0.03 + 0.02 * std::sin(12.9 * k), 0.2 * std::sin(78.2 * k),
+                      0.97 + 0.03 * std::sin(37.7 * k)};
+    const double radius = 0.002 + 0.003 * std::abs(std::sin(5.3 * k));
+    const DepthSurface::Look look = surface.look_at_ball(center, radius);
+    bool in_front = true;
+    for (std::int32_t v = look.pixels.v0; v <= look.pixels.v1; ++v) {
+      for (std::int32_t u = look.pixels.u0; u <= look.pixels.u1; ++u)
+        in_front &= (center.z + radius) * surface.inverse_depth(u, v) < 1;
+    }
+    EXPECT_EQ(surface.side_of_ball(center, radius) == Side::free, in_front);
+    free += in_front;
+    beside_the_step += in_front && look.side == Side::mixed;
+  }
+  EXPECT_GT(free, 1000);
+  EXPECT_GT(beside_the_step, 20);  // tiles alone do not tell
+}
+
 TEST(PreparedCloud, NearestIsTheNearest) {
   Cloud cloud = without_camera(see(synthetic::make_scene("groove")));
   cloud.positions.resize(3001), cloud.normals.resize(3001), cloud.radii.resize(3001);

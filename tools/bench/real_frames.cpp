@@ -8,6 +8,7 @@
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
+#include "tools/bench/errors.h"
 #include "tools/bench/silhouettes.h"
 
 namespace vpm::bench {
@@ -29,21 +30,29 @@ constexpr Frame kFrames[] = {
     {"d435_000000080-opaque-depth-img.exr", {921, 921, 642, 359}, 1},
 };
 
-double counted(const std::vector<Vec3>& places, const Pose& pose, const CloudSensor& sensor) {
+// Parts of the tool.
+struct Count {
+  double behind = 0;  // the depth of the nearest pixel
+  double shadow = 0;  // of those: further than the tool's reach behind it
+};
+
+Count counted(const PackedSolid& tool, const Pose& pose, const CloudSensor& sensor) {
   const Pose to_camera = relative_to(sensor.camera.to_world, pose);
   const Intrinsics& k = sensor.camera.intrinsics;
-  std::size_t behind = 0;
-  for (const Vec3& place : places) {
+  std::size_t behind = 0, shadow = 0;
+  for (const Vec3& place : tool.places) {
     const Vec3 x = to_camera * place;
     if (!(x.z > 0)) continue;
     const double u = std::floor(k.fx * x.x / x.z + k.cx + 0.5),
                  v = std::floor(k.fy * x.y / x.z + k.cy + 0.5);
     if (!(u >= 0 && v >= 0 && u < sensor.depth.width && v < sensor.depth.height)) continue;
-    const float depth = sensor.depth.depth[sensor.depth.index(static_cast<std::uint32_t>(u),
-                                                              static_cast<std::uint32_t>(v))];
+    const double depth = sensor.depth.depth[sensor.depth.index(static_cast<std::uint32_t>(u),
+                                                               static_cast<std::uint32_t>(v))];
     behind += depth > 0 && x.z > depth;
+    shadow += depth > 0 && x.z > depth + tool.model.reach;
   }
-  return static_cast<double>(behind) / static_cast<double>(places.size());
+  const auto all = static_cast<double>(tool.places.size());
+  return {static_cast<double>(behind) / all, static_cast<double>(shadow) / all};
 }
 
 // On the near side of a random point, up to the tool's reach off.
@@ -68,13 +77,19 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
   const int tries = 20 * poses;
   for (int k = 0; k < tries && result.poses < poses; ++k) {
     const Pose pose = random_pose(cloud, static_cast<std::uint64_t>(k), tool.model.reach);
-    const double count = counted(tool.places, pose, *cloud.sensor);
-    if (!(count > 0 && count < kShallow)) continue;
+    const Count count = counted(tool, pose, *cloud.sensor);
+    if (!(count.behind > 0 && count.behind < kShallow)) continue;
     ++result.poses;
+    double volume[2];
     for (const Measure measure : {Measure::refined, Measure::paper}) {
       const auto m = static_cast<std::size_t>(measure);
-      result.difference[m].add(std::abs(queries[m].run(prepared, pose).volume_fraction - count));
+      volume[m] = queries[m].run(prepared, pose).volume_fraction;
+      result.difference[m].add(std::abs(volume[m] - count.behind));
     }
+    result.beyond += std::abs(volume[0] - count.behind) > kFrameBound;
+    const double known = volume_error(volume[0], count.behind, {.inside = count.shadow});
+    result.without_shadows.add(known);
+    result.beyond_without_shadows += known > kFrameBound;
     result.counted_in_free_space +=
         counted_in_free_space(tool.model, queries[0].level(), pose, cloud.sensor->depth,
                               cloud.sensor->camera, queries[0].states());

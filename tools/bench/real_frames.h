@@ -11,14 +11,18 @@
 namespace vpm::bench {
 
 // The count takes the shadow of an object for its inside, so it is compared where it says less than
-// this part of the tool.
+// this part of the tool; and also without the places in a shadow: those further behind the surface
+// than the tool's reach may count or not.
 inline constexpr double kShallow = 0.1;
+inline constexpr double kFrameBound = 0.05;  // of the tool
 
 struct FrameResult {
   std::string frame;
   int poses = 0;
-  MeanAndWorst difference[2];     // |volume - count| of Measure::refined, Measure::paper
-  int counted_in_free_space = 0;  // spheres of refined, over all poses
+  MeanAndWorst difference[2];    // |volume - count| of Measure::refined, Measure::paper
+  MeanAndWorst without_shadows;  // of refined, where the places in shadows may count or not
+  int beyond = 0, beyond_without_shadows = 0;  // poses of refined with more than kFrameBound
+  int counted_in_free_space = 0;               // spheres of refined, over all poses
 };
 
 // The recordings of `folder` (depth/ with the names below) that are there and that this build can

@@ -191,9 +191,13 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const bool head = (flags & Unit::is_head) != 0, divided = (flags & Unit::is_divided) != 0;
   const Vec3 at = to_surface_ * ball.center;
   decltype(surface_.look_at_ball(at, ball.radius)) look;
-  if (seen.side() == Side::mixed) look = surface_.look_at_ball(at, ball.radius);
+  Side own = look.side;
+  if (seen.side() == Side::mixed) {
+    look = surface_.look_at_ball(at, ball.radius);
+    own = lanes.lane == Unit::of_share ? surface_.side_of(look, at, ball.radius) : look.side;
+  }
   const auto side_of = [&](unsigned lane) {
-    return static_cast<Side>(lanes.from(static_cast<unsigned>(look.side), lane));
+    return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
   };
   const Side of_share = side_of(Unit::of_share), of_sphere = side_of(Unit::of_sphere);
   const Side side = seen.side() == Side::mixed ? of_share : seen.side();
@@ -222,10 +226,12 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const std::uint32_t of = (divided ? Task::kOfDivided : 0U) | (hidden ? Task::kOfHidden : 0U);
   if (side == Side::mixed && (flags & Unit::has_block) != 0) {
     TangentPlane tangent;
-    const bool is_flat = reads_block && surface_.is_flat(look, reading, ball.radius, tangent) &&
-                         !measure_of({.center = unit.balls[Unit::of_share].center,
-                                      .reach = unit.balls[Unit::of_share].radius})
-                              .is_hidden(tangent.foot);
+    const Measure measure = measure_of(
+        {.center = unit.balls[Unit::of_share].center, .reach = unit.balls[Unit::of_share].radius});
+    const bool is_flat =
+        reads_block &&
+        surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
+        !measure.is_hidden(tangent.foot);
     list_block(unit, at, look.side, is_flat, tangent, of);
   } else if (whole && (flags & Unit::is_compact) != 0) {
     if (head) lists_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
