@@ -90,7 +90,7 @@ class Flood {
   __device__ void flood_in_shared();
   __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
   __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t sphere) const;
-  __device__ __noinline__ void add_hidden_piece(const HiddenPiece& hidden) const;
+  __device__ void add_hidden_piece(const HiddenPiece& hidden) const;
   __device__ __noinline__ void list_cut();
   __device__ __noinline__ void decide_hidden();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
@@ -201,19 +201,17 @@ __device__ bool Flood<Surface, Team>::lies_behind(std::uint32_t cut, std::uint32
   return cut_share(cut).height(center(i)) < 0;
 }
 
-// The planes of divided shares are known now. A piece that counts has already made its share
-// partial where nothing of it is cut.
+// The planes are known now. A piece that counts has already made its share partial where nothing of
+// it is cut.
 template <class Surface, class Team>
 __device__ void Flood<Surface, Team>::add_hidden_piece(const HiddenPiece& hidden) const {
-  const std::uint32_t i = hidden.share, k = hidden.piece & ~HiddenPiece::kIsBlock;
-  const CellView view = level_.cell(i);
-  const Measure measure(surface_, to_surface_, level_.tool_reach, view);
-  CellResult result;
-  result.plane = notes_.planes[i];
-  measure.add_piece((hidden.piece & HiddenPiece::kIsBlock) != 0 ? piece_of(level_.block_masses[k])
-                                                                : piece_of(level_.samples[k]),
-                    Measure::Pass::hidden, result);
-  add_atomically(result.sum, notes_.sums[i]);
+  const std::uint32_t i = hidden.share;
+  const Measure measure(surface_, to_surface_, level_.tool_reach,
+                        {.center = level_.centers[i], .reach = level_.reach[i]});
+  typename Measure::PieceLook look;
+  look.x = hidden.at;
+  look.reading.foot = hidden.foot;
+  if (measure.is_vouched_for(look, notes_.planes[i])) add_atomically(hidden.sum, notes_.sums[i]);
 }
 
 template <class Surface, class Team>

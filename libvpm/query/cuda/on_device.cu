@@ -17,7 +17,6 @@ void add_units(const ToolModel& tool, const Level& level, std::uint32_t i,
   unit.balls[Unit::of_share] = {center, level.share_reach[i]};
   unit.balls[Unit::of_sphere] = {center, tool.spheres[i].radius};
   unit.share = i;
-  if (end - begin > 1) unit.flags |= Unit::is_divided;
   if (is_compact(level.share_reach[i], tool.reach)) unit.flags |= Unit::is_compact;
   if (begin == end) units.push_back(unit), units.back().flags |= Unit::is_head;
   for (std::uint32_t b = begin; b < end; ++b) {
@@ -45,25 +44,6 @@ std::vector<Unit> units_of(const ToolModel& tool, const Level& level, const Shar
           {{cluster.center, cluster.reach}, begin, std::min(begin + Chunk::kUnits, end)});
   }
   return units;
-}
-
-std::vector<std::uint32_t> divided_shares(const Level& level) {
-  std::vector<std::uint32_t> divided;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    if (level.block_begin[i + 1] - level.block_begin[i] > 1) divided.push_back(i);
-  }
-  return divided;
-}
-
-// Those of which a divided share may be measured.
-std::uint32_t divided_pieces_of(const Level& level) {
-  std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
-    if (end - begin > 1)
-      count += level.blocks[end - 1].end - level.blocks[begin].begin + (end - begin);
-  }
-  return count;
 }
 
 std::vector<Edge> edges_of(const SphereGraph& graph) {
@@ -105,7 +85,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
       samples_(level.samples),
-      divided_(divided_shares(level)),
       edges_(edges_of(level.graph)) {
   std::vector<Chunk> chunks;
   units_ = DeviceArray<Unit>(units_of(tool, level, clusters, chunks));
@@ -113,8 +92,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.count = level.sphere_count;
   view_.chunks = chunks_.get();
   view_.chunk_count = static_cast<std::uint32_t>(chunks.size());
-  view_.divided = divided_.get();
-  view_.divided_count = static_cast<std::uint32_t>(divided_.size());
   view_.spheres = spheres_.get();
   view_.centers = centers_.get();
   view_.reach = reach_.get();
@@ -126,7 +103,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.share_masses = share_masses_.get();
   view_.edges = edges_.get();
   view_.edge_count = static_cast<std::uint32_t>(edges_.size());
-  view_.divided_pieces = divided_pieces_of(level);
+  view_.piece_count = static_cast<std::uint32_t>(samples_.size() + blocks_.size());
   view_.grid = view_of(level.grid);
   view_.grid.begin = grid_begin_.get();
   view_.grid.spheres = grid_spheres_.get();

@@ -36,7 +36,7 @@ class DeviceLevel {
   DeviceArray<Sphere> spheres_;
   DeviceArray<Vec3> centers_;
   DeviceArray<double> reach_;
-  DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_, divided_;
+  DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_;
   DeviceArray<CellBlock> blocks_;
   DeviceArray<BlockMass> block_masses_, share_masses_;
   DeviceArray<CellSample> samples_;

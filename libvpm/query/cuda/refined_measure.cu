@@ -31,7 +31,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.gaps = first.gaps + shares;
   space.parents = first.parents + shares + team;
   space.cut = first.cut + shares;
-  space.hidden = first.hidden + team * level.divided_pieces;
+  space.hidden = first.hidden + team * level.piece_count;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
   return space;
 }
@@ -165,7 +165,7 @@ class RefinedMemory {
         gaps_(level.count * teams),
         parents_((std::size_t{level.count} + 1) * teams),
         cut_(level.count * teams),
-        hidden_(level.divided_pieces * teams),
+        hidden_(level.piece_count * teams),
         flats_(2 * TaskLists::kTasks * blocks) {
     words_.clear();
     points_.clear();
@@ -189,7 +189,7 @@ class RefinedMemory {
     constexpr std::size_t kOfShare =
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
-    return level.count * kOfShare + level.divided_pieces * sizeof(HiddenPiece) +
+    return level.count * kOfShare + level.piece_count * sizeof(HiddenPiece) +
            2 * TaskLists::kTasks * sizeof(FlatLook);
   }
 

@@ -14,13 +14,12 @@ namespace vpm::cuda {
 // Pieces of a share to be measured together.
 struct Task {
   enum Form : std::uint32_t { samples, block, whole_block, whole_share };
-  static constexpr std::uint32_t kForms = 3, kOfDivided = 4, kOfHidden = 8;
 
-  std::uint32_t share, flags;  // a Form and those
+  std::uint32_t share;
+  Form form;
   std::uint32_t begin, count;  // samples; otherwise `begin` is the block or share
 
-  __device__ Form form() const { return static_cast<Form>(flags & kForms); }
-  __device__ bool is_whole() const { return form() >= whole_block; }
+  __device__ bool is_whole() const { return form == whole_block || form == whole_share; }
 };
 
 // Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
@@ -155,17 +154,11 @@ class ShareMeasure {
   __device__ void classify(SeenUnit seen, bool active);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void list_block(const Unit& unit, Vec3 center, Side side, bool is_flat,
-                             const TangentPlane& tangent, std::uint32_t flags);
+                             const TangentPlane& tangent);
   __device__ void measure_tasks();
   __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
-  struct Pieces {
-    bool any_hidden = false, any_inside = false;
-    bool hidden_counts = false;  // a hidden piece of a divided share has some volume
-  };
-  __device__ void add_pieces(const Tile& tile, const Measure& measure, const Task& task,
-                             CellResult& result, Pieces& pieces);
-  __device__ void add_piece(const Measure& measure, const Task& task, std::uint32_t k,
-                            typename Measure::Pass pass, CellResult& result, Pieces& pieces);
+  __device__ bool add_piece(const Measure& measure, const Task& task, std::uint32_t k,
+                            CellResult& result);
   __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatLook& flat,
                            const Task& task, CellResult& result);
   __device__ void note_task(const Task& task, const CellResult& result, bool hidden_counts);
@@ -188,7 +181,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const Unit& unit = level_.units[seen.index()];
   const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const std::uint32_t flags = unit.flags;
-  const bool head = (flags & Unit::is_head) != 0, divided = (flags & Unit::is_divided) != 0;
+  const bool head = (flags & Unit::is_head) != 0;
   const Vec3 at = to_surface_ * ball.center;
   decltype(surface_.look_at_ball(at, ball.radius)) look;
   Side own = look.side;
@@ -216,14 +209,15 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const bool whole = side == Side::behind || (side == Side::uncut && behind);
   if (!active) return;
   if (lanes.lane == Unit::of_share && head) {
-    std::uint32_t word = whole ? kWhole : 0;
+    std::uint32_t word = whole ? kWhole : side == Side::mixed ? kMixed : 0;
     if (side == Side::mixed && of_sphere == Side::mixed) word |= kCountsPoints;
-    if ((whole || side == Side::mixed) && hidden) word |= kHidden;
-    if (hidden && (whole || (side == Side::mixed && divided))) atomicAdd(&counters_.hidden, 1U);
+    if ((whole || side == Side::mixed) && hidden) {
+      word |= kHidden;
+      atomicAdd(&counters_.hidden, 1U);
+    }
     note_share(unit, word, gap);
   }
   if (lanes.lane != Unit::of_block) return;
-  const std::uint32_t of = (divided ? Task::kOfDivided : 0U) | (hidden ? Task::kOfHidden : 0U);
   if (side == Side::mixed && (flags & Unit::has_block) != 0) {
     TangentPlane tangent;
     const Measure measure = measure_of(
@@ -232,12 +226,11 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
         reads_block &&
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         !measure.is_hidden(tangent.foot);
-    list_block(unit, at, look.side, is_flat, tangent, of);
+    list_block(unit, at, look.side, is_flat, tangent);
   } else if (whole && (flags & Unit::is_compact) != 0) {
     if (head) lists_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
-  } else if (whole) {
-    const unsigned count = (flags & Unit::has_block) != 0 ? 1 : 0;
-    lists_.add(TaskLists::pieces, {unit.share, of | Task::whole_block, unit.block, count});
+  } else if (whole && (flags & Unit::has_block) != 0) {
+    lists_.add(TaskLists::pieces, {unit.share, Task::whole_block, unit.block, 1});
   }
 }
 
@@ -253,28 +246,25 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
 // Lists a block of a mixed share.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Vec3 center, Side side,
-                                                  bool is_flat, const TangentPlane& tangent,
-                                                  std::uint32_t of) {
+                                                  bool is_flat, const TangentPlane& tangent) {
   if (side == Side::free) return;
   if (side != Side::mixed) {
-    lists_.add(TaskLists::pieces, {unit.share, of | Task::block, unit.block, 1});
+    lists_.add(TaskLists::pieces, {unit.share, Task::block, unit.block, 1});
     return;
   }
   const std::uint32_t begin = unit.begin, count = unit.end - begin;
   const bool narrow = count <= TaskLists::kNarrow;
   if (is_flat) {
     const unsigned list = narrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    const unsigned slot = lists_.add(list, {unit.share, of | Task::samples, begin, count});
+    const unsigned slot = lists_.add(list, {unit.share, Task::samples, begin, count});
     flat(list, slot) = {tangent, center};
   } else if (narrow) {
-    lists_.add(TaskLists::samples_narrow, {unit.share, of | Task::samples, begin, count});
-  } else if ((of & Task::kOfDivided) != 0 && count <= 2 * TaskLists::kWide) {
-    const std::uint32_t half = (count + 1) / 2;
-    lists_.add(TaskLists::samples_wide, {unit.share, of | Task::samples, begin, half});
-    lists_.add(TaskLists::samples_wide,
-               {unit.share, of | Task::samples, begin + half, count - half});
+    lists_.add(TaskLists::samples_narrow, {unit.share, Task::samples, begin, count});
   } else {
-    lists_.add(TaskLists::samples_wide, {unit.share, of | Task::samples, begin, count});
+    const std::uint32_t half = count > TaskLists::kWide ? (count + 1) / 2 : count;
+    lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
+    if (half < count)
+      lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
   }
 }
 
@@ -307,64 +297,44 @@ __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, 
   const std::uint32_t i = task.share;
   const Measure measure = measure_of({.center = level_.centers[i], .reach = level_.reach[i]});
   CellResult result;
-  Pieces pieces;
-  if (TaskLists::is_flat(list))
+  bool hidden_counts = false;  // a hidden piece has some volume
+  if (TaskLists::is_flat(list)) {
     add_flat(tile, measure, flat(list, slot), task, result);
-  else
-    add_pieces(tile, measure, task, result, pieces);
-  if (tile.leads()) note_task(task, result, pieces.hidden_counts);
-}
-
-// The result is there for the first thread of the tile.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::add_pieces(const Tile& tile, const Measure& measure,
-                                                  const Task& task, CellResult& result,
-                                                  Pieces& pieces) {
-  using Pass = typename Measure::Pass;
-  const bool divided = (task.flags & Task::kOfDivided) != 0;
-#pragma unroll 1
-  for (Pass pass = Pass::seen;; pass = Pass::hidden) {
-#pragma unroll 1
+  } else {
     for (std::uint32_t k = tile.lane; k < task.count; k += tile.width)
-      add_piece(measure, task, task.begin + k, pass, result, pieces);
+      hidden_counts |= add_piece(measure, task, task.begin + k, result);
     __syncwarp(tile.mask);
-    if (pass == Pass::hidden) break;
+    add_up(tile, result.sum);
     if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
-    if (divided || !tile.any(pieces.any_hidden)) break;
+    result.is_far = tile.any(result.is_far);
+    hidden_counts = tile.any(hidden_counts);
   }
-  if (tile.any(pieces.any_inside)) add_up(tile, result.sum);
-  result.is_far = tile.any(result.is_far);
-  pieces.hidden_counts = tile.any(pieces.hidden_counts);
+  if (tile.leads()) note_task(task, result, hidden_counts);
 }
 
-// What one piece adds to CellMeasure::run() or, where its share is whole, to reached().
+// What one piece adds to CellMeasure::run() or, where its share is whole, to reached(). A hidden
+// piece is left for when the share's plane is known; returns whether it has some volume.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::add_piece(const Measure& measure, const Task& task,
-                                                 std::uint32_t k, typename Measure::Pass pass,
-                                                 CellResult& result, Pieces& pieces) {
-  using Pass = typename Measure::Pass;
-  const Task::Form form = task.form();
+__device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const Task& task,
+                                                 std::uint32_t k, CellResult& result) {
   const SharePiece piece =
-      form == Task::samples
+      task.form == Task::samples
           ? piece_of(level_.samples[k])
-          : piece_of((form == Task::whole_share ? level_.share_masses : level_.block_masses)[k]);
+          : piece_of(
+                (task.form == Task::whole_share ? level_.share_masses : level_.block_masses)[k]);
   const typename Measure::PieceLook look = measure.look_at(piece);
-  if (!look.is_inside) return;
+  if (!look.is_inside) return false;
   result.is_far |= look.is_far;
-  if (!task.is_whole()) {
-    if (look.is_hidden != (pass == Pass::hidden)) {
-      pieces.any_hidden |= look.is_hidden;
-      if (!look.is_hidden || (task.flags & Task::kOfDivided) == 0) return;
-      pieces.hidden_counts |= ToolSum::Sum::round(measure.weight_inside(piece, look)) > 0;
-      space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)] = {
-          task.share, form == Task::samples ? k : k | HiddenPiece::kIsBlock};
-      return;
-    }
-    if (look.is_hidden && !measure.is_vouched_for(look, result.plane)) return;
-    if (!look.is_hidden && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);
+  ToolSum sum;
+  measure.add(piece, look, sum);
+  if (look.is_hidden && !task.is_whole()) {
+    space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)] = {look.x, look.reading.foot, sum,
+                                                              task.share};
+    return sum.volume.value > 0;
   }
-  pieces.any_inside = true;
-  measure.add(piece, look, result.sum);
+  if (!task.is_whole() && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);
+  result.sum.add(sum);
+  return false;
 }
 
 // The weights of the samples by all threads, their sums in the samples' order by four. The result
@@ -404,25 +374,20 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   if (tile.leads()) measure.add_flat(look, sums[0], {sums[1], sums[2], sums[3]}, is_cut, result);
 }
 
-// By one thread, what all threads of its tile have found.
+// By one thread, what all threads of its tile have found. Where nothing of a share is cut, its
+// hidden pieces count without asking.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::note_task(const Task& task, const CellResult& result,
                                                  bool hidden_counts) {
   const std::uint32_t i = task.share;
   const bool cut = result.plane.count > 0;
   const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || hidden_counts);
-  std::uint32_t bits = cut ? kCut : partial ? kPartial : 0;
-  if (result.is_far && !cut) bits |= kUnsure;
-  if ((bits & kUnsure) != 0) atomicAdd(&counters_.unsure, 1U);
+  const bool unsure = result.is_far && !cut;
+  const std::uint32_t bits = (cut ? kCut : 0) | (partial ? kPartial : 0) | (unsure ? kUnsure : 0);
+  if (unsure) atomicAdd(&counters_.unsure, 1U);
   if (bits != 0) atomicOr(&notes_.words[i], bits);
-  if ((task.flags & Task::kOfDivided) != 0 && task.form() != Task::whole_share) {
-    add_atomically(result.sum, notes_.sums[i]);
-    if (cut) add_atomically(result.plane, notes_.planes[i]);
-    return;
-  }
-  if (partial && !cut && (task.flags & Task::kOfHidden) != 0) atomicAdd(&counters_.hidden, 1U);
-  notes_.sums[i] = result.sum;
-  if (cut) notes_.planes[i] = result.plane;
+  add_atomically(result.sum, notes_.sums[i]);
+  if (cut) add_atomically(result.plane, notes_.planes[i]);
 }
 
 }  // namespace vpm::cuda

@@ -7,13 +7,14 @@
 
 namespace vpm::cuda {
 
-// The bits of a share's word. Several threads may add to the word of a divided share.
+// The bits of a share's word.
 enum ShareBit : std::uint32_t {
   kCut = 1,      // the surface passes through a piece
   kPartial = 2,  // pieces are inside, as far as the sum says
   kWhole = 4,    // behind the surface
   kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
   kUnsure = 16,  // so it does of a piece
+  kMixed = 256,  // the surface may pass through it
   kCountsPoints = 32,  // the surface may pass the sphere
   kReached = 64,       // by the flood; only where one block floods alone
   kCounted = 128,      // in the result, as boundary or as inside
@@ -26,20 +27,21 @@ __device__ inline bool is_passable(std::uint32_t word) {
   return may_be_inside(word) && (word & kHidden) == 0;
 }
 
-// Of each share. Words and points, and sums and planes of divided shares, are 0 at the start of a
-// query: many add to them.
+// Of each share. All are 0 at the start of a query: many threads add to them.
 struct ShareNotes {
   std::uint32_t* words = nullptr;
   std::uint32_t* points = nullptr;  // of the cloud, in the sphere
   ToolSum* sums = nullptr;
   ContactPlane* planes = nullptr;  // of cut shares
 
-  // By a part of the threads: `first`, `first` + `step`, ...
+  // By a part of the threads: shares `first`, `first` + `step`, ...
   __device__ void clear(const LevelView& level, std::uint32_t first, std::uint32_t step) const {
-    for (std::uint32_t i = first; i < level.count; i += step) words[i] = 0, points[i] = 0;
-    for (std::uint32_t k = first; k < level.divided_count; k += step) {
-      sums[level.divided[k]] = ToolSum{};
-      planes[level.divided[k]] = ContactPlane{};
+    for (std::uint32_t i = first; i < level.count; i += step) {
+      points[i] = 0;
+      if (words[i] == 0) continue;
+      words[i] = 0;
+      sums[i] = ToolSum{};
+      planes[i] = ContactPlane{};
     }
   }
 };
@@ -50,10 +52,11 @@ struct FlatLook {
   Vec3 center;  // of the block
 };
 
-// A piece of a divided share whose own plane must vouch for it.
+// A piece of a mixed share for which the share's own plane must vouch, and what it adds then.
 struct HiddenPiece {
-  std::uint32_t share = 0, piece = 0;  // a sample, or a block as a whole
-  static constexpr std::uint32_t kIsBlock = 0x80000000U;
+  Vec3 at, foot;  // that the surface showed there
+  ToolSum sum;
+  std::uint32_t share = 0;
 };
 
 // Memory of one query.
@@ -68,10 +71,10 @@ struct RefinedSpace {
 
 // Counters of a query; 0 at the start.
 struct RefinedCounters {
-  unsigned hidden = 0;         // shares
-  unsigned unsure = 0;         // shares, at most as many
-  unsigned hidden_pieces = 0;  // of divided shares
-  unsigned cut = 0;            // as far as they are listed
+  unsigned hidden = 0;  // shares
+  unsigned unsure = 0;  // shares, at most as many
+  unsigned hidden_pieces = 0;
+  unsigned cut = 0;  // as far as they are listed
 };
 
 __device__ inline unsigned read(const unsigned& counter) {

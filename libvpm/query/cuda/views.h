@@ -23,9 +23,8 @@ struct alignas(32) Unit {
   enum Ball { of_share, of_block, of_sphere, kBalls };
   enum Flag : std::uint32_t {
     is_head = 1,     // the first of its share
-    is_divided = 2,  // one of several
-    is_compact = 4,  // its share is (share_clusters.h)
-    has_block = 8,
+    is_compact = 2,  // its share is (share_clusters.h)
+    has_block = 4,
   };
   UnitBall balls[kBalls];
   std::uint32_t share = 0, block = 0, begin = 0, end = 0;  // samples of the block
@@ -47,7 +46,7 @@ struct Edge {
 // One level of a tool.
 struct LevelView {
   std::uint32_t count = 0, chunk_count = 0, edge_count = 0;  // `count` of spheres
-  std::uint32_t divided_pieces = 0;                          // samples and blocks of divided shares
+  std::uint32_t piece_count = 0;                             // samples and blocks
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
@@ -58,8 +57,6 @@ struct LevelView {
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
   const Chunk* chunks = nullptr;
-  const std::uint32_t* divided = nullptr;  // shares of several units
-  std::uint32_t divided_count = 0;
   const Edge* edges = nullptr;
   GridView grid;
   Vec3 center_of_mass;
