@@ -40,15 +40,16 @@ def thousands(number):
 
 
 def accuracy(report):
+    summary = report["settings"]["summary"]
+    group = max((s["group"] for s in summary), key=list(GROUPS).index)  # the largest: it holds the others' cases
     rows = []
-    for s in sorted(report["settings"]["summary"],
-                    key=lambda s: (list(GROUPS).index(s["group"]), s["cloud"], s["noise"] != "none",
-                                   s["spheres"], s["measure"] != "paper")):
-        rows.append([GROUPS[s["group"]], s["cloud"], NOISE[s["noise"]], s["measure"], thousands(s["spheres"]),
+    for s in sorted((s for s in summary if s["group"] == group),
+                    key=lambda s: (s["cloud"], s["noise"] != "none", s["spheres"], s["measure"] != "paper")):
+        rows.append([s["cloud"], NOISE[s["noise"]], s["measure"], thousands(s["spheres"]),
                      percent(s["volume_mean"]), percent(s["volume_worst"], 2), percent(s["jump_worst"], 2),
                      percent(s["torque_worst"], 2), f"{s['direction_mean_degrees']:.2f}",
                      f"{s['direction_worst_degrees']:.1f}"])
-    return table(["tools and scenes", "cloud", "image", "measure", "spheres", "mean", "worst", "jump",
+    return table([f"{GROUPS[group]}: cloud", "image", "measure", "spheres", "mean", "worst", "jump",
                   "torque, worst", "direction, mean °", "worst °"], rows)
 
 
@@ -155,8 +156,57 @@ def replay_stream(report):
         f" {soak['rounds_with_other_results']} of {soak['rounds']} rounds with other results.")
 
 
+def packing(report):
+    of = {(r["part"], r["shape"], r["method"], r["spheres"]): r for r in report["results"]}
+    shapes = report["settings"]["shapes"]
+    counts = [1, 10, 100, 1000, 10000]
+    cover = lambda r: f"{r['coverage']:.4f}"[1:] if r else ""
+    at = lambda shape, method, n: of.get(("coverage", shape, method, n))
+    rows = []
+    for shape in shapes:
+        own = at(shape, "vpm-pack", 10000)
+        others = [at(shape, method, 10000) for method in ("refined voxels", "voxel centres")]
+        rows.append([shape] + [cover(at(shape, "vpm-pack", n)) for n in counts]
+                    + [f"{own['seconds']:.1f} / {own['cpu_seconds']:.1f} / {own['memory_mb']:.0f}"]
+                    + [f"{cover(r)} in {r['cpu_seconds']:.0f} s" for r in others])
+    return table(["spheres"] + [thousands(n) for n in counts]
+                 + ["s / CPU s / MB", "greedy on voxels, refined", "greedy on voxel centres"], rows)
+
+
+def packing_growth(report):
+    of = {(r["shape"], r["method"], r["spheres"]): r["coverage"] for r in report["results"] if r["part"] == "growth"}
+    needed = {}
+    for r in (r for r in report["results"] if r["part"] == "needed"):
+        needed.setdefault((r["shape"], r["coverage"]), {})[r["method"]] = r["spheres"]
+    rows = []
+    for shape in report["settings"]["shapes"]:
+        gains = [f"{100 * (of[shape, 'grown', n] - of[shape, 'greedy', n]):+.2f}" for n in (10, 100, 1000)]
+        pairs = [needed.get((shape, share)) for share in (0.5, 0.6, 0.65, 0.7)]
+        rows.append([shape] + gains + [f"{p['greedy']} → {p['grown']}" if p else "" for p in pairs])
+    return table(["`--grow`, points at"] + ["10", "100", "1000"]
+                 + [f"spheres for {share} %" for share in (50, 60, 65, 70)], rows)
+
+
+def packing_cost(report):
+    rows = [r for r in report["results"] if r["part"] == "scaling"]
+    line = lambda name, value: [name] + [value(r) for r in rows]
+    text = table([f"{rows[0]['shape']}, spheres"] + [thousands(r["spheres"]) for r in rows],
+                 [line("coverage", lambda r: f"{r['coverage']:.4f}"[1:]),
+                  line("s", lambda r: f"{r['seconds']:.2g}" if r["seconds"] < 10 else f"{r['seconds']:.0f}"),
+                  line("CPU s", lambda r: f"{r['cpu_seconds']:.2g}" if r["cpu_seconds"] < 10
+                       else f"{r['cpu_seconds']:.0f}"),
+                  line("µs per sphere", lambda r: f"{1e6 * r['cpu_seconds'] / r['spheres']:.0f}"),
+                  line("MB", lambda r: f"{r['memory_mb']:.0f}")])
+    meshes = [r for r in report["results"] if r["part"] == "triangles"]
+    return text + "\n\n10 000 spheres in " + ", ".join(
+        f"{thousands(int(r['method'].split()[0]))} triangles: {r['cpu_seconds']:.1f} CPU s, {r['memory_mb']:.0f} MB"
+        for r in meshes) + ", checks of the mesh and certificate included."
+
+
 PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
-                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"), "replay": (replay, "replay"),
+                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"),
+                       "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
+                       "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 

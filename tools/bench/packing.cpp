@@ -165,6 +165,7 @@ class Packings {
       std::vector<Sphere> spheres;
       PackOptions pack_options;
       pack_options.spheres = most_;
+      pack_options.volume = shape.volume;  // vpm-pack knows it from its check of the mesh
       Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
       add_prefixes(shape, "vpm-pack", spheres, cost);
       std::optional<VoxelGreedy> voxels;
