@@ -9,8 +9,9 @@ int main(int argc, char** argv) {
   vpm::tools::Tool tool("vpm-bench",
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes, data;
-  bool quick = false, all = false;
-  tool.app().add_option("suite", suite, "accuracy, extremes, packing, replay, timing or tradeoff");
+  bool quick = false, all = false, baseline = false;
+  tool.app().add_option("suite", suite,
+                        "accuracy, extremes, packing, replay, scaling, timing or tradeoff");
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
@@ -23,12 +24,17 @@ int main(int argc, char** argv) {
       "--data", data,
       "accuracy --all, replay: folder whose depth/ holds recorded depth images; replay: or "
       "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
+  tool.app().add_flag("--baseline", baseline,
+                      "scaling: beside the measure as printed, by the algorithm as printed");
   return tool.run(argc, argv, [&] {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(
-        suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data});
-    vpm::bench::write(
-        report, "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : ""), folder);
+        suite,
+        {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data, baseline});
+    vpm::bench::write(report,
+                      "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
+                          (baseline ? " --baseline" : ""),
+                      folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
     if (!report.failure.empty())
       vpm::refuse(report.failure + "; " + folder + "/" + suite + ".json names them");

@@ -11,9 +11,11 @@ Report run_suite(const std::string& name, const SuiteOptions& options) {
   if (name == "tradeoff") return run_tradeoff(options);
   if (name == "packing") return run_packing(options);
   if (name == "replay") return run_replay(options);
-  throw Error(ErrorKind::usage,
-              (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
-                  "; the suites are accuracy, extremes, packing, replay, timing, tradeoff");
+  if (name == "scaling") return run_scaling(options);
+  throw Error(
+      ErrorKind::usage,
+      (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
+          "; the suites are accuracy, extremes, packing, replay, scaling, timing, tradeoff");
 }
 
 }  // namespace vpm::bench

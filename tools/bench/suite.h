@@ -15,6 +15,7 @@ struct SuiteOptions {
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
   std::string data = {};    // accuracy --all: folder of recorded depth images; replay: likewise, or
                             // a recording; empty: none
+  bool baseline = false;    // scaling: the measure as printed beside it
 };
 
 // Throws Error(usage) naming the suites there are.
@@ -40,5 +41,9 @@ Report run_packing(const SuiteOptions& options);
 // A haptic loop on a recorded stream: queries of warm and cold clouds beside what is written by
 // hand, coherent poses, preparation of frames, a path through the stream, a soak of 10^6 queries.
 Report run_replay(const SuiteOptions& options);
+
+// Queries on a CUDA device against the number of spheres and along a path. Throws
+// Error(unavailable) where there is no device.
+Report run_scaling(const SuiteOptions& options);
 
 }  // namespace vpm::bench

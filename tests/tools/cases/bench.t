@@ -1,0 +1,8 @@
+# vpm-bench: what it says where a suite cannot run. Why there is no device depends on the build.
+
+$ CUDA_VISIBLE_DEVICES= vpm-bench scaling --baseline 2>&1 | sed 's/scaling: this .*/scaling: WHY/'
+vpm-bench: error: scaling: WHY
+[3]
+$ vpm-bench speed
+2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, extremes, packing, replay, scaling, timing, tradeoff (see vpm-bench --help)
+[2]

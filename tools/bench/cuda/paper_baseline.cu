@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <string>
+
+#include "libvpm/query/cuda/device_array.h"
+#include "tools/bench/cuda/paper_kernels.h"
+#include "tools/bench/paper_baseline.h"
+
+namespace vpm::bench {
+namespace {
+
+using cuda::check;
+using cuda::DeviceArray;
+
+constexpr unsigned kThreads = 256;
+
+unsigned blocks_for(std::size_t threads) {
+  return static_cast<unsigned>(std::max<std::size_t>(1, (threads + kThreads - 1) / kThreads));
+}
+
+// Levels of nodes; children follow their parent.
+int depth_of(const Hierarchy& tree) {
+  std::vector<int> depth(tree.nodes.size(), 1);
+  int deepest = 1;
+  for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+    deepest = std::max(deepest, depth[n]);
+    const HierarchyNode& node = tree.nodes[n];
+    if (node.children_are_leaves != 0) continue;
+    for (std::uint32_t k = node.begin; k < node.end; ++k) depth[k] = depth[n] + 1;
+  }
+  return deepest;
+}
+
+class Event {
+ public:
+  Event() { check(cudaEventCreate(&event_)); }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+double microseconds_between(const Event& begin, const Event& end) {
+  float milliseconds = 0;
+  check(cudaEventElapsedTime(&milliseconds, begin.get(), end.get()));
+  return 1e3 * static_cast<double>(milliseconds);
+}
+
+class PaperOnDevice : public PaperBaseline {
+ public:
+  PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud)
+      : tool_(tool),
+        cloud_(cloud),
+        spheres_(tool.spheres.data(), level.sphere_count),
+        nodes_(level.hierarchy.nodes),
+        leaves_(level.hierarchy.leaves),
+        graph_begin_(level.graph.begin),
+        neighbors_(level.graph.neighbors),
+        positions_(cloud.positions()),
+        normals_(cloud.normals()),
+        contacts_(level.sphere_count),
+        states_(level.sphere_count),
+        below_(level.sphere_count),
+        sphere_normals_(level.sphere_count),
+        totals_(1) {
+    if (depth_of(level.hierarchy) > PaperView::kMaxDepth)
+      refuse("baseline: the sphere tree has more than " + std::to_string(PaperView::kMaxDepth) +
+             " levels; make the model anew with vpm-graph");
+    view_ = {spheres_.get(),        level.sphere_count,
+             nodes_.get(),          leaves_.get(),
+             graph_begin_.get(),    neighbors_.get(),
+             tool.center_of_mass,   tool.reach,
+             tool.volume,           positions_.get(),
+             normals_.get(),        static_cast<std::uint32_t>(cloud.positions().size()),
+             contacts_.get(),       states_.get(),
+             sphere_normals_.get(), below_.get(),
+             totals_.get()};
+  }
+
+  Result run(const Pose& pose) override {
+    launch_boundary(pose);
+    launch_flood();
+    PaperTotals totals;
+    check(cudaMemcpy(&totals, totals_.get(), sizeof totals, cudaMemcpyDeviceToHost));
+    Result result;
+    totals.sum.write(tool_, pose.rotation, result);
+    result.boundary = totals.boundary;
+    result.inside = totals.inside;
+    result.points = totals.points;
+    return result;
+  }
+
+  Phases run_in_phases(const Pose& pose) override {
+    check(cudaEventRecord(begin_.get()));
+    launch_boundary(pose);
+    check(cudaEventRecord(middle_.get()));
+    launch_flood();
+    check(cudaEventRecord(end_.get()));
+    check(cudaEventSynchronize(end_.get()));
+    return {microseconds_between(begin_, middle_), microseconds_between(middle_, end_)};
+  }
+
+  std::vector<SphereState> states() const override {
+    std::vector<std::uint32_t> words(states_.size());
+    check(cudaMemcpy(words.data(), states_.get(), words.size() * sizeof(std::uint32_t),
+                     cudaMemcpyDeviceToHost));
+    std::vector<SphereState> states;
+    for (const std::uint32_t word : words) states.push_back(static_cast<SphereState>(word));
+    return states;
+  }
+
+ private:
+  void launch_boundary(const Pose& pose) {
+    check(cudaMemsetAsync(contacts_.get(), 0, contacts_.size() * sizeof(Contact)));
+    check(cudaMemsetAsync(totals_.get(), 0, sizeof(PaperTotals)));
+    gather_points<<<blocks_for(view_.point_count), kThreads>>>(
+        view_, relative_to(pose, {{}, cloud_.origin()}), transpose(pose.rotation));
+    find_boundary<<<blocks_for(view_.sphere_count), kThreads>>>(view_);
+    check(cudaGetLastError());
+  }
+
+  void launch_flood() {
+    flood<<<blocks_for(view_.sphere_count), kThreads>>>(view_);
+    check(cudaGetLastError());
+  }
+
+  const ToolModel& tool_;
+  const PreparedCloud& cloud_;
+  DeviceArray<Sphere> spheres_;
+  DeviceArray<HierarchyNode> nodes_;
+  DeviceArray<std::uint32_t> leaves_, graph_begin_, neighbors_;
+  DeviceArray<Vec3f> positions_, normals_;
+  DeviceArray<Contact> contacts_;
+  DeviceArray<std::uint32_t> states_, below_;
+  DeviceArray<Vec3> sphere_normals_;
+  DeviceArray<PaperTotals> totals_;
+  PaperView view_;
+  Event begin_, middle_, end_;
+};
+
+}  // namespace
+
+std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel& tool, const Level& level,
+                                                   const PreparedCloud& cloud) {
+  return std::make_unique<PaperOnDevice>(tool, level, cloud);
+}
+
+}  // namespace vpm::bench
