@@ -4,5 +4,5 @@ $ CUDA_VISIBLE_DEVICES= vpm-bench scaling --baseline 2>&1 | sed 's/scaling: this
 vpm-bench: error: scaling: WHY
 [3]
 $ vpm-bench speed
-2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, extremes, packing, replay, scaling, timing, tradeoff (see vpm-bench --help)
+2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, extremes, packing, replay, scaling, timing, tradeoff
 [2]
