@@ -52,9 +52,7 @@ __device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
 }
 
-__device__ inline void add_part(ToolSum& total, double part, Vec3 normal, Vec3 arm) {
-  ToolSum sum;
-  sum.add(part, normal, arm);
+__device__ inline void add_sum(const ToolSum& sum, ToolSum& total) {
   add_term(total.volume.value, sum.volume.value);
   for (int k = 0; k < 3; ++k) {
     add_term(total.force[k].value, sum.force[k].value);
@@ -133,15 +131,19 @@ __global__ void find_boundary(PaperView view) {
   const double per_point = 1 / (FixedSum<kContactBits>::kOne * static_cast<double>(c.points));
   const double cap = s.radius * s.radius * s.radius * (static_cast<double>(c.cap) * per_point);
   const Vec3 at = s.center + s.radius * (per_point * to_vector(c.offset));
-  add_part(view.totals->sum, cap / view.volume, normal, (at - view.center_of_mass) / view.reach);
+  ToolSum sum;
+  sum.add(cap / view.volume, normal, (at - view.center_of_mass) / view.reach);
+  add_sum(sum, view.totals->sum);
   atomicAdd(&view.totals->boundary, 1U);
 }
 
-// The spheres that one thread has reached and not yet passed: a list through `below`, which has
-// room for all threads since a sphere is claimed once.
-struct SphereStack {
+// Of one thread. Spheres that it has reached and not yet passed are a stack: a list through
+// `below`, which has room for all threads since a sphere is claimed once.
+struct Traversal {
   const PaperView& view;
   std::uint32_t top = PaperView::kNone;
+  ToolSum sum{};  // of all that it claimed
+  std::uint32_t claimed = 0;
 
   // Counts the sphere, if nobody has.
   __device__ void claim(std::uint32_t j, Vec3 normal) {
@@ -150,9 +152,8 @@ struct SphereStack {
     if (atomicCAS(&view.states[j], kOutside, kInside) != kOutside) return;
     const Sphere& s = view.spheres[j];
     view.sphere_normals[j] = normal;
-    add_part(view.totals->sum, volume(s) / view.volume, normal,
-             (s.center - view.center_of_mass) / view.reach);
-    atomicAdd(&view.totals->inside, 1U);
+    sum.add(volume(s) / view.volume, normal, (s.center - view.center_of_mass) / view.reach);
+    ++claimed;
     view.below[j] = top;
     top = j;
   }
@@ -168,19 +169,22 @@ __global__ void flood(PaperView view) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   // A boundary sphere stays one, and no other becomes one: to read while others claim is safe.
   if (i >= view.sphere_count || view.contacts[i].points == 0) return;
-  SphereStack stack{view};
+  Traversal traversal{view};
   const Vec3 normal = view.sphere_normals[i];
   for (std::uint32_t k = view.graph_begin[i]; k < view.graph_begin[i + 1]; ++k) {
     const std::uint32_t j = view.neighbors[k];
     const Sphere& s = view.spheres[j];
     if (dot(normal, s.center - view.spheres[i].center) > -s.radius) continue;
-    stack.claim(j, normal);
-    while (stack.top != PaperView::kNone) {
-      const std::uint32_t passed = stack.pop();
+    traversal.claim(j, normal);
+    while (traversal.top != PaperView::kNone) {
+      const std::uint32_t passed = traversal.pop();
       for (std::uint32_t n = view.graph_begin[passed]; n < view.graph_begin[passed + 1]; ++n)
-        stack.claim(view.neighbors[n], view.sphere_normals[passed]);
+        traversal.claim(view.neighbors[n], view.sphere_normals[passed]);
     }
   }
+  if (traversal.claimed == 0) return;
+  add_sum(traversal.sum, view.totals->sum);
+  atomicAdd(&view.totals->inside, traversal.claimed);
 }
 
 }  // namespace vpm::bench
