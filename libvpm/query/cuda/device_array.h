@@ -18,7 +18,13 @@ inline void check(cudaError_t status) {
                                           "; use --device cpu if this persists");
 }
 
-// Values on the device. Owns them.
+// Waits for what copies and clears have only begun: they belong to the default stream, for which
+// the streams of queries (launch.h) do not wait.
+inline void finish_transfers() {
+  check(cudaStreamSynchronize(cudaStreamLegacy));
+}
+
+// Values on the device, there when a constructor or clear() returns. Owns them.
 template <class T>
 class DeviceArray {
  public:
@@ -27,7 +33,9 @@ class DeviceArray {
     if (count > 0) check(cudaMalloc(&data_, count * sizeof(T)));
   }
   DeviceArray(const T* values, std::size_t count) : DeviceArray(count) {
-    if (count > 0) check(cudaMemcpy(data_, values, count * sizeof(T), cudaMemcpyHostToDevice));
+    if (count == 0) return;
+    check(cudaMemcpy(data_, values, count * sizeof(T), cudaMemcpyHostToDevice));
+    finish_transfers();
   }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
   ~DeviceArray() { cudaFree(data_); }
@@ -40,7 +48,9 @@ class DeviceArray {
   T* get() const { return data_; }
   std::size_t size() const { return count_; }
   void clear() {
-    if (count_ > 0) check(cudaMemset(data_, 0, count_ * sizeof(T)));
+    if (count_ == 0) return;
+    check(cudaMemset(data_, 0, count_ * sizeof(T)));
+    finish_transfers();
   }
 
  private:
