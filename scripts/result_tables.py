@@ -26,6 +26,9 @@ def table(head, rows):
 
 
 def source(report):
+    device = report.get("device") or report["settings"].get("device")
+    if device:
+        return f"`{report['command']}`, commit {report['commit'][:7]}, {device}."
     machine = report["machine"]
     return (f"`{report['command']}`, commit {report['commit'][:7]}, {machine['cores']} cores of "
             f"{machine['processor']}.")
@@ -203,11 +206,40 @@ def packing_cost(report):
         for r in meshes) + ", checks of the mesh and certificate included."
 
 
+def cuda(report):
+    rates = {r["spheres"]: r["poses_per_second"] for r in report["batch"]}
+    copies = max(r["copies"] for r in report["control_loop"])
+    return table(["spheres", "query, µs median", "p99", "batches, poses/s"],
+                 [[thousands(r["spheres"]), f"{r['median_us']:.0f}", f"{r['p99_us']:.0f}",
+                   thousands(int(float(f"{rates[r['spheres']]:.3g}")))]
+                  for r in report["control_loop"] if r["copies"] == copies])
+
+
+def scaling(report):
+    rows = [r for r in report["results"] if r["part"] == "spheres"]
+    line = lambda name, key, digits=0: [name] + [f"{r[key]:.{digits}f}" for r in rows]
+    text = table(["spheres"] + [thousands(r["spheres"]) for r in rows],
+                 [line("refined, µs median", "refined_median_us"), line("p99", "refined_p99_us"),
+                  line("as printed, µs median", "baseline_median_us"), line("p99", "baseline_p99_us"),
+                  line("of that boundary, on the device's clock", "boundary_us"), line("and flood", "flood_us"),
+                  line("ratio of the medians", "ratio")])
+    frames = [r for r in report["results"] if r["part"] == "frame"]
+    least_to_most = lambda key, scale, digits: (f"{scale * min(r[key] for r in frames):.{digits}f} to "
+                                                f"{scale * max(r[key] for r in frames):.{digits}f}")
+    same = sum(r["same_poses"] for r in rows)
+    return text + (
+        f"\n\nAlong the path, {thousands(frames[0]['spheres'])} spheres, {least_to_most('volume_fraction', 100, 1)} % inside, median of"
+        f" {report['settings']['rounds']} rounds for each of {len(frames)} frames: refined {least_to_most('refined_us', 1, 0)} µs,"
+        f" as printed {least_to_most('baseline_us', 1e-3, 1)} ms. {thousands(same)} of"
+        f" {thousands(len(rows) * report['settings']['poses'])} poses have the volume, counts and states of `--measure paper`.")
+
+
 PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
                        "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"),
                        "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
-                       "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay")},
+                       "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
+                       "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
 
