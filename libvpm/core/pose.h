@@ -47,8 +47,8 @@ VPM_HD constexpr Pose inverse(const Pose& p) {
   return {back, -(back * p.translation)};
 }
 
-// `pose` seen from `frame`: inverse(frame) * pose, but the translations are subtracted first, so that a far world
-// origin costs no digits.
+// `pose` seen from `frame`: inverse(frame) * pose, but the translations are subtracted first, so
+// that a far world origin costs no digits.
 VPM_HD constexpr Pose relative_to(const Pose& frame, const Pose& pose) {
   const Rotation back = transpose(frame.rotation);
   return {back * pose.rotation, back * (pose.translation - frame.translation)};

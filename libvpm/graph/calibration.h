@@ -20,8 +20,8 @@ inline constexpr double kCalibrationBall = 1.5;
 // The distance to the cut is exact here, so what a camera adds by its pixels and its noise is not
 // in it.
 //
-// `solid` must be the one that the model was made of; another one is refused (Error(refused)). Where
-// its parts overlap they count once. Same bytes for any thread count.
+// `solid` must be the one that the model was made of; another one is refused (Error(refused)).
+// Where its parts overlap they count once. Same bytes for any thread count.
 std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid);
 
 }  // namespace vpm

@@ -60,8 +60,8 @@ struct DepthSurface {
     const double per_depth = 1 / x.z;
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     if (!(u >= -0.5 && v >= -0.5 && u < width - 0.5 && v < height - 0.5)) return {};
-    const std::int32_t un = static_cast<std::int32_t>(u + 0.5),
-                       vn = static_cast<std::int32_t>(v + 0.5);
+    const double up = u + 0.5, vp = v + 0.5;  // not negative: what is cut off rounds to the nearest
+    const std::int32_t un = static_cast<std::int32_t>(up), vn = static_cast<std::int32_t>(vp);
     const std::int32_t u0 = u < 0 ? 0 : static_cast<std::int32_t>(u),
                        v0 = v < 0 ? 0 : static_cast<std::int32_t>(v);
     const std::int32_t u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;

@@ -28,7 +28,7 @@ struct QueryOptions {
   Device device = {};     // device_from_text(); the tool's level is copied there
   bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
                           // surface stays inside until it comes out; refined measure, on the CPU
-  double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  double stiffness = 1;   // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 class Query {
