@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the tables of README.md and libvpm/query/scene-scale.md from tests/results/*.json, between <!-- NAME --> and
+"""Writes the tables of README.md and of the pages in libvpm/query from tests/results/*.json, between <!-- NAME --> and
 <!-- end NAME -->.
 
 usage: result_tables.py [--check]    (--check: exit 1 where a page is not what the results say)
@@ -240,6 +240,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
+         "libvpm/query/README.md": {"cuda": (cuda, "cuda")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
 
