@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/self_intersection.h"
@@ -41,19 +42,10 @@ std::string places(const std::vector<T>& list, Place place) {
   return text + (list.size() > kPlacesShown ? " and more" : "");
 }
 
-struct Box {
-  Vec3 low, high;
-};
-
 Box box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  Box box{vertices[triangles[0][0]], vertices[triangles[0][0]]};
-  for (const Triangle& t : triangles) {
-    for (const std::uint32_t corner : t) {
-      const Vec3 p = vertices[corner];
-      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-    }
-  }
+  Box box;
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t corner : t) box.add(vertices[corner]);
   return box;
 }
 

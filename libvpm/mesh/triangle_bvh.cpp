@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/closest_point.h"
 
@@ -15,14 +16,6 @@ constexpr std::size_t kLeafTriangles = 4;
 // slack: several float roundings, so that a box never hides its triangles.
 constexpr double kBoxPadding = 0x1p-21;
 constexpr float kBoundSlack = 1.0f + 0x1p-20f;
-
-struct Box {
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  void add(Vec3 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-};
 
 double component(Vec3 v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;

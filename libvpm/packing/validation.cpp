@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/pose.h"
@@ -43,15 +44,6 @@ struct Lattice {
     constexpr double kShift = kMargin;
     return transpose(turn) * (low + voxel * Vec3{x - kShift, y - kShift, z - kShift});
   }
-};
-
-struct Box {
-  Vec3 low, high;
-  void add(Vec3 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  Vec3 size() const { return high - low; }
 };
 
 Lattice lattice_of(const Solid& solid, int voxels) {

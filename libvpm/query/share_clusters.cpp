@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "libvpm/core/box.h"
+
 namespace vpm {
 namespace {
 
@@ -17,32 +19,24 @@ double coordinate(Vec3 v, int axis) {
   return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
 }
 
-struct Box {
-  Vec3 low, high;
-};
-
 Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& shares,
                    std::uint32_t begin, std::uint32_t end) {
-  Box box{tool.spheres[shares[begin]].center, tool.spheres[shares[begin]].center};
-  for (std::uint32_t k = begin; k < end; ++k) {
-    const Vec3 c = tool.spheres[shares[k]].center;
-    box.low = {std::min(box.low.x, c.x), std::min(box.low.y, c.y), std::min(box.low.z, c.z)};
-    box.high = {std::max(box.high.x, c.x), std::max(box.high.y, c.y), std::max(box.high.z, c.z)};
-  }
+  Box box;
+  for (std::uint32_t k = begin; k < end; ++k) box.add(tool.spheres[shares[k]].center);
   return box;
 }
 
-BlockMass mass_of(const ToolModel& tool, const Level& level, std::uint32_t share) {
+// Of all samples of blocks [begin, end); without any its centroid is `otherwise`.
+BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Vec3 otherwise) {
   BlockMass mass;
   Vec3 moment;
-  for (std::uint32_t b = level.block_begin[share]; b < level.block_begin[share + 1]; ++b) {
+  for (std::uint32_t b = begin; b < end; ++b) {
     for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
       mass.weight += level.samples[s].weight;
       moment += level.samples[s].weight * widen(level.samples[s].center);
     }
   }
-  mass.centroid =
-      mass.weight > 0 ? moment / mass.weight : tool.spheres[share].center - tool.center_of_mass;
+  mass.centroid = mass.weight > 0 ? moment / mass.weight : otherwise;
   return mass;
 }
 
@@ -63,16 +57,9 @@ void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin
 }  // namespace
 
 std::vector<BlockMass> block_masses(const Level& level) {
-  std::vector<BlockMass> masses(level.blocks.size());
-  for (std::size_t b = 0; b < masses.size(); ++b) {
-    Vec3 moment;
-    for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
-      masses[b].weight += level.samples[s].weight;
-      moment += level.samples[s].weight * widen(level.samples[s].center);
-    }
-    masses[b].centroid =
-        masses[b].weight > 0 ? moment / masses[b].weight : widen(level.blocks[b].center);
-  }
+  std::vector<BlockMass> masses;
+  for (std::uint32_t b = 0; b < level.blocks.size(); ++b)
+    masses.push_back(mass_of(level, b, b + 1, widen(level.blocks[b].center)));
   return masses;
 }
 
@@ -92,7 +79,7 @@ ShareCluster enclosing_cluster(const ToolModel& tool, const Level& level,
 std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& shares, std::uint32_t begin,
                     std::uint32_t end) {
   const Box box = box_of_centers(tool, shares, begin, end);
-  const Vec3 side = box.high - box.low;
+  const Vec3 side = box.size();
   const int axis = side.x >= side.y ? (side.x >= side.z ? 0 : 2) : (side.y >= side.z ? 1 : 2);
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(shares.begin() + begin, shares.begin() + middle, shares.begin() + end,
@@ -109,7 +96,8 @@ ShareClusters cluster_shares(const ToolModel& tool, const Level& level) {
   out.shares.resize(level.sphere_count);
   std::iota(out.shares.begin(), out.shares.end(), 0u);
   for (std::uint32_t i = 0; i < level.sphere_count; ++i)
-    out.masses.push_back(mass_of(tool, level, i));
+    out.masses.push_back(mass_of(level, level.block_begin[i], level.block_begin[i + 1],
+                                 tool.spheres[i].center - tool.center_of_mass));
   add_clusters(tool, level, 0, level.sphere_count, out);
   return out;
 }

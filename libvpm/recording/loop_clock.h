@@ -1,7 +1,6 @@
 // Times of the steps of a loop: by the clock at its rate, or as fast as it goes.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <vector>

@@ -33,7 +33,9 @@ int main(int argc, char** argv) {
         {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data, baseline});
     vpm::bench::write(report,
                       "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
-                          (baseline ? " --baseline" : ""),
+                          (baseline ? " --baseline" : "") +
+                          (meshes.empty() ? "" : " --meshes MESHES") +
+                          (data.empty() ? "" : " --data DATA"),
                       folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
     if (!report.failure.empty())

@@ -9,18 +9,11 @@
 #include <cmath>
 
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 
 namespace vpm::bench {
 namespace {
-
-struct Box {
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  void add(Vec3 p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-};
 
 struct Rectangle {
   int u0 = 0, u1 = -1, v0 = 0, v1 = -1;
@@ -65,7 +58,7 @@ class Voxels {
  public:
   explicit Voxels(const Solid& solid) {
     for (const Vec3& v : solid.vertices) box.add(v);
-    const Vec3 side = box.high - box.low;
+    const Vec3 side = box.size();
     size = std::max({side.x, side.y, side.z}) / kPeerVoxels;
     grid = distances_of(solid, size);
     leaves = std::make_unique<Leaves>(grid->tree());

@@ -65,6 +65,12 @@ void add_query(Report& report, const std::string& what, std::uint32_t spheres, i
   report.summary += line;
 }
 
+double seconds_of(const std::function<void(int)>& body, int call) {
+  const auto start = std::chrono::steady_clock::now();
+  body(call);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 // Every second call is of the other: whatever the machine does meanwhile happens to both.
 std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
                                               const std::function<void(int)>& first,
@@ -72,10 +78,8 @@ std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
   std::vector<double> a, b;
   for (int k = 0; k < warm_up + calls; ++k) {
     for (auto [body, seconds] : {std::pair(&first, &a), std::pair(&second, &b)}) {
-      const auto start = std::chrono::steady_clock::now();
-      (*body)(k);
-      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-      if (k >= warm_up) seconds->push_back(took.count());
+      const double took = seconds_of(*body, k);
+      if (k >= warm_up) seconds->push_back(took);
     }
   }
   return {Durations(std::move(a)), Durations(std::move(b))};
@@ -104,10 +108,8 @@ Cloud wide_view(std::uint32_t width, bool keeps_camera) {
 Durations timed(int calls, int warm_up, const std::function<void(int call)>& body) {
   std::vector<double> seconds;
   for (int k = 0; k < warm_up + calls; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    body(k);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    if (k >= warm_up) seconds.push_back(took.count());
+    const double took = seconds_of(body, k);
+    if (k >= warm_up) seconds.push_back(took);
   }
   return Durations(std::move(seconds));
 }

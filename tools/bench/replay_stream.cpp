@@ -1,13 +1,14 @@
 // The parts of `vpm-bench replay` on a recording.
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <span>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/file/stream.h"
+#include "libvpm/file/checksum.h"
 #include "libvpm/haptics/rotation_vector.h"
 #include "libvpm/query/query.h"
 #include "libvpm/recording/frame_feed.h"
@@ -153,29 +154,23 @@ void add_pass(const Pass& pass, std::uint32_t level, Report& report) {
   report.summary += line;
 }
 
-// FNV-1a over the bits of results.
+// One hash over the bits of many results.
 class ResultHash {
  public:
   void add(const Result& r) {
-    const double numbers[] = {r.volume,         r.wrench.force.x,  r.wrench.force.y,
-                              r.wrench.force.z, r.wrench.torque.x, r.wrench.torque.y,
-                              r.wrench.torque.z};
-    add(numbers, sizeof numbers);
-    const std::uint32_t counts[] = {r.boundary, r.inside, r.points};
-    add(counts, sizeof counts);
+    for (const double number : {r.volume, r.wrench.force.x, r.wrench.force.y, r.wrench.force.z,
+                                r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z})
+      words_.push_back(std::bit_cast<std::uint64_t>(number));
+    for (const std::uint32_t count : {r.boundary, r.inside, r.points}) words_.push_back(count);
   }
-  std::uint64_t value() const { return hash_; }
+  std::string value() const { return file::content_hash({std::as_bytes(std::span(words_))}); }
 
  private:
-  void add(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t k = 0; k < size; ++k) hash_ = (hash_ ^ bytes[k]) * 0x100000001b3u;
-  }
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
+  std::vector<std::uint64_t> words_;
 };
 
 // Every frame of the recording once, prepared anew, with its part of the path.
-std::uint64_t soak_round(const Stream& stream, const SampledPath& path, Query& query) {
+std::string soak_round(const Stream& stream, const SampledPath& path, Query& query) {
   ResultHash hash;
   query.forget();
   const std::size_t frames = stream.recording.frames.size();
@@ -185,12 +180,6 @@ std::uint64_t soak_round(const Stream& stream, const SampledPath& path, Query& q
       hash.add(query.run(*frame.cloud, path.pose(k)));
   }
   return hash.value();
-}
-
-std::string hexadecimal(std::uint64_t value) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
-  return text;
 }
 
 }  // namespace
@@ -216,7 +205,7 @@ void run_soak(const ReplayTool& tool, const std::string& folder, bool quick, Rep
                          kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
   Query query(tool.model, {.level = tool.soak_level, .coherent = true});
-  const std::uint64_t hash = soak_round(stream, path, query);
+  const std::string hash = soak_round(stream, path, query);
   const double before = resident_memory_mb();
   std::size_t others = 0;
   for (std::size_t k = 1; k < rounds; ++k) others += soak_round(stream, path, query) != hash;
@@ -227,7 +216,7 @@ void run_soak(const ReplayTool& tool, const std::string& folder, bool quick, Rep
                             {"frames", rounds * stream.recording.frames.size()},
                             {"rounds", rounds},
                             {"rounds_with_other_results", others},
-                            {"hash", hexadecimal(hash)},
+                            {"hash", hash},
                             {"memory_before_mb", before},
                             {"memory_after_mb", after}});
   char line[200];

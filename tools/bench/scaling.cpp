@@ -22,7 +22,6 @@ namespace vpm::bench {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 1;
-constexpr double kTwoPi = 6.28318530717958648;
 
 // The level of figure 9.
 constexpr std::uint32_t kPathLevel = 17000;
@@ -55,7 +54,7 @@ std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud
   Query query(tool, options);
   std::vector<Pose> path;
   for (int k = 0; k < count; ++k) {
-    const double along = kTwoPi * k / count;
+    const double along = 2 * kPi * k / count;
     const double half = 0.15 * std::sin(3 * along);
     const Rotation rotation =
         turned() * rotation_from_quaternion({0, std::sin(half), 0, std::cos(half)});
