@@ -22,4 +22,9 @@ VPM_HD constexpr Vec3 unproject(const Intrinsics& k, double u, double v, double 
   return {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
 }
 
+// The same about the camera in world axes, as clouds hold points.
+VPM_HD constexpr Vec3f position_of_pixel(const Camera& camera, double u, double v, double z) {
+  return narrow(camera.to_world.rotation * unproject(camera.intrinsics, u, v, z));
+}
+
 }  // namespace vpm

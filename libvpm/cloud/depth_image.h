@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/cloud/normal_limits.h"
+#include "libvpm/core/host_device.h"
+
 namespace vpm {
 
 // Depth along the optical axis in metres, row by row. Anything that is not finite and positive
@@ -16,8 +19,25 @@ struct DepthImage {
   std::size_t index(std::uint32_t u, std::uint32_t v) const { return std::size_t{v} * width + u; }
 };
 
-inline bool is_measured(float depth) {
-  return depth > 0 && std::isfinite(depth);
+VPM_HD constexpr bool is_measured(float depth) {
+  return depth > 0 && depth < HUGE_VALF;
+}
+
+// A sensor's number as depth; 0 for what is no measurement.
+VPM_HD constexpr float depth_in_metres(double value, double units_per_metre) {
+  const auto depth = static_cast<float>(value / units_per_metre);
+  return is_measured(depth) ? depth : 0.0F;
+}
+
+// What normals and queries compute with: 0 where nothing was measured, or nothing that float could
+// invert.
+VPM_HD constexpr float usable_depth(float depth) {
+  return depth >= kMinDepth && depth <= kMaxDepth ? depth : 0.0F;
+}
+// 0 for 0.
+VPM_HD constexpr float inverse_of_usable(float depth) {
+  const float reciprocal = 1.0F / (depth > 0 ? depth : 1.0F);
+  return depth > 0 ? reciprocal : 0.0F;
 }
 
 }  // namespace vpm

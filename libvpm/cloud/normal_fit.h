@@ -5,8 +5,26 @@
 #pragma once
 
 #include "libvpm/cloud/camera.h"
+#include "libvpm/cloud/normal_limits.h"
 
 namespace vpm {
+
+// Whole windows are summed in opposite pairs, from the middle outwards: first down each column,
+// then across the columns. `distance`: of the pair from the middle.
+//
+// Of the inverse depth s: sums of s and v s in a column; of s, u s and v s in a window.
+[[gnu::always_inline]] VPM_HD inline void add_rows(float below, float above, float distance,
+                                                   float& s, float& vs) {
+  s += below + above;
+  vs += distance * (below - above);
+}
+[[gnu::always_inline]] VPM_HD inline void add_columns(float right, float left, float right_v,
+                                                      float left_v, float distance, float& s,
+                                                      float& us, float& vs) {
+  s += right + left;
+  us += distance * (right - left);
+  vs += right_v + left_v;
+}
 
 // The normal towards the sensor of the plane whose inverse depth is a du + b dv + c at the offset
 // (du, dv) from pixel (u, v): with u = fx X/Z + cx the plane is
@@ -24,6 +42,40 @@ template <class Real>
   const Real scale = Real(-1) / std::sqrt(x * x + y * y + z * z);
   return {static_cast<float>(x * scale), static_cast<float>(y * scale),
           static_cast<float>(z * scale)};
+}
+
+// Of a gated window: what the pixel at (du, dv) from the centre adds. `value` is its inverse depth,
+// `expected` what the centre's surface has there, relative to the centre's and minus 1, as is
+// `difference`. `exists`: 0 for what only fills a group of columns.
+[[gnu::always_inline]] VPM_HD inline float weight_in_gate(float value, float difference,
+                                                          float expected, float allowed,
+                                                          float exists) {
+  const float kept = std::abs(difference - expected) <= allowed ? exists : 0.0F;
+  return value > 0 ? kept : 0.0F;
+}
+
+// Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
+struct PlaneSums {
+  double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, e = 0, ue = 0, ve = 0;
+};
+
+// Inverse depth relative to the centre's, minus 1: c + a du + b dv.
+struct WindowPlane {
+  bool found = false;  // false: too few pixels remain, or they lie on a line
+  float a = 0, b = 0, c = 0;
+};
+
+[[gnu::always_inline]] VPM_HD inline WindowPlane plane_of_sums(const PlaneSums& s) {
+  // Moments about the pixels' mean, times n: integers, exact in double.
+  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
+               vv = s.n * s.vv - s.v * s.v;
+  const double determinant = uu * vv - uv * uv;
+  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
+  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
+  const double a = (ue * vv - ve * uv) * unit;
+  const double b = (ve * uu - ue * uv) * unit;
+  const double c = (s.e - a * s.u - b * s.v) / s.n;
+  return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
 }
 
 // Upper triangle of a symmetric 3x3 matrix.
@@ -80,6 +132,82 @@ template <int Steps>
   best2 = use_bc ? bc2 : best2;
   const double keep = best2 > kEigenNoise ? 1.0 : 0.0;
   return {best.x * keep, best.y * keep, best.z * keep};
+}
+
+// Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
+// are plain weighted sums of z and z^2.
+struct Moments {
+  double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+};
+
+[[gnu::always_inline]] VPM_HD inline void add_pixel(Moments& m, double weight, double depth, int du,
+                                                    int dv) {
+  const double z = weight * depth, x = du * z, y = dv * z;
+  m.n += weight, m.x += x, m.y += y, m.z += z;
+  m.xx += x * x, m.xy += x * y, m.xz += x * z, m.yy += y * y, m.yz += y * z, m.zz += z * z;
+}
+
+// Of whole windows, in opposite pairs as above. Sums of z and v z, of z^2, v z^2 and v^2 z^2 in a
+// column; the moments in a window.
+[[gnu::always_inline]] VPM_HD inline void add_depth_rows(double below, double above,
+                                                         double distance, double& z, double& vz) {
+  z += below + above;
+  vz += distance * (below - above);
+}
+[[gnu::always_inline]] VPM_HD inline void add_square_rows(double below, double above,
+                                                          double distance, double& z2, double& vz2,
+                                                          double& vvz2) {
+  const double b = below * below, a = above * above;
+  z2 += b + a;
+  vz2 += distance * (b - a);
+  vvz2 += distance * distance * (b + a);
+}
+[[gnu::always_inline]] VPM_HD inline void add_depth_columns(double right, double left,
+                                                            double right_v, double left_v,
+                                                            double distance, double& x, double& y,
+                                                            double& z) {
+  x += distance * (right - left);
+  z += right + left;
+  y += right_v + left_v;
+}
+[[gnu::always_inline]] VPM_HD inline void add_square_columns(double right, double left,
+                                                             double distance, double& xx,
+                                                             double& xz, double& zz) {
+  xx += distance * distance * (right + left);
+  xz += distance * (right - left);
+  zz += right + left;
+}
+// `right` and `left`: of v z^2; the others of v^2 z^2.
+[[gnu::always_inline]] VPM_HD inline void add_tilted_columns(double right, double left,
+                                                             double right_vv, double left_vv,
+                                                             double distance, double& xy,
+                                                             double& yz, double& yy) {
+  xy += distance * (right - left);
+  yz += right + left;
+  yy += right_vv + left_vv;
+}
+
+// The unit normal towards the sensor, seen from the pixel whose ray is (rx, ry, 1).
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_moments(const Moments& m, double per_fx,
+                                                             double per_fy, double rx, double ry) {
+  const double per_n = 1 / m.n;
+  // Covariance (times n) in the centre's frame ...
+  const double xx = m.xx - m.x * m.x * per_n, xy = m.xy - m.x * m.y * per_n,
+               xz = m.xz - m.x * m.z * per_n, yy = m.yy - m.y * m.y * per_n,
+               yz = m.yz - m.y * m.z * per_n, zz = m.zz - m.z * m.z * per_n;
+  // ... and in the camera's: (x/fx + rx z, y/fy + ry z, z).
+  const double ax = per_fx * xz, ay = per_fy * yz;
+  const Symmetric3 covariance{per_fx * per_fx * xx + 2 * rx * ax + rx * rx * zz,
+                              per_fx * per_fy * xy + ry * ax + rx * ay + rx * ry * zz,
+                              ax + rx * zz,
+                              per_fy * per_fy * yy + 2 * ry * ay + ry * ry * zz,
+                              ay + ry * zz,
+                              zz};
+  const Vec3 direction = smallest_eigenvector(covariance);
+  const double away = direction.x * rx + direction.y * ry + direction.z;
+  const double length = std::sqrt(squared_norm(direction));
+  const double scale = (away > 0 ? -1.0 : 1.0) / (length > 0 ? length : 1.0);
+  return narrow(scale * direction);
 }
 
 }  // namespace vpm

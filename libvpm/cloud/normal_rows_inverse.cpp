@@ -33,9 +33,8 @@ class WindowSums {
     for (int d = 1; d <= radius_; ++d) {
       const float distance = static_cast<float>(d);
       for (int u = 0; u < width; ++u) {
-        s[u] += column[u + d] + column[u - d];
-        su[u] += distance * (column[u + d] - column[u - d]);
-        sv[u] += column_v[u + d] + column_v[u - d];
+        add_columns(column[u + d], column[u - d], column_v[u + d], column_v[u - d], distance, s[u],
+                    su[u], sv[u]);
       }
     }
   }
@@ -55,10 +54,8 @@ class WindowSums {
       const float* below = inverse_.at(-radius_, v + d);
       const float* above = inverse_.at(-radius_, v - d);
       const float distance = static_cast<float>(d);
-      for (int i = 0; i < columns; ++i) {
-        column[i] += below[i] + above[i];
-        column_v[i] += distance * (below[i] - above[i]);
-      }
+      for (int i = 0; i < columns; ++i)
+        add_rows(below[i], above[i], distance, column[i], column_v[i]);
     }
   }
 

@@ -8,35 +8,6 @@
 namespace vpm {
 namespace {
 
-// Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
-// are plain weighted sums of z and z^2.
-struct Moments {
-  double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-};
-
-// The unit normal towards the sensor, seen from the pixel whose ray is (rx, ry, 1).
-[[gnu::always_inline]] inline Vec3f normal_of_moments(const Moments& m, double per_fx,
-                                                      double per_fy, double rx, double ry) {
-  const double per_n = 1 / m.n;
-  // Covariance (times n) in the centre's frame ...
-  const double xx = m.xx - m.x * m.x * per_n, xy = m.xy - m.x * m.y * per_n,
-               xz = m.xz - m.x * m.z * per_n, yy = m.yy - m.y * m.y * per_n,
-               yz = m.yz - m.y * m.z * per_n, zz = m.zz - m.z * m.z * per_n;
-  // ... and in the camera's: (x/fx + rx z, y/fy + ry z, z).
-  const double ax = per_fx * xz, ay = per_fy * yz;
-  const Symmetric3 covariance{per_fx * per_fx * xx + 2 * rx * ax + rx * rx * zz,
-                              per_fx * per_fy * xy + ry * ax + rx * ay + rx * ry * zz,
-                              ax + rx * zz,
-                              per_fy * per_fy * yy + 2 * ry * ay + ry * ry * zz,
-                              ay + ry * zz,
-                              zz};
-  const Vec3 direction = smallest_eigenvector(covariance);
-  const double away = direction.x * rx + direction.y * ry + direction.z;
-  const double length = std::sqrt(squared_norm(direction));
-  const double scale = (away > 0 ? -1.0 : 1.0) / (length > 0 ? length : 1.0);
-  return narrow(scale * direction);
-}
-
 // Moments of whole windows along a row, with du and dv relative to each centre: first down each
 // column, then across. The second step and what follows it go by tiles of constant size on the
 // stack, which compilers turn into vector code.
@@ -77,14 +48,10 @@ void WindowMoments::sum_columns(int v) {
   for (int d = 1; d <= radius_; ++d) {
     const float* below = depth_.at(-radius_, v + d);
     const float* above = depth_.at(-radius_, v - d);
-    const double distance = d, square = distance * distance;
+    const double distance = d;
     for (int i = 0; i < columns; ++i) {
-      const double b = below[i], a = above[i], bb = b * b, aa = a * a;
-      z[i] += b + a;
-      vz[i] += distance * (b - a);
-      z2[i] += bb + aa;
-      vz2[i] += distance * (bb - aa);
-      vvz2[i] += square * (bb + aa);
+      add_depth_rows(below[i], above[i], distance, z[i], vz[i]);
+      add_square_rows(below[i], above[i], distance, z2[i], vz2[i], vvz2[i]);
     }
   }
 }
@@ -98,23 +65,14 @@ void WindowMoments::sum_across(int first, Tile& t) const {
     t.y[i] = vz[i], t.z[i] = z[i], t.yy[i] = vvz2[i], t.yz[i] = vz2[i], t.zz[i] = z2[i];
   }
   for (int d = 1; d <= radius_; ++d) {
-    const double distance = d, square = distance * distance;
-    for (int i = 0; i < kTile; ++i) {
-      t.x[i] += distance * (z[i + d] - z[i - d]);
-      t.z[i] += z[i + d] + z[i - d];
-      t.y[i] += vz[i + d] + vz[i - d];
-    }
-    for (int i = 0; i < kTile; ++i) {
-      const double sum = z2[i + d] + z2[i - d], difference = z2[i + d] - z2[i - d];
-      t.xx[i] += square * sum;
-      t.xz[i] += distance * difference;
-      t.zz[i] += sum;
-    }
-    for (int i = 0; i < kTile; ++i) {
-      t.xy[i] += distance * (vz2[i + d] - vz2[i - d]);
-      t.yz[i] += vz2[i + d] + vz2[i - d];
-      t.yy[i] += vvz2[i + d] + vvz2[i - d];
-    }
+    const double distance = d;
+    for (int i = 0; i < kTile; ++i)
+      add_depth_columns(z[i + d], z[i - d], vz[i + d], vz[i - d], distance, t.x[i], t.y[i], t.z[i]);
+    for (int i = 0; i < kTile; ++i)
+      add_square_columns(z2[i + d], z2[i - d], distance, t.xx[i], t.xz[i], t.zz[i]);
+    for (int i = 0; i < kTile; ++i)
+      add_tilted_columns(vz2[i + d], vz2[i - d], vvz2[i + d], vvz2[i - d], distance, t.xy[i],
+                         t.yz[i], t.yy[i]);
   }
 }
 
@@ -123,11 +81,7 @@ Moments gated_moments(const PaddedImage& depth, const GatedWindow& window, int r
   Moments m;
   for (int dv = -radius; dv <= radius; ++dv) {
     const float* row = depth.at(u, v + dv);
-    for (int du = -radius; du <= radius; ++du) {
-      const double w = window.weight(du, dv), z = w * row[du], x = du * z, y = dv * z;
-      m.n += w, m.x += x, m.y += y, m.z += z;
-      m.xx += x * x, m.xy += x * y, m.xz += x * z, m.yy += y * y, m.yz += y * z, m.zz += z * z;
-    }
+    for (int du = -radius; du <= radius; ++du) add_pixel(m, window.weight(du, dv), row[du], du, dv);
   }
   return m;
 }

@@ -44,8 +44,7 @@ PaddedImage padded_depth(const DepthImage& depth, int margin) {
     for (std::size_t v = begin; v < end; ++v) {
       const float* from = depth.depth.data() + v * depth.width;
       float* to = padded.at(0, static_cast<int>(v));
-      for (int u = 0; u < padded.width; ++u)
-        to[u] = from[u] >= kMinDepth && from[u] <= kMaxDepth ? from[u] : 0.0F;
+      for (int u = 0; u < padded.width; ++u) to[u] = usable_depth(from[u]);
     }
   });
   return padded;
@@ -56,10 +55,7 @@ PaddedImage inverse_of(const PaddedImage& depth) {
   parallel_for(static_cast<std::size_t>(depth.height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       float* row = inverse.at(0, static_cast<int>(v));
-      for (int u = 0; u < inverse.width; ++u) {
-        const float reciprocal = 1.0F / (row[u] > 0 ? row[u] : 1.0F);
-        row[u] = row[u] > 0 ? reciprocal : 0.0F;
-      }
+      for (int u = 0; u < inverse.width; ++u) row[u] = inverse_of_usable(row[u]);
     }
   });
   return inverse;
@@ -130,25 +126,12 @@ GatedWindow::Plane GatedWindow::fit(int u, int v) {
   return first.found ? fit_admitted(centre, first, gate_, 0) : first;
 }
 
-[[gnu::always_inline]] inline GatedWindow::Plane GatedWindow::solve(const Sums& s) {
-  // Moments about the pixels' mean, times n: integers, exact in double.
-  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
-               vv = s.n * s.vv - s.v * s.v;
-  const double determinant = uu * vv - uv * uv;
-  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
-  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
-  const double a = (ue * vv - ve * uv) * unit;
-  const double b = (ve * uu - ue * uv) * unit;
-  const double c = (s.e - a * s.u - b * s.v) / s.n;
-  return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
-}
-
 // Lanes are columns, handled in groups of constant size so that compilers make vectors of them.
 VPM_VECTOR_CLONES
 GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& near, float gate,
                                              float slope) {
   const float middle = *centre, unit = 1.0F / middle;
-  Sums sums;
+  PlaneSums sums;
   for (int group = 0; group <= 2 * radius_; group += kLanes) {
     float predicted[kLanes], along[kLanes], exists[kLanes];
     float count[kLanes] = {}, y1[kLanes] = {}, y2[kLanes] = {}, e1[kLanes] = {}, ye[kLanes] = {};
@@ -167,9 +150,8 @@ GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& n
         const float value = row[i];
         const float reach = along[i] > away ? along[i] : away;
         const float difference = (value - middle) * unit;
-        const float off = std::abs(difference - (predicted[i] + shift));
-        const float kept = off <= gate + slope * reach ? exists[i] : 0.0F;
-        weight[i] = value > 0 ? kept : 0.0F;
+        weight[i] = weight_in_gate(value, difference, predicted[i] + shift, gate + slope * reach,
+                                   exists[i]);
         const float e = weight[i] > 0 ? difference : 0.0F;
         count[i] += weight[i];
         y1[i] += y * weight[i];
@@ -185,7 +167,7 @@ GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& n
     sums.v += fold(y1), sums.uv += fold_product(x, y1), sums.vv += fold(y2);
     sums.e += fold(e1), sums.ue += fold_product(x, e1), sums.ve += fold(ye);
   }
-  return solve(sums);
+  return plane_of_sums(sums);
 }
 
 }  // namespace vpm

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normals.h"
 
 namespace vpm {
@@ -58,11 +59,7 @@ class GatedWindow {
  public:
   GatedWindow(const PaddedImage& inverse, const NormalOptions& options, const Intrinsics& k);
 
-  // Inverse depth relative to the centre's, minus 1: c + a du + b dv.
-  struct Plane {
-    bool found = false;  // false: too few pixels remain, or they lie on a line
-    float a = 0, b = 0, c = 0;
-  };
+  using Plane = WindowPlane;
   Plane fit(int u, int v);
 
   // After fit() found a plane: 1 where pixel (u + du, v + dv) belongs to it, otherwise 0.
@@ -70,12 +67,7 @@ class GatedWindow {
 
  private:
   static constexpr int kStride = (kMaxWindow + kLanes - 1) / kLanes * kLanes;
-  // Sums over the admitted pixels of 1, du, dv, their products, the difference and its products.
-  struct Sums {
-    double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, e = 0, ue = 0, ve = 0;
-  };
   Plane fit_admitted(const float* centre, const Plane& near, float gate, float slope);
-  static Plane solve(const Sums& s);
 
   const PaddedImage& inverse_;
   int radius_;

@@ -102,9 +102,9 @@ Cloud assemble_cloud(const DepthImage& depth, const Camera& camera,
         if (!is_measured(depth.depth[i])) cloud.sensor->depth.depth[i] = 0;
         if (!exists(normals[i])) continue;
         const Vec3 normal = widen(normals[i]);
-        const Vec3 point = unproject(camera.intrinsics, static_cast<double>(i - v * depth.width),
-                                     static_cast<double>(v), depth.depth[i]);
-        cloud.positions[k] = narrow(rotation * point);
+        const double x = static_cast<double>(i - v * depth.width), y = static_cast<double>(v);
+        const Vec3 point = unproject(camera.intrinsics, x, y, depth.depth[i]);
+        cloud.positions[k] = position_of_pixel(camera, x, y, depth.depth[i]);
         cloud.normals[k] = narrow(rotation * normal);
         cloud.radii[k] = disk_radius(camera.intrinsics, point, normal);
         cloud.pixels[k] = static_cast<std::uint32_t>(i);

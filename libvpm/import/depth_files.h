@@ -24,10 +24,4 @@ DepthImage parse_exr_depth(std::span<const std::byte> bytes, const std::string& 
 // Refuses sizes of 0 and of more pixels than kMaxPoints.
 void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name);
 
-// 0 for what is no measurement.
-inline float depth_in_metres(double value, double units_per_metre) {
-  const auto depth = static_cast<float>(value / units_per_metre);
-  return is_measured(depth) ? depth : 0.0F;
-}
-
 }  // namespace vpm

@@ -17,6 +17,9 @@ namespace vpm {
 struct InverseDepthRange {
   float low = 0, high = 0;
 };
+VPM_HD constexpr InverseDepthRange united(InverseDepthRange a, InverseDepthRange b) {
+  return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high};
+}
 
 // A view: plain pointers, for host or device.
 struct DepthSurface {

@@ -1,7 +1,6 @@
 #include "libvpm/query/prepared_cloud.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/hole_closing.h"
 
 namespace vpm {
 namespace {
@@ -68,45 +68,20 @@ class MortonCurve {
   double cells_per_metre_ = 0;
 };
 
-// Neighbours of a pixel in opposite pairs.
-constexpr std::array<std::array<int, 2>, 4> kHalfRing{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
-
-// A pixel between measured ones, from opposite neighbours that see one surface: their mean is exact
-// on a plane.
-float fill_between(const std::vector<float>& image, int width, int height, int u, int v) {
-  double sum = 0;
-  int pairs = 0;
-  for (const auto& [du, dv] : kHalfRing) {
-    if (u - du < 0 || u + du >= width || std::min(v - dv, v + dv) < 0 ||
-        std::max(v - dv, v + dv) >= height)
-      continue;
-    const double a = image[static_cast<std::size_t>((v - dv) * width + u - du)];
-    const double b = image[static_cast<std::size_t>((v + dv) * width + u + du)];
-    if (!(a > 0 && b > 0) || std::abs(a - b) > DepthSurface::kJump * std::max(a, b)) continue;
-    sum += a + b;
-    ++pairs;
-  }
-  return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0f;
-}
-
-// Holes up to this many pixels wide are closed (twice this many passes would be needed for a pair
-// to reach further).
-constexpr int kFillPasses = 2;
-
 std::vector<float> filled_inverse_depth(const DepthImage& depth) {
   const int width = static_cast<int>(depth.width), height = static_cast<int>(depth.height);
   std::vector<float> image(depth.depth.size());
-  for (std::size_t i = 0; i < image.size(); ++i) {
-    const float z = depth.depth[i];
-    image[i] = z >= kMinDepth && z <= kMaxDepth ? static_cast<float>(1.0 / double{z}) : 0.0f;
-  }
+  for (std::size_t i = 0; i < image.size(); ++i)
+    image[i] = inverse_of_usable(usable_depth(depth.depth[i]));
   for (int pass = 0; pass < kFillPasses; ++pass) {
     std::vector<std::pair<std::size_t, float>> filled;
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
         const std::size_t i = static_cast<std::size_t>(v * width + u);
         if (image[i] > 0) continue;
-        const float value = fill_between(image, width, height, u, v);
+        const float value = between_neighbors(
+            [&](int x, int y) { return image[static_cast<std::size_t>(y * width + x)]; }, width,
+            height, u, v);
         if (value > 0) filled.emplace_back(i, value);
       }
     }
@@ -126,8 +101,7 @@ std::vector<InverseDepthRange> coarser(const std::vector<InverseDepthRange>& fin
       tile = fine[std::size_t{2 * v} * width + 2 * u];
       for (std::uint32_t y = 2 * v; y < std::min(2 * v + 2, height); ++y) {
         for (std::uint32_t x = 2 * u; x < std::min(2 * u + 2, width); ++x) {
-          const InverseDepthRange& child = fine[std::size_t{y} * width + x];
-          tile = {std::min(tile.low, child.low), std::max(tile.high, child.high)};
+          tile = united(tile, fine[std::size_t{y} * width + x]);
         }
       }
     }
