@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <atomic>
 
-#include "libvpm/query/ball_fraction.h"
-#include "libvpm/query/tool_sum.h"
-
 namespace vpm {
 namespace {
 
@@ -24,7 +21,7 @@ PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level, PointLocat
 
 Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,
                          std::vector<SphereState>& states) {
-  std::fill(contacts_.begin(), contacts_.end(), Contact{});
+  std::fill(contacts_.begin(), contacts_.end(), PaperContact{});
   std::fill(states.begin(), states.end(), SphereState::outside);
   const std::uint32_t points = gather(cloud, pose);
   find_boundary(states);
@@ -41,19 +38,7 @@ std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose)
   const auto add = [&](std::uint32_t i, std::uint32_t point, Vec3 x) {
     const Sphere& s = tool_.spheres[i];
     const Vec3 n = to_tool * widen(cloud.normals()[point]);
-    const Vec3 offset = (x - s.center) / s.radius;
-    const double height =
-        std::clamp(1 + dot(n, offset), 0.0, 2.0);  // r - d, d = n . (c - p), in radii
-    using Sum = FixedSum<kBits>;
-    Contact& c = contacts_[i];
-    add_atomically(c.points, 1);
-    add_atomically(c.cap, Sum::round(unit_cap_volume(height)));
-    add_atomically(c.normal[0], Sum::round(n.x));
-    add_atomically(c.normal[1], Sum::round(n.y));
-    add_atomically(c.normal[2], Sum::round(n.z));
-    add_atomically(c.offset[0], Sum::round(offset.x));
-    add_atomically(c.offset[1], Sum::round(offset.y));
-    add_atomically(c.offset[2], Sum::round(offset.z));
+    PaperContact::of_point(s, x, n).add_to(contacts_[i], add_atomically);
   };
   return for_points_inside(cloud, tool_, level_, location_, pose, ranges_, add);
 }
@@ -61,12 +46,9 @@ std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose)
 // Step 3: a sphere with a point in it is boundary; its normal is the mean of its points'.
 void PaperMeasure::find_boundary(std::vector<SphereState>& states) {
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
-    const Contact& c = contacts_[i];
-    if (c.points == 0) continue;
+    if (contacts_[i].points == 0) continue;
     states[i] = SphereState::boundary;
-    normals_[i] =
-        normalized_or_zero({static_cast<double>(c.normal[0]), static_cast<double>(c.normal[1]),
-                            static_cast<double>(c.normal[2])});
+    normals_[i] = contacts_[i].mean_normal();
   }
 }
 
@@ -82,9 +64,7 @@ void PaperMeasure::enter(std::vector<SphereState>& states) {
     for (std::uint32_t k = graph.begin[j]; k < graph.begin[j + 1]; ++k) {
       const std::uint32_t i = graph.neighbors[k];
       if (states[i] != SphereState::boundary) continue;
-      if (dot(normals_[i], tool_.spheres[j].center - tool_.spheres[i].center) >
-          -tool_.spheres[j].radius)
-        continue;
+      if (!lets_in(tool_.spheres[i], normals_[i], tool_.spheres[j])) continue;
       entered = true;
       normal += normals_[i];
     }
@@ -123,24 +103,17 @@ void PaperMeasure::flood(std::vector<SphereState>& states) {
   }
 }
 
-// Step 6. Caps and spheres lie in disjoint spheres inside the solid, so the sums of a ToolSum hold.
+// Step 6.
 Result PaperMeasure::total(const Pose& pose, const std::vector<SphereState>& states) const {
+  const ToolMeasures measures = measures_of(tool_);
   ToolSum sum;
   Result result;
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
-    const Sphere& s = tool_.spheres[i];
     if (states[i] == SphereState::boundary) {
-      const Contact& c = contacts_[i];
-      const double per_point = 1 / (FixedSum<kBits>::kOne * static_cast<double>(c.points));
-      const double cap = s.radius * s.radius * s.radius * (static_cast<double>(c.cap) * per_point);
-      const Vec3 mean{static_cast<double>(c.offset[0]), static_cast<double>(c.offset[1]),
-                      static_cast<double>(c.offset[2])};
-      const Vec3 at = s.center + s.radius * (per_point * mean);
-      sum.add(cap / tool_.volume, normals_[i], (at - tool_.center_of_mass) / tool_.reach);
+      add_boundary(measures, tool_.spheres[i], contacts_[i], normals_[i], sum);
       ++result.boundary;
     } else if (states[i] == SphereState::inside) {
-      sum.add(volume(s) / tool_.volume, normals_[i],
-              (s.center - tool_.center_of_mass) / tool_.reach);
+      add_inside(measures, tool_.spheres[i], normals_[i], sum);
       ++result.inside;
     }
   }

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "libvpm/core/fixed_sum.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/query/paper_contact.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/result.h"
 
@@ -21,24 +21,19 @@ class PaperMeasure {
   Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
 
  private:
-  // Sums over the points in a sphere, of terms local to it: |terms| <= 4 pi / 3 < 8 and at most
-  // 2^24 points, so 2^3 * 2^24 * 2^36 = 2^63 is never reached.
-  static constexpr int kBits = 36;
-  static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << (63 - 3 - kBits));
-  struct Contact {
-    std::int64_t points, cap, normal[3], offset[3];
-  };
-
   std::uint32_t gather(const PreparedCloud& cloud, const Pose& pose);
   void find_boundary(std::vector<SphereState>& states);
   void flood(std::vector<SphereState>& states);
   void enter(std::vector<SphereState>& states);
   Result total(const Pose& pose, const std::vector<SphereState>& states) const;
 
+  // What the sums of a contact can count.
+  static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << PaperContact::kPointBits);
+
   const ToolModel& tool_;
   const Level& level_;
   PointLocation location_;
-  std::vector<Contact> contacts_;
+  std::vector<PaperContact> contacts_;
   std::vector<Vec3> normals_;  // n_s of boundary, n_j of inside spheres, tool axes
   std::vector<std::uint32_t> front_, next_front_;
   PointRanges ranges_;

@@ -71,8 +71,7 @@ class PaperOnDevice : public PaperBaseline {
     view_ = {spheres_.get(),        level.sphere_count,
              nodes_.get(),          leaves_.get(),
              graph_begin_.get(),    neighbors_.get(),
-             tool.center_of_mass,   tool.reach,
-             tool.volume,           positions_.get(),
+             measures_of(tool),     positions_.get(),
              normals_.get(),        static_cast<std::uint32_t>(cloud.positions().size()),
              contacts_.get(),       states_.get(),
              sphere_normals_.get(), below_.get(),
@@ -113,7 +112,7 @@ class PaperOnDevice : public PaperBaseline {
 
  private:
   void launch_boundary(const Pose& pose) {
-    check(cudaMemsetAsync(contacts_.get(), 0, contacts_.size() * sizeof(Contact)));
+    check(cudaMemsetAsync(contacts_.get(), 0, contacts_.size() * sizeof(PaperContact)));
     check(cudaMemsetAsync(totals_.get(), 0, sizeof(PaperTotals)));
     gather_points<<<blocks_for(view_.point_count), kThreads>>>(
         view_, relative_to(pose, {{}, cloud_.origin()}), transpose(pose.rotation));
@@ -132,7 +131,7 @@ class PaperOnDevice : public PaperBaseline {
   DeviceArray<HierarchyNode> nodes_;
   DeviceArray<std::uint32_t> leaves_, graph_begin_, neighbors_;
   DeviceArray<Vec3f> positions_, normals_;
-  DeviceArray<Contact> contacts_;
+  DeviceArray<PaperContact> contacts_;
   DeviceArray<std::uint32_t> states_, below_;
   DeviceArray<Vec3> sphere_normals_;
   DeviceArray<PaperTotals> totals_;

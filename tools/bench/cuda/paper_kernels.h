@@ -4,19 +4,10 @@
 
 #include <cstdint>
 
-#include "libvpm/query/ball_fraction.h"
+#include "libvpm/query/paper_contact.h"
 #include "libvpm/query/sphere_location.h"
-#include "libvpm/query/tool_sum.h"
 
 namespace vpm::bench {
-
-// Fractional bits of the sums over the points of a sphere, as in PaperMeasure, whose header says
-// why they do not overflow.
-inline constexpr int kContactBits = 36;
-
-struct Contact {
-  std::int64_t points, cap, normal[3], offset[3];
-};
 
 struct PaperTotals {
   ToolSum sum;
@@ -34,14 +25,13 @@ struct PaperView {
   const std::uint32_t* leaves;
   const std::uint32_t* graph_begin;
   const std::uint32_t* neighbors;
-  Vec3 center_of_mass;
-  double reach, volume;  // of the tool
+  ToolMeasures tool;
 
   const Vec3f* positions;
   const Vec3f* normals;
   std::uint32_t point_count;
 
-  Contact* contacts;
+  PaperContact* contacts;
   std::uint32_t* states;  // SphereState
   Vec3* sphere_normals;
   std::uint32_t* below;  // the next sphere of the stack that a claimed sphere lies on
@@ -96,43 +86,23 @@ __global__ void gather_points(PaperView view, Pose to_tool, Rotation world_to_to
     inside = true;
     const Sphere& s = view.spheres[i];
     const Vec3 n = world_to_tool * widen(view.normals[k]);
-    const Vec3 offset = (x - s.center) / s.radius;
-    const double depth = 1 + dot(n, offset);
-    const double height = depth < 0 ? 0 : depth > 2 ? 2 : depth;
-    using Sum = FixedSum<kContactBits>;
-    Contact& c = view.contacts[i];
-    add_term(c.points, 1);
-    add_term(c.cap, Sum::round(unit_cap_volume(height)));
-    add_term(c.normal[0], Sum::round(n.x));
-    add_term(c.normal[1], Sum::round(n.y));
-    add_term(c.normal[2], Sum::round(n.z));
-    add_term(c.offset[0], Sum::round(offset.x));
-    add_term(c.offset[1], Sum::round(offset.y));
-    add_term(c.offset[2], Sum::round(offset.z));
+    PaperContact::of_point(s, x, n).add_to(view.contacts[i], add_term);
   });
   if (inside) atomicAdd(&view.totals->points, 1U);
-}
-
-__device__ inline Vec3 to_vector(const std::int64_t (&v)[3]) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
 // Step 3: a thread for each sphere.
 __global__ void find_boundary(PaperView view) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= view.sphere_count) return;
-  const Contact& c = view.contacts[i];
+  const PaperContact& c = view.contacts[i];
   view.states[i] =
       static_cast<std::uint32_t>(c.points == 0 ? SphereState::outside : SphereState::boundary);
   if (c.points == 0) return;
-  const Vec3 normal = normalized_or_zero(to_vector(c.normal));
+  const Vec3 normal = c.mean_normal();
   view.sphere_normals[i] = normal;
-  const Sphere& s = view.spheres[i];
-  const double per_point = 1 / (FixedSum<kContactBits>::kOne * static_cast<double>(c.points));
-  const double cap = s.radius * s.radius * s.radius * (static_cast<double>(c.cap) * per_point);
-  const Vec3 at = s.center + s.radius * (per_point * to_vector(c.offset));
   ToolSum sum;
-  sum.add(cap / view.volume, normal, (at - view.center_of_mass) / view.reach);
+  add_boundary(view.tool, view.spheres[i], c, normal, sum);
   add_sum(sum, view.totals->sum);
   atomicAdd(&view.totals->boundary, 1U);
 }
@@ -150,9 +120,8 @@ struct Traversal {
     constexpr auto kOutside = static_cast<std::uint32_t>(SphereState::outside);
     constexpr auto kInside = static_cast<std::uint32_t>(SphereState::inside);
     if (atomicCAS(&view.states[j], kOutside, kInside) != kOutside) return;
-    const Sphere& s = view.spheres[j];
     view.sphere_normals[j] = normal;
-    sum.add(volume(s) / view.volume, normal, (s.center - view.center_of_mass) / view.reach);
+    add_inside(view.tool, view.spheres[j], normal, sum);
     ++claimed;
     view.below[j] = top;
     top = j;
@@ -173,8 +142,7 @@ __global__ void flood(PaperView view) {
   const Vec3 normal = view.sphere_normals[i];
   for (std::uint32_t k = view.graph_begin[i]; k < view.graph_begin[i + 1]; ++k) {
     const std::uint32_t j = view.neighbors[k];
-    const Sphere& s = view.spheres[j];
-    if (dot(normal, s.center - view.spheres[i].center) > -s.radius) continue;
+    if (!lets_in(view.spheres[i], normal, view.spheres[j])) continue;
     traversal.claim(j, normal);
     while (traversal.top != PaperView::kNone) {
       const std::uint32_t passed = traversal.pop();
