@@ -1,7 +1,7 @@
 // control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]: what a haptic or robot controller does with
 // libvpm, timed. The tool slides over the surface in the middle of the cloud, turning, 5 to 10 % of
 // its volume inside; every pose is one query, and its answer is awaited before the next.
-//   device=auto   cpu, cuda, cuda:1
+//   device=auto   cpu, cuda, cuda:1, cuda:all
 //   queries=10000
 //   level=0       spheres; 0 is the finest level
 //   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
@@ -143,7 +143,7 @@ void print_histogram(const Figures& figures) {
 }
 
 nlohmann::json about(const Device& device, const Level& level, const PreparedCloud& cloud) {
-  return {{"device", device.is_cuda() ? cuda_device_name(device.index) : "cpu"},
+  return {{"device", device_name(device)},
           {"spheres", level.sphere_count},
           {"points", cloud.positions().size()}};
 }

@@ -14,21 +14,32 @@ namespace {
 
 int index_from_text(const std::string& text) {
   constexpr std::string_view kPrefix = "cuda:";
+  constexpr int kNone = -1;
   if (text == "cuda") return 0;
-  int index = -1;
+  if (text == "cuda:all") return Device::kAll;
+  int index = kNone;
   const char* end = text.data() + text.size();
   if (text.rfind(kPrefix, 0) == 0) {
     const auto [stop, fault] = std::from_chars(text.data() + kPrefix.size(), end, index);
-    if (fault != std::errc() || stop != end) index = -1;
+    if (fault != std::errc() || stop != end) index = kNone;
   }
   if (index < 0) {
-    throw Error(ErrorKind::usage,
-                "--device: " + text + " not in {auto,cpu,cuda,cuda:N} with N a device's number");
+    throw Error(
+        ErrorKind::usage,
+        "--device: " + text + " not in {auto,cpu,cuda,cuda:N,cuda:all} with N a device's number");
   }
   return index;
 }
 
 }  // namespace
+
+std::string device_name(const Device& device) {
+  if (!device.is_cuda()) return "cpu";
+  if (device.index != Device::kAll) return cuda_device_name(device.index);
+  std::string names;
+  for (int k = 0; k < cuda_device_count(); ++k) names += (k == 0 ? "" : "; ") + cuda_device_name(k);
+  return names;
+}
 
 Device device_from_text(const std::string& text) {
   if (text == "cpu") return {};

@@ -22,7 +22,8 @@ class DeviceMeasure {
   // (query.h). Throw Error(unavailable) where the device fails.
   virtual Result run(const PreparedCloud& cloud, const Pose& pose) = 0;
 
-  // Results in the order of the poses. Poses are cut into launches that fit the device's memory.
+  // Results in the order of the poses; from any thread. Poses are cut into launches that fit the
+  // device's memory.
   virtual void run(const PreparedCloud& cloud, std::span<const Pose> poses,
                    std::span<Result> results) = 0;
 
@@ -30,7 +31,8 @@ class DeviceMeasure {
   virtual void read_states(std::vector<SphereState>& states) = 0;
 };
 
-// Throws Error(unavailable) where libvpm was built without CUDA, or the device has too little
+// On Device::kAll, single poses go to the first device. Throws Error(unavailable) where libvpm was
+// built without CUDA, or the device has too little
 // memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    Measure measure, const Device& device);

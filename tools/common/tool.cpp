@@ -56,8 +56,9 @@ std::string message_of(const CLI::ParseError& fault) {
 std::string check_device(const std::string& text) {
   const bool has_index = text.rfind("cuda:", 0) == 0 && text.size() > 5 &&
                          text.find_first_not_of("0123456789", 5) == std::string::npos;
-  if (has_index || text == "auto" || text == "cpu" || text == "cuda") return {};
-  return text + " not in {auto,cpu,cuda,cuda:N}";
+  if (has_index || text == "auto" || text == "cpu" || text == "cuda" || text == "cuda:all")
+    return {};
+  return text + " not in {auto,cpu,cuda,cuda:N,cuda:all}";
 }
 
 }  // namespace
@@ -71,7 +72,8 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
   app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
       ->configurable(false);
   app_.add_option("--device", common_.device,
-                  "Where to compute: cpu, cuda, cuda:N, or auto (cuda where there is a device)")
+                  "Where to compute: cpu, cuda, cuda:N, cuda:all, or auto (cuda where there is a "
+                  "device)")
       ->check(check_device)
       ->capture_default_str();
   app_.add_option("--threads", common_.threads,

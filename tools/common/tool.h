@@ -13,7 +13,7 @@
 namespace vpm::tools {
 
 struct CommonOptions {
-  std::string device = "auto";  // auto, cpu, cuda, cuda:N
+  std::string device = "auto";  // auto, cpu, cuda, cuda:N, cuda:all
   int threads = 0;              // 0: one per core
   bool quiet = false;
   bool verbose = false;

@@ -197,7 +197,7 @@ void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& qu
                   last);
   if (a.stats.empty()) return;
   stats["device"] = device.is_cuda() ? "cuda" : "cpu";
-  if (device.is_cuda()) stats["device_name"] = cuda_device_name(device.index);
+  if (device.is_cuda()) stats["device_name"] = device_name(device);
   stats["batch"] = a.batch;
   stats["threads"] = thread_count();
   stats["level"] = level.sphere_count;

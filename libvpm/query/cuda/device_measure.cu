@@ -1,6 +1,8 @@
+#include <algorithm>
+
 #include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/cuda/refined_measure.h"
-#include "libvpm/query/device_measure.h"
+#include "libvpm/query/spread_measure.h"
 
 namespace vpm {
 
@@ -22,11 +24,25 @@ std::string cuda_device_name(int index) {
          std::to_string(driver % 1000 / 10);
 }
 
-std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
-                                                   Measure measure, const Device& device) {
+namespace {
+
+std::unique_ptr<DeviceMeasure> make_on_one(const ToolModel& tool, const Level& level,
+                                           Measure measure, int device) {
   if (measure == Measure::paper)
     throw Error(ErrorKind::unavailable, "the paper's measure has no CUDA version yet");
-  return cuda::make_refined_measure(tool, level, device.index);
+  return cuda::make_refined_measure(tool, level, device);
+}
+
+}  // namespace
+
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
+                                                   Measure measure, const Device& device) {
+  const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
+  std::vector<std::unique_ptr<DeviceMeasure>> measures;
+  for (int k = 0; k < count; ++k)
+    measures.push_back(make_on_one(tool, level, measure, device.first() + k));
+  if (measures.size() == 1) return std::move(measures.front());
+  return std::make_unique<SpreadMeasure>(std::move(measures));
 }
 
 }  // namespace vpm

@@ -98,11 +98,14 @@ $ vpm-probe in.off -o - --threads -1
 2> vpm-probe: error: --threads: Value -1 not in range 0 to 4096 (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --device tpu
-2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda,cuda:N} (see vpm-probe --help)
+2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda,cuda:N,cuda:all} (see vpm-probe --help)
 [2]
 # Why there is no such device depends on the build and the machine.
 $ vpm-probe in.off -o - --device cuda:999 2>&1 | sed 's/cuda:999: .*;/cuda:999: WHY;/'
 vpm-probe: error: --device cuda:999: WHY; use --device cpu, or leave the option out
+[3]
+$ vpm-probe in.off -o - --device cuda:all 2>&1 | sed 's/cuda:all: .*;/cuda:all: WHY;/'
+vpm-probe: error: --device cuda:all: WHY; use --device cpu, or leave the option out
 [3]
 $ vpm-probe in.off -o missing/out.txt
 2> vpm-probe: error: cannot write missing/out.txt: there is no folder missing

@@ -1,0 +1,31 @@
+// One measure on several devices: the poses of a batch are spread over them.
+#pragma once
+
+#include "libvpm/query/device_measure.h"
+
+namespace vpm {
+
+class SpreadMeasure : public DeviceMeasure {
+ public:
+  // At least one, each on a device of its own.
+  explicit SpreadMeasure(std::vector<std::unique_ptr<DeviceMeasure>> measures)
+      : measures_(std::move(measures)) {}
+
+  // On the first device.
+  Result run(const PreparedCloud& cloud, const Pose& pose) override {
+    return measures_.front()->run(cloud, pose);
+  }
+  void read_states(std::vector<SphereState>& states) override {
+    measures_.front()->read_states(states);
+  }
+
+  // A thread for each device, which takes the next poses that nobody has taken as long as there are
+  // any: a device with dear poses takes fewer.
+  void run(const PreparedCloud& cloud, std::span<const Pose> poses,
+           std::span<Result> results) override;
+
+ private:
+  std::vector<std::unique_ptr<DeviceMeasure>> measures_;
+};
+
+}  // namespace vpm
