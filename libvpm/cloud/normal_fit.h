@@ -44,6 +44,24 @@ template <class Real>
           static_cast<float>(z * scale)};
 }
 
+// What turns the sums of a whole window into the plane's slopes and its middle.
+struct WholeWindow {
+  float per_slope = 0, per_count = 0;
+
+  WholeWindow() = default;
+  explicit constexpr WholeWindow(int window) {
+    const float count = static_cast<float>(window * window);
+    // Sum of du^2 over a whole window: window^2 (window^2 - 1) / 12.
+    per_slope = 12 / (count * (count - 1));
+    per_count = 1 / count;
+  }
+  [[gnu::always_inline]] VPM_HD inline PlaneSlopes<float> plane(float s, float us, float vs,
+                                                                float centre) const {
+    const float unit = 1.0F / centre;
+    return {us * per_slope * unit, vs * per_slope * unit, s * per_count * unit};
+  }
+};
+
 // Of a gated window: what the pixel at (du, dv) from the centre adds. `value` is its inverse depth,
 // `expected` what the centre's surface has there, relative to the centre's and minus 1, as is
 // `difference`. `exists`: 0 for what only fills a group of columns.
@@ -76,6 +94,15 @@ struct WindowPlane {
   const double b = (ve * uu - ue * uv) * unit;
   const double c = (s.e - a * s.u - b * s.v) / s.n;
   return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+}
+
+// Zero where no plane was found. An extrapolated plane may pass behind the sensor's centre: it says
+// nothing either.
+VPM_HD inline Vec3f normal_of_window(const WindowPlane& plane, float fx, float fy, float du_axis,
+                                     float dv_axis) {
+  return plane.found && 1 + plane.c > 0
+             ? normal_of_plane<float>({plane.a, plane.b, 1 + plane.c}, fx, fy, du_axis, dv_axis)
+             : Vec3f{};
 }
 
 // Upper triangle of a symmetric 3x3 matrix.

@@ -71,11 +71,10 @@ void inverse_depth_rows(const PaddedImage& inverse, const Intrinsics& k,
                         const NormalOptions& options, int begin, int end, Vec3f* normals) {
   const int radius = options.window / 2, width = inverse.width;
   const float fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy);
-  const float count = static_cast<float>(options.window * options.window);
-  // Sum of du^2 over a whole window: window^2 (window^2 - 1) / 12.
-  const float per_slope = 12 / (count * (count - 1)), per_count = 1 / count;
-  SmoothWindows windows(inverse, options);
-  GatedWindow gated(inverse, options, k);
+  const WholeWindow whole(options.window);
+  const EdgeGate edges(options, k);
+  SmoothWindows windows(inverse, options, edges);
+  GatedWindow gated(inverse, options, edges);
   WindowSums sums(inverse, radius);
   std::vector<float> to_axis(static_cast<std::size_t>(width));
   for (int u = 0; u < width; ++u)
@@ -88,19 +87,13 @@ void inverse_depth_rows(const PaddedImage& inverse, const Intrinsics& k,
     sums.scan(v);
     const float *s = sums.sum(), *su = sums.sum_u(), *sv = sums.sum_v(), *du = to_axis.data();
     for (int u = 0; u < width; ++u) {
-      const float unit = 1.0F / centre[u];
-      row[u] = normal_of_plane<float>(
-          {su[u] * per_slope * unit, sv[u] * per_slope * unit, s[u] * per_count * unit}, fx, fy,
-          du[u], dv_axis);
+      row[u] = normal_of_plane<float>(whole.plane(s[u], su[u], sv[u], centre[u]), fx, fy, du[u],
+                                      dv_axis);
     }
     for (int u = 0; u < width; ++u) {
       if (windows.smooth(u)) continue;
       const GatedWindow::Plane plane = centre[u] > 0 ? gated.fit(u, v) : GatedWindow::Plane{};
-      // An extrapolated plane may pass behind the sensor's centre: it says nothing.
-      const bool found = plane.found && 1 + plane.c > 0;
-      row[u] = found
-                   ? normal_of_plane<float>({plane.a, plane.b, 1 + plane.c}, fx, fy, du[u], dv_axis)
-                   : Vec3f{};
+      row[u] = normal_of_window(plane, fx, fy, du[u], dv_axis);
     }
   }
 }

@@ -93,8 +93,9 @@ void pca_rows(const PaddedImage& depth, const PaddedImage& inverse, const Intrin
               const NormalOptions& options, int begin, int end, Vec3f* normals) {
   const int radius = options.window / 2, width = inverse.width;
   const double per_fx = 1 / k.fx, per_fy = 1 / k.fy;
-  SmoothWindows windows(inverse, options);
-  GatedWindow gated(inverse, options, k);
+  const EdgeGate edges(options, k);
+  SmoothWindows windows(inverse, options, edges);
+  GatedWindow gated(inverse, options, edges);
   WindowMoments moments(depth, radius);
   const double count = options.window * options.window;
   for (int v = begin; v < end; ++v) {

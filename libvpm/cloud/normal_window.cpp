@@ -61,12 +61,19 @@ PaddedImage inverse_of(const PaddedImage& depth) {
   return inverse;
 }
 
-SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& options)
-    : inverse_(inverse), radius_(options.window / 2) {
-  const double gate = options.edge_gate;
+EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
+  constexpr float kOpen = std::numeric_limits<float>::infinity();
+  const double width = options.edge_gate;
   // Without a gate every measured pixel passes; 0 stands for what was not measured.
-  lowest_ = gate > 0 ? static_cast<float>(1 - gate) : 0.0F;
-  highest_ = gate > 0 ? static_cast<float>(1 + gate) : std::numeric_limits<float>::infinity();
+  lowest = width > 0 ? static_cast<float>(1 - width) : 0.0F;
+  highest = width > 0 ? static_cast<float>(1 + width) : kOpen;
+  gate = width > 0 ? static_cast<float>(width) : kOpen;
+  slope = static_cast<float>(kSteepest / std::min(k.fx, k.fy));
+}
+
+SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& options,
+                             const EdgeGate& edges)
+    : inverse_(inverse), radius_(options.window / 2), edges_(edges) {
   column_min_.resize(inverse.stride);
   column_max_.resize(inverse.stride);
   window_min_.resize(inverse.stride);
@@ -104,16 +111,14 @@ void SmoothWindows::scan(int v) {
   const float* centre = inverse_.at(0, v);
   std::uint8_t* smooth = smooth_.data();
   for (int u = 0; u < width; ++u) {
-    smooth[u] = (low[u] > 0) & (low[u] >= lowest_ * centre[u]) & (high[u] <= highest_ * centre[u]);
+    smooth[u] = (low[u] > 0) & (low[u] >= edges_.lowest * centre[u]) &
+                (high[u] <= edges_.highest * centre[u]);
   }
 }
 
 GatedWindow::GatedWindow(const PaddedImage& inverse, const NormalOptions& options,
-                         const Intrinsics& k)
-    : inverse_(inverse), radius_(options.window / 2) {
-  constexpr float kOpen = std::numeric_limits<float>::infinity();
-  gate_ = options.edge_gate > 0 ? static_cast<float>(options.edge_gate) : kOpen;
-  slope_ = static_cast<float>(kSteepest / std::min(k.fx, k.fy));
+                         const EdgeGate& edges)
+    : inverse_(inverse), radius_(options.window / 2), edges_(edges) {
   for (int i = 0; i < kStride; ++i) {
     offset_[i] = static_cast<float>(i - radius_);
     exists_[i] = i < options.window ? 1.0F : 0.0F;
@@ -122,8 +127,8 @@ GatedWindow::GatedWindow(const PaddedImage& inverse, const NormalOptions& option
 
 GatedWindow::Plane GatedWindow::fit(int u, int v) {
   const float* centre = inverse_.at(u, v);
-  const Plane first = fit_admitted(centre, {}, gate_, slope_);
-  return first.found ? fit_admitted(centre, first, gate_, 0) : first;
+  const Plane first = fit_admitted(centre, {}, edges_.gate, edges_.slope);
+  return first.found ? fit_admitted(centre, first, edges_.gate, 0) : first;
 }
 
 // Lanes are columns, handled in groups of constant size so that compilers make vectors of them.

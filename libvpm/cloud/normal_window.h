@@ -35,18 +35,26 @@ struct PaddedImage {
 PaddedImage padded_depth(const DepthImage& depth, int margin);
 PaddedImage inverse_of(const PaddedImage& depth);
 
+// Bounds of inverse depth by the options' edge gate.
+struct EdgeGate {
+  float lowest, highest;  // of a smooth window, relative to its centre's
+  float gate, slope;      // of a gated one: difference from a plane, and more of it per pixel from
+                          // the centre where the plane is not known yet
+  EdgeGate(const NormalOptions& options, const Intrinsics& k);
+};
+
 // Tells the windows of a row that are whole, measured everywhere and without an edge: there, plain
 // sums over all pixels will do. They are most of a usual image.
 class SmoothWindows {
  public:
-  SmoothWindows(const PaddedImage& inverse, const NormalOptions& options);
+  SmoothWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
   void scan(int v);
   bool smooth(int u) const { return smooth_[static_cast<std::size_t>(u)] != 0; }
 
  private:
   const PaddedImage& inverse_;
   int radius_;
-  float lowest_, highest_;  // of the window's inverse depths, relative to the centre's
+  EdgeGate edges_;
   std::vector<float> column_min_, column_max_, window_min_, window_max_;
   std::vector<std::uint8_t> smooth_;
 };
@@ -57,7 +65,7 @@ class SmoothWindows {
 // plane fitted to it then leaves only what lies within the edge gate of that plane.
 class GatedWindow {
  public:
-  GatedWindow(const PaddedImage& inverse, const NormalOptions& options, const Intrinsics& k);
+  GatedWindow(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
 
   using Plane = WindowPlane;
   Plane fit(int u, int v);
@@ -71,7 +79,7 @@ class GatedWindow {
 
   const PaddedImage& inverse_;
   int radius_;
-  float gate_, slope_;
+  EdgeGate edges_;
   float offset_[kStride];  // du of each lane
   float exists_[kStride];  // 1 for the lanes of the window, 0 for those that fill the last group
   float weight_[kMaxWindow * kStride];
