@@ -2,7 +2,11 @@
 // roots only, in a written order, so that every compiler and device gives the same bits. Inlined
 // without exception, since a call inside a loop over pixels keeps compilers from making vector
 // code.
+//
+// Real: float or double, or a vector of such (core/lanes.h).
 #pragma once
+
+#include <type_traits>
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/cloud/normal_limits.h"
@@ -13,14 +17,19 @@ namespace vpm {
 // then across the columns. `distance`: of the pair from the middle.
 //
 // Of the inverse depth s: sums of s and v s in a column; of s, u s and v s in a window.
-[[gnu::always_inline]] VPM_HD inline void add_rows(float below, float above, float distance,
-                                                   float& s, float& vs) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_rows(std::type_identity_t<Real> below,
+                                                   std::type_identity_t<Real> above, float distance,
+                                                   Real& s, Real& vs) {
   s += below + above;
   vs += distance * (below - above);
 }
-[[gnu::always_inline]] VPM_HD inline void add_columns(float right, float left, float right_v,
-                                                      float left_v, float distance, float& s,
-                                                      float& us, float& vs) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_columns(std::type_identity_t<Real> right,
+                                                      std::type_identity_t<Real> left,
+                                                      std::type_identity_t<Real> right_v,
+                                                      std::type_identity_t<Real> left_v,
+                                                      float distance, Real& s, Real& us, Real& vs) {
   s += right + left;
   us += distance * (right - left);
   vs += right_v + left_v;
@@ -62,20 +71,43 @@ struct WholeWindow {
   }
 };
 
-// Of a gated window: what the pixel at (du, dv) from the centre adds. `value` is its inverse depth,
-// `expected` what the centre's surface has there, relative to the centre's and minus 1, as is
-// `difference`. `exists`: 0 for what only fills a group of columns.
-[[gnu::always_inline]] VPM_HD inline float weight_in_gate(float value, float difference,
-                                                          float expected, float allowed,
-                                                          float exists) {
-  const float kept = std::abs(difference - expected) <= allowed ? exists : 0.0F;
-  return value > 0 ? kept : 0.0F;
+// Whether a gated window keeps a pixel. `value` is its inverse depth, `expected` what the centre's
+// surface has there, relative to the centre's and minus 1, as is `difference`.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline auto is_in_gate(Real value, Real difference, Real expected,
+                                                     float allowed) {
+  const Real off = difference - expected;
+  return (off <= allowed) & (off >= -allowed) & (value > 0.0F);
 }
 
 // Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
-struct PlaneSums {
-  double n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, e = 0, ue = 0, ve = 0;
+template <class Real>
+struct SumsOfPlane {
+  Real n{}, u{}, v{}, uu{}, uv{}, vv{}, e{}, ue{}, ve{};
 };
+using PlaneSums = SumsOfPlane<double>;
+
+// The plane before it is rounded to floats; 0 where it is not found.
+template <class Real>
+struct FittedPlane {
+  using Mask = decltype(Real() < Real());
+  Mask found;
+  Real a, b, c;
+};
+
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline FittedPlane<Real> fit_plane(const SumsOfPlane<Real>& s) {
+  // Moments about the pixels' mean, times n: integers, exact in double.
+  const Real uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v, vv = s.n * s.vv - s.v * s.v;
+  const Real determinant = uu * vv - uv * uv;
+  const auto found = static_cast<typename FittedPlane<Real>::Mask>(
+      (s.n >= double{kMinSupport}) & (determinant >= kMinSpread * s.n * s.n * (uu + vv)));
+  const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1.0 / determinant;
+  const Real a = (ue * vv - ve * uv) * unit;
+  const Real b = (ve * uu - ue * uv) * unit;
+  const Real c = (s.e - a * s.u - b * s.v) / s.n;
+  return {found, found ? a : Real{}, found ? b : Real{}, found ? c : Real{}};
+}
 
 // Inverse depth relative to the centre's, minus 1: c + a du + b dv.
 struct WindowPlane {
@@ -84,25 +116,20 @@ struct WindowPlane {
 };
 
 [[gnu::always_inline]] VPM_HD inline WindowPlane plane_of_sums(const PlaneSums& s) {
-  // Moments about the pixels' mean, times n: integers, exact in double.
-  const double uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v,
-               vv = s.n * s.vv - s.v * s.v;
-  const double determinant = uu * vv - uv * uv;
-  if (s.n < kMinSupport || determinant < kMinSpread * s.n * s.n * (uu + vv)) return {};
-  const double ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1 / determinant;
-  const double a = (ue * vv - ve * uv) * unit;
-  const double b = (ve * uu - ue * uv) * unit;
-  const double c = (s.e - a * s.u - b * s.v) / s.n;
-  return {true, static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+  const FittedPlane<double> plane = fit_plane(s);
+  return {plane.found, static_cast<float>(plane.a), static_cast<float>(plane.b),
+          static_cast<float>(plane.c)};
 }
 
 // Zero where no plane was found. An extrapolated plane may pass behind the sensor's centre: it says
 // nothing either.
-VPM_HD inline Vec3f normal_of_window(const WindowPlane& plane, float fx, float fy, float du_axis,
-                                     float dv_axis) {
-  return plane.found && 1 + plane.c > 0
-             ? normal_of_plane<float>({plane.a, plane.b, 1 + plane.c}, fx, fy, du_axis, dv_axis)
-             : Vec3f{};
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_window(const WindowPlane& plane, float fx,
+                                                            float fy, float du_axis,
+                                                            float dv_axis) {
+  const float height = 1 + plane.c;
+  const bool found = plane.found & (height > 0);
+  const Vec3f n = normal_of_plane<float>({plane.a, plane.b, height}, fx, fy, du_axis, dv_axis);
+  return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
 }
 
 // Upper triangle of a symmetric 3x3 matrix.
@@ -163,13 +190,18 @@ template <int Steps>
 
 // Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
 // are plain weighted sums of z and z^2.
-struct Moments {
-  double n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+template <class Real>
+struct MomentsOf {
+  Real n{}, x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
 };
+using Moments = MomentsOf<double>;
 
-[[gnu::always_inline]] VPM_HD inline void add_pixel(Moments& m, double weight, double depth, int du,
-                                                    int dv) {
-  const double z = weight * depth, x = du * z, y = dv * z;
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_pixel(MomentsOf<Real>& m,
+                                                    std::type_identity_t<Real> weight,
+                                                    std::type_identity_t<Real> depth, double du,
+                                                    double dv) {
+  const Real z = weight * depth, x = du * z, y = dv * z;
   m.n += weight, m.x += x, m.y += y, m.z += z;
   m.xx += x * x, m.xy += x * y, m.xz += x * z, m.yy += y * y, m.yz += y * z, m.zz += z * z;
 }

@@ -1,14 +1,55 @@
 // The two estimators, row by row.
 #pragma once
 
+#include <algorithm>
+#include <memory>
+
 #include "libvpm/cloud/normal_window.h"
 
 namespace vpm {
 
-// Normals of the rows [begin, end) into `normals`, which covers the whole image and holds zeros.
-void inverse_depth_rows(const PaddedImage& inverse, const Intrinsics& k,
-                        const NormalOptions& options, int begin, int end, Vec3f* normals);
-void pca_rows(const PaddedImage& depth, const PaddedImage& inverse, const Intrinsics& k,
-              const NormalOptions& options, int begin, int end, Vec3f* normals);
+// Normals of one row of pixels, camera axes; zero where there is none. Three arrays, since that is
+// what loops over pixels are quick with.
+struct NormalRow {
+  std::vector<float> x, y, z;
+  explicit NormalRow(std::size_t width) : x(width), y(width), z(width) {}
+  // Takes `count` normals from pixel `first` on.
+  void take(int first, const float* nx, const float* ny, const float* nz, int count) {
+    std::copy(nx, nx + count, x.begin() + first);
+    std::copy(ny, ny + count, y.begin() + first);
+    std::copy(nz, nz + count, z.begin() + first);
+  }
+};
+
+// What the estimators read: the frame with a margin of half a window.
+struct NormalImages {
+  PaddedImage inverse;
+  PaddedImage depth;  // of pca only
+
+  void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options);
+  void take_rows(const DepthImage& image, const NormalOptions& options, int begin, int end);
+};
+
+// An estimator with its scratch: one for each thread. The images must outlive it.
+class NormalRows {
+ public:
+  NormalRows() = default;
+  virtual ~NormalRows() = default;
+  NormalRows(const NormalRows&) = delete;
+  NormalRows& operator=(const NormalRows&) = delete;
+  // `row` is as wide as the image.
+  virtual void estimate(int v, NormalRow& row) = 0;
+};
+
+std::unique_ptr<NormalRows> inverse_depth_rows(const NormalImages& images, const Intrinsics& k,
+                                               const NormalOptions& options);
+std::unique_ptr<NormalRows> pca_rows(const NormalImages& images, const Intrinsics& k,
+                                     const NormalOptions& options);
+// The one that the options name.
+std::unique_ptr<NormalRows> normal_rows(const NormalImages& images, const Intrinsics& k,
+                                        const NormalOptions& options);
+
+// Rows of one task: enough work to outweigh the rows above and below that it reads as well.
+inline constexpr std::size_t kNormalRowsPerTask = 32;
 
 }  // namespace vpm

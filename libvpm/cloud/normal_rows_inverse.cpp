@@ -12,90 +12,137 @@ namespace {
 // pixels carry the slopes, so float keeps their digits.
 class WindowSums {
  public:
+  struct Tile {
+    float sum[kTile], sum_u[kTile], sum_v[kTile];
+  };
+
   WindowSums(const PaddedImage& inverse, int radius)
       : inverse_(inverse),
         radius_(radius),
-        column_(inverse.stride),
-        column_v_(inverse.stride),
-        sum_(inverse.stride),
-        sum_u_(inverse.stride),
-        sum_v_(inverse.stride) {}
+        column_(inverse.stride + kTile),
+        column_v_(inverse.stride + kTile) {}
 
-  void scan(int v) {
-    sum_columns(v);
-    const int width = inverse_.width;
-    const float* column = column_.data() + radius_;
-    const float* column_v = column_v_.data() + radius_;
-    float *s = sum_.data(), *su = sum_u_.data(), *sv = sum_v_.data();
-    std::copy(column, column + width, s);
-    std::copy(column_v, column_v + width, sv);
-    std::fill(su, su + width, 0.0F);
-    for (int d = 1; d <= radius_; ++d) {
-      const float distance = static_cast<float>(d);
-      for (int u = 0; u < width; ++u) {
-        add_columns(column[u + d], column[u - d], column_v[u + d], column_v[u - d], distance, s[u],
-                    su[u], sv[u]);
-      }
-    }
-  }
-
-  const float* sum() const { return sum_.data(); }
-  const float* sum_u() const { return sum_u_.data(); }
-  const float* sum_v() const { return sum_v_.data(); }
+  void sum_columns(int v);
+  void sum_across(int first, Tile& tile) const;
 
  private:
-  void sum_columns(int v) {
-    const int columns = inverse_.width + 2 * radius_;
-    const float* middle = inverse_.at(-radius_, v);
-    std::copy(middle, middle + columns, column_.data());
-    std::fill(column_v_.begin(), column_v_.end(), 0.0F);
-    float *column = column_.data(), *column_v = column_v_.data();
-    for (int d = 1; d <= radius_; ++d) {
-      const float* below = inverse_.at(-radius_, v + d);
-      const float* above = inverse_.at(-radius_, v - d);
-      const float distance = static_cast<float>(d);
-      for (int i = 0; i < columns; ++i)
-        add_rows(below[i], above[i], distance, column[i], column_v[i]);
-    }
-  }
-
   const PaddedImage& inverse_;
   int radius_;
-  std::vector<float> column_, column_v_, sum_, sum_u_, sum_v_;
+  std::vector<float> column_, column_v_;
 };
+
+void WindowSums::sum_columns(int v) {
+  const int columns = inverse_.width + 2 * radius_;
+  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
+  for (int i = 0; i < columns; i += kLanes) {
+    const float* middle = inverse_.at(i - radius_, v);
+    Floats sum = load<Floats>(middle), sum_v{};
+    for (int d = 1; d <= radius_; ++d) {
+      const Floats below = load<Floats>(middle + d * stride),
+                   above = load<Floats>(middle - d * stride);
+      add_rows(below, above, static_cast<float>(d), sum, sum_v);
+    }
+    store(sum, column_.data() + i);
+    store(sum_v, column_v_.data() + i);
+  }
+}
+
+void WindowSums::sum_across(int first, Tile& tile) const {
+  for (int i = 0; i < kTile; i += kLanes) {
+    const float *column = column_.data() + radius_ + first + i,
+                *column_v = column_v_.data() + radius_ + first + i;
+    Floats sum = load<Floats>(column), sum_u{}, sum_v = load<Floats>(column_v);
+    for (int d = 1; d <= radius_; ++d) {
+      const Floats right = load<Floats>(column + d), left = load<Floats>(column - d);
+      add_columns(right, left, load<Floats>(column_v + d), load<Floats>(column_v - d),
+                  static_cast<float>(d), sum, sum_u, sum_v);
+    }
+    store(sum, tile.sum + i);
+    store(sum_u, tile.sum_u + i);
+    store(sum_v, tile.sum_v + i);
+  }
+}
+
+class InverseDepthRows final : public NormalRows {
+ public:
+  InverseDepthRows(const PaddedImage& inverse, const Intrinsics& k, const NormalOptions& options)
+      : inverse_(inverse),
+        fx_(static_cast<float>(k.fx)),
+        fy_(static_cast<float>(k.fy)),
+        cy_(k.cy),
+        whole_(options.window),
+        windows_(inverse, options, EdgeGate(options, k)),
+        gated_(inverse, options, EdgeGate(options, k)),
+        sums_(inverse, options.window / 2) {
+    to_axis_.resize(inverse.stride + kTile);
+    for (int u = 0; u < inverse.width; ++u)
+      to_axis_[static_cast<std::size_t>(u)] = static_cast<float>(k.cx - u);
+  }
+
+  void estimate(int v, NormalRow& row) override {
+    windows_.scan(v);
+    fit_whole_windows(v, row);
+    fit_gated_windows(v, row);
+  }
+
+ private:
+  void fit_whole_windows(int v, NormalRow& row);
+  void fit_gated_windows(int v, NormalRow& row);
+
+  const PaddedImage& inverse_;
+  float fx_, fy_;
+  double cy_;
+  WholeWindow whole_;
+  SmoothWindows windows_;
+  GatedWindows gated_;
+  WindowSums sums_;
+  std::vector<float> to_axis_;
+};
+
+VPM_VECTOR_CLONES
+void InverseDepthRows::fit_whole_windows(int v, NormalRow& row) {
+  const float dv_axis = static_cast<float>(cy_ - v), fx = fx_, fy = fy_;
+  const WholeWindow whole = whole_;
+  sums_.sum_columns(v);
+  for (int first = 0; first < inverse_.width; first += kTile) {
+    WindowSums::Tile t;
+    sums_.sum_across(first, t);
+    const float *centre = inverse_.at(first, v), *du = to_axis_.data() + first;
+    float x[kTile], y[kTile], z[kTile];
+    for (int i = 0; i < kTile; ++i) {
+      const Vec3f n = normal_of_plane<float>(
+          whole.plane(t.sum[i], t.sum_u[i], t.sum_v[i], centre[i]), fx, fy, du[i], dv_axis);
+      x[i] = n.x, y[i] = n.y, z[i] = n.z;
+    }
+    row.take(first, x, y, z, std::min(kTile, inverse_.width - first));
+  }
+}
+
+VPM_VECTOR_CLONES
+void InverseDepthRows::fit_gated_windows(int v, NormalRow& row) {
+  const float dv_axis = static_cast<float>(cy_ - v), fx = fx_, fy = fy_;
+  const int width = inverse_.width;
+  for (int first = windows_.next_rough(0); first < width;
+       first = windows_.next_rough(std::min(first + kLanes, width))) {
+    const GatedWindows::Planes planes = gated_.fit(first, v);
+    const float* du = to_axis_.data() + first;
+    float x[kLanes], y[kLanes], z[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const Vec3f n = normal_of_window(
+          {planes.found[i] != 0, planes.a[i], planes.b[i], planes.c[i]}, fx, fy, du[i], dv_axis);
+      x[i] = n.x, y[i] = n.y, z[i] = n.z;
+    }
+    for (int u = first; u < std::min(first + kLanes, width); ++u) {
+      if (!windows_.smooth(u)) row.take(u, x + u - first, y + u - first, z + u - first, 1);
+    }
+  }
+}
 
 }  // namespace
 
-VPM_VECTOR_CLONES
-void inverse_depth_rows(const PaddedImage& inverse, const Intrinsics& k,
-                        const NormalOptions& options, int begin, int end, Vec3f* normals) {
-  const int radius = options.window / 2, width = inverse.width;
-  const float fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy);
-  const WholeWindow whole(options.window);
-  const EdgeGate edges(options, k);
-  SmoothWindows windows(inverse, options, edges);
-  GatedWindow gated(inverse, options, edges);
-  WindowSums sums(inverse, radius);
-  std::vector<float> to_axis(static_cast<std::size_t>(width));
-  for (int u = 0; u < width; ++u)
-    to_axis[static_cast<std::size_t>(u)] = static_cast<float>(k.cx - u);
-  for (int v = begin; v < end; ++v) {
-    const float dv_axis = static_cast<float>(k.cy - v);
-    const float* centre = inverse.at(0, v);
-    Vec3f* row = normals + static_cast<std::size_t>(v) * static_cast<std::size_t>(width);
-    windows.scan(v);
-    sums.scan(v);
-    const float *s = sums.sum(), *su = sums.sum_u(), *sv = sums.sum_v(), *du = to_axis.data();
-    for (int u = 0; u < width; ++u) {
-      row[u] = normal_of_plane<float>(whole.plane(s[u], su[u], sv[u], centre[u]), fx, fy, du[u],
-                                      dv_axis);
-    }
-    for (int u = 0; u < width; ++u) {
-      if (windows.smooth(u)) continue;
-      const GatedWindow::Plane plane = centre[u] > 0 ? gated.fit(u, v) : GatedWindow::Plane{};
-      row[u] = normal_of_window(plane, fx, fy, du[u], dv_axis);
-    }
-  }
+std::unique_ptr<NormalRows> inverse_depth_rows(const NormalImages& images, const Intrinsics& k,
+                                               const NormalOptions& options) {
+  return std::make_unique<InverseDepthRows>(images.inverse, k, options);
 }
 
 }  // namespace vpm

@@ -13,7 +13,6 @@ namespace {
 // stack, which compilers turn into vector code.
 class WindowMoments {
  public:
-  static constexpr int kTile = 64;
   struct Tile {
     double x[kTile], y[kTile], z[kTile];
     double xx[kTile], xy[kTile], xz[kTile], yy[kTile], yz[kTile], zz[kTile];
@@ -76,54 +75,114 @@ void WindowMoments::sum_across(int first, Tile& t) const {
   }
 }
 
-Moments gated_moments(const PaddedImage& depth, const GatedWindow& window, int radius, int u,
-                      int v) {
-  Moments m;
-  for (int dv = -radius; dv <= radius; ++dv) {
-    const float* row = depth.at(u, v + dv);
-    for (int du = -radius; du <= radius; ++du) add_pixel(m, window.weight(du, dv), row[du], du, dv);
+// Moments of the pixels of gated windows, kLanes side by side.
+struct GatedMoments {
+  double n[kLanes], x[kLanes], y[kLanes], z[kLanes];
+  double xx[kLanes], xy[kLanes], xz[kLanes], yy[kLanes], yz[kLanes], zz[kLanes];
+};
+
+void gated_moments(const PaddedImage& depth, const GatedWindows& windows, int radius, int u, int v,
+                   GatedMoments& moments) {
+  constexpr int kHalf = kLanes / 2;  // as many doubles fill a vector
+  for (int half = 0; half < kLanes; half += kHalf) {
+    MomentsOf<Doubles> m;
+    for (int dv = -radius; dv <= radius; ++dv) {
+      const float* row = depth.at(u, v + dv);
+      for (int du = -radius; du <= radius; ++du) {
+        const Floats weights = load<Floats>(windows.weights(du, dv)),
+                     depths = load<Floats>(row + du);
+        add_pixel(m, doubles(weights, half), doubles(depths, half), du, dv);
+      }
+    }
+    store(m.n, moments.n + half), store(m.x, moments.x + half), store(m.y, moments.y + half);
+    store(m.z, moments.z + half), store(m.xx, moments.xx + half), store(m.xy, moments.xy + half);
+    store(m.xz, moments.xz + half), store(m.yy, moments.yy + half), store(m.yz, moments.yz + half);
+    store(m.zz, moments.zz + half);
   }
-  return m;
+}
+
+class PcaRows final : public NormalRows {
+ public:
+  PcaRows(const NormalImages& images, const Intrinsics& k, const NormalOptions& options)
+      : depth_(images.depth),
+        inverse_(images.inverse),
+        k_(k),
+        radius_(options.window / 2),
+        windows_(images.inverse, options, EdgeGate(options, k)),
+        gated_(images.inverse, options, EdgeGate(options, k)),
+        moments_(images.depth, options.window / 2) {}
+
+  void estimate(int v, NormalRow& row) override {
+    windows_.scan(v);
+    fit_whole_windows(v, row);
+    fit_gated_windows(v, row);
+  }
+
+ private:
+  void fit_whole_windows(int v, NormalRow& row);
+  void fit_gated_windows(int v, NormalRow& row);
+
+  const PaddedImage &depth_, &inverse_;
+  Intrinsics k_;
+  int radius_;
+  SmoothWindows windows_;
+  GatedWindows gated_;
+  WindowMoments moments_;
+};
+
+VPM_VECTOR_CLONES
+void PcaRows::fit_whole_windows(int v, NormalRow& row) {
+  const int width = inverse_.width, window = 2 * radius_ + 1;
+  const double per_fx = 1 / k_.fx, per_fy = 1 / k_.fy, cx = k_.cx, fx = k_.fx;
+  const double ry = (v - k_.cy) / k_.fy, count = window * window;
+  moments_.sum_columns(v);
+  for (int first = 0; first < width; first += kTile) {
+    WindowMoments::Tile t;
+    moments_.sum_across(first, t);
+    float x[kTile], y[kTile], z[kTile];
+    for (int i = 0; i < kTile; ++i) {
+      const double rx = (first + i - cx) / fx;
+      const Vec3f n = normal_of_moments(
+          {count, t.x[i], t.y[i], t.z[i], t.xx[i], t.xy[i], t.xz[i], t.yy[i], t.yz[i], t.zz[i]},
+          per_fx, per_fy, rx, ry);
+      x[i] = n.x, y[i] = n.y, z[i] = n.z;
+    }
+    row.take(first, x, y, z, std::min(kTile, width - first));
+  }
+}
+
+VPM_VECTOR_CLONES
+void PcaRows::fit_gated_windows(int v, NormalRow& row) {
+  const double per_fx = 1 / k_.fx, per_fy = 1 / k_.fy, ry = (v - k_.cy) / k_.fy;
+  const int width = inverse_.width;
+  for (int first = windows_.next_rough(0); first < width;
+       first = windows_.next_rough(std::min(first + kLanes, width))) {
+    const GatedWindows::Planes planes = gated_.fit(first, v);
+    GatedMoments m;
+    gated_moments(depth_, gated_, radius_, first, v, m);
+    float x[kLanes], y[kLanes], z[kLanes];
+    for (int i = 0; i < kLanes; ++i) {
+      const Vec3f n = normal_of_moments(
+          {m.n[i], m.x[i], m.y[i], m.z[i], m.xx[i], m.xy[i], m.xz[i], m.yy[i], m.yz[i], m.zz[i]},
+          per_fx, per_fy, (first + i - k_.cx) / k_.fx, ry);
+      x[i] = n.x, y[i] = n.y, z[i] = n.z;
+    }
+    for (int u = first; u < std::min(first + kLanes, width); ++u) {
+      if (windows_.smooth(u)) continue;
+      const auto i = static_cast<std::size_t>(u);
+      const int lane = u - first;
+      const bool found = planes.found[lane] != 0;
+      row.x[i] = found ? x[lane] : 0, row.y[i] = found ? y[lane] : 0;
+      row.z[i] = found ? z[lane] : 0;
+    }
+  }
 }
 
 }  // namespace
 
-VPM_VECTOR_CLONES
-void pca_rows(const PaddedImage& depth, const PaddedImage& inverse, const Intrinsics& k,
-              const NormalOptions& options, int begin, int end, Vec3f* normals) {
-  const int radius = options.window / 2, width = inverse.width;
-  const double per_fx = 1 / k.fx, per_fy = 1 / k.fy;
-  const EdgeGate edges(options, k);
-  SmoothWindows windows(inverse, options, edges);
-  GatedWindow gated(inverse, options, edges);
-  WindowMoments moments(depth, radius);
-  const double count = options.window * options.window;
-  for (int v = begin; v < end; ++v) {
-    const double ry = (v - k.cy) / k.fy;
-    const float* centre = inverse.at(0, v);
-    Vec3f* row = normals + static_cast<std::size_t>(v) * static_cast<std::size_t>(width);
-    windows.scan(v);
-    moments.sum_columns(v);
-    for (int first = 0; first < width; first += WindowMoments::kTile) {
-      WindowMoments::Tile t;
-      moments.sum_across(first, t);
-      Vec3f tile[WindowMoments::kTile];
-      for (int i = 0; i < WindowMoments::kTile; ++i) {
-        const double rx = (first + i - k.cx) / k.fx;
-        tile[i] = normal_of_moments(
-            {count, t.x[i], t.y[i], t.z[i], t.xx[i], t.xy[i], t.xz[i], t.yy[i], t.yz[i], t.zz[i]},
-            per_fx, per_fy, rx, ry);
-      }
-      std::copy(tile, tile + std::min(WindowMoments::kTile, width - first), row + first);
-    }
-    for (int u = 0; u < width; ++u) {
-      if (windows.smooth(u)) continue;
-      const bool found = centre[u] > 0 && gated.fit(u, v).found;
-      row[u] = found ? normal_of_moments(gated_moments(depth, gated, radius, u, v), per_fx, per_fy,
-                                         (u - k.cx) / k.fx, ry)
-                     : Vec3f{};
-    }
-  }
+std::unique_ptr<NormalRows> pca_rows(const NormalImages& images, const Intrinsics& k,
+                                     const NormalOptions& options) {
+  return std::make_unique<PcaRows>(images, k, options);
 }
 
 }  // namespace vpm

@@ -1,10 +1,10 @@
 #include "libvpm/cloud/normal_window.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
-#include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {
@@ -14,55 +14,43 @@ namespace {
 // of a gated window admits; beyond it a sensor returns next to nothing.
 constexpr double kSteepest = 5.7;
 
-// The sum of the lanes, pairwise.
-[[gnu::always_inline]] inline float fold(const float (&lanes)[kLanes]) {
-  float half[kLanes / 2];
-  for (int i = 0; i < kLanes / 2; ++i) half[i] = lanes[i] + lanes[i + kLanes / 2];
-  static_assert(kLanes == 8);
-  return (half[0] + half[2]) + (half[1] + half[3]);
-}
+constexpr float kOpen = std::numeric_limits<float>::infinity();
 
-[[gnu::always_inline]] inline float fold_product(const float (&a)[kLanes],
-                                                 const float (&b)[kLanes]) {
-  float product[kLanes];
-  for (int i = 0; i < kLanes; ++i) product[i] = a[i] * b[i];
-  return fold(product);
+// Eight columns, pairwise.
+[[gnu::always_inline]] inline Floats fold(const Floats* c) {
+  return ((c[0] + c[4]) + (c[2] + c[6])) + ((c[1] + c[5]) + (c[3] + c[7]));
 }
 
 }  // namespace
 
-PaddedImage::PaddedImage(const DepthImage& image, int frame)
-    : width(static_cast<int>(image.width)),
-      height(static_cast<int>(image.height)),
-      margin(frame),
-      stride(std::size_t{image.width} + 2 * static_cast<std::size_t>(frame) + kLanes),
-      values(stride * (std::size_t{image.height} + 2 * static_cast<std::size_t>(frame))) {}
-
-PaddedImage padded_depth(const DepthImage& depth, int margin) {
-  PaddedImage padded(depth, margin);
-  parallel_for(depth.height, 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const float* from = depth.depth.data() + v * depth.width;
-      float* to = padded.at(0, static_cast<int>(v));
-      for (int u = 0; u < padded.width; ++u) to[u] = usable_depth(from[u]);
-    }
-  });
-  return padded;
+void PaddedImage::resize(std::uint32_t new_width, std::uint32_t new_height, int frame) {
+  const int w = static_cast<int>(new_width), h = static_cast<int>(new_height);
+  if (w == width && h == height && frame == margin) return;
+  width = w, height = h, margin = frame;
+  stride = std::size_t{new_width} + 2 * static_cast<std::size_t>(frame) + kLanes;
+  values.assign(stride * (std::size_t{new_height} + 2 * static_cast<std::size_t>(frame)) + kTile,
+                0.0F);
 }
 
-PaddedImage inverse_of(const PaddedImage& depth) {
-  PaddedImage inverse = depth;
-  parallel_for(static_cast<std::size_t>(depth.height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      float* row = inverse.at(0, static_cast<int>(v));
-      for (int u = 0; u < inverse.width; ++u) row[u] = inverse_of_usable(row[u]);
-    }
-  });
-  return inverse;
+VPM_VECTOR_CLONES
+void take_depth(const DepthImage& depth, int begin, int end, PaddedImage& padded) {
+  for (int v = begin; v < end; ++v) {
+    const float* from = depth.depth.data() + static_cast<std::size_t>(v) * depth.width;
+    float* to = padded.at(0, v);
+    for (int u = 0; u < padded.width; ++u) to[u] = usable_depth(from[u]);
+  }
+}
+
+VPM_VECTOR_CLONES
+void take_inverse_depth(const DepthImage& depth, int begin, int end, PaddedImage& inverse) {
+  for (int v = begin; v < end; ++v) {
+    const float* from = depth.depth.data() + static_cast<std::size_t>(v) * depth.width;
+    float* to = inverse.at(0, v);
+    for (int u = 0; u < inverse.width; ++u) to[u] = inverse_of_usable(usable_depth(from[u]));
+  }
 }
 
 EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
-  constexpr float kOpen = std::numeric_limits<float>::infinity();
   const double width = options.edge_gate;
   // Without a gate every measured pixel passes; 0 stands for what was not measured.
   lowest = width > 0 ? static_cast<float>(1 - width) : 0.0F;
@@ -74,105 +62,148 @@ EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
 SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& options,
                              const EdgeGate& edges)
     : inverse_(inverse), radius_(options.window / 2), edges_(edges) {
-  column_min_.resize(inverse.stride);
-  column_max_.resize(inverse.stride);
-  window_min_.resize(inverse.stride);
-  window_max_.resize(inverse.stride);
-  smooth_.resize(static_cast<std::size_t>(inverse.width));
+  column_min_.resize(inverse.stride + kTile);
+  column_max_.resize(inverse.stride + kTile);
+  smooth_.resize(static_cast<std::size_t>(inverse.width) + kTile);
 }
 
+// Floats that are not negative are in the order of their bits, and integers have a minimum that is
+// one instruction.
 VPM_VECTOR_CLONES
 void SmoothWindows::scan(int v) {
-  const int columns = inverse_.width + 2 * radius_;
-  const auto least = [](float a, float b) { return b < a ? b : a; };
-  const auto most = [](float a, float b) { return b > a ? b : a; };
-  float* column_min = column_min_.data();
-  float* column_max = column_max_.data();
-  const float* first = inverse_.at(-radius_, v - radius_);
-  std::copy(first, first + columns, column_min);
-  std::copy(first, first + columns, column_max);
-  for (int dv = 1 - radius_; dv <= radius_; ++dv) {
-    const float* row = inverse_.at(-radius_, v + dv);
-    for (int i = 0; i < columns; ++i) {
-      column_min[i] = least(column_min[i], row[i]);
-      column_max[i] = most(column_max[i], row[i]);
+  const int columns = inverse_.width + 2 * radius_, rows = 2 * radius_;
+  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
+  for (int i = 0; i < columns; i += kLanes) {
+    const float* row = inverse_.at(i - radius_, v - radius_);
+    Ints low = std::bit_cast<Ints>(load<Floats>(row)), high = low;
+    for (int k = 1; k <= rows; ++k) {
+      const Ints value = std::bit_cast<Ints>(load<Floats>(row + k * stride));
+      low = value < low ? value : low;
+      high = value > high ? value : high;
     }
-  }
-  const int width = inverse_.width;
-  float *low = window_min_.data(), *high = window_max_.data();
-  std::copy(column_min, column_min + width, low);
-  std::copy(column_max, column_max + width, high);
-  for (int i = 1; i <= 2 * radius_; ++i) {
-    for (int u = 0; u < width; ++u) {
-      low[u] = least(low[u], column_min[u + i]);
-      high[u] = most(high[u], column_max[u + i]);
-    }
+    store(low, column_min_.data() + i);
+    store(high, column_max_.data() + i);
   }
   const float* centre = inverse_.at(0, v);
-  std::uint8_t* smooth = smooth_.data();
-  for (int u = 0; u < width; ++u) {
-    smooth[u] = (low[u] > 0) & (low[u] >= edges_.lowest * centre[u]) &
-                (high[u] <= edges_.highest * centre[u]);
-  }
-}
-
-GatedWindow::GatedWindow(const PaddedImage& inverse, const NormalOptions& options,
-                         const EdgeGate& edges)
-    : inverse_(inverse), radius_(options.window / 2), edges_(edges) {
-  for (int i = 0; i < kStride; ++i) {
-    offset_[i] = static_cast<float>(i - radius_);
-    exists_[i] = i < options.window ? 1.0F : 0.0F;
-  }
-}
-
-GatedWindow::Plane GatedWindow::fit(int u, int v) {
-  const float* centre = inverse_.at(u, v);
-  const Plane first = fit_admitted(centre, {}, edges_.gate, edges_.slope);
-  return first.found ? fit_admitted(centre, first, edges_.gate, 0) : first;
-}
-
-// Lanes are columns, handled in groups of constant size so that compilers make vectors of them.
-VPM_VECTOR_CLONES
-GatedWindow::Plane GatedWindow::fit_admitted(const float* centre, const Plane& near, float gate,
-                                             float slope) {
-  const float middle = *centre, unit = 1.0F / middle;
-  PlaneSums sums;
-  for (int group = 0; group <= 2 * radius_; group += kLanes) {
-    float predicted[kLanes], along[kLanes], exists[kLanes];
-    float count[kLanes] = {}, y1[kLanes] = {}, y2[kLanes] = {}, e1[kLanes] = {}, ye[kLanes] = {};
-    for (int i = 0; i < kLanes; ++i) {
-      predicted[i] = near.c + near.a * offset_[group + i];
-      along[i] = std::abs(offset_[group + i]);
-      exists[i] = exists_[group + i];
-    }
-    for (int dv = -radius_; dv <= radius_; ++dv) {
-      const float* row =
-          centre + dv * static_cast<std::ptrdiff_t>(inverse_.stride) - radius_ + group;
-      float* weights = weight_ + (dv + radius_) * kStride + group;
-      const float y = static_cast<float>(dv), away = std::abs(y), shift = near.b * y;
-      float weight[kLanes];
-      for (int i = 0; i < kLanes; ++i) {
-        const float value = row[i];
-        const float reach = along[i] > away ? along[i] : away;
-        const float difference = (value - middle) * unit;
-        weight[i] = weight_in_gate(value, difference, predicted[i] + shift, gate + slope * reach,
-                                   exists[i]);
-        const float e = weight[i] > 0 ? difference : 0.0F;
-        count[i] += weight[i];
-        y1[i] += y * weight[i];
-        y2[i] += y * y * weight[i];
-        e1[i] += e;
-        ye[i] += y * e;
+  for (int first = 0; first < inverse_.width; first += kTile) {
+    float window_min[kTile], window_max[kTile];
+    for (int i = 0; i < kTile; i += kLanes) {
+      const std::int32_t *mins = column_min_.data() + first + i,
+                         *maxs = column_max_.data() + first + i;
+      Ints low = load<Ints>(mins), high = load<Ints>(maxs);
+      for (int k = 1; k <= rows; ++k) {
+        const Ints least = load<Ints>(mins + k), most = load<Ints>(maxs + k);
+        low = least < low ? least : low;
+        high = most > high ? most : high;
       }
-      for (int i = 0; i < kLanes; ++i) weights[i] = weight[i];
+      store(std::bit_cast<Floats>(low), window_min + i);
+      store(std::bit_cast<Floats>(high), window_max + i);
     }
-    float x[kLanes], xx[kLanes];
-    for (int i = 0; i < kLanes; ++i) x[i] = offset_[group + i], xx[i] = x[i] * x[i];
-    sums.n += fold(count), sums.u += fold_product(x, count), sums.uu += fold_product(xx, count);
-    sums.v += fold(y1), sums.uv += fold_product(x, y1), sums.vv += fold(y2);
-    sums.e += fold(e1), sums.ue += fold_product(x, e1), sums.ve += fold(ye);
+    std::uint8_t* smooth = smooth_.data() + first;
+    for (int i = 0; i < kTile; ++i) {
+      const float at = centre[first + i];
+      smooth[i] = (window_min[i] > 0) & (window_min[i] >= edges_.lowest * at) &
+                  (window_max[i] <= edges_.highest * at);
+    }
   }
-  return plane_of_sums(sums);
+}
+
+int SmoothWindows::next_rough(int u) const {
+  const auto end = smooth_.begin() + inverse_.width;
+  return static_cast<int>(std::find(smooth_.begin() + u, end, 0) - smooth_.begin());
+}
+
+GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& options,
+                           const EdgeGate& edges)
+    : inverse_(inverse), radius_(options.window / 2) {
+  for (int du = -radius_; du <= radius_; ++du) {
+    for (int dv = -radius_; dv <= radius_; ++dv) {
+      const float reach = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
+      wide_gates_.push_back(edges.gate + edges.slope * reach);
+      gates_.push_back(edges.gate);
+    }
+  }
+  weights_.resize(gates_.size() * kLanes);
+}
+
+// What lies off the planes by no more than the gates, summed. The first time there are no planes.
+template <bool kFirst>
+[[gnu::always_inline]] inline GatedWindows::Sums GatedWindows::sum_admitted(const float* centre) {
+  const float* gates = kFirst ? wide_gates_.data() : gates_.data();
+  float* weights = weights_.data();
+  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
+  const int radius = radius_;
+  const Floats middle = load<Floats>(centre), unit = 1.0F / middle;
+  const Floats near_a = load<Floats>(planes_.a), near_b = load<Floats>(planes_.b),
+               near_c = load<Floats>(planes_.c);
+  Sums sums;
+  for (int k = 2 * radius + 1; k % kColumns != 0; ++k)
+    sums.column_e[k] = sums.column_ue[k] = sums.column_ve[k] = Floats{};
+  for (int du = -radius; du <= radius; ++du) {
+    const float x = static_cast<float>(du);
+    const float* at = centre - radius * stride + du;
+    const Floats predicted = near_c + near_a * x;
+    Floats y = Floats{} - static_cast<float>(radius), count{}, y1{}, y2{}, e1{}, ye{};
+    for (int row = 0; row <= 2 * radius; ++row) {
+      const Floats value = load<Floats>(at), difference = (value - middle) * unit;
+      const Floats expected = kFirst ? Floats{} : predicted + near_b * y;
+      const Ints kept = is_in_gate(value, difference, expected, *gates);
+      const Floats weight = kept ? Floats{} + 1.0F : Floats{}, e = kept ? difference : Floats{};
+      if constexpr (!kFirst) store(weight, weights);
+      const Floats wy = y * weight;
+      count += weight, y1 += wy, y2 += y * wy;
+      e1 += e, ye += y * e;
+      y += 1.0F;
+      at += stride, weights += kLanes, ++gates;
+    }
+    const int k = du + radius;
+    sums.column_e[k] = e1, sums.column_ue[k] = x * e1, sums.column_ve[k] = ye;
+    sums.n += count, sums.u += x * count, sums.uu += x * x * count;
+    sums.v += y1, sums.uv += x * y1, sums.vv += y2;
+  }
+  return sums;
+}
+
+template <bool kFirst>
+[[gnu::always_inline]] inline void GatedWindows::fit_admitted(const float* centre) {
+  const Sums s = sum_admitted<kFirst>(centre);
+  for (int first = 0; first < kLanes; first += kLanes / 2) {
+    Doubles e{}, ue{}, ve{};
+    for (int k = 0; k <= 2 * radius_; k += kColumns) {
+      e += doubles(fold(s.column_e + k), first);
+      ue += doubles(fold(s.column_ue + k), first);
+      ve += doubles(fold(s.column_ve + k), first);
+    }
+    const FittedPlane<Doubles> plane = fit_plane<Doubles>(
+        {doubles(s.n, first), doubles(s.u, first), doubles(s.v, first), doubles(s.uu, first),
+         doubles(s.uv, first), doubles(s.vv, first), e, ue, ve});
+    store(floats(plane.a), planes_.a + first);
+    store(floats(plane.b), planes_.b + first);
+    store(floats(plane.c), planes_.c + first);
+    store(__builtin_convertvector(plane.found, HalfInts), planes_.found + first);
+  }
+}
+
+VPM_VECTOR_CLONES
+void GatedWindows::fit_first(const float* centre) {
+  fit_admitted<true>(centre);
+}
+
+VPM_VECTOR_CLONES
+void GatedWindows::fit_second(const float* centre) {
+  fit_admitted<false>(centre);
+}
+
+const GatedWindows::Planes& GatedWindows::fit(int u, int v) {
+  const float* centre = inverse_.at(u, v);
+  planes_ = {};
+  if (std::none_of(centre, centre + kLanes, [](float c) { return c > 0; })) return planes_;
+  fit_first(centre);
+  std::int32_t found[kLanes];
+  for (int i = 0; i < kLanes; ++i) found[i] = centre[i] > 0 ? planes_.found[i] : 0;
+  fit_second(centre);
+  for (int i = 0; i < kLanes; ++i) planes_.found[i] &= found[i];
+  return planes_;
 }
 
 }  // namespace vpm

@@ -7,21 +7,23 @@
 
 #include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 
-// Pixels of a window's row that are handled at once.
-inline constexpr int kLanes = 8;
+// Pixels of an image's row that are: a constant number is what compilers turn into vector code.
+inline constexpr int kTile = 64;
 
 // An image with zeros around it, so that windows need no care at the border. (0, 0) is the image's
 // own first pixel; coordinates from -margin to size + margin are there, and to the right of them
-// enough for a last group of lanes.
+// enough for a last group of lanes or a last tile.
 struct PaddedImage {
   int width = 0, height = 0, margin = 0;
   std::size_t stride = 0;
   std::vector<float> values;
 
-  PaddedImage(const DepthImage& image, int margin);
+  // Takes this size; allocates nothing where it has it. What was in the image itself stays there.
+  void resize(std::uint32_t width, std::uint32_t height, int margin);
   const float* at(int u, int v) const { return values.data() + offset(u, v); }
   float* at(int u, int v) { return values.data() + offset(u, v); }
 
@@ -31,9 +33,9 @@ struct PaddedImage {
   }
 };
 
-// Depth and its inverse; both 0 where nothing was measured or the depth is out of range.
-PaddedImage padded_depth(const DepthImage& depth, int margin);
-PaddedImage inverse_of(const PaddedImage& depth);
+// Depth or its inverse of these rows; 0 where nothing was measured or the depth is out of range.
+void take_depth(const DepthImage& depth, int begin, int end, PaddedImage& padded);
+void take_inverse_depth(const DepthImage& depth, int begin, int end, PaddedImage& inverse);
 
 // Bounds of inverse depth by the options' edge gate.
 struct EdgeGate {
@@ -49,40 +51,61 @@ class SmoothWindows {
  public:
   SmoothWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
   void scan(int v);
+  // The first pixel from u on whose window is not smooth; the width if there is none.
+  int next_rough(int u) const;
   bool smooth(int u) const { return smooth_[static_cast<std::size_t>(u)] != 0; }
 
  private:
   const PaddedImage& inverse_;
   int radius_;
   EdgeGate edges_;
-  std::vector<float> column_min_, column_max_, window_min_, window_max_;
+  std::vector<std::int32_t> column_min_, column_max_;  // as integers, see scan()
   std::vector<std::uint8_t> smooth_;
 };
 
-// The pixels of one window that belong to the surface of its centre, and their plane.
+// The pixels that belong to the surface of their window's centre, and their plane: of kLanes
+// windows at once, whose centres are neighbours in a row.
 //
 // A first choice admits what the steepest plausible surface through the centre could reach; the
 // plane fitted to it then leaves only what lies within the edge gate of that plane.
-class GatedWindow {
+class GatedWindows {
  public:
-  GatedWindow(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
+  GatedWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
 
-  using Plane = WindowPlane;
-  Plane fit(int u, int v);
-
-  // After fit() found a plane: 1 where pixel (u + du, v + dv) belongs to it, otherwise 0.
-  float weight(int du, int dv) const { return weight_[(dv + radius_) * kStride + du + radius_]; }
+  // Inverse depth relative to the centre's, minus 1: c + a du + b dv. `found` is 0 where too few
+  // pixels remain, or they lie on a line, or the centre was not measured; otherwise -1.
+  struct Planes {
+    float a[kLanes], b[kLanes], c[kLanes];
+    std::int32_t found[kLanes];
+  };
+  // Of the windows about (u, v), (u + 1, v), ...
+  const Planes& fit(int u, int v);
+  // After fit(), of each lane with a plane: 1 where pixel (u + lane + du, v + dv) belongs to it,
+  // otherwise 0.
+  const float* weights(int du, int dv) const {
+    return weights_.data() + ((du + radius_) * (2 * radius_ + 1) + dv + radius_) * kLanes;
+  }
 
  private:
-  static constexpr int kStride = (kMaxWindow + kLanes - 1) / kLanes * kLanes;
-  Plane fit_admitted(const float* centre, const Plane& near, float gate, float slope);
+  static constexpr int kColumns = 8;  // of windows are added pairwise; those beyond are zero
+  static constexpr int kMostColumns = (kMaxWindow + kColumns - 1) / kColumns * kColumns;
+  // Over the admitted pixels: integers, exact in any order, and the sums of each column.
+  struct Sums {
+    Floats n{}, u{}, v{}, uu{}, uv{}, vv{};
+    Floats column_e[kMostColumns], column_ue[kMostColumns], column_ve[kMostColumns];
+  };
+  template <bool kFirst>
+  Sums sum_admitted(const float* centre);
+  template <bool kFirst>
+  void fit_admitted(const float* centre);
+  void fit_first(const float* centre);
+  void fit_second(const float* centre);
 
   const PaddedImage& inverse_;
   int radius_;
-  EdgeGate edges_;
-  float offset_[kStride];  // du of each lane
-  float exists_[kStride];  // 1 for the lanes of the window, 0 for those that fill the last group
-  float weight_[kMaxWindow * kStride];
+  std::vector<float> wide_gates_, gates_;  // of (du, dv): the first choice's, the second one's
+  Planes planes_;
+  std::vector<float> weights_;
 };
 
 }  // namespace vpm

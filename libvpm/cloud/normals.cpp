@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
-
-// Rows of one task: enough work to outweigh the rows above and below that it reads as well.
-constexpr std::size_t kRowsPerTask = 32;
 
 // A disk seen this obliquely (cosine of the angle between normal and ray; 84 degrees) is not
 // enlarged any further: there a normal's error decides its size, not the surface.
@@ -23,7 +22,36 @@ float disk_radius(const Intrinsics& k, Vec3 point, Vec3 normal) {
   return static_cast<float>(point.z * half_diagonal / std::max(cosine, kGrazingCosine));
 }
 
+VPM_VECTOR_CLONES
+void store_normals(const NormalRow& row, Vec3f* to) {
+  const float *x = row.x.data(), *y = row.y.data(), *z = row.z.data();
+  for (std::size_t u = 0; u < row.x.size(); ++u) to[u] = {x[u], y[u], z[u]};
+}
+
+void for_rows(std::uint32_t height, const std::function<void(int begin, int end)>& body) {
+  parallel_for(height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    body(static_cast<int>(begin), static_cast<int>(end));
+  });
+}
+
 }  // namespace
+
+void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options) {
+  inverse.resize(width, height, options.window / 2);
+  if (options.method == NormalMethod::pca) depth.resize(width, height, options.window / 2);
+}
+
+void NormalImages::take_rows(const DepthImage& image, const NormalOptions& options, int begin,
+                             int end) {
+  take_inverse_depth(image, begin, end, inverse);
+  if (options.method == NormalMethod::pca) take_depth(image, begin, end, depth);
+}
+
+std::unique_ptr<NormalRows> normal_rows(const NormalImages& images, const Intrinsics& k,
+                                        const NormalOptions& options) {
+  return options.method == NormalMethod::pca ? pca_rows(images, k, options)
+                                             : inverse_depth_rows(images, k, options);
+}
 
 std::string to_text(NormalMethod method) {
   return method == NormalMethod::pca ? "pca" : "inverse-depth";
@@ -66,15 +94,16 @@ std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& i
            std::to_string(depth.height));
   }
   std::vector<Vec3f> normals(depth.depth.size());
-  const int radius = options.window / 2;
-  const PaddedImage usable = padded_depth(depth, radius);
-  const PaddedImage inverse = inverse_of(usable);
-  parallel_for(depth.height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    const int first = static_cast<int>(begin), last = static_cast<int>(end);
-    if (options.method == NormalMethod::pca)
-      pca_rows(usable, inverse, intrinsics, options, first, last, normals.data());
-    else
-      inverse_depth_rows(inverse, intrinsics, options, first, last, normals.data());
+  NormalImages images;
+  images.resize(depth.width, depth.height, options);
+  for_rows(depth.height, [&](int begin, int end) { images.take_rows(depth, options, begin, end); });
+  for_rows(depth.height, [&](int begin, int end) {
+    const auto rows = normal_rows(images, intrinsics, options);
+    NormalRow row(depth.width);
+    for (int v = begin; v < end; ++v) {
+      rows->estimate(v, row);
+      store_normals(row, normals.data() + static_cast<std::size_t>(v) * depth.width);
+    }
   });
   return normals;
 }
@@ -96,7 +125,7 @@ Cloud assemble_cloud(const DepthImage& depth, const Camera& camera,
   cloud.pixels.resize(first.back());
   cloud.sensor = CloudSensor{camera, depth};
   const Rotation& rotation = camera.to_world.rotation;
-  parallel_for(depth.height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(depth.height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin, k = first[begin]; v < end; ++v) {
       for (std::size_t i = v * depth.width; i < (v + 1) * depth.width; ++i) {
         if (!is_measured(depth.depth[i])) cloud.sensor->depth.depth[i] = 0;

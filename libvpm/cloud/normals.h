@@ -38,7 +38,7 @@ void check_normal_options(const NormalOptions& options);
 void check_intrinsics(const Intrinsics& intrinsics);
 
 // One unit normal per pixel, row by row, in camera coordinates and towards the sensor; zero where
-// nothing was measured or too little of the window remains (kMinSupport, kMinSpread). Throws
+// nothing was measured or too little of the window remains (normal_limits.h). Throws
 // Error(usage) for options out of range, Error(refused) for an image whose size does not fit.
 std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
                                     const NormalOptions& options);

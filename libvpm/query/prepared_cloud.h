@@ -23,7 +23,7 @@ class PreparedCloud {
 
   // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels, an origin
   // or camera beyond kLargestLength, or what validate(cloud) refuses. Depths outside of
-  // [kMinDepth, kMaxDepth] (normals.h) count as not measured.
+  // [kMinDepth, kMaxDepth] (depth_image.h) count as not measured.
   explicit PreparedCloud(const Cloud& cloud);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud
