@@ -3,6 +3,7 @@
 // its volume inside; every pose is one query, and its answer is awaited before the next.
 //   device=auto   cpu, cuda, cuda:1, cuda:all
 //   queries=10000
+//   measure=refined  or paper; the path is the same
 //   level=0       spheres; 0 is the finest level
 //   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
 //   batch=1       so many poses are asked at once, as planners do
@@ -98,14 +99,15 @@ struct Figures {
 // Poses per second, asked `batch` at a time.
 double run_batches(Query& query, const PreparedCloud& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
-  std::vector<Pose> poses;
-  for (int k = 0; k < batch; ++k) poses.push_back(path.at(tool, k));
+  std::vector<Pose> poses(static_cast<std::size_t>(batch));
+  for (int k = 0; k < batch; ++k) poses[static_cast<std::size_t>(k)] = path.at(tool, k);
   std::vector<Result> results(poses.size());
   query.run(cloud, poses, results);
   const auto begin = std::chrono::steady_clock::now();
-  for (int k = 0; k < count; k += batch) query.run(cloud, poses, results);
+  const int batches = (count + batch - 1) / batch;
+  for (int k = 0; k < batches; ++k) query.run(cloud, poses, results);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  return (count + batch - 1) / batch * batch / took.count();
+  return static_cast<double>(batches) * batch / took.count();
 }
 
 Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
@@ -142,8 +144,9 @@ void print_histogram(const Figures& figures) {
   }
 }
 
-nlohmann::json about(const Device& device, const Level& level, const PreparedCloud& cloud) {
-  return {{"device", device_name(device)},
+nlohmann::json about(const QueryOptions& options, const Level& level, const PreparedCloud& cloud) {
+  return {{"device", device_name(options.device)},
+          {"measure", options.measure == Measure::paper ? "paper" : "refined"},
           {"spheres", level.sphere_count},
           {"points", cloud.positions().size()}};
 }
@@ -166,15 +169,16 @@ void write_poses(const std::string& name, const ToolModel& tool, const Path& pat
 }
 
 Options parse(int argc, char** argv) {
-  Options options{{"device", "auto"}, {"queries", "10000"}, {"level", "0"}, {"rotate", "1"},
-                  {"batch", "1"},     {"json", ""},         {"poses", ""},  {"path", "400"}};
+  Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
+                  {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
+                  {"json", ""},       {"poses", ""},          {"path", "400"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(
-          ErrorKind::usage,
-          text + ": the options are device= queries= level= rotate= batch= json= poses= path=");
+      throw Error(ErrorKind::usage, text +
+                                        ": the options are device= measure= queries= level= "
+                                        "rotate= batch= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -199,17 +203,19 @@ void control(int argc, char** argv) {
   const ToolModel tool = read_tool_model(argv[1]);
   const Cloud cloud = read_cloud(argv[2]);
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
-  std::deque<PreparedCloud> clouds;
+  std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
+  Query refined(tool, query_options);
+  const Path path = make_path(refined, clouds[0], tool);
+  if (options.at("measure") == "paper") query_options.measure = Measure::paper;
   std::deque<Query> queries;
   for (int k = 0; k < copies; ++k) {
-    clouds.emplace_back(cloud);
+    if (k > 0) clouds.emplace_back(cloud);
     queries.emplace_back(tool, query_options);
   }
-  const Path path = make_path(queries[0], clouds[0], tool);
   if (!options.at("poses").empty())
     write_poses(options.at("poses"), tool, path, number(options, "path", 1));
 
-  nlohmann::json json = about(query_options.device, queries[0].level(), clouds[0]);
+  nlohmann::json json = about(query_options, queries[0].level(), clouds[0]);
   const int batch = number(options, "batch", 1);
   if (batch > 1) {
     json["batch"] = batch;

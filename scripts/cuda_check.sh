@@ -2,8 +2,8 @@
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
 # times it. BUNDLE is what scripts/bundle.sh makes of control-loop, vpm-query and cuda_tests; LEVELS are like 1000,17000.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
-# compared byte for byte, one by one and in batches; 4. ten thousand queries at each level, with the data of eight tools and
-# clouds by turns; 5. a hundred thousand poses in batches. Exit code 1 if anything differs.
+# compared byte for byte, of both measures, one by one and in batches; 4. ten thousand queries at each level, with the data of
+# eight tools and clouds by turns; 5. a hundred thousand poses in batches. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -22,20 +22,24 @@ done
 "$bundle/bin/control-loop" "$tool" "$cloud" device=cpu queries=1 poses="$work/poses.jsonl" path=400 >/dev/null
 query=("$bundle/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet)
 same=()
-for level in ${levels//,/ }; do
-  "${query[@]}" --level "$level" --poses "$work/poses.jsonl" --device cpu -o "$work/cpu.jsonl"
-  "${query[@]}" --level "$level" --poses "$work/poses.jsonl" --device cuda -o "$work/one.jsonl"
-  "${query[@]}" --level "$level" --poses "$work/poses.jsonl" --device cuda --batch 128 -o "$work/many.jsonl"
-  same+=("$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
+for measure in refined paper; do
+  for level in ${levels//,/ }; do
+    ask=("${query[@]}" --measure $measure --level "$level" --poses "$work/poses.jsonl")
+    "${ask[@]}" --device cpu -o "$work/cpu.jsonl"
+    "${ask[@]}" --device cuda -o "$work/one.jsonl"
+    "${ask[@]}" --device cuda --batch 128 -o "$work/many.jsonl"
+    same+=("$measure:$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
+  done
 done
 
 for level in ${levels//,/ }; do
+  loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda level="$level")
   for copies in 1 8; do
-    "$bundle/bin/control-loop" "$tool" "$cloud" device=cuda level="$level" rotate=$copies queries=10000 \
-      json="$work/loop-$level-$copies.json" >/dev/null
+    "${loop[@]}" rotate=$copies queries=10000 json="$work/loop-$level-$copies.json" >/dev/null
   done
-  "$bundle/bin/control-loop" "$tool" "$cloud" device=cuda level="$level" batch=16384 queries=114688 \
-    json="$work/batch-$level.json" >/dev/null
+  "${loop[@]}" rotate=8 queries=4000 measure=paper json="$work/loop-$level-paper.json" >/dev/null
+  "${loop[@]}" batch=16384 queries=114688 json="$work/batch-$level.json" >/dev/null
+  "${loop[@]}" batch=16384 queries=16384 measure=paper json="$work/batch-$level-paper.json" >/dev/null
 done
 
 python3 - "$out" "$work" "$commit" "$tests" "${sanitizers[*]}" "${same[*]}" <<'PYTHON'
@@ -48,14 +52,14 @@ smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format
 report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),
-    "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["spheres"], r["copies"])),
-    "batch": sorted(load("batch-*.json"), key=lambda r: r["spheres"]),
+    "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["measure"] != "refined", r["spheres"], r["copies"])),
+    "batch": sorted(load("batch-*.json"), key=lambda r: (r["measure"] != "refined", r["spheres"])),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{smi}, commit {commit}: tests {tests}, compute-sanitizer {sanitizers}, CPU and device the same {same}")
 for r in report["control_loop"]:
-    print(f"{r['spheres']:8} spheres  {r['copies']} copies  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
 for r in report["batch"]:
-    print(f"{r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON
 exit $failed

@@ -29,6 +29,8 @@ class DeviceMeasure {
 
   // Of the last single run.
   virtual void read_states(std::vector<SphereState>& states) = 0;
+  // What came after the boundary was known, by the device's clock.
+  virtual double flood_microseconds() const = 0;
 };
 
 // On Device::kAll, single poses go to the first device. Throws Error(unavailable) where libvpm was

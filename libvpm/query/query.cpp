@@ -5,6 +5,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/core/parallel.h"
 
 namespace vpm {
 namespace {
@@ -27,10 +28,7 @@ void check_pose(const Pose& pose) {
 }  // namespace
 
 Query::Query(const ToolModel& tool, const QueryOptions& options)
-    : tool_(tool),
-      level_(tool.level(options.level)),
-      options_(options),
-      states_(level_.sphere_count) {
+    : level_(tool.level(options.level)), options_(options), states_(level_.sphere_count) {
   if (!(options.stiffness > 0 && std::isfinite(options.stiffness))) {
     throw Error(ErrorKind::usage, "the stiffness must be a positive number");
   }
@@ -80,9 +78,15 @@ void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
     for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(cloud, poses[k]);
     return;
   }
-  for (const Pose& pose : poses) check_pose(pose);
+  // What a device would wait for.
+  constexpr std::size_t kPosesPerTask = 4096;
+  parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (const Pose& pose : poses.subspan(begin, end - begin)) check_pose(pose);
+  });
   device_->run(cloud, poses, results);
-  for (Result& result : results) scale(result);
+  parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) scale(results[k]);
+  });
 }
 
 std::span<const SphereState> Query::states() const {

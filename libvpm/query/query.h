@@ -57,7 +57,6 @@ class Query {
  private:
   void scale(Result& result) const;
 
-  const ToolModel& tool_;
   const Level& level_;
   QueryOptions options_;
   std::unique_ptr<PaperMeasure> paper_;

@@ -18,6 +18,7 @@ class SpreadMeasure : public DeviceMeasure {
   void read_states(std::vector<SphereState>& states) override {
     measures_.front()->read_states(states);
   }
+  double flood_microseconds() const override { return measures_.front()->flood_microseconds(); }
 
   // A thread for each device, which takes the next poses that nobody has taken as long as there are
   // any: a device with dear poses takes fewer.

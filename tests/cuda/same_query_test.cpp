@@ -54,7 +54,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
     options.device = {Device::Kind::cuda, 0};
     Query on_device(tool, options);
     std::vector<Pose> poses;
-    std::vector<Result> expected, batch(kPoses);
+    std::vector<Result> expected;
     for (int k = 0; k < kPoses; ++k) {
       poses.push_back(pose_of(k));
       expected.push_back(on_cpu.run(cloud, poses.back()));
@@ -65,10 +65,13 @@ TEST_P(SameQuery, OnCpuAndDevice) {
       const auto states = on_cpu.states(), states_there = on_device.states();
       EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
     }
+    // More than a device takes at a time, so that memory is used again.
+    for (int k = kPoses; k < 16 * kPoses; ++k) poses.push_back(poses[k % kPoses]);
+    std::vector<Result> batch(poses.size());
     on_device.run(cloud, poses, batch);
-    for (int k = 0; k < kPoses; ++k) {
+    for (std::size_t k = 0; k < batch.size(); ++k) {
       SCOPED_TRACE(k);
-      expect_equal(expected[k], batch[k]);
+      expect_equal(expected[k % kPoses], batch[k]);
     }
   }
   EXPECT_GT(boundary, 1000U);
@@ -79,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                          ::testing::Combine(::testing::Values("wall", "groove", "block", "plate",
                                                               "inverted-ball", "step"),
                                             ::testing::Bool(),
-                                            ::testing::Values(Measure::refined)));
+                                            ::testing::Values(Measure::refined, Measure::paper)));
 
 // Small enough for compute-sanitizer, with every path through the kernels: contact, hidden places,
 // one pose and several.
@@ -87,9 +90,12 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
-  for (const bool camera : {true, false}) {
+  for (const auto& [camera, measure] :
+       {std::pair(true, Measure::refined), std::pair(false, Measure::refined),
+        std::pair(true, Measure::paper), std::pair(false, Measure::paper)}) {
     const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
     QueryOptions options;
+    options.measure = measure;
     Query on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     Query on_device(tool, options);
@@ -105,13 +111,41 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   }
 }
 
+// More poses than one device takes at a time.
+TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
+  if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
+  constexpr int kPoses = 40000;
+  std::vector<Pose> poses(kPoses);
+  for (int k = 0; k < kPoses; ++k) poses[k] = pose_of(k);
+  for (const Measure measure : {Measure::refined, Measure::paper}) {
+    QueryOptions options;
+    options.measure = measure;
+    std::vector<Result> of_one(poses.size()), of_all(poses.size());
+    options.device = {Device::Kind::cuda, 0};
+    Query(tool, options).run(cloud, poses, of_one);
+    options.device.index = Device::kAll;
+    Query on_all(tool, options);
+    on_all.run(cloud, poses, of_all);
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      SCOPED_TRACE(k);
+      expect_equal(of_one[k], of_all[k]);
+    }
+    expect_equal(of_one[7], on_all.run(cloud, poses[7]));
+  }
+}
+
 TEST(SameQueryOnDevice, InAnEmptyCloud) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud{Cloud{}};
   const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
   QueryOptions options;
   options.device = {Device::Kind::cuda, 0};
-  expect_equal(Result{}, Query(tool, options).run(cloud, {}));
+  for (const Measure measure : {Measure::refined, Measure::paper}) {
+    options.measure = measure;
+    expect_equal(Result{}, Query(tool, options).run(cloud, {}));
+  }
 }
 
 }  // namespace

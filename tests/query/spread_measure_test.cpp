@@ -29,6 +29,7 @@ class EchoMeasure : public DeviceMeasure {
     answered_ += poses.size();
   }
   void read_states(std::vector<SphereState>&) override {}
+  double flood_microseconds() const override { return 0; }
 
  private:
   std::atomic<std::size_t>& answered_;
@@ -41,6 +42,7 @@ class BrokenMeasure : public DeviceMeasure {
     throw Error(ErrorKind::unavailable, "the device fell off the bus");
   }
   void read_states(std::vector<SphereState>&) override {}
+  double flood_microseconds() const override { return 0; }
 };
 
 TEST(SpreadMeasure, AnswersEveryPoseOnceInItsPlace) {

@@ -184,9 +184,8 @@ struct Run {
 };
 
 // What no device computes is computed on the CPU, unless a device is named.
-Device device_of(const Tool& tool, Measure measure, bool coherent) {
-  const bool cpu_only = measure == Measure::paper || coherent;
-  return cpu_only && tool.common().device == "auto" ? Device{} : tool.device();
+Device device_of(const Tool& tool, bool coherent) {
+  return coherent && tool.common().device == "auto" ? Device{} : tool.device();
 }
 
 void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& query,
@@ -285,7 +284,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
   options.coherent = a.coherent;
-  options.device = device_of(tool, options.measure, a.coherent);
+  options.device = device_of(tool, a.coherent);
   a.replay.frames.empty() ? run_poses(tool, a, model, options)
                           : run_replay(tool, a, model, options);
 }

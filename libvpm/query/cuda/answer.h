@@ -11,11 +11,18 @@ namespace vpm::cuda {
 // Where the host looks for a result, in its own memory: the words of a RawResult, each with the
 // query's number above it. So no word must wait for another on its way over the bus.
 struct Answer {
-  static constexpr unsigned kWords = 17;
-  static_assert(offsetof(RawResult, points) + sizeof(std::uint32_t) == kWords * 4);
+  static constexpr unsigned kWords = 18;
+  static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
 
   std::uint64_t words[kWords] = {};
 };
+
+// Nanoseconds of the device's clock, which all blocks share.
+__device__ inline std::uint64_t now() {
+  std::uint64_t time;
+  asm volatile("mov.u64 %0, %%globaltimer;" : "=l"(time));
+  return time;
+}
 
 // By the threads of a block, from its shared memory.
 __device__ inline void send(const RawResult& result, Answer* answer, unsigned sequence) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "libvpm/query/cuda/device_array.h"
+#include "libvpm/query/cuda/paper_measure.h"
 #include "libvpm/query/cuda/refined_measure.h"
 #include "libvpm/query/spread_measure.h"
 
@@ -28,9 +29,8 @@ namespace {
 
 std::unique_ptr<DeviceMeasure> make_on_one(const ToolModel& tool, const Level& level,
                                            Measure measure, int device) {
-  if (measure == Measure::paper)
-    throw Error(ErrorKind::unavailable, "the paper's measure has no CUDA version yet");
-  return cuda::make_refined_measure(tool, level, device);
+  return measure == Measure::paper ? cuda::make_paper_measure(tool, level, device)
+                                   : cuda::make_refined_measure(tool, level, device);
 }
 
 }  // namespace

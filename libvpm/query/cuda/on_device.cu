@@ -62,6 +62,8 @@ std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
   return centers;
 }
 
+}  // namespace
+
 double reach_of_spheres(const ToolModel& tool, const Level& level) {
   double reach = 0;
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
@@ -71,8 +73,6 @@ double reach_of_spheres(const ToolModel& tool, const Level& level) {
   constexpr double kRounding = 1 + 1e-9;
   return kRounding * reach;
 }
-
-}  // namespace
 
 DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters)
     : spheres_(tool.spheres.data(), level.sphere_count),

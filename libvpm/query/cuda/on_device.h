@@ -24,6 +24,9 @@ class CurrentDevice {
   int before_ = 0;
 };
 
+// No point of a level's spheres is further from the centre of mass.
+double reach_of_spheres(const ToolModel& tool, const Level& level);
+
 class DeviceLevel {
  public:
   DeviceLevel(const ToolModel& tool, const Level& level)

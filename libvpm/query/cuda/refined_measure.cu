@@ -1,8 +1,7 @@
 #include <algorithm>
 
 #include "libvpm/query/cuda/flood.h"
-#include "libvpm/query/cuda/launch.h"
-#include "libvpm/query/cuda/on_device.h"
+#include "libvpm/query/cuda/measure_on_device.h"
 #include "libvpm/query/cuda/points.h"
 #include "libvpm/query/cuda/refined_measure.h"
 #include "libvpm/query/cuda/share_measure.h"
@@ -75,12 +74,14 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
   if (threadIdx.x == 0) total = RawResult{};
   if (!is_last_block(totals->done)) return;
+  const std::uint64_t met = now();
   BlockTeam team;
   const RawResult part =
       Flood<Surface, BlockTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
                                 sequence, *counters, team, shared.flood, true)
           .run();
   add_block(part, total);
+  if (threadIdx.x == 0) total.flood_ns = static_cast<std::uint32_t>(now() - met);
   __syncthreads();
   send(total, answer, sequence);
   if (threadIdx.x == 0) {
@@ -100,6 +101,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
   GridTeam team(&totals->arrived);
   team.sync();
+  const std::uint64_t met = now();
   const RawResult part =
       Flood<Surface, GridTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
                                sequence, *counters, team, shared.flood, false)
@@ -108,6 +110,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   if (!is_last_block(totals->done)) return;
   if (threadIdx.x == 0) {
     total = totals->result;
+    total.flood_ns = static_cast<std::uint32_t>(now() - met);
     *totals = Totals{};
     *counters = RefinedCounters{};
   }
@@ -203,140 +206,82 @@ class RefinedMemory {
   DeviceArray<FlatLook> flats_;
 };
 
-class RefinedOnDevice : public DeviceMeasure {
+class RefinedOnDevice : public MeasureOnDevice {
  public:
   RefinedOnDevice(const ToolModel& tool, const Level& level, int device)
-      : device_(device),
-        tool_(tool),
+      : MeasureOnDevice(tool, device),
         level_(tool, level),
-        memory_(level_.view(), 1, processors_),
+        memory_(level_.view(), 1, processors()),
         totals_(1),
-        counters_(1),
-        answer_(1) {
+        counters_(1) {
     totals_.clear();
     counters_.clear();
   }
 
-  Result run(const PreparedCloud& cloud, const Pose& pose) override {
-    const CurrentDevice current(device_);
-    bring(cloud);
-    const PoseFrame frame =
-        frame_of(pose, cloud_->frame(), tool_.center_of_mass, level_.view().spheres_reach);
-    if (cloud_->frame().is_organised)
-      launch(cloud_->depth_surface(), frame);
-    else
-      launch(cloud_->disk_surface(), frame);
-    return result_of(wait_for(*answer_.host(), sequence_, stream_.get()));
-  }
-
-  void run(const PreparedCloud& cloud, std::span<const Pose> poses,
-           std::span<Result> results) override {
-    const CurrentDevice current(device_);
-    bring(cloud);
-    if (!batch_) batch_ = std::make_unique<Batch>(level_.view());
-    for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
-      const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
-      check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
-                            cudaMemcpyHostToDevice, stream_.get()));
-      if (cloud_->frame().is_organised)
-        launch(cloud_->depth_surface(), static_cast<unsigned>(count));
-      else
-        launch(cloud_->disk_surface(), static_cast<unsigned>(count));
-      check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
-                            count * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
-      check(cudaStreamSynchronize(stream_.get()));
-      for (std::size_t k = 0; k < count; ++k) results[begin + k] = result_of(batch_->answers[k]);
-    }
-  }
-
-  void read_states(std::vector<SphereState>& states) override {
-    const CurrentDevice current(device_);
-    check(cudaStreamSynchronize(stream_.get()));
-    std::vector<std::uint32_t> words(states.size());
-    check(cudaMemcpy(words.data(), memory_.space().notes[sequence_ % 2].words,
-                     words.size() * sizeof(std::uint32_t), cudaMemcpyDeviceToHost));
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      states[i] = (words[i] & kCounted) == 0 ? SphereState::outside
-                  : (words[i] & kCut) != 0   ? SphereState::boundary
-                                             : SphereState::inside;
-    }
-  }
-
  private:
-  // Poses of one launch, and teams that share the work.
-  struct Batch {
-    static constexpr std::size_t kPoses = 16384;
-
-    explicit Batch(const LevelView& level)
-        : teams(teams_that_fit(RefinedMemory::bytes_of_team(level))),
-          memory(level, teams, teams),
-          poses(kPoses),
-          results(kPoses),
-          answers(kPoses) {
-      results.clear();  // results have gaps, which are copied too
-    }
-    unsigned teams;
+  // Teams that share the work of a batch.
+  struct Teams {
+    explicit Teams(const LevelView& level)
+        : count(teams_that_fit(RefinedMemory::bytes_of_team(level))), memory(level, count, count) {}
+    unsigned count;
     RefinedMemory memory;
-    DeviceArray<Pose> poses;
-    DeviceArray<RawResult> results;
-    std::vector<RawResult> answers;
   };
 
-  void bring(const PreparedCloud& cloud) {
-    if (cloud_ && cloud.serial() == serial_) return;
-    cloud_ = on_device(cloud);
-    serial_ = cloud.serial();
+  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
+    if (cloud().frame().is_organised)
+      launch_on(cloud().depth_surface(), frame, answer, sequence);
+    else
+      launch_on(cloud().disk_surface(), frame, answer, sequence);
+  }
+  void launch(const Pose* poses, unsigned count, RawResult* results) override {
+    if (!teams_) teams_ = std::make_unique<Teams>(level_.view());
+    if (cloud().frame().is_organised)
+      launch_on(cloud().depth_surface(), poses, count, results);
+    else
+      launch_on(cloud().disk_surface(), poses, count, results);
+  }
+  Rotation axes(const Pose&) const override { return cloud().frame().camera_to_world.rotation; }
+  double reach() const override { return level_.view().spheres_reach; }
+  const std::uint32_t* state_words(unsigned sequence) const override {
+    return memory_.space().notes[sequence % 2].words;
+  }
+  SphereState state_of(std::uint32_t word) const override {
+    return (word & kCounted) == 0 ? SphereState::outside
+           : (word & kCut) != 0   ? SphereState::boundary
+                                  : SphereState::inside;
   }
 
   template <class Surface>
-  void launch(const Surface& surface, const PoseFrame& frame) {
-    RefinedLaunch<Surface> arguments{level_.view(), surface, cloud_->points(), memory_.space()};
+  void launch_on(const Surface& surface, const PoseFrame& frame, Answer* answer,
+                 unsigned sequence) {
+    RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(), memory_.space()};
     PoseFrame pose = frame;
     Totals* totals = totals_.get();
     RefinedCounters* counters = counters_.get();
-    Answer* answer = answer_.device();
-    unsigned sphere_blocks = processors_, sequence = ++sequence_;
+    unsigned sphere_blocks = processors();
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
-    const unsigned blocks = kBlocksPerProcessor * processors_;
+    const unsigned blocks = kBlocksPerProcessor * processors();
     if (is_small(level_.view())) {
-      check(cudaLaunchKernel(one_pose_small<Surface>, blocks, kThreads, values, 0, stream_.get()));
+      check(cudaLaunchKernel(one_pose_small<Surface>, blocks, kThreads, values, 0, stream()));
     } else {
-      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks, kThreads, values, 0,
-                                        stream_.get()));
+      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks, kThreads, values, 0, stream()));
     }
   }
 
   template <class Surface>
-  void launch(const Surface& surface, unsigned count) {
-    const RefinedLaunch<Surface> arguments{level_.view(), surface, cloud_->points(),
-                                           batch_->memory.space()};
-    many_poses<Surface><<<std::min(batch_->teams, count), kThreads, 0, stream_.get()>>>(
-        arguments, cloud_->frame(), batch_->poses.get(), count, batch_->results.get());
+  void launch_on(const Surface& surface, const Pose* poses, unsigned count, RawResult* results) {
+    const RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(),
+                                           teams_->memory.space()};
+    many_poses<Surface><<<std::min(teams_->count, count), kThreads, 0, stream()>>>(
+        arguments, cloud().frame(), poses, count, results);
     check(cudaGetLastError());
   }
 
-  Result result_of(const RawResult& raw) const {
-    Result result;
-    raw.sum.write(tool_, cloud_->frame().camera_to_world.rotation, result);
-    result.boundary = raw.boundary;
-    result.inside = raw.inside;
-    result.points = raw.points;
-    return result;
-  }
-
-  int device_;
-  const ToolModel& tool_;
-  Stream stream_;
-  unsigned processors_ = processor_count();
   DeviceLevel level_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
-  MappedArray<Answer> answer_;
-  unsigned sequence_ = 0;
-  std::shared_ptr<const DeviceCloud> cloud_;
-  std::uint64_t serial_ = 0;
-  std::unique_ptr<Batch> batch_;
+  std::unique_ptr<Teams> teams_;
 };
 
 }  // namespace

@@ -118,6 +118,7 @@ __host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame
 struct RawResult {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0, points = 0;
+  std::uint32_t flood_ns = 0;  // of one pose: what came after the boundary was known
 };
 
 }  // namespace vpm::cuda

@@ -1,0 +1,60 @@
+#include <algorithm>
+
+#include "libvpm/query/cuda/measure_on_device.h"
+
+namespace vpm::cuda {
+
+Result MeasureOnDevice::run(const PreparedCloud& cloud, const Pose& pose) {
+  const CurrentDevice current(device_);
+  bring(cloud);
+  const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
+  launch(frame, answer_.device(), ++sequence_);
+  const RawResult raw = wait_for(*answer_.host(), sequence_, stream_.get());
+  flood_microseconds_ = 1e-3 * raw.flood_ns;
+  return result_of(raw, pose);
+}
+
+void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                          std::span<Result> results) {
+  const CurrentDevice current(device_);
+  bring(cloud);
+  if (!batch_) batch_ = std::make_unique<Batch>();
+  for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
+    const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
+    check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
+                          cudaMemcpyHostToDevice, stream_.get()));
+    launch(batch_->poses.get(), static_cast<unsigned>(count), batch_->results.get());
+    check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(), count * sizeof(RawResult),
+                          cudaMemcpyDeviceToHost, stream_.get()));
+    check(cudaStreamSynchronize(stream_.get()));
+    for (std::size_t k = 0; k < count; ++k)
+      results[begin + k] = result_of(batch_->answers[k], poses[begin + k]);
+  }
+}
+
+void MeasureOnDevice::read_states(std::vector<SphereState>& states) {
+  const CurrentDevice current(device_);
+  check(cudaStreamSynchronize(stream_.get()));
+  std::vector<std::uint32_t> words(states.size());
+  check(cudaMemcpy(words.data(), state_words(sequence_), words.size() * sizeof(std::uint32_t),
+                   cudaMemcpyDeviceToHost));
+  std::transform(words.begin(), words.end(), states.begin(),
+                 [&](std::uint32_t word) { return state_of(word); });
+}
+
+void MeasureOnDevice::bring(const PreparedCloud& cloud) {
+  if (cloud_ && cloud.serial() == serial_) return;
+  cloud_ = on_device(cloud);
+  serial_ = cloud.serial();
+}
+
+Result MeasureOnDevice::result_of(const RawResult& raw, const Pose& pose) const {
+  Result result;
+  raw.sum.write(tool_, axes(pose), result);
+  result.boundary = raw.boundary;
+  result.inside = raw.inside;
+  result.points = raw.points;
+  return result;
+}
+
+}  // namespace vpm::cuda

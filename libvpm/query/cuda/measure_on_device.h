@@ -1,0 +1,67 @@
+// What all measures on a device do alike: bring clouds and poses there, wait for the answers.
+#pragma once
+
+#include <memory>
+
+#include "libvpm/query/cuda/launch.h"
+#include "libvpm/query/cuda/on_device.h"
+#include "libvpm/query/device_measure.h"
+
+namespace vpm::cuda {
+
+class MeasureOnDevice : public DeviceMeasure {
+ public:
+  // The device must be the current one.
+  MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
+
+  Result run(const PreparedCloud& cloud, const Pose& pose) final;
+  void run(const PreparedCloud& cloud, std::span<const Pose> poses,
+           std::span<Result> results) final;
+  void read_states(std::vector<SphereState>& states) final;
+  double flood_microseconds() const final { return flood_microseconds_; }
+
+ protected:
+  // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
+  virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
+  // Many, of poses and to results on the device.
+  virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
+  // What results are written in, to world axes.
+  virtual Rotation axes(const Pose& pose) const = 0;
+  // No point further from the centre of mass matters.
+  virtual double reach() const = 0;
+  // A word for each sphere, of query number `sequence`, and what it says.
+  virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
+  virtual SphereState state_of(std::uint32_t word) const = 0;
+
+  const ToolModel& tool() const { return tool_; }
+  const DeviceCloud& cloud() const { return *cloud_; }
+  unsigned processors() const { return processors_; }
+  cudaStream_t stream() const { return stream_.get(); }
+
+ private:
+  // The poses of one launch.
+  struct Batch {
+    static constexpr std::size_t kPoses = 16384;
+
+    Batch() : poses(kPoses), results(kPoses), answers(kPoses) {}
+    DeviceArray<Pose> poses;
+    DeviceArray<RawResult> results;
+    std::vector<RawResult> answers;
+  };
+
+  void bring(const PreparedCloud& cloud);
+  Result result_of(const RawResult& raw, const Pose& pose) const;
+
+  int device_;
+  const ToolModel& tool_;
+  Stream stream_;
+  unsigned processors_ = processor_count();
+  MappedArray<Answer> answer_{1};
+  unsigned sequence_ = 0;
+  double flood_microseconds_ = 0;
+  std::shared_ptr<const DeviceCloud> cloud_;
+  std::uint64_t serial_ = 0;
+  std::unique_ptr<Batch> batch_;
+};
+
+}  // namespace vpm::cuda
