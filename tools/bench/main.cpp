@@ -16,8 +16,9 @@ int main(int argc, char** argv) {
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
   tool.app().add_flag("--quick", quick, "A small version that takes seconds");
-  tool.app().add_flag("--all", all,
-                      "accuracy: every tool, scene and kind of cloud; packing: a million spheres");
+  tool.app().add_flag(
+      "--all", all,
+      "accuracy: every tool, scene and kind of cloud; packing, scaling: a million spheres");
   tool.app().add_option("--meshes", meshes,
                         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
   tool.app().add_option(

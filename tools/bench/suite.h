@@ -10,7 +10,8 @@ namespace vpm::bench {
 
 struct SuiteOptions {
   bool quick = false;  // fewer spheres, poses and runs: seconds instead of minutes
-  bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes
+  bool all = false;    // accuracy: every tool, scene and kind of cloud, minutes; packing,
+                       // scaling: a million spheres
   std::function<void(double fraction)> progress;
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
   std::string data = {};    // accuracy --all: folder of recorded depth images; replay: likewise, or
