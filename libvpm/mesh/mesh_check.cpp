@@ -6,7 +6,6 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
@@ -333,8 +332,7 @@ class Check {
     };
     warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
          places(first, place) +
-         "; what it encloses at least once is the solid, overlaps count once, and spheres cross no "
-         "triangle, not even those inside");
+         "; what it encloses at least once is the solid, and overlaps count once");
   }
 
   // Shells that lie wholly within the solid would only be in the way of the spheres.
@@ -346,7 +344,8 @@ class Check {
     for (std::uint32_t t = 0; t < triangles().size(); ++t) {
       if (!outer.bounds_nothing(t)) bounds[shell[t]] = 1;
     }
-    facts().volume = outer.mass().volume;
+    result_.enclosure = enclosure_of(outer);
+    facts().volume = result_.enclosure.volume;
     const auto inner = static_cast<std::size_t>(std::count(bounds.begin(), bounds.end(), 0));
     if (inner == 0 || inner == shell_count) return;
     facts().inner_shells = inner;
@@ -360,6 +359,7 @@ class Check {
     }
     triangles() = std::move(kept);
     drop_unused(vertices(), triangles());
+    if (contacts_.empty()) result_.enclosure.surface.reset();  // it is what was kept
     facts().shells -= facts().inner_shells;
   }
 

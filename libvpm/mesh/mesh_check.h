@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libvpm/mesh/fill_holes.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/raw_mesh.h"
 #include "libvpm/mesh/voxel_repair.h"
 #include "libvpm/model/solid.h"
@@ -64,6 +65,7 @@ struct MeshFacts {
 
 struct CheckedSolid {
   Solid solid;
+  Enclosure enclosure;
   MeshFacts facts;
   std::vector<std::string> notes;     // what was mended
   std::vector<std::string> warnings;  // what was accepted though it may surprise

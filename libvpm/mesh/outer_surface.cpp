@@ -35,6 +35,36 @@ struct Flat {
   }
 };
 
+// What is lost of a surface, as an area, by this share of it lets spheres of the size of the solid
+// through by less than kCertificateTolerance (packing/certificate.h).
+constexpr double kOpen = 1e-9;
+
+// Whether the pieces leave no gap. A closed surface has no sum of areas, and fluxes of coordinates
+// that are its volume or nothing; pieces that are lost change one or the other.
+bool is_closed(const Solid& pieces) {
+  const Vec3 origin = pieces.vertices.front();
+  double area = 0, extent = 0;
+  Vec3 sum;
+  std::array<Vec3, 3> flux{};
+  for (const auto& [i, j, k] : pieces.triangles) {
+    const Vec3 a = pieces.vertices[i] - origin, b = pieces.vertices[j] - origin,
+               c = pieces.vertices[k] - origin;
+    const Vec3 n = 0.5 * cross(b - a, c - a), middle = (a + b + c) / 3;
+    area += norm(n);
+    extent = std::max(extent, norm(middle));
+    sum += n;
+    flux[0] += middle.x * n;
+    flux[1] += middle.y * n;
+    flux[2] += middle.z * n;
+  }
+  const double volume = (flux[0].x + flux[1].y + flux[2].z) / 3;
+  flux[0].x -= volume;
+  flux[1].y -= volume;
+  flux[2].z -= volume;
+  const auto vanishes = [&](Vec3 v) { return norm(v) <= kOpen * area * extent; };
+  return norm(sum) <= kOpen * area && vanishes(flux[0]) && vanishes(flux[1]) && vanishes(flux[2]);
+}
+
 }  // namespace
 
 // Cuts the triangles that meet others, and asks for winding numbers.
@@ -227,6 +257,16 @@ Solid enclosed_surface(const Solid& solid) {
   if (solid.triangles.empty()) return solid;
   const OuterSurface outer(solid, find_contacts(solid.vertices, solid.triangles));
   return outer.surface() ? *outer.surface() : solid;
+}
+
+Enclosure enclosure_of(const OuterSurface& outer) {
+  const bool cut = outer.surface() && !outer.surface()->triangles.empty();
+  const bool closed = !cut || is_closed(*outer.surface());
+  return {cut && closed ? outer.surface() : std::nullopt, closed, outer.mass().volume};
+}
+
+Enclosure enclosure_of(const Solid& solid) {
+  return enclosure_of(OuterSurface(solid, find_contacts(solid.vertices, solid.triangles)));
 }
 
 MassProperties enclosed_mass(const Solid& solid) {

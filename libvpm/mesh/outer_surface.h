@@ -45,6 +45,17 @@ class OuterSurface {
 // meet, without the pieces inside: each with its own corners, facing outward.
 Solid enclosed_surface(const Solid& solid);
 
+// What bounds a solid and how much it holds, for all that asks more than once.
+struct Enclosure {
+  // As enclosed_surface; nothing where that is the solid as it is, and where its pieces do not close
+  // up: then every triangle is a bound.
+  std::optional<Solid> surface;
+  bool faces_tell = true;  // what bounds the solid has the inside behind it and the outside in front
+  double volume = 0;       // m^3
+};
+Enclosure enclosure_of(const Solid& solid);
+Enclosure enclosure_of(const OuterSurface& outer);
+
 // Volume and centre of mass of what the mesh encloses, overlaps counted once. Equals
 // mass_properties to the bit where the surface neither meets itself nor lies within itself.
 MassProperties enclosed_mass(const Solid& solid);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "libvpm/core/parallel.h"
@@ -20,15 +21,22 @@ double largest(const std::vector<double>& values, double at_least) {
                         : std::max(at_least, *std::max_element(values.begin(), values.end()));
 }
 
-// Largest radius less signed distance to the mesh.
-double protrusion(const Solid& solid, const std::vector<Sphere>& spheres) {
-  const TriangleBvh bvh(solid.vertices, solid.triangles);
-  const WindingNumber winding(bvh);
+// Largest radius less signed distance to the surface.
+double protrusion(const Solid& solid, const std::vector<Sphere>& spheres,
+                  const Enclosure* enclosure) {
+  const TriangleBvh mesh(solid.vertices, solid.triangles);
+  const WindingNumber winding(mesh);
+  std::optional<Enclosure> found;
+  if (enclosure == nullptr) enclosure = &found.emplace(enclosure_of(solid));
+  std::optional<TriangleBvh> pieces;
+  if (enclosure->surface)
+    pieces.emplace(enclosure->surface->vertices, enclosure->surface->triangles);
+  const TriangleBvh& surface = pieces ? *pieces : mesh;
   std::vector<double> beyond(spheres.size());
   parallel_for(spheres.size(), kSpheresPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Sphere& s = spheres[i];
-      const double distance = bvh.closest(s.center).distance;
+      const double distance = surface.closest(s.center).distance;
       beyond[i] = s.radius + (winding.inside(s.center) ? -distance : distance);
     }
   });
@@ -100,7 +108,8 @@ double overlap(const std::vector<Sphere>& spheres, double margin) {
 
 }  // namespace
 
-Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres) {
+Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres,
+                    const Enclosure* enclosure) {
   double farthest = 0;
   const Vec3 first = solid.vertices.empty() ? Vec3{} : solid.vertices.front();
   Vec3 low = first, high = first;
@@ -121,7 +130,7 @@ Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres) {
     return certificate;
   }
   const double margin = certificate.tolerance;
-  certificate.max_protrusion = std::max(protrusion(solid, spheres), -margin);
+  certificate.max_protrusion = std::max(protrusion(solid, spheres, enclosure), -margin);
   certificate.max_overlap = overlap(spheres, margin);
   certificate.holds = certificate.max_protrusion <= certificate.tolerance &&
                       certificate.max_overlap <= certificate.tolerance;

@@ -73,7 +73,7 @@ void divide(const std::vector<Sphere>& spheres, std::span<std::uint32_t> from, i
 class Growth {
  public:
   Growth(const Solid& solid, const std::vector<Sphere>& spheres, const GrowOptions& options)
-      : distance_(solid),
+      : distance_(solid, options.enclosure),
         frame_(distance_.frame()),
         least_(std::max(options.min_radius / frame_.scale, kNumericalFloor)),
         most_(options.max_radius / frame_.scale),

@@ -5,12 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
 
 namespace vpm {
 
 struct GrowOptions {
+  const Enclosure* enclosure = nullptr;                         // of the solid, where it is known
   double min_radius = 0;                                        // m; no sphere shrinks below
   double max_radius = std::numeric_limits<double>::infinity();  // m; no sphere grows above
   int steps = 100;  // at most; fewer where no more is gained

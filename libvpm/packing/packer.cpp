@@ -6,7 +6,6 @@
 #include <string>
 
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/packing/candidates.h"
 #include "libvpm/packing/inertia.h"
 #include "libvpm/packing/largest_first.h"
@@ -84,9 +83,9 @@ class Packer {
  public:
   Packer(const Solid& solid, const PackOptions& options)
       : options_(options),
-        distance_(solid),
+        distance_(solid, options.enclosure),
         frame_(distance_.frame()),
-        volume_(options.volume > 0 ? options.volume : enclosed_mass(solid).volume),
+        volume_(distance_.volume()),
         smallest_(std::max(options.min_radius / frame_.scale, kNumericalFloor * frame_.longest)),
         stop_(smallest_ > kNumericalFloor * frame_.longest ? StopReason::min_radius
                                                            : StopReason::numerical_floor),

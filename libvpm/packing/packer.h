@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
 
@@ -20,7 +21,7 @@ struct PackOptions {
   double inertia_error = 0;    // stop where the spheres' InertiaError is at most this; 0: never
   double min_radius = 0;       // m; no smaller sphere
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
-  double volume = 0;  // m^3, of the solid, where it is known; 0: it is measured
+  const Enclosure* enclosure = nullptr;  // of the solid, where it is known
   std::function<void(double fraction)> progress =
       nullptr;  // called between rounds, on the calling thread
 };
@@ -49,8 +50,8 @@ struct PackResult {
 // before another that is more than about one hundredth larger only where a local search has missed
 // the larger one.
 //
-// Inside is what the mesh encloses at least once, and volumes are of that; spheres respect every
-// triangle, also those of a self-intersecting mesh that lie inside of its union.
+// Inside is what the mesh encloses at least once, and volumes are of that: triangles of a
+// self-intersecting mesh bound no sphere where they lie inside of its union.
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
 // bit. A result with fewer spheres is a prefix of one with more if the other options are the same

@@ -56,12 +56,21 @@ Sphere UnitFrame::to_solid(const Sphere& s) const {
   return {to_solid(s.center), (1 - kMargin) * s.radius * scale - rounding};
 }
 
-SolidDistance::SolidDistance(const Solid& solid)
+SolidDistance::SolidDistance(const Solid& solid, const Enclosure* enclosure)
     : frame_(unit_frame(solid)),
       vertices_(in_unit_frame(solid, frame_)),
       triangles_(solid.triangles),
-      bvh_(vertices_, triangles_),
-      winding_(bvh_) {}
+      mesh_(vertices_, triangles_),
+      winding_(mesh_),
+      boundary_(&mesh_) {
+  std::optional<Enclosure> found;
+  if (enclosure == nullptr) enclosure = &found.emplace(enclosure_of(solid));
+  volume_ = enclosure->volume;
+  if (!enclosure->surface) return;
+  vertices_ = in_unit_frame(*enclosure->surface, frame_);
+  triangles_ = enclosure->surface->triangles;
+  boundary_ = &surface_.emplace(vertices_, triangles_);
+}
 
 Vec3 SolidDistance::closest_on(std::uint32_t triangle, Vec3 x) const {
   const auto [a, b, c] = triangles_[triangle];

@@ -1,12 +1,15 @@
-// Distance to the boundary of a solid, in the packer's own frame.
+// Distance to the boundary of a solid, in the packer's own frame. What of the mesh lies inside of the
+// solid is no boundary.
 //
 // The frame puts the solid's box in the middle of the unit cube and scales by a power of two, so
 // that a solid 2^k times as large gives the same numbers to the bit.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/winding_number.h"
 #include "libvpm/model/solid.h"
@@ -27,29 +30,34 @@ struct UnitFrame {
 
 class SolidDistance {
  public:
-  // Throws Error(refused) for a solid without triangles, extent or finite coordinates.
-  explicit SolidDistance(const Solid& solid);
+  // `enclosure` is that of the solid, where it is known. Throws Error(refused) for a solid without
+  // triangles, extent or finite coordinates.
+  explicit SolidDistance(const Solid& solid, const Enclosure* enclosure = nullptr);
   SolidDistance(const SolidDistance&) = delete;
   SolidDistance& operator=(const SolidDistance&) = delete;
 
   const UnitFrame& frame() const { return frame_; }
-  SurfacePoint closest(Vec3 x, double within) const { return bvh_.closest(x, within); }
+  double volume() const { return volume_; }  // m^3
+  SurfacePoint closest(Vec3 x, double within) const { return boundary_->closest(x, within); }
   Vec3 closest_on(std::uint32_t triangle, Vec3 x) const;
   // Whether the disk of this radius about a point of the triangle lies in the triangle.
   bool holds_disk(std::uint32_t triangle, Vec3 point, double radius) const;
   // As TriangleBvh::around; and a triangle that it found.
   std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const {
-    return bvh_.around(x, half, found);
+    return boundary_->around(x, half, found);
   }
-  const TriangleBvh::Corners& corners(std::uint32_t found) const { return bvh_.corners()[found]; }
+  const TriangleBvh::Corners& corners(std::uint32_t found) const { return boundary_->corners()[found]; }
   bool inside(Vec3 x) const { return winding_.inside(x); }
 
  private:
   UnitFrame frame_;
-  std::vector<Vec3> vertices_;
+  std::vector<Vec3> vertices_;  // of the boundary, like triangles_
   std::vector<Triangle> triangles_;
-  TriangleBvh bvh_;
+  TriangleBvh mesh_;
   WindingNumber winding_;
+  std::optional<TriangleBvh> surface_;     // where the mesh is not the boundary
+  const TriangleBvh* boundary_ = nullptr;  // one of the two
+  double volume_ = 0;
 };
 
 }  // namespace vpm

@@ -11,7 +11,8 @@ namespace vpm::test {
 double distance_to_mesh(const Solid& solid, Vec3 x);
 bool encloses(const Solid& solid, Vec3 x);  // sum of solid angles is not zero
 
-// Largest radius - signed distance to the mesh, largest r_i + r_j - |c_i - c_j|.
+// Largest radius - signed distance to the mesh, largest r_i + r_j - |c_i - c_j|. A solid that meets
+// itself is given as its enclosed_surface.
 double worst_protrusion(const Solid& solid, const std::vector<Sphere>& spheres);
 double worst_overlap(const std::vector<Sphere>& spheres);
 

@@ -13,6 +13,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/packer.h"
 #include "test_solids.h"
@@ -31,7 +32,7 @@ bool same_bytes(const std::vector<Sphere>& a, const std::vector<Sphere>& b) {
 }
 
 void expect_packing(const Solid& solid, const std::vector<Sphere>& spheres) {
-  EXPECT_LE(worst_protrusion(solid, spheres), 0);
+  EXPECT_LE(worst_protrusion(enclosed_surface(solid), spheres), 0);
   EXPECT_LE(worst_overlap(spheres), 0);
   EXPECT_TRUE(std::is_sorted(spheres.begin(), spheres.end(), largest_first));
 }

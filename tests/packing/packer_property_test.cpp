@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "brute_force.h"
+#include "libvpm/mesh/outer_surface.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/packer.h"
 #include "test_solids.h"
@@ -24,14 +25,15 @@ TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
     const PackResult result = pack(solid, {.spheres = kSpheres});
     ASSERT_EQ(result.spheres.size(), kSpheres);
     EXPECT_EQ(result.stop, StopReason::spheres);
-    EXPECT_LE(worst_protrusion(solid, result.spheres), 0);
+    const Solid surface = enclosed_surface(solid);
+    EXPECT_LE(worst_protrusion(surface, result.spheres), 0);
     EXPECT_LE(worst_overlap(result.spheres), 0);
     EXPECT_TRUE(
         std::is_sorted(result.spheres.begin(), result.spheres.end(),
                        [](const Sphere& a, const Sphere& b) { return a.radius > b.radius; }));
     const Certificate certificate = certify(solid, result.spheres);
     EXPECT_TRUE(certificate.holds);
-    EXPECT_NEAR(certificate.max_protrusion, worst_protrusion(solid, result.spheres), kRounding);
+    EXPECT_NEAR(certificate.max_protrusion, worst_protrusion(surface, result.spheres), kRounding);
     EXPECT_NEAR(certificate.max_overlap,
                 std::max(worst_overlap(result.spheres), -certificate.tolerance), kRounding);
   }
@@ -40,13 +42,14 @@ TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
 TEST_P(RandomSolids, CentresAreLocalMaxima) {
   const Solid solid = random_solid(GetParam(), 7);
   const std::vector<Sphere> spheres = pack(solid, {.spheres = 30}).spheres;
+  const Solid surface = enclosed_surface(solid);
   Random random(11);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     for (int k = 0; k < 40; ++k) {
       const double step = spheres[i].radius * std::pow(10, random.uniform(-5, -2));
       const Vec3 beside =
           spheres[i].center + step * normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1}));
-      EXPECT_LE(clearance(solid, spheres, beside, i), spheres[i].radius * (1 + 1e-8));
+      EXPECT_LE(clearance(surface, spheres, beside, i), spheres[i].radius * (1 + 1e-8));
     }
   }
 }
@@ -59,10 +62,26 @@ TEST_P(RandomSolids, NoRoomIsLeftForALargerSphere) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
+  const Solid surface = enclosed_surface(solid);
   Random random(5);
   for (int k = 0; k < 4000; ++k) {
     const Vec3 x = random.in_box(low, high);
-    EXPECT_LE(clearance(solid, spheres, x, spheres.size()), 1.05 * spheres.back().radius);
+    EXPECT_LE(clearance(surface, spheres, x, spheres.size()), 1.05 * spheres.back().radius);
+  }
+}
+
+// Asks the mesh as it is, so that nothing depends on how its inner parts were found.
+TEST_P(RandomSolids, EveryPointOfASphereIsEnclosed) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(seed);
+    const Solid solid = random_solid(GetParam(), seed);
+    Random random(seed);
+    for (const Sphere& s : pack(solid, {.spheres = 20}).spheres) {
+      for (int k = 0; k < 40; ++k) {
+        const Vec3 away = normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1}));
+        EXPECT_TRUE(encloses(solid, s.center + (1 - 1e-6) * s.radius * away));
+      }
+    }
   }
 }
 

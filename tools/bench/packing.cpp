@@ -27,7 +27,8 @@ namespace {
 struct Shape {
   std::string name;
   Solid solid;
-  double volume = 0;
+  Enclosure enclosure;
+  double volume = 0;  // m^3
 };
 
 struct Cost {
@@ -93,8 +94,9 @@ class Packings {
 
  private:
   void add_shape(const std::string& name, Solid solid) {
-    const double volume = mass_properties(solid).volume;
-    shapes_.push_back({name, std::move(solid), volume});
+    Enclosure enclosure = enclosure_of(solid);
+    const double volume = enclosure.volume;
+    shapes_.push_back({name, std::move(solid), std::move(enclosure), volume});
   }
 
   void make_shapes() {
@@ -165,7 +167,7 @@ class Packings {
       std::vector<Sphere> spheres;
       PackOptions pack_options;
       pack_options.spheres = most_;
-      pack_options.volume = shape.volume;  // vpm-pack knows it from its check of the mesh
+      pack_options.enclosure = &shape.enclosure;  // vpm-pack knows it from its check of the mesh
       Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
       add_prefixes(shape, "vpm-pack", spheres, cost);
       std::optional<VoxelGreedy> voxels;
@@ -182,6 +184,7 @@ class Packings {
   std::vector<Sphere> greedy(const Shape& shape, std::size_t spheres) const {
     PackOptions pack_options;
     pack_options.spheres = spheres;
+    pack_options.enclosure = &shape.enclosure;
     return pack(shape.solid, pack_options).spheres;
   }
 
@@ -194,7 +197,8 @@ class Packings {
         if (n > most_ / 10) continue;
         std::vector<Sphere> spheres = greedy(shape, n);
         const double before = filled(spheres) / shape.volume;
-        const Cost cost = cost_of([&] { spheres = grow(shape.solid, spheres, {}); });
+        const Cost cost =
+            cost_of([&] { spheres = grow(shape.solid, spheres, {.enclosure = &shape.enclosure}); });
         const double after = filled(spheres) / shape.volume;
         add("growth", shape.name, "greedy", n, before, {});
         add("growth", shape.name, "grown", n, after, cost);
@@ -234,7 +238,8 @@ class Packings {
     while (enough - too_few > 1) {
       const std::size_t n = (enough + too_few) / 2;
       const auto end = greedy.begin() + static_cast<std::ptrdiff_t>(n);
-      const double grown = filled(grow(shape.solid, {greedy.begin(), end}, {}));
+      const double grown =
+          filled(grow(shape.solid, {greedy.begin(), end}, {.enclosure = &shape.enclosure}));
       (grown >= share * shape.volume ? enough : too_few) = n;
     }
     return enough;
@@ -281,9 +286,9 @@ class Packings {
       bool holds = false;
       const Cost check = cost_of([&] { checked = make_solid(mesh); });
       const Cost packing = cost_of([&] {
-        pack_options.volume = checked.facts.volume;
+        pack_options.enclosure = &checked.enclosure;
         result = pack(checked.solid, pack_options);
-        holds = certify(checked.solid, result.spheres).holds;
+        holds = certify(checked.solid, result.spheres, &checked.enclosure).holds;
       });
       const Cost both = check + packing;
       add("triangles", "torus knot", std::to_string(checked.facts.triangles) + " triangles",

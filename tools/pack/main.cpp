@@ -161,17 +161,17 @@ SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   return scale;
 }
 
-PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid, double volume) {
+PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid& checked) {
   Progress progress("packing", tool.common());
   PackOptions options;
   options.spheres = a.spheres;
   options.coverage = a.coverage;
   options.inertia_error = a.inertia_error.value_or(0);
-  options.volume = volume;
+  options.enclosure = &checked.enclosure;
   options.min_radius = a.min_radius;
   options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
   options.progress = [&](double fraction) { progress.update(fraction); };
-  PackResult result = pack(solid, options);
+  PackResult result = pack(checked.solid, options);
   if (result.spheres.empty()) {
     refuse(a.mesh + ": no sphere fits: " +
            (result.stop == StopReason::min_radius
@@ -182,14 +182,16 @@ PackResult pack_checked(const Tool& tool, const Arguments& a, const Solid& solid
   return result;
 }
 
-void grow_together(const Tool& tool, const Arguments& a, const Solid& solid, PackResult& result) {
+void grow_together(const Tool& tool, const Arguments& a, const CheckedSolid& checked,
+                   PackResult& result) {
   Progress progress("growing", tool.common());
   GrowOptions options;
+  options.enclosure = &checked.enclosure;
   options.min_radius = a.min_radius;
   options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
   options.progress = [&](double fraction) { progress.update(fraction); };
   const double before = volume_of(result.spheres);
-  result.spheres = grow(solid, result.spheres, options);
+  result.spheres = grow(checked.solid, result.spheres, options);
   result.coverage *= volume_of(result.spheres) / before;
 }
 
@@ -241,9 +243,9 @@ void run(const Tool& tool, Arguments a) {
 
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
-  PackResult result = pack_checked(tool, a, checked.solid, checked.facts.volume);
-  if (a.grow) grow_together(tool, a, checked.solid, result);
-  const Certificate certificate = certify(checked.solid, result.spheres);
+  PackResult result = pack_checked(tool, a, checked);
+  if (a.grow) grow_together(tool, a, checked, result);
+  const Certificate certificate = certify(checked.solid, result.spheres, &checked.enclosure);
   refuse_uncertified(a, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -69,7 +69,8 @@ json as_json(const Validation& validation) {
 
 // In the words of cuRobo's sphere fits. What protrudes is not certified, and not reported.
 json quality(const CheckedSolid& checked, const PackResult& result) {
-  const SurfaceGap gap = surface_gap(checked.solid, result.spheres);
+  const std::optional<Solid>& outer = checked.enclosure.surface;
+  const SurfaceGap gap = surface_gap(outer ? *outer : checked.solid, result.spheres);
   return {{"coverage", result.coverage},      {"protrusion", 0},
           {"surface_gap_mean", gap.mean},     {"surface_gap_p95", gap.p95},
           {"max_uncovered_gap", gap.largest}, {"volume_ratio", result.coverage}};
@@ -119,11 +120,9 @@ json pack_report(const CheckedSolid& checked, const PackResult& result,
                  {"mesh", as_json(checked.facts)},
                  {"notes", checked.notes},
                  {"warnings", checked.warnings}};
-  if (checked.facts.self_intersections == 0) {
-    InertiaError inertia(checked.solid);
-    for (const Sphere& s : result.spheres) inertia.add(s);
-    report["inertia_error"] = inertia.value();
-  }
+  InertiaError inertia(checked.solid);
+  for (const Sphere& s : result.spheres) inertia.add(s);
+  report["inertia_error"] = inertia.value();
   if (validation) report["validation"] = as_json(*validation);
   return report;
 }
