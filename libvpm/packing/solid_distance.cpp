@@ -15,6 +15,9 @@ namespace {
 constexpr double kFrameRoundings = 8;
 constexpr double kDistanceRoundings = 64;
 
+// A face tells sides where it is wider than this, and the point farther off: rounding is far less.
+constexpr double kTelling = 1e-9;
+
 // Radii shrink by this share on the way back to metres.
 constexpr double kMargin = 1e-12;
 
@@ -65,6 +68,7 @@ SolidDistance::SolidDistance(const Solid& solid, const Enclosure* enclosure)
       boundary_(&mesh_) {
   std::optional<Enclosure> found;
   if (enclosure == nullptr) enclosure = &found.emplace(enclosure_of(solid));
+  faces_tell_ = enclosure->faces_tell;
   volume_ = enclosure->volume;
   if (!enclosure->surface) return;
   vertices_ = in_unit_frame(*enclosure->surface, frame_);
@@ -75,6 +79,19 @@ SolidDistance::SolidDistance(const Solid& solid, const Enclosure* enclosure)
 Vec3 SolidDistance::closest_on(std::uint32_t triangle, Vec3 x) const {
   const auto [a, b, c] = triangles_[triangle];
   return closest_point_on_triangle(x, vertices_[a], vertices_[b], vertices_[c]);
+}
+
+std::optional<bool> SolidDistance::inside_of_face(std::uint32_t nearest, Vec3 x) const {
+  const auto [i, j, k] = triangles_[nearest];
+  const Vec3 a = vertices_[i], b = vertices_[j], c = vertices_[k];
+  const Vec3 ab = b - a, bc = c - b, ca = a - c, normal = cross(bc, ca);
+  const double normal2 = squared_norm(normal), height = dot(normal, x - a);
+  const double edge2 = std::max({squared_norm(ab), squared_norm(bc), squared_norm(ca)});
+  const bool sure = faces_tell_ && normal2 > kTelling * kTelling * edge2 &&
+                    height * height > kTelling * kTelling * normal2;
+  const auto beyond = [&](Vec3 edge, Vec3 from) { return dot(cross(normal, edge), x - from) < 0; };
+  if (!sure || beyond(ab, a) || beyond(bc, b) || beyond(ca, c)) return std::nullopt;
+  return height < 0;
 }
 
 bool SolidDistance::holds_disk(std::uint32_t triangle, Vec3 point, double radius) const {

@@ -48,6 +48,9 @@ class SolidDistance {
   }
   const TriangleBvh::Corners& corners(std::uint32_t found) const { return boundary_->corners()[found]; }
   bool inside(Vec3 x) const { return winding_.inside(x); }
+  // The same by the triangle that is nearest to x, which costs next to nothing; nothing where x is
+  // nearest to an edge, or too near to say.
+  std::optional<bool> inside_of_face(std::uint32_t nearest, Vec3 x) const;
 
  private:
   UnitFrame frame_;
@@ -57,6 +60,7 @@ class SolidDistance {
   WindingNumber winding_;
   std::optional<TriangleBvh> surface_;     // where the mesh is not the boundary
   const TriangleBvh* boundary_ = nullptr;  // one of the two
+  bool faces_tell_ = true;
   double volume_ = 0;
 };
 

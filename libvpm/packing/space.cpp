@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -27,6 +28,9 @@ constexpr double kSlope = 2.5;
 // Thin parts are looked for where the mesh is nearer to a cell's centre than this many half
 // diagonals.
 constexpr float kNearFace = 0.5f;
+// A sphere is nearest to a point where no triangle is nearer than this share and length beyond it:
+// a triangle that it touches may lie between.
+constexpr double kBehind = 1e-3, kTouching = 1e-9;
 constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
 
@@ -183,6 +187,25 @@ double Space::farthest(const Cell& cell, const Sphere& from) {
   return norm({std::abs(d.x) + h, std::abs(d.y) + h, std::abs(d.z) + h}) - from.radius;
 }
 
+// Of the centre of a measured cell. What is nearest to it mostly tells: a face has the inside
+// behind it, and a sphere lies inside. Winding numbers take far longer.
+Space::Side Space::side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const {
+  const Vec3 x = cell.center();
+  std::uint32_t nearest = cell.exact ? cell.triangle : SurfacePoint::kNone;
+  if (!cell.exact) {
+    double beside = reach_;
+    for (const std::uint32_t i : near)
+      beside = std::min(beside, norm(x - spheres_[i].center) - spheres_[i].radius);
+    if (beside < reach_) {
+      nearest = solid_.closest(x, std::max(beside, 0.0) * (1 + kBehind) + kTouching).triangle;
+      if (nearest == SurfacePoint::kNone) return Side::inside;
+    }
+  }
+  const std::optional<bool> told =
+      nearest == SurfacePoint::kNone ? std::nullopt : solid_.inside_of_face(nearest, x);
+  return (told ? *told : solid_.inside(x)) ? Side::inside : Side::outside;
+}
+
 // Sets the side of the centre, which bounds the cell if it is the wrong one.
 void Space::settle(Cell& cell, Side side) {
   cell.side = side;
@@ -230,7 +253,7 @@ void Space::split_blocks() {
         }
         if (!cell.measured) measure(cell);  // estimates of estimates would exclude nothing
         if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
-          settle(cell, solid_.inside(cell.center()) ? Side::inside : Side::outside);
+          settle(cell, side_of(cell, block.spheres));
         bound_thin_part(cell);
         if (cell.bound > smallest_) split(cell, block.spheres, cells);
       }
@@ -323,8 +346,7 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
       if (cell.bound > smallest_) rest.push_back(cell);
       continue;
     }
-    if (cell.side == Side::unknown)
-      settle(cell, solid_.inside(cell.center()) ? Side::inside : Side::outside);
+    if (cell.side == Side::unknown) settle(cell, side_of(cell, block.spheres));
     if (cell.side == Side::inside && cell.d > 0 && cell.d < radius)
       cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres)));
     if (cell.bound < radius) {

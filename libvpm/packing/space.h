@@ -94,6 +94,7 @@ class Space {
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
   double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const;
+  Side side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const;
   static void settle(Cell& cell, Side side);
   static double farthest(const Cell& cell, const Sphere& from);
   void take_from(Block& block, const Sphere& sphere) const;
