@@ -47,11 +47,12 @@ Solid enclosed_surface(const Solid& solid);
 
 // What bounds a solid and how much it holds, for all that asks more than once.
 struct Enclosure {
-  // As enclosed_surface; nothing where that is the solid as it is, and where its pieces do not close
-  // up: then every triangle is a bound.
+  // As enclosed_surface; nothing where that is the solid as it is, and where its pieces do not
+  // close up: then every triangle is a bound.
   std::optional<Solid> surface;
-  bool faces_tell = true;  // what bounds the solid has the inside behind it and the outside in front
-  double volume = 0;       // m^3
+  bool faces_tell =
+      true;           // what bounds the solid has the inside behind it and the outside in front
+  double volume = 0;  // m^3
 };
 Enclosure enclosure_of(const Solid& solid);
 Enclosure enclosure_of(const OuterSurface& outer);

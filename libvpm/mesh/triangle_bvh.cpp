@@ -6,7 +6,9 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/closest_point.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/core/vector_clones.h"
+#include "libvpm/mesh/closest_point_four.h"
 
 namespace vpm {
 namespace {
@@ -21,41 +23,77 @@ double component(Vec3 v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-Vec3 centroid(const TriangleBvh::Corners& t) {
-  return (t.a + t.b + t.c) / 3.0;
+// The closest point on up to four triangles, if it is nearer than `best2`.
+VPM_ALWAYS_INLINE void take_closest(const TriangleBvh::Corners* first, std::uint32_t count, Vec3 x,
+                                    SurfacePoint& best, double& best2) {
+  const TriangleBvh::Corners& s = first[0];
+  const TriangleBvh::Corners& t = first[std::min(1u, count - 1)];
+  const TriangleBvh::Corners& u = first[std::min(2u, count - 1)];
+  const TriangleBvh::Corners& v = first[count - 1];
+  Vec3x4 p;
+  Double4 d2;
+  closest_points_on_triangles({x, x, x, x}, {s.a, t.a, u.a, v.a}, {s.b, t.b, u.b, v.b},
+                              {s.c, t.c, u.c, v.c}, best2, p, d2);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (!(d2[k] < best2)) continue;
+    best2 = d2[k];
+    best.point = {p.x[k], p.y[k], p.z[k]};
+    best.triangle = first[k].triangle;
+  }
 }
 
 }  // namespace
 
 struct TriangleBvh::Build {
+  struct Item {
+    Vec3 centroid;
+    std::uint32_t triangle;
+  };
+
   TriangleBvh& bvh;
   double padding;
+  std::vector<Item> items;  // in the order of the leaves
 
-  // Halves [begin, end) about the median centroid along the longest side of the centroids' box.
-  std::size_t split(std::size_t begin, std::size_t end) {
-    Box box;
-    for (std::size_t i = begin; i < end; ++i) box.add(centroid(bvh.corners_[i]));
-    const Vec3 side = box.high - box.low;
-    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
-    const std::size_t middle = begin + (end - begin + 1) / 2;
-    const auto first = bvh.corners_.begin();
-    std::nth_element(
-        first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(middle),
-        first + static_cast<std::ptrdiff_t>(end), [axis](const Corners& s, const Corners& t) {
-          const double p = component(centroid(s), axis);
-          const double q = component(centroid(t), axis);
-          return p != q ? p < q : s.triangle < t.triangle;
-        });
-    return middle;
+  static std::size_t middle_of(std::size_t begin, std::size_t end) {
+    return begin + (end - begin + 1) / 2;
   }
 
-  void set_box(Node& node, int slot, std::size_t begin, std::size_t end) {
+  // Halves [begin, end) about the median centroid along the longest side of the centroids' box.
+  void halve(std::size_t begin, std::size_t end) {
     Box box;
-    for (std::size_t i = begin; i < end; ++i) {
-      box.add(bvh.corners_[i].a);
-      box.add(bvh.corners_[i].b);
-      box.add(bvh.corners_[i].c);
+    for (std::size_t i = begin; i < end; ++i) box.add(items[i].centroid);
+    const Vec3 side = box.high - box.low;
+    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    const auto first = items.begin();
+    std::nth_element(first + static_cast<std::ptrdiff_t>(begin),
+                     first + static_cast<std::ptrdiff_t>(middle_of(begin, end)),
+                     first + static_cast<std::ptrdiff_t>(end),
+                     [axis](const Item& s, const Item& t) {
+                       const double p = component(s.centroid, axis);
+                       const double q = component(t.centroid, axis);
+                       return p != q ? p < q : s.triangle < t.triangle;
+                     });
+  }
+
+  // Puts the items in order: halves of halves, until they are leaves.
+  void order() {
+    using Range = std::array<std::size_t, 2>;
+    std::vector<Range> ranges{{0, items.size()}};
+    while (!ranges.empty()) {
+      std::erase_if(ranges, [](const Range& r) { return r[1] - r[0] <= kLeafTriangles; });
+      parallel_for(ranges.size(), 1 + ranges.size() / 64, [&](std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k) halve(ranges[k][0], ranges[k][1]);
+      });
+      std::vector<Range> halves;
+      for (const auto& [begin, end] : ranges) {
+        halves.push_back({begin, middle_of(begin, end)});
+        halves.push_back({middle_of(begin, end), end});
+      }
+      ranges = std::move(halves);
     }
+  }
+
+  void set_box(Node& node, int slot, const Box& box) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double origin = component(bvh.origin_, axis);
       node.low[axis][slot] = static_cast<float>(component(box.low, axis) - origin - padding);
@@ -63,8 +101,9 @@ struct TriangleBvh::Build {
     }
   }
 
-  std::uint32_t build(std::size_t begin, std::size_t end) {
-    const auto index = static_cast<std::uint32_t>(bvh.nodes_.size());
+  // Returns the box of all.
+  Box build(std::size_t begin, std::size_t end) {
+    const std::size_t index = bvh.nodes_.size();
     Node node;
     for (int slot = 0; slot < 4; ++slot) {  // empty boxes are infinitely far from everything
       for (int axis = 0; axis < 3; ++axis) node.low[axis][slot] = node.high[axis][slot] = HUGE_VALF;
@@ -74,23 +113,37 @@ struct TriangleBvh::Build {
     std::array<std::size_t, 5> cut{begin, end, end, end, end};
     int parts = 1;
     if (end - begin > kLeafTriangles) {
-      const std::size_t middle = split(begin, end);
-      const std::size_t left = middle - begin > kLeafTriangles ? split(begin, middle) : middle;
-      const std::size_t right = end - middle > kLeafTriangles ? split(middle, end) : end;
+      const std::size_t middle = middle_of(begin, end);
+      const std::size_t left = middle - begin > kLeafTriangles ? middle_of(begin, middle) : middle;
+      const std::size_t right = end - middle > kLeafTriangles ? middle_of(middle, end) : end;
       cut = {begin, left, middle, right, end};
       parts = 4;
     }
+    Box all;
     for (int slot = 0; slot < parts; ++slot) {
       const std::size_t from = cut[static_cast<std::size_t>(slot)];
       const std::size_t to = cut[static_cast<std::size_t>(slot) + 1];
       if (from == to) continue;
-      set_box(node, slot, from, to);
       const bool leaf = to - from <= kLeafTriangles;
       node.count[slot] = leaf ? static_cast<std::uint32_t>(to - from) : 0;
-      node.child[slot] = leaf ? static_cast<std::uint32_t>(from) : build(from, to);
+      node.child[slot] = static_cast<std::uint32_t>(leaf ? from : bvh.nodes_.size());
+      const Box box = leaf ? box_of(from, to) : build(from, to);
+      set_box(node, slot, box);
+      all.add(box.low);
+      all.add(box.high);
     }
     bvh.nodes_[index] = node;
-    return index;
+    return all;
+  }
+
+  Box box_of(std::size_t begin, std::size_t end) const {
+    Box box;
+    for (std::size_t i = begin; i < end; ++i) {
+      box.add(bvh.corners_[i].a);
+      box.add(bvh.corners_[i].b);
+      box.add(bvh.corners_[i].c);
+    }
+    return box;
   }
 };
 
@@ -98,7 +151,8 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
                          const std::vector<Triangle>& triangles) {
   if (triangles.empty()) refuse("the mesh has no triangles; a solid needs at least four");
   Box box;
-  corners_.reserve(triangles.size());
+  std::vector<Build::Item> items;
+  items.reserve(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const std::uint32_t v : triangles[i]) {
       if (v >= vertices.size() || !is_finite(vertices[v])) {
@@ -109,15 +163,24 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
       box.add(vertices[v]);
     }
     const auto [a, b, c] = triangles[i];
-    corners_.push_back({vertices[a], vertices[b], vertices[c], static_cast<std::uint32_t>(i)});
+    items.push_back(
+        {(vertices[a] + vertices[b] + vertices[c]) / 3.0, static_cast<std::uint32_t>(i)});
   }
   origin_ = box.low + 0.5 * (box.high - box.low);
   const Vec3 side = box.high - box.low;
   nodes_.reserve(triangles.size() / 2 + 1);
-  Build{*this, kBoxPadding * std::max({side.x, side.y, side.z})}.build(0, corners_.size());
+  Build build{*this, kBoxPadding * std::max({side.x, side.y, side.z}), std::move(items)};
+  build.order();
+  corners_.reserve(triangles.size());
+  for (const Build::Item& item : build.items) {
+    const auto [a, b, c] = triangles[item.triangle];
+    corners_.push_back({vertices[a], vertices[b], vertices[c], item.triangle});
+  }
+  build.build(0, corners_.size());
   nodes_.shrink_to_fit();
 }
 
+VPM_VECTOR_CLONES
 SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
   SurfacePoint best;
   double best2 = within * within;
@@ -136,16 +199,7 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
     const Pending entry = stack[--top];
     if (entry.bound2 > static_cast<float>(best2) * kBoundSlack) continue;
     if (entry.count > 0) {
-      for (std::uint32_t i = entry.child; i < entry.child + entry.count; ++i) {
-        const Corners& t = corners_[i];
-        const Vec3 p = closest_point_on_triangle(x, t.a, t.b, t.c);
-        const double d2 = squared_norm(x - p);
-        if (d2 < best2) {
-          best2 = d2;
-          best.point = p;
-          best.triangle = i;
-        }
-      }
+      take_closest(&corners_[entry.child], entry.count, x, best, best2);
       continue;
     }
     const Node& node = nodes_[entry.child];
@@ -159,17 +213,16 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
     const std::size_t base = top;
     for (int slot = 0; slot < 4; ++slot) {  // nearest child last, so that it is next
       if (!(bound2[slot] <= static_cast<float>(best2) * kBoundSlack)) continue;
-      if (node.count[slot] == 0 && node.child[slot] == 0) continue;
+      const std::uint32_t child = node.child[slot], count = node.count[slot];
+      if (count == 0 && child == 0) continue;
+      __builtin_prefetch(count > 0 ? static_cast<const void*>(&corners_[child]) : &nodes_[child]);
       std::size_t place = top++;
       for (; place > base && stack[place - 1].bound2 < bound2[slot]; --place)
         stack[place] = stack[place - 1];
-      stack[place] = {bound2[slot], node.child[slot], node.count[slot]};
+      stack[place] = {bound2[slot], child, count};
     }
   }
-  if (best.triangle != SurfacePoint::kNone) {
-    best.distance = std::sqrt(best2);
-    best.triangle = corners_[best.triangle].triangle;
-  }
+  if (best.triangle != SurfacePoint::kNone) best.distance = std::sqrt(best2);
   return best;
 }
 

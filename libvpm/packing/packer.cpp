@@ -74,6 +74,7 @@ void fill_band(Space& space, double radius, double cap, std::size_t most) {
       }
       std::sort(blocks.begin(), blocks.end());
       blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+      space.update(blocks);
       std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
     }
   }

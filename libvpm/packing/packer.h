@@ -21,7 +21,7 @@ struct PackOptions {
   double inertia_error = 0;    // stop where the spheres' InertiaError is at most this; 0: never
   double min_radius = 0;       // m; no smaller sphere
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
-  const Enclosure* enclosure = nullptr;  // of the solid, where it is known
+  const Enclosure* enclosure = nullptr;                         // of the solid, where it is known
   std::function<void(double fraction)> progress =
       nullptr;  // called between rounds, on the calling thread
 };

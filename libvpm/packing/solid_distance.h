@@ -1,5 +1,5 @@
-// Distance to the boundary of a solid, in the packer's own frame. What of the mesh lies inside of the
-// solid is no boundary.
+// Distance to the boundary of a solid, in the packer's own frame. What of the mesh lies inside of
+// the solid is no boundary.
 //
 // The frame puts the solid's box in the middle of the unit cube and scales by a power of two, so
 // that a solid 2^k times as large gives the same numbers to the bit.
@@ -46,7 +46,9 @@ class SolidDistance {
   std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const {
     return boundary_->around(x, half, found);
   }
-  const TriangleBvh::Corners& corners(std::uint32_t found) const { return boundary_->corners()[found]; }
+  const TriangleBvh::Corners& corners(std::uint32_t found) const {
+    return boundary_->corners()[found];
+  }
   bool inside(Vec3 x) const { return winding_.inside(x); }
   // The same by the triangle that is nearest to x, which costs next to nothing; nothing where x is
   // nearest to an edge, or too near to say.

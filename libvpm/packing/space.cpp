@@ -10,7 +10,6 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/packing/ascent.h"
-#include "libvpm/packing/max_min_step.h"
 #include "libvpm/packing/thin_part.h"
 
 namespace vpm {
@@ -77,7 +76,7 @@ Space::Space(const SolidDistance& solid, double smallest, std::size_t most_block
   root.triangle = SurfacePoint::kNone;
   estimate(root, {});
   measure(root);
-  blocks_.push_back({{}, {root}, {}});
+  blocks_.push_back({{}, 0, {root}, {}});
   bounds_ = {root.bound};
   index_.assign({{0, 0, 0}});
 }
@@ -156,10 +155,11 @@ void Space::bound_thin_part(Cell& cell) const {
 
 // Bounds the clearance over a cell by all that is near at once: distances are convex and curved by
 // at most 1 / distance, so that planes lie above them within the cell.
-double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const {
+double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
+                          std::vector<LinearBound>& bounds) const {
   const Vec3 x = cell.center();
   const double half = half_diagonal(cell.level), horizon = cell.d + 2 * half;
-  std::vector<LinearBound> bounds;
+  bounds.clear();
   const auto add = [&](Vec3 from, double radius, bool flat) {
     const double distance = norm(from);
     if (!(distance > 0) || distance - radius > horizon) return;
@@ -272,6 +272,7 @@ void Space::split_blocks() {
         for (const std::uint32_t i : block.spheres)
           if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
         part.spheres.shrink_to_fit();
+        part.taken = part.spheres.size();
       }
       block = {};
     }
@@ -336,6 +337,7 @@ float Space::block_bound(const Block& block) {
 void Space::refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
                    std::vector<Cell>& rest) const {
   std::vector<Cell> pending;
+  std::vector<LinearBound> bounds;  // of one cell
   for (const Cell& cell : block.cells) (cell.bound < radius ? rest : pending).push_back(cell);
   while (!pending.empty()) {
     Cell cell = pending.back();
@@ -348,7 +350,7 @@ void Space::refine(const Block& block, double radius, double cap, std::vector<Ce
     }
     if (cell.side == Side::unknown) settle(cell, side_of(cell, block.spheres));
     if (cell.side == Side::inside && cell.d > 0 && cell.d < radius)
-      cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres)));
+      cell.bound = std::min(cell.bound, round_up(joint_bound(cell, block.spheres, bounds)));
     if (cell.bound < radius) {
       if (cell.bound > smallest_) rest.push_back(cell);
       continue;
@@ -444,12 +446,21 @@ void Space::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
         const std::uint32_t b = index_.find({x, y, z});
         if (b == BlockIndex::kNone) continue;
         blocks_[b].spheres.push_back(number);
-        take_from(blocks_[b], sphere);
-        bounds_[b] = block_bound(blocks_[b]);
         touched.push_back(b);
       }
     }
   }
+}
+
+void Space::update(const std::vector<std::uint32_t>& blocks) {
+  parallel_for(blocks.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Block& block = blocks_[blocks[i]];
+      for (; block.taken < block.spheres.size(); ++block.taken)
+        take_from(block, spheres_[block.spheres[block.taken]]);
+      bounds_[blocks[i]] = block_bound(block);
+    }
+  });
 }
 
 void Space::take_from(Block& block, const Sphere& sphere) const {

@@ -16,6 +16,7 @@
 #include "libvpm/model/sphere.h"
 #include "libvpm/packing/block_index.h"
 #include "libvpm/packing/clearance.h"
+#include "libvpm/packing/max_min_step.h"
 #include "libvpm/packing/solid_distance.h"
 
 namespace vpm {
@@ -52,8 +53,10 @@ class Space {
   // around the point.
   Clearance clearance(Vec3 x, double within = 2) const;
 
-  // Takes a sphere out of the room; appends the blocks around it to `touched`.
+  // Takes a sphere out of the room; appends the blocks around it to `touched`. Clearances know of
+  // it from now on, bounds and searches once the blocks are updated.
   void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
+  void update(const std::vector<std::uint32_t>& blocks);  // all different
 
   Vec3 closest_on_triangle(std::uint32_t triangle, Vec3 x) const {
     return solid_.closest_on(triangle, x);
@@ -78,6 +81,7 @@ class Space {
   };
   struct Block {
     std::vector<std::uint32_t> spheres;
+    std::size_t taken = 0;  // so many of them are known to cells and maxima
     std::vector<Cell> cells;
     std::vector<Sphere> maxima;  // local maxima met by searches of a larger radius
   };
@@ -93,7 +97,8 @@ class Space {
   void refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
               std::vector<Cell>& rest) const;
   double local_maximum(Block& block, const Cell& leaf, double radius, double cap) const;
-  double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near) const;
+  double joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
+                     std::vector<LinearBound>& bounds) const;
   Side side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const;
   static void settle(Cell& cell, Side side);
   static double farthest(const Cell& cell, const Sphere& from);

@@ -54,6 +54,36 @@ TEST(ClosestPoint, NoSampleOfTheTriangleIsNearer) {
   }
 }
 
+// Four triangles are looked at together, with the bits of one.
+TEST(TriangleBvh, ALeafHasTheBitsOfItsTriangles) {
+  std::mt19937_64 engine(5);
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<Vec3> vertices;
+    std::vector<Triangle> triangles;
+    for (std::uint32_t t = 0; t < 1 + static_cast<std::uint32_t>(round) % 4; ++t) {
+      const double thin = round % 7 == 0 ? 0 : std::pow(10, uniform(engine, -12, 0));
+      const Vec3 a = anywhere(engine, 1), b = round % 11 == 0 ? a : anywhere(engine, 1);
+      const Vec3 c = a + uniform(engine, -1, 2) * (b - a) + thin * anywhere(engine, 1);
+      vertices.insert(vertices.end(), {a, b, c});
+      triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    const TriangleBvh bvh(vertices, triangles);
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 x = k % 5 == 0 ? vertices[0] + 1e-9 * anywhere(engine, 1) : anywhere(engine, 2);
+      SurfacePoint best;
+      double best2 = HUGE_VAL;
+      for (const TriangleBvh::Corners& t : bvh.corners()) {
+        const Vec3 p = closest_point_on_triangle(x, t.a, t.b, t.c);
+        if (squared_norm(x - p) < best2) best2 = squared_norm(x - p), best = {p, 0, t.triangle};
+      }
+      const SurfacePoint found = bvh.closest(x);
+      EXPECT_EQ(found.point, best.point);
+      EXPECT_EQ(found.triangle, best.triangle);
+      EXPECT_EQ(found.distance, std::sqrt(best2));
+    }
+  }
+}
+
 TEST(TriangleBvh, AgreesWithEveryTriangle) {
   std::mt19937_64 engine(2);
   for (const double scale : {1e-9, 1.0, 1e9}) {

@@ -1,0 +1,89 @@
+// closest_point_on_triangle for four triangles at once: the same operations, so the same bits.
+#pragma once
+
+#include "libvpm/mesh/closest_point.h"
+
+namespace vpm {
+
+// Four lanes; GCC and clang make vector code of it on every architecture. How they are passed
+// depends on the processor (-Wpsabi), so that all below is inlined.
+using Double4 = double __attribute__((vector_size(32)));
+#define VPM_ALWAYS_INLINE [[gnu::always_inline]] inline
+
+struct Vec3x4 {
+  Double4 x, y, z;
+  Vec3x4() = default;
+  VPM_ALWAYS_INLINE Vec3x4(const Double4& xs, const Double4& ys, const Double4& zs)
+      : x(xs), y(ys), z(zs) {}
+  VPM_ALWAYS_INLINE Vec3x4(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
+      : x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y}, z{a.z, b.z, c.z, d.z} {}
+};
+
+VPM_ALWAYS_INLINE Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+VPM_ALWAYS_INLINE Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+VPM_ALWAYS_INLINE Vec3x4 operator*(const Double4& s, const Vec3x4& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+VPM_ALWAYS_INLINE Double4 dot(const Vec3x4& a, const Vec3x4& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+VPM_ALWAYS_INLINE Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <class Mask>
+VPM_ALWAYS_INLINE bool any(const Mask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+// Where `take`, the point of the segment closest to x, if that is nearer than `best2`.
+template <class Mask>
+VPM_ALWAYS_INLINE void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
+                                    const Mask& take, Vec3x4& best, Double4& best2) {
+  const Double4 zero{}, one = zero + 1.0;
+  const Vec3x4 along = b - a;
+  const Double4 length2 = dot(along, along);
+  const Double4 share = dot(x - a, along) / length2;
+  const Double4 below = one < share ? one : share, clamped = share < zero ? zero : below;
+  const Vec3x4 reached = a + clamped * along;
+  const auto is_point = length2 <= zero;
+  const Vec3x4 p{is_point ? a.x : reached.x, is_point ? a.y : reached.y,
+                 is_point ? a.z : reached.z};
+  const Vec3x4 from = x - p;
+  const Double4 d2 = dot(from, from);
+  const auto nearer = take & (d2 < best2);
+  best2 = nearer ? d2 : best2;
+  best = {nearer ? p.x : best.x, nearer ? p.y : best.y, nearer ? p.z : best.z};
+}
+
+// The closest points and their squared distances from x, infinite or exact where they are not below
+// `within2`.
+VPM_ALWAYS_INLINE void closest_points_on_triangles(const Vec3x4& x, const Vec3x4& a,
+                                                   const Vec3x4& b, const Vec3x4& c, double within2,
+                                                   Vec3x4& best, Double4& best2) {
+  const Double4 zero{}, infinite = zero + HUGE_VAL;
+  const Vec3x4 ab = b - a, bc = c - b, ca = a - c, normal = cross(bc, ca), from_a = x - a;
+  const Double4 normal2 = dot(normal, normal), height = dot(normal, from_a);
+  const Double4 ab2 = dot(ab, ab), bc2 = dot(bc, bc), ca2 = dot(ca, ca);
+  const Double4 two = ab2 < bc2 ? bc2 : ab2, edge2 = two < ca2 ? ca2 : two;
+  const auto flat = normal2 > kSliverSine * kSliverSine * edge2 * edge2;
+  const auto beyond_ab = dot(cross(normal, ab), from_a) < zero;
+  const auto beyond_bc = dot(cross(normal, bc), x - b) < zero;
+  const auto beyond_ca = dot(cross(normal, ca), x - c) < zero;
+  const auto on_edge = ~flat | beyond_ab | beyond_bc | beyond_ca;
+  const Vec3x4 foot = x - (height / normal2) * normal, from_foot = x - foot;
+  best = foot;
+  best2 = on_edge ? infinite : dot(from_foot, from_foot);
+  // No edge is nearer than the plane. The slack is for rounding, of slivers' normals above all.
+  const Double4 reach2 = 1.01 * (within2 + 1e-6 * dot(from_a, from_a));
+  if (!any(on_edge & (~flat | (height * height <= reach2 * normal2)))) return;
+  take_segment(x, a, b, on_edge & (~flat | beyond_ab), best, best2);
+  take_segment(x, b, c, on_edge & (~flat | beyond_bc), best, best2);
+  take_segment(x, c, a, on_edge & (~flat | beyond_ca), best, best2);
+}
+
+}  // namespace vpm
