@@ -13,8 +13,9 @@ constexpr double kNormalTolerance = 1e-3;
 // A camera's rotation comes from the functions of pose.h, so it is off by rounding only.
 constexpr double kCameraRotationTolerance = 1e-9;
 
-void check_sensor(const CloudSensor& sensor, const std::string& name) {
-  const Camera& camera = sensor.camera;
+}  // namespace
+
+void validate(const Camera& camera, const std::string& name) {
   const Intrinsics& k = camera.intrinsics;
   if (!(k.fx > 0 && k.fy > 0) || !std::isfinite(k.fx) || !std::isfinite(k.fy) ||
       !std::isfinite(k.cx) || !std::isfinite(k.cy))
@@ -22,9 +23,6 @@ void check_sensor(const CloudSensor& sensor, const std::string& name) {
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (pixels == 0 || pixels > std::numeric_limits<std::uint32_t>::max())
     refuse(name + ": the camera's image is empty or has more than 2^32 - 1 pixels");
-  if (sensor.depth.width != camera.width || sensor.depth.height != camera.height ||
-      sensor.depth.depth.size() != pixels)
-    refuse(name + ": the depth image is not as large as the camera's");
   const Rotation& r = camera.to_world.rotation;
   const Rotation gram = r * transpose(r);
   const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
@@ -34,8 +32,6 @@ void check_sensor(const CloudSensor& sensor, const std::string& name) {
     refuse(name + ": the camera's pose is not finite, or not a rotation and a translation");
 }
 
-}  // namespace
-
 void validate(const Cloud& cloud, const std::string& name) {
   const std::size_t n = cloud.size();
   if (n > std::numeric_limits<std::uint32_t>::max()) refuse(name + ": more than 2^32 - 1 points");
@@ -43,7 +39,13 @@ void validate(const Cloud& cloud, const std::string& name) {
       (cloud.sensor ? cloud.pixels.size() != n : !cloud.pixels.empty()))
     refuse(name + ": positions, normals, radii and pixels differ in number");
   if (!is_finite(cloud.origin)) refuse(name + ": the cloud's origin is not finite");
-  if (cloud.sensor) check_sensor(*cloud.sensor, name);
+  if (cloud.sensor) {
+    const auto& [camera, depth] = *cloud.sensor;
+    validate(camera, name);
+    if (depth.width != camera.width || depth.height != camera.height ||
+        depth.depth.size() != std::size_t{camera.width} * camera.height)
+      refuse(name + ": the depth image is not as large as the camera's");
+  }
   for (std::size_t i = 0; i < n; ++i) {
     const auto refuse_point = [&](const char* defect) {
       refuse(name + ": point " + std::to_string(i) + " " + defect);

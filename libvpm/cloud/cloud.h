@@ -36,5 +36,7 @@ struct Cloud {
 // or radii that are not finite, radii < 0, normals that are not of unit length (tolerance 1e-3),
 // pixels outside of the image.
 void validate(const Cloud& cloud, const std::string& name);
+// What it asks of the camera alone.
+void validate(const Camera& camera, const std::string& name);
 
 }  // namespace vpm

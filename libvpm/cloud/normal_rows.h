@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <memory>
 
-#include "libvpm/cloud/normal_window.h"
+#include "libvpm/cloud/normals.h"
+#include "libvpm/cloud/padded_image.h"
 
 namespace vpm {
 
 // Normals of one row of pixels, camera axes; zero where there is none. Three arrays, since that is
 // what loops over pixels are quick with.
 struct NormalRow {
-  std::vector<float> x, y, z;
-  explicit NormalRow(std::size_t width) : x(width), y(width), z(width) {}
+  std::size_t width;
+  std::vector<float> x, y, z;  // zeros behind the last one fill a tile
+  explicit NormalRow(std::size_t pixels)
+      : width(pixels), x(pixels + kTile), y(pixels + kTile), z(pixels + kTile) {}
   // Takes `count` normals from pixel `first` on.
   void take(int first, const float* nx, const float* ny, const float* nz, int count) {
     std::copy(nx, nx + count, x.begin() + first);

@@ -3,6 +3,7 @@
 
 #include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normal_rows.h"
+#include "libvpm/cloud/normal_window.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {

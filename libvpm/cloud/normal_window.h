@@ -7,35 +7,10 @@
 
 #include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normals.h"
+#include "libvpm/cloud/padded_image.h"
 #include "libvpm/core/lanes.h"
 
 namespace vpm {
-
-// Pixels of an image's row that are: a constant number is what compilers turn into vector code.
-inline constexpr int kTile = 64;
-
-// An image with zeros around it, so that windows need no care at the border. (0, 0) is the image's
-// own first pixel; coordinates from -margin to size + margin are there, and to the right of them
-// enough for a last group of lanes or a last tile.
-struct PaddedImage {
-  int width = 0, height = 0, margin = 0;
-  std::size_t stride = 0;
-  std::vector<float> values;
-
-  // Takes this size; allocates nothing where it has it. What was in the image itself stays there.
-  void resize(std::uint32_t width, std::uint32_t height, int margin);
-  const float* at(int u, int v) const { return values.data() + offset(u, v); }
-  float* at(int u, int v) { return values.data() + offset(u, v); }
-
- private:
-  std::size_t offset(int u, int v) const {
-    return static_cast<std::size_t>(v + margin) * stride + static_cast<std::size_t>(u + margin);
-  }
-};
-
-// Depth or its inverse of these rows; 0 where nothing was measured or the depth is out of range.
-void take_depth(const DepthImage& depth, int begin, int end, PaddedImage& padded);
-void take_inverse_depth(const DepthImage& depth, int begin, int end, PaddedImage& inverse);
 
 // Bounds of inverse depth by the options' edge gate.
 struct EdgeGate {

@@ -25,7 +25,7 @@ float disk_radius(const Intrinsics& k, Vec3 point, Vec3 normal) {
 VPM_VECTOR_CLONES
 void store_normals(const NormalRow& row, Vec3f* to) {
   const float *x = row.x.data(), *y = row.y.data(), *z = row.z.data();
-  for (std::size_t u = 0; u < row.x.size(); ++u) to[u] = {x[u], y[u], z[u]};
+  for (std::size_t u = 0; u < row.width; ++u) to[u] = {x[u], y[u], z[u]};
 }
 
 void for_rows(std::uint32_t height, const std::function<void(int begin, int end)>& body) {

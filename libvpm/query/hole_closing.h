@@ -2,6 +2,7 @@
 // the rim of a hole.
 #pragma once
 
+#include "libvpm/cloud/padded_image.h"
 #include "libvpm/query/depth_surface.h"
 
 namespace vpm {
@@ -30,5 +31,8 @@ VPM_HD float between_neighbors(const Image& image, int width, int height, int u,
   add_pair(1, -1);
   return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0F;
 }
+
+// Closes them in a whole image of inverse depth with a margin.
+void close_holes(PaddedImage& inverse);
 
 }  // namespace vpm

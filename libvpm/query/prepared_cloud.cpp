@@ -10,10 +10,8 @@
 #include <string>
 #include <tuple>
 
-#include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/query/hole_closing.h"
 
 namespace vpm {
 namespace {
@@ -68,47 +66,6 @@ class MortonCurve {
   double cells_per_metre_ = 0;
 };
 
-std::vector<float> filled_inverse_depth(const DepthImage& depth) {
-  const int width = static_cast<int>(depth.width), height = static_cast<int>(depth.height);
-  std::vector<float> image(depth.depth.size());
-  for (std::size_t i = 0; i < image.size(); ++i)
-    image[i] = inverse_of_usable(usable_depth(depth.depth[i]));
-  for (int pass = 0; pass < kFillPasses; ++pass) {
-    std::vector<std::pair<std::size_t, float>> filled;
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        const std::size_t i = static_cast<std::size_t>(v * width + u);
-        if (image[i] > 0) continue;
-        const float value = between_neighbors(
-            [&](int x, int y) { return image[static_cast<std::size_t>(y * width + x)]; }, width,
-            height, u, v);
-        if (value > 0) filled.emplace_back(i, value);
-      }
-    }
-    if (filled.empty()) break;
-    for (const auto& [i, value] : filled) image[i] = value;
-  }
-  return image;
-}
-
-std::vector<InverseDepthRange> coarser(const std::vector<InverseDepthRange>& fine,
-                                       std::uint32_t width, std::uint32_t height) {
-  const std::uint32_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-  std::vector<InverseDepthRange> tiles(std::size_t{half_width} * half_height);
-  for (std::uint32_t v = 0; v < half_height; ++v) {
-    for (std::uint32_t u = 0; u < half_width; ++u) {
-      InverseDepthRange& tile = tiles[std::size_t{v} * half_width + u];
-      tile = fine[std::size_t{2 * v} * width + 2 * u];
-      for (std::uint32_t y = 2 * v; y < std::min(2 * v + 2, height); ++y) {
-        for (std::uint32_t x = 2 * u; x < std::min(2 * u + 2, width); ++x) {
-          tile = united(tile, fine[std::size_t{y} * width + x]);
-        }
-      }
-    }
-  }
-  return tiles;
-}
-
 // What validate() leaves to those who compute with a cloud.
 void check_extent(const Cloud& cloud) {
   if (!is_in_range(cloud.origin) ||
@@ -120,12 +77,12 @@ void check_extent(const Cloud& cloud) {
     refuse("the cloud's image has more than 2^31 - 1 pixels; crop it, or take every second one");
 }
 
-std::uint64_t next_serial() {
+}  // namespace
+
+std::uint64_t PreparedCloud::next_serial() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
 }
-
-}  // namespace
 
 PreparedCloud::PreparedCloud(const Cloud& cloud) : serial_(next_serial()), origin_(cloud.origin) {
   if (cloud.size() > kMaxPoints) {
@@ -139,7 +96,11 @@ PreparedCloud::PreparedCloud(const Cloud& cloud) : serial_(next_serial()), origi
   if (cloud.sensor) {
     camera_ = cloud.sensor->camera;
     order_by_pixel(cloud);
-    build_depth_tiles(cloud);
+    const DepthImage& depth = cloud.sensor->depth;
+    PaddedImage inverse;
+    inverse.resize(depth.width, depth.height, 1);
+    take_inverse_depth(depth, 0, inverse.height, inverse);
+    tiles_.build(inverse);
   } else {
     order_in_space(cloud);
     build_boxes();
@@ -214,16 +175,6 @@ void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uin
   }
 }
 
-void PreparedCloud::build_depth_tiles(const Cloud& cloud) {
-  const std::vector<float> image = filled_inverse_depth(cloud.sensor->depth);
-  tiles_.emplace_back(image.size());
-  for (std::size_t i = 0; i < image.size(); ++i) tiles_[0][i] = {image[i], image[i]};
-  for (std::uint32_t w = camera_->width, h = camera_->height; w > 1 || h > 1;
-       w = (w + 1) / 2, h = (h + 1) / 2) {
-    tiles_.push_back(coarser(tiles_.back(), w, h));
-  }
-}
-
 void PreparedCloud::build_boxes() {
   const std::uint32_t count = static_cast<std::uint32_t>(positions_.size());
   leaves_ =
@@ -249,11 +200,10 @@ DepthSurface PreparedCloud::depth_surface() const {
   surface.k = camera_->intrinsics;
   surface.width = static_cast<std::int32_t>(camera_->width);
   surface.height = static_cast<std::int32_t>(camera_->height);
-  surface.levels =
-      static_cast<std::int32_t>(std::min<std::size_t>(tiles_.size(), DepthSurface::kMaxLevels));
+  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
   surface.normals = pixel_normals_.data();
   for (int level = 0; level < surface.levels; ++level) {
-    surface.tiles[level] = tiles_[static_cast<std::size_t>(level)].data();
+    surface.tiles[level] = tiles_.level(level).data();
   }
   return surface;
 }

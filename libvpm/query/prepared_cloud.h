@@ -11,6 +11,7 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/query/depth_surface.h"
 #include "libvpm/query/disk_surface.h"
+#include "libvpm/query/inverse_depth_pyramid.h"
 #include "libvpm/query/pixel_rectangle.h"
 
 namespace vpm {
@@ -23,7 +24,8 @@ class PreparedCloud {
 
   // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels, an origin
   // or camera beyond kLargestLength, or what validate(cloud) refuses. Depths outside of
-  // [kMinDepth, kMaxDepth] (depth_image.h) count as not measured.
+  // [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured.
+  // From a depth image, FramePreparation (frame_preparation.h) is quicker.
   explicit PreparedCloud(const Cloud& cloud);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud
@@ -53,13 +55,16 @@ class PreparedCloud {
   void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
 
  private:
+  friend class FramePreparation;
+
   void order_by_pixel(const Cloud& cloud);
   void order_in_space(const Cloud& cloud);
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
-  void build_depth_tiles(const Cloud& cloud);
   void build_boxes();
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
+
+  static std::uint64_t next_serial();
 
   std::uint64_t serial_;
   Vec3 origin_;
@@ -69,7 +74,7 @@ class PreparedCloud {
   std::optional<Camera> camera_;
   std::vector<std::uint32_t> pixel_begin_;
   std::vector<Vec3f> pixel_normals_;  // camera axes
-  std::vector<std::vector<InverseDepthRange>> tiles_;
+  InverseDepthPyramid tiles_;
 
   std::vector<PointBox> boxes_;
   std::uint32_t leaves_ = 0;
