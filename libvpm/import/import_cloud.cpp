@@ -33,36 +33,30 @@ std::size_t count_invalid(const DepthImage& depth) {
                                                 [](float d) { return !is_measured(d); }));
 }
 
-ImportedCloud cloud_of_depth(const DepthImage& depth, const Intrinsics& k, const Pose& to_world,
-                             const std::string& name, const NormalOptions& options) {
-  ImportedCloud imported;
-  imported.width = depth.width;
-  imported.height = depth.height;
-  imported.invalid = count_invalid(depth);
-  imported.normals_estimated = true;
-  const std::size_t measured = depth.depth.size() - imported.invalid;
-  if (measured == 0) throw NothingMeasured(name + ": no pixel holds a measurement");
-  imported.cloud = make_cloud(depth, Camera{k, depth.width, depth.height, to_world}, options);
-  if (imported.cloud.size() == 0) {
-    throw NothingMeasured(name + ": none of its " + std::to_string(measured) +
-                          " measured pixels has neighbours enough for a normal");
-  }
-  imported.without_normal = measured - imported.cloud.size();
-  return imported;
+ImportedScan scan_of_depth(DepthImage depth, const Intrinsics& k, const Pose& to_world,
+                           const std::string& name) {
+  ImportedScan scan;
+  scan.width = depth.width;
+  scan.height = depth.height;
+  scan.invalid = count_invalid(depth);
+  if (scan.invalid == depth.depth.size())
+    throw NothingMeasured(name + ": no pixel holds a measurement");
+  const Camera camera{k, depth.width, depth.height, to_world};
+  scan.image = CloudSensor{camera, std::move(depth)};
+  return scan;
 }
 
-ImportedCloud cloud_of_points(PointSet points, const std::string& name,
-                              const ImportOptions& options) {
+ImportedScan scan_of_points(PointSet points, const std::string& name,
+                            const ImportOptions& options) {
   const double scale = options.units_per_metre.value_or(1);
   Pose to_world = options.to_world.value_or(points.viewpoint);
   if (!options.to_world) to_world.translation = to_world.translation / scale;
   if (points.organised()) {
     if (options.intrinsics) check_pinhole(points, *options.intrinsics, name);
     const Intrinsics k = options.intrinsics ? *options.intrinsics : fit_pinhole(points, name);
-    ImportedCloud imported =
-        cloud_of_depth(depth_of(points, scale), k, to_world, name, options.normals);
-    imported.intrinsics_recovered = !options.intrinsics;
-    return imported;
+    ImportedScan scan = scan_of_depth(depth_of(points, scale), k, to_world, name);
+    scan.intrinsics_recovered = !options.intrinsics;
+    return scan;
   }
   if (points.normals.empty()) {
     refuse(name +
@@ -70,24 +64,24 @@ ImportedCloud cloud_of_points(PointSet points, const std::string& name,
            "ny nz); estimate them first, or give the depth image");
   }
   for (Vec3& p : points.positions) p = p / scale;
-  ImportedCloud imported;
-  imported.width = points.width;
-  imported.height = points.height;
-  imported.cloud = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
-  imported.invalid =
+  ImportedScan scan;
+  scan.width = points.width;
+  scan.height = points.height;
+  scan.points = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
+  scan.invalid =
       static_cast<std::size_t>(std::count_if(points.positions.begin(), points.positions.end(),
                                              [](const Vec3& p) { return !is_finite(p); }));
-  imported.without_normal = points.positions.size() - imported.invalid - imported.cloud.size();
-  return imported;
+  scan.without_normal = points.positions.size() - scan.invalid - scan.points.size();
+  return scan;
 }
 
 }  // namespace
 
-ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
-                           const ImportOptions& options) {
+ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& name,
+                         const ImportOptions& options) {
   const Format format = format_of(as_text(bytes));
-  if (format == Format::pcd) return cloud_of_points(parse_pcd(bytes, name), name, options);
-  if (format == Format::ply) return cloud_of_points(parse_ply_points(bytes, name), name, options);
+  if (format == Format::pcd) return scan_of_points(parse_pcd(bytes, name), name, options);
+  if (format == Format::ply) return scan_of_points(parse_ply_points(bytes, name), name, options);
   if (format == Format::unknown) {
     refuse(name +
            (bytes.empty() ? ": the file is empty; "
@@ -97,12 +91,39 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
   if (!options.intrinsics) {
     throw Error(ErrorKind::usage, name + ": a depth image needs --intrinsics fx,fy,cx,cy (pixels)");
   }
-  const DepthImage depth =
+  DepthImage depth =
       format == Format::png
           ? parse_png_depth(bytes, name, options.units_per_metre.value_or(kPngUnitsPerMetre))
           : parse_exr_depth(bytes, name, options.units_per_metre.value_or(1));
-  return cloud_of_depth(depth, *options.intrinsics, options.to_world.value_or(Pose{}), name,
-                        options.normals);
+  return scan_of_depth(std::move(depth), *options.intrinsics, options.to_world.value_or(Pose{}),
+                       name);
+}
+
+NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name) {
+  const std::size_t measured = scan.image->depth.depth.size() - scan.invalid;
+  return NothingMeasured(name + ": none of its " + std::to_string(measured) +
+                         " measured pixels has neighbours enough for a normal");
+}
+
+ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
+                           const ImportOptions& options) {
+  ImportedScan scan = import_scan(bytes, name, options);
+  ImportedCloud imported;
+  imported.width = scan.width;
+  imported.height = scan.height;
+  imported.invalid = scan.invalid;
+  imported.intrinsics_recovered = scan.intrinsics_recovered;
+  imported.normals_estimated = scan.image.has_value();
+  if (!scan.image) {
+    imported.cloud = std::move(scan.points);
+    imported.without_normal = scan.without_normal;
+    return imported;
+  }
+  const auto& [camera, depth] = *scan.image;
+  imported.cloud = make_cloud(depth, camera, options.normals);
+  if (imported.cloud.size() == 0) throw nothing_with_normal(scan, name);
+  imported.without_normal = depth.depth.size() - scan.invalid - imported.cloud.size();
+  return imported;
 }
 
 }  // namespace vpm

@@ -36,6 +36,22 @@ class NothingMeasured : public Error {
   explicit NothingMeasured(const std::string& message) : Error(ErrorKind::refused, message) {}
 };
 
+// What a file holds before normals are estimated: a depth image with its camera, or points.
+struct ImportedScan {
+  std::optional<CloudSensor> image;
+  Cloud points;  // where there is no image
+  std::uint32_t width = 0, height = 0;
+  std::size_t invalid = 0;
+  std::size_t without_normal = 0;  // of the points
+  bool intrinsics_recovered = false;
+};
+
+// The first half of import_cloud(), for those who make something else of an image.
+ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& name,
+                         const ImportOptions& options);
+// To be thrown where an image gives no point.
+NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name);
+
 // Depth images and organised PCD become clouds with a sensor, their normals estimated from the
 // depth whatever the file holds. Other PCD and PLY need normals, which must point into free space.
 // Throws Error: refused for what is damaged, unknown, without normals or without any point (of

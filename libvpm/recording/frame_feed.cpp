@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -13,20 +14,28 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::unique_ptr<const PreparedCloud> prepared(const RecordedFrame& frame, ImportOptions options) {
-  if (frame.camera) options.to_world = frame.camera;
-  const ImportedCloud imported = import_cloud(file::read_all(frame.path), frame.path, options);
-  return std::make_unique<const PreparedCloud>(imported.cloud);
-}
-
 }  // namespace
 
-PreparedChange prepare(const Recording& recording, FrameChange change,
-                       const ImportOptions& options) {
+std::unique_ptr<PreparedCloud> FrameReader::read(const RecordedFrame& frame) {
+  ImportOptions options = options_;
+  if (frame.camera) options.to_world = frame.camera;
+  const ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
+  if (!scan.image) return std::make_unique<PreparedCloud>(scan.points);
+  std::unique_ptr<PreparedCloud> cloud =
+      spare_ ? std::move(spare_) : std::make_unique<PreparedCloud>(Cloud{});
+  preparation_.prepare(scan.image->depth, scan.image->camera, *cloud);
+  if (cloud->positions().empty()) {
+    spare_ = std::move(cloud);
+    throw nothing_with_normal(scan, frame.path);
+  }
+  return cloud;
+}
+
+PreparedChange FrameReader::prepare(FrameChange change) {
   const auto start = std::chrono::steady_clock::now();
   PreparedChange result;
   for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.cloud; ++at) {
-    const RecordedFrame& frame = recording.frames[*at];
+    const RecordedFrame& frame = recording_.frames[*at];
     const auto fails = [&](FrameFault fault, const std::string& message) {
       result.unusable.push_back({*at, fault, message});
     };
@@ -35,7 +44,7 @@ PreparedChange prepare(const Recording& recording, FrameChange change,
       continue;
     }
     try {
-      result.cloud = prepared(frame, options);
+      result.cloud = read(frame);
       result.frame = *at;
     } catch (const NothingMeasured& fault) {
       fails(FrameFault::empty, fault.what());
@@ -54,7 +63,7 @@ FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule
                      const ImportOptions& options)
     : recording_(recording),
       schedule_(recording, schedule),
-      cloud_(std::make_unique<const PreparedCloud>(Cloud{})),
+      cloud_(std::make_unique<PreparedCloud>(Cloud{})),
       thread_([this, copy = schedule_, options] { prepare_all(copy, options); }) {
   next_ = schedule_.next();
 }
@@ -70,16 +79,17 @@ FrameFeed::~FrameFeed() {
 
 void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options) {
   try {
+    FrameReader reader(recording_, options);
     while (std::optional<FrameChange> change = schedule.next()) {
-      PreparedChange result = prepare(recording_, std::move(*change), options);
+      PreparedChange result = reader.prepare(std::move(*change));
       std::unique_lock lock(mutex_);
       moved_.wait(lock, [&] { return stop_ || ready_.size() < kAhead; });
       if (stop_) return;
       ready_.push_back(std::move(result));
-      const auto done = std::move(done_);
-      done_.clear();
+      auto done = std::exchange(done_, {});
       lock.unlock();
       moved_.notify_all();
+      if (!done.empty()) reader.give_back(std::move(done.front()));
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);

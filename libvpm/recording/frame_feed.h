@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/frame_preparation.h"
 #include "libvpm/recording/frame_schedule.h"
 
 namespace vpm {
@@ -30,16 +30,31 @@ struct UnusableFrame {
 // What the frames that come at one step bring: the newest that can be used.
 struct PreparedChange {
   FrameChange change;
-  std::unique_ptr<const PreparedCloud> cloud;  // none: the loop goes on with the one it has
-  std::size_t frame = 0;                       // of the recording; where there is a cloud
+  std::unique_ptr<PreparedCloud> cloud;  // none: the loop goes on with the one it has
+  std::size_t frame = 0;                 // of the recording; where there is a cloud
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // from the file to the prepared cloud
 };
 
-// Reads and prepares, on the calling thread. `options`: how images become clouds; the cameras'
-// poses are the recording's.
-PreparedChange prepare(const Recording& recording, FrameChange change,
-                       const ImportOptions& options);
+// Reads and prepares frames, on the calling thread. The recording must outlive it.
+class FrameReader {
+ public:
+  // `options`: how images become clouds; the cameras' poses are the recording's.
+  FrameReader(const Recording& recording, const ImportOptions& options)
+      : recording_(recording), options_(options), preparation_(options.normals) {}
+
+  PreparedChange prepare(FrameChange change);
+  // A cloud that is not needed any more: the next frame takes its memory.
+  void give_back(std::unique_ptr<PreparedCloud> cloud) { spare_ = std::move(cloud); }
+
+ private:
+  std::unique_ptr<PreparedCloud> read(const RecordedFrame& frame);
+
+  const Recording& recording_;
+  ImportOptions options_;
+  FramePreparation preparation_;
+  std::unique_ptr<PreparedCloud> spare_;
+};
 
 // What the prepared frames of a loop were.
 struct FrameCounts {
@@ -82,7 +97,7 @@ class FrameFeed {
   const Recording& recording_;
   FrameSchedule schedule_;  // of the loop; the thread has a copy
   std::optional<FrameChange> next_;
-  std::unique_ptr<const PreparedCloud> cloud_;
+  std::unique_ptr<PreparedCloud> cloud_;
   std::optional<std::size_t> frame_;
   PreparedChange taken_;
   FrameCounts counts_;
@@ -90,8 +105,8 @@ class FrameFeed {
   std::mutex mutex_;
   std::condition_variable moved_;
   std::deque<PreparedChange> ready_;
-  // Clouds that the loop has done with: to free one takes time that the loop does not have.
-  std::vector<std::unique_ptr<const PreparedCloud>> done_;
+  // Clouds that the loop has done with: the next frame takes the memory of one.
+  std::vector<std::unique_ptr<PreparedCloud>> done_;
   std::exception_ptr failure_;
   bool stop_ = false;
   std::thread thread_;

@@ -5,6 +5,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/query/frame_preparation.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -255,8 +256,9 @@ void time_frames(bool quick, Report& report) {
     Cloud cloud;
     add("cloud assembly", [&](int) { cloud = assemble_cloud(depth, scene.camera, normals); });
     add("cloud preparation", [&](int) { PreparedCloud prepared(cloud); });
-    add("all, inverse-depth",
-        [&](int) { PreparedCloud prepared(make_cloud(depth, scene.camera, NormalOptions{})); });
+    FramePreparation preparation{NormalOptions{}};
+    PreparedCloud frame{Cloud{}};
+    add("all, inverse-depth", [&](int) { preparation.prepare(depth, scene.camera, frame); });
   }
   set_thread_count(0);
 }

@@ -36,7 +36,8 @@ Stream read_stream(const std::string& folder) {
 }
 
 PreparedChange prepare_frame(const Stream& stream, std::size_t frame) {
-  PreparedChange prepared = prepare(stream.recording, {0, {frame}, false}, stream.import);
+  PreparedChange prepared =
+      FrameReader(stream.recording, stream.import).prepare({0, {frame}, false});
   if (!prepared.cloud) refuse(prepared.unusable.front().message);
   return prepared;
 }

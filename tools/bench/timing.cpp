@@ -10,6 +10,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
+#include "libvpm/query/frame_preparation.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -93,7 +94,7 @@ class Timing {
                   by_threads[1].median, by_threads[0].median / by_threads[1].median);
     report_.summary += line;
     if (options_.progress) {
-      const double stages = 4 + 5 * static_cast<double>(sizes_.size());
+      const double stages = 5 + 5 * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -111,6 +112,10 @@ class Timing {
     time("cloud assembly", 0, runs_.fast,
          [&] { cloud_ = assemble_cloud(depth, scene_.camera, normals); });
     time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
+    FramePreparation preparation{NormalOptions{}};
+    PreparedCloud frame{Cloud{}};
+    time("frame, all at once", 0, runs_.fast,
+         [&] { preparation.prepare(depth, scene_.camera, frame); });
   }
 
   void time_tool(std::size_t spheres) {

@@ -114,6 +114,7 @@ double Replay::start_time() const {
 
 void Replay::find_first_cloud() {
   FrameSchedule schedule(recording_, schedule_);
+  FrameReader reader(recording_, import_);
   std::string why = "none comes before the path ends";
   // Of frames that repeat nothing new can be learnt.
   std::size_t looked_at = 0;
@@ -121,7 +122,7 @@ void Replay::find_first_cloud() {
     std::optional<FrameChange> change = schedule.next();
     if (!change) break;
     looked_at += change->frames.size();
-    PreparedChange prepared = prepare(recording_, std::move(*change), import_);
+    PreparedChange prepared = reader.prepare(std::move(*change));
     if (!prepared.unusable.empty()) why = prepared.unusable.back().message;
     first_cloud_ = std::move(prepared.cloud);
     if (first_cloud_) return;
