@@ -9,10 +9,12 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/packing/fill_band.h"
 #include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/linear_programme.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/solid_distance.h"
+#include "libvpm/packing/space.h"
 
 namespace vpm {
 namespace {
@@ -31,6 +33,12 @@ constexpr double kKept = 0.9;
 constexpr int kRounds = 4;
 // A sphere keeps the nearest of the triangles it has met: four can hold it, the others foresee.
 constexpr std::size_t kMostTriangles = 20;
+
+// A sphere is worth moving to where one this much larger fits.
+constexpr double kMoreRoom = 1.01;
+// As in pack(): the room's blocks, and the bands of radii that are filled together.
+constexpr std::size_t kRoomBlocks = std::size_t{1} << 16, kRoomBlocksPerSphere = 32;
+constexpr double kBand = 0.99;
 
 // Radii may fall below their limit by the rounding of a linear programme.
 constexpr double kShrunk = 1 - 1e-9;
@@ -86,6 +94,7 @@ class Growth {
     for (int i = 0; i < options.steps && trust_ > kLeastTrust; ++i) {
       const double gain = step(i);
       if (gain < kSlow * trust_) trust_ /= 2;
+      if (!(trust_ > kLeastTrust) && relocate()) trust_ = kTrust;
       if (options.progress) options.progress(static_cast<double>(i + 1) / options.steps);
     }
   }
@@ -107,6 +116,39 @@ class Growth {
     std::vector<Neighbour> near;           // spheres that may be met in this step
     std::uint32_t group = 0, place = 0;    // place in the group
   };
+
+  // Puts the smallest spheres where there is more room by now; false where there is none.
+  bool relocate() {
+    const std::size_t count = spheres_.size();
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return largest_first(spheres_[a], spheres_[b]);
+    });
+    const double least = kMoreRoom * spheres_[order.back()].radius;
+    const std::size_t most = count + (count + 1) / 2;
+    Space space(distance_, least, kRoomBlocks + kRoomBlocksPerSphere * count);
+    std::vector<std::uint32_t> touched;
+    for (const std::uint32_t i : order) space.place(spheres_[i], touched);
+    space.update({0});
+    for (double radius = std::min<double>(space.bound(), most_);
+         space.spheres().size() < most && radius > least;) {
+      radius = std::max(least, kBand * std::min<double>(radius, space.bound()));
+      space.focus(radius);
+      fill_band(space, radius, most_, most);
+    }
+    std::vector<Sphere> found(space.spheres().begin() + static_cast<std::ptrdiff_t>(count),
+                              space.spheres().end());
+    std::sort(found.begin(), found.end(), largest_first);
+    std::size_t moved = 0;
+    for (; moved < std::min(found.size(), count); ++moved) {
+      const std::uint32_t i = order[count - 1 - moved];
+      if (!(found[moved].radius > kMoreRoom * spheres_[i].radius)) break;
+      spheres_[i] = found[moved];
+      members_[i] = {};
+    }
+    return moved > 0;
+  }
 
   // Returns the relative gain of volume.
   double step(int number) {

@@ -24,7 +24,8 @@ struct GrowOptions {
 // at once for the largest sum of volumes. Distances to triangles and to other spheres are convex,
 // so their linearisations bound them from below: each step is a linear programme whose solution is
 // a packing again, and every intermediate state is valid. More than kGrownTogether spheres move in
-// neighbouring groups, divided otherwise in every step.
+// neighbouring groups, divided otherwise in every step. Where that ends, the smallest spheres move
+// to where larger ones fit by now, and all grow again.
 //
 // `spheres`: a packing of the solid, as pack() gives it. Returns as many spheres, largest first,
 // with at least the same volume; the same spheres where nothing is gained. Deterministic for any

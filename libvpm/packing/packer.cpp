@@ -6,7 +6,7 @@
 #include <string>
 
 #include "libvpm/core/error.h"
-#include "libvpm/packing/candidates.h"
+#include "libvpm/packing/fill_band.h"
 #include "libvpm/packing/inertia.h"
 #include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/solid_distance.h"
@@ -19,7 +19,6 @@ namespace {
 // small packing, so their bands are narrow and each takes the place that suits the others; later
 // ones only need the right order of magnitude.
 constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
-constexpr std::size_t kFirstSpheres = 200;
 // A band is finished, so that what is asked for is a prefix of what more would have been, unless it
 // brings more than this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
@@ -40,44 +39,6 @@ void check(const PackOptions& options) {
   if (!(options.max_radius > 0)) wrong("the largest radius must be a positive number");
   if (options.max_radius < options.min_radius)
     wrong("the largest radius must not be below the smallest");
-}
-
-// The `most` blocks with the highest bounds, ascending; the others are removed.
-void keep_most_promising(const Space& space, std::vector<std::uint32_t>& blocks, std::size_t most) {
-  if (blocks.size() <= most) return;
-  const auto cut = blocks.begin() + static_cast<std::ptrdiff_t>(most);
-  std::nth_element(blocks.begin(), cut, blocks.end(), [&](std::uint32_t a, std::uint32_t b) {
-    if (space.bound(a) != space.bound(b)) return space.bound(a) > space.bound(b);
-    return a < b;
-  });
-  blocks.erase(cut, blocks.end());
-  std::sort(blocks.begin(), blocks.end());
-}
-
-// Places spheres of at least `radius`, largest first as far as they compete, until none fits or
-// `most` are there. Each round searches as many blocks as there may be spheres wanted: a plate has
-// millions of blocks that are all as good.
-void fill_band(Space& space, double radius, double cap, std::size_t most) {
-  while (space.spheres().size() < most) {
-    std::vector<std::uint32_t> blocks = space.promising(radius);
-    if (blocks.empty()) return;
-    keep_most_promising(space, blocks, most);
-    Candidates candidates(space, radius, cap);
-    while (!blocks.empty() || !candidates.empty()) {
-      candidates.search(blocks);
-      if (space.spheres().size() == most) return;
-      if (space.spheres().size() < kFirstSpheres) {
-        blocks.clear();
-        candidates.place_closest(blocks);
-      } else {
-        candidates.place_all(most, blocks);
-      }
-      std::sort(blocks.begin(), blocks.end());
-      blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-      space.update(blocks);
-      std::erase_if(blocks, [&](std::uint32_t b) { return !space.is_promising(b, radius); });
-    }
-  }
 }
 
 class Packer {
@@ -153,6 +114,10 @@ class Packer {
       break;
     }
     result.coverage = filled / volume_;
+    if (!all.empty()) {
+      const auto count = static_cast<double>(result.spheres.size());
+      result.coverage_bound = std::min(1.0, count * volume(all.front()) / volume_);
+    }
     return result;
   }
 

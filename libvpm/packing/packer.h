@@ -41,6 +41,8 @@ struct PackResult {
   // The solid is so thin that only a part of its room was looked at, spread over it: larger spheres
   // may fit elsewhere.
   bool partly_searched = false;
+  // No packing of as many spheres covers more: so many of the largest ball, at most all.
+  double coverage_bound = 1;
 };
 
 // No two spheres overlap and none protrudes: radii are exact distances less a rounding margin.

@@ -129,6 +129,22 @@ TEST(Grow, GainsOnRealMeshes) {
   }
 }
 
+// Equal balls in a tube, small ones in the wedges between them: growing shrinks some of these, and
+// there is more room elsewhere.
+TEST(Grow, MovesTheSmallestToWhereThereIsRoom) {
+  const Solid knot = synthetic::make_torus_knot(2, 3, 1, 0.5, 0.177, 240, 24);
+  const double all = mass_properties(knot).volume;
+  const PackResult greedy = pack(knot, {.spheres = 100});
+  const std::vector<Sphere> grown = grow(knot, greedy.spheres, {});
+  expect_packing(knot, grown);
+  EXPECT_GE(filled(grown) / all, greedy.coverage + .004);
+  EXPECT_GT(greedy.coverage_bound, filled(grown) / all);
+  // Ten of its largest balls cannot gain.
+  const PackResult ten = pack(knot, {.spheres = 10});
+  EXPECT_GT(ten.coverage, .999 * ten.coverage_bound);
+  EXPECT_LE(filled(grow(knot, ten.spheres, {})) / all, ten.coverage_bound * (1 + 1e-9));
+}
+
 TEST(Grow, RefusesLimitsThatAreNoNumbers) {
   const Solid cube = synthetic::make_cube(1);
   EXPECT_THROW(grow(cube, {}, {.min_radius = std::nan("")}), Error);

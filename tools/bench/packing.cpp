@@ -190,20 +190,25 @@ class Packings {
 
   void grow_together() {
     report_.summary +=
-        "\n| shape | spheres | greedy | --grow | points | CPU s |\n"
-        "|---|---|---|---|---|---|\n";
+        "\n| shape | spheres | upper bound: so many largest balls | greedy | --grow | points | CPU "
+        "s |\n"
+        "|---|---|---|---|---|---|---|\n";
     for (const Shape& shape : shapes_) {
       for (const std::size_t n : {std::size_t{10}, std::size_t{100}, std::size_t{1000}}) {
         if (n > most_ / 10) continue;
         std::vector<Sphere> spheres = greedy(shape, n);
         const double before = filled(spheres) / shape.volume;
+        const double bound =
+            std::min(1.0, static_cast<double>(n) * volume(spheres.front()) / shape.volume);
         const Cost cost =
             cost_of([&] { spheres = grow(shape.solid, spheres, {.enclosure = &shape.enclosure}); });
         const double after = filled(spheres) / shape.volume;
+        add("growth", shape.name, "largest balls", n, bound, {});
         add("growth", shape.name, "greedy", n, before, {});
         add("growth", shape.name, "grown", n, after, cost);
-        report_.summary += format("| %s | %zu | %.4f | %.4f | %+.2f | %.2f |\n", shape.name.c_str(),
-                                  n, before, after, 100 * (after - before), cost.cpu_seconds);
+        report_.summary +=
+            format("| %s | %zu | %.4f | %.4f | %.4f | %+.2f | %.2f |\n", shape.name.c_str(), n,
+                   bound, before, after, 100 * (after - before), cost.cpu_seconds);
       }
     }
     progress(0.7);

@@ -105,6 +105,7 @@ json pack_report(const CheckedSolid& checked, const PackResult& result,
                  double seconds) {
   json report = {{"spheres", result.spheres.size()},
                  {"coverage", result.coverage},
+                 {"coverage_bound", result.coverage_bound},
                  {"volume_mesh", checked.facts.volume},
                  {"volume_spheres", volume_of(result.spheres)},
                  {"max_protrusion", std::max(certificate.max_protrusion, 0.0)},
