@@ -184,7 +184,7 @@ def packing_growth(report):
     rows = []
     for shape in report["settings"]["shapes"]:
         gains = [f"{100 * (of[shape, 'grown', n] - of[shape, 'greedy', n]):+.2f}"
-                 + ("*" if of[shape, "greedy", n] > 0.999 * of[shape, "largest balls", n] else "")
+                 + ("*" if of[shape, "greedy", n] > 0.995 * of[shape, "largest balls", n] else "")
                  for n in (10, 100, 1000)]
         pairs = [needed.get((shape, share)) for share in (0.5, 0.6, 0.65, 0.7)]
         rows.append([shape] + gains + [f"{p['greedy']} → {p['grown']}" if p else "" for p in pairs])
