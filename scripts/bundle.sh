@@ -27,6 +27,7 @@ is_of_the_machine() {
 mkdir -p "$folder/lib"
 for name in "${names[@]}"; do
   cmake --install "$build" --component "$name" --prefix "$folder" --strip >/dev/null
+  [[ -x $folder/bin/$name ]] || { echo "bundle.sh: $build has nothing to install as '$name'" >&2; exit 1; }
   while read -r library; do
     is_of_the_machine "$library" || install -m 755 "$library" "$folder/lib/"
   done < <(ldd "$build/bin/$name" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')

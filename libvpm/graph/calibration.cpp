@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/query/ball_fraction.h"
+#include "libvpm/query/depth_surface.h"
+#include "libvpm/query/patch.h"
 
 namespace vpm {
 namespace {
@@ -63,21 +66,21 @@ struct Cut {
   Sphere ball;  // radius 0: a plane
   double truth = 0;
 
-  // As the measure sees it from this place: it takes one tangent plane for a block of samples.
-  Cut tangent_at(Vec3 x) const {
+  // As the measure sees it across a patch about x: the mean of readings at its middle and around
+  // it (DepthSurface::mean_plane). Radius 0: the tangent plane, which serves single blocks.
+  Cut plane_at(Vec3 x, double radius) const {
     if (!(ball.radius > 0)) return *this;
     const Vec3 away = normalized_or_zero(x - ball.center);
-    return {away, dot(away, ball.center) + ball.radius, {}, truth};
+    const double rim = DepthSurface::kRim * radius;
+    const double lower = ball.radius / std::sqrt(ball.radius * ball.radius + rim * rim);
+    return {away, dot(away, ball.center) + 0.2 * (1 + 4 * lower) * ball.radius, {}, truth};
   }
 };
 
 double longest_side(const Solid& solid) {
-  Vec3 low = solid.vertices.front(), high = low;
-  for (const Vec3& v : solid.vertices) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
-  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+  Box box;
+  for (const Vec3& v : solid.vertices) box.add(v);
+  return std::max({box.size().x, box.size().y, box.size().z});
 }
 
 std::vector<Cut> make_cuts(const Solid& solid) {
@@ -102,16 +105,29 @@ std::vector<Cut> make_cuts(const Solid& solid) {
   return cuts;
 }
 
-double fraction_inside(const Level& level, const Cut& cut) {
+double fraction_inside(const Level& level, const CellBlock& block, const Cut& plane) {
   double sum = 0;
-  for (const CellBlock& block : level.blocks) {
-    const Cut plane = cut.tangent_at(widen(block.center));
-    for (std::uint32_t k = block.begin; k < block.end; ++k) {
-      const CellSample& s = level.samples[k];
-      const double distance = dot(plane.normal, widen(s.center)) - plane.offset;
-      if (distance < s.radius) {
+  for (std::uint32_t k = block.begin; k < block.end; ++k) {
+    const CellSample& s = level.samples[k];
+    const double distance = dot(plane.normal, widen(s.center)) - plane.offset;
+    if (distance < s.radius)
+      sum += distance > -s.radius ? s.weight * ball_fraction_inside(distance / s.radius) : s.weight;
+  }
+  return sum;
+}
+
+double fraction_inside(const ToolModel& model, const Level& level, const ShareClusters& clusters,
+                       const Cut& cut) {
+  double sum = 0;
+  for (const ShareCluster& cluster : clusters.clusters) {
+    const bool patch = is_patch(cluster.reach, model.reach);
+    const Cut of_patch = cut.plane_at(cluster.center, cluster.reach);
+    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
+      const std::uint32_t i = clusters.shares[k];
+      for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
+        const CellBlock& block = level.blocks[b];
         sum +=
-            distance > -s.radius ? s.weight * ball_fraction_inside(distance / s.radius) : s.weight;
+            fraction_inside(level, block, patch ? of_patch : cut.plane_at(widen(block.center), 0));
       }
     }
   }
@@ -137,6 +153,8 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   for (Vec3& v : centered.vertices) v -= model.center_of_mass;
   centered = enclosed_surface(centered);
   std::vector<Cut> cuts = make_cuts(centered);
+  std::vector<ShareClusters> clusters;
+  for (const Level& level : model.levels) clusters.push_back(cluster_shares(model, level));
   std::vector<std::vector<double>> errors(model.levels.size(), std::vector<double>(cuts.size()));
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -144,7 +162,8 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
       cut.truth = cut.ball.radius > 0 ? volume_in_ball(centered, cut.ball)
                                       : volume_below_plane(centered, cut.normal, cut.offset);
       for (std::size_t l = 0; l < model.levels.size(); ++l) {
-        errors[l][k] = std::abs(fraction_inside(model.levels[l], cut) - cut.truth / model.volume);
+        const double inside = fraction_inside(model, model.levels[l], clusters[l], cut);
+        errors[l][k] = std::abs(inside - cut.truth / model.volume);
       }
     }
   });

@@ -62,12 +62,12 @@ struct CutShare {
   Vec3 center;
   double reach = 0;
 
-  VPM_HD Vec3 relative(Vec3 x) const { return (x - center) / reach; }
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
   VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
 };
 
 struct CellResult {
-  ToolSum sum;                     // surface axes, arms about the tool's centre of mass
+  ToolSum sum;                     // tool axes, arms about the centre of mass
   ContactPlane plane;              // plane.count > 0: the surface cuts the cell
   bool is_far = false;             // a piece is further behind the surface than the tool's reach
   std::uint32_t point = kNoPoint;  // where the surface was read last
@@ -77,6 +77,31 @@ struct CellResult {
 // the cell, may be another one than that which cuts the cell: a place behind it is merely hidden by
 // it (a silhouette before a background), unless the cell's own plane vouches for both.
 inline constexpr double kSheetReach = 3;
+
+// The tool's reach, and its inverse, which scales arms.
+struct ToolReach {
+  double length = 0, inverse = 0;  // m, 1/m
+
+  ToolReach() = default;
+  VPM_HD ToolReach(double reach) : length(reach), inverse(1 / reach) {}
+};
+
+// A plane that crosses the tool: as the surface shows it, and in the tool's axes about its centre
+// of mass.
+struct CrossingPlane {
+  TangentPlane seen;
+  Vec3 normal;
+  double height = 0;  // of the centre of mass
+
+  CrossingPlane() = default;
+  VPM_HD CrossingPlane(const TangentPlane& plane, const Pose& to_surface)
+      : seen(plane),
+        normal(transpose(to_surface.rotation) * plane.normal),
+        height(plane.distance(to_surface.translation)) {}
+  VPM_HD double distance(Vec3 about_center_of_mass) const {
+    return dot(normal, about_center_of_mass) + height;
+  }
+};
 
 // A compact piece of a share: a sample, or a block that is not cut taken whole (radius 0).
 struct SharePiece {
@@ -100,9 +125,9 @@ class CellMeasure {
   // What hides a piece is another surface, maybe: those wait until the cell's plane is known.
   enum class Pass { seen, hidden };
 
-  // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `tool_reach`
-  // scales the arms.
-  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, double tool_reach,
+  // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
+  // tool's, and scales the arms.
+  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
                      const CellView& cell)
       : surface_(surface),
         to_surface_(to_surface),
@@ -148,7 +173,7 @@ class CellMeasure {
 
   // How well one plane must fit to serve a whole block, m.
   VPM_HD double flat_tolerance(double block_radius) const {
-    const double most = kFlatness * tool_reach_;
+    const double most = kFlatness * tool_reach_.length;
     return block_radius < most ? block_radius : most;
   }
 
@@ -182,7 +207,9 @@ class CellMeasure {
     result.point = look.point;
     if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
     if (look.is_flat) {
-      if (pass == Pass::seen) add_flat(block, look, result);
+      if (pass == Pass::hidden) return false;
+      result.is_far |= is_far(look.center, look.tangent.foot);
+      add_block(b, {look.tangent, to_surface_}, result);
       return false;
     }
     bool any_hidden = false;
@@ -194,8 +221,13 @@ class CellMeasure {
   // Whether a place of the surface may be another one's than that which cuts the cell.
   VPM_HD bool is_hidden(Vec3 foot) const {
     const double beyond = (kSheetReach - 1) * cell_.reach;
-    const double near = cell_.reach + (beyond < tool_reach_ ? beyond : tool_reach_);
+    const double near = cell_.reach + (beyond < tool_reach_.length ? beyond : tool_reach_.length);
     return squared_norm(foot - center_) > near * near;
+  }
+
+  // Whether a place is further behind the surface than the tool's reach.
+  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
+    return squared_norm(foot - x) > tool_reach_.length * tool_reach_.length;
   }
 
   // One piece as the surface shows it.
@@ -219,7 +251,7 @@ class CellMeasure {
   // Whether the cell's own plane vouches for a hidden piece.
   VPM_HD bool is_vouched_for(const PieceLook& look, const ContactPlane& plane) const {
     return plane.vouches_for(relative(look.x), relative(look.reading.foot),
-                             tool_reach_ / cell_.reach);
+                             tool_reach_.length / cell_.reach);
   }
   VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
     return look.reading.distance > -piece.radius;
@@ -232,7 +264,7 @@ class CellMeasure {
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
     const Vec3 normal =
         is_cut(piece, look) ? look.reading.normal : surface_.closest_normal(look.x, look.reading);
-    sum.add(weight_inside(piece, look), normal, arm(piece.at));
+    sum.add(weight_inside(piece, look), in_tool(normal), arm(piece.at));
   }
   VPM_HD void add_to_plane(const PieceLook& look, ContactPlane& plane) const {
     plane.add(look.reading.normal, relative(look.reading.foot));
@@ -260,64 +292,68 @@ class CellMeasure {
     if (look.is_far) {
       const CutShare cut = nearest();
       if (!cut.plane.vouches_for(cut.relative(look.x), cut.relative(look.reading.foot),
-                                 tool_reach_ / cut.reach))
+                                 tool_reach_.length / cut.reach))
         return;
     }
     add(piece, look, sum);
   }
 
-  // The plane that crosses a flat block, in the tool's axes about its centre of mass.
-  struct FlatCut {
-    Vec3 normal;
-    double height = 0;  // of the centre of mass
-  };
-  VPM_HD FlatCut flat_cut(const BlockLook& look) const {
-    return {transpose(to_surface_.rotation) * look.tangent.normal,
-            look.tangent.distance(to_surface_.translation)};
-  }
-  // The weight of a sample that lies behind the plane.
-  VPM_HD double weight_inside(const CellSample& sample, const FlatCut& cut, bool& is_cut) const {
-    const double distance = dot(cut.normal, widen(sample.center)) + cut.height;
+  // The weight of a sample that lies behind a plane.
+  VPM_HD double weight_inside(const CellSample& sample, const CrossingPlane& plane,
+                              bool& is_cut) const {
+    const double distance = plane.distance(widen(sample.center));
     if (distance >= sample.radius) return 0;
     if (distance <= -sample.radius) return sample.weight;
     is_cut = true;
     return sample.weight * ball_fraction_inside(distance / sample.radius);
   }
-  // Adds a flat block: the sums, sample by sample in their order, of those weights and of each
-  // times its sample's centre.
-  VPM_HD void add_flat(const BlockLook& look, double weight, Vec3 moment, bool is_cut,
-                       CellResult& result) const {
-    result.is_far |= is_far(look.center, look.tangent.foot);
-    if (is_cut) result.plane.add(look.tangent.normal, relative(look.tangent.foot));
-    result.sum.add_moment(weight, arm(moment), look.tangent.normal);
+  // Adds a block that a plane crosses: the sums, sample by sample in their order, of those weights
+  // and of each times its sample's centre.
+  VPM_HD void add_crossed(const CellBlock& block, const CrossingPlane& plane, double weight,
+                          Vec3 moment, bool is_cut, CellResult& result) const {
+    if (is_cut) {
+      const Vec3 x = widen(block.center);
+      result.plane.add(plane.seen.normal,
+                       relative(to_surface_ * x - plane.distance(x) * plane.seen.normal));
+    }
+    result.sum.add_moment(weight, arm(moment), plane.normal);
   }
-
- private:
-  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
-    return to_surface_.rotation * about_center_of_mass / tool_reach_;
-  }
-  VPM_HD Vec3 relative(Vec3 x) const { return (x - center_) / cell_.reach; }
-  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
-    return squared_norm(foot - x) > tool_reach_ * tool_reach_;
-  }
-
-  VPM_HD void add_flat(const CellBlock& block, const BlockLook& look, CellResult& result) const {
-    const FlatCut cut = flat_cut(look);
+  // Adds one block of a share that lies where the surface is one plane.
+  VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, CellResult& result) const {
+    const CellBlock& block = cell_.blocks[b];
+    const double distance = plane.distance(widen(block.center));
+    if (distance >= block.radius) return;
+    if (distance <= -block.radius) {
+      add_whole(cell_.masses[b], plane.normal, result.sum);
+      return;
+    }
     double weight = 0;
     Vec3 moment;
     bool is_cut = false;
     for (std::uint32_t s = block.begin; s < block.end; ++s) {
-      const double inside = weight_inside(cell_.samples[s], cut, is_cut);
+      const double inside = weight_inside(cell_.samples[s], plane, is_cut);
       if (inside == 0) continue;
       weight += inside;
       moment += inside * widen(cell_.samples[s].center);
     }
-    add_flat(look, weight, moment, is_cut, result);
+    add_crossed(block, plane, weight, moment, is_cut, result);
   }
+  // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
+  VPM_HD void add_whole(const BlockMass& mass, Vec3 normal, ToolSum& sum) const {
+    sum.add(mass.weight, normal, arm(mass.centroid));
+  }
+
+  VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
+
+ private:
+  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
+    return tool_reach_.inverse * about_center_of_mass;
+  }
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / cell_.reach * (x - center_); }
 
   const Surface& surface_;
   const Pose& to_surface_;
-  double tool_reach_;
+  ToolReach tool_reach_;
   CellView cell_;
   Vec3 center_;  // in the surface's frame
 };

@@ -36,6 +36,10 @@ struct DepthSurface {
   // or curved; those of a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
 
+  // Readings around the middle of a ball are taken at this part of its radius: where a paraboloid
+  // is as high as in the mean over a box in the ball.
+  static constexpr double kRim = 0.5;
+
   // Over so few pixels only a jump is told from noise.
   static constexpr std::int32_t kFewPixels = 4;
   // A ball of more pixels is not asked pixel by pixel: its parts are, soon.
@@ -189,6 +193,11 @@ struct DepthSurface {
     return look;
   }
 
+  // Whether the surface in a ball that was looked at may touch a ball in it, as far as that tells.
+  VPM_HD bool may_touch(const Look& look, Vec3 center, double radius) const {
+    return !((center.z + radius) * look.range.high < 1 || (center.z - radius) * look.range.low > 1);
+  }
+
   // Whether the surface in a ball that was looked at is one plane, as far as the range of its
   // pixels tells: the plane at its centre must predict their least and greatest depth to
   // `tolerance`, m.
@@ -203,6 +212,10 @@ struct DepthSurface {
                       TangentPlane& plane) const {
     if (!reading.known) return false;
     plane = {reading.normal, reading.foot};
+    return shows(look, plane, tolerance);
+  }
+  // Whether the plane predicts the range of the ball's pixels.
+  VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
     if (look.pixels.u1 - look.pixels.u0 <= kFewPixels &&
         look.pixels.v1 - look.pixels.v0 <= kFewPixels)
       return look.range.high - look.range.low <= kJump * look.range.high;
@@ -217,6 +230,30 @@ struct DepthSurface {
     const double allowed = tolerance / (plane.foot.z * plane.foot.z);
     return std::fabs(middle - spread - look.range.low) <= allowed &&
            std::fabs(middle + spread - look.range.high) <= allowed;
+  }
+
+  // The mean plane of the surface across a ball that was looked at, from readings at its middle and
+  // at four places around it; false where they do not belong to one smooth surface, or the range of
+  // the ball's pixels does not agree with the plane.
+  VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
+                         TangentPlane& plane) const {
+    if (!may_be_flat(look)) return false;
+    const Reading middle = read(center);
+    if (!middle.known) return false;
+    const Vec3 n = middle.normal;
+    const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis)), other = cross(n, side);
+    const Vec3 below = center - middle.distance * n;
+    const Reading around[4] = {read(below + side), read(below - side), read(below + other),
+                               read(below - other)};
+    Vec3 direction = n, feet = middle.foot;
+    for (const Reading& reading : around) {
+      if (!reading.known || dot(reading.normal, n) < kSmoothCosine) return false;
+      direction += reading.normal;
+      feet += reading.foot;
+    }
+    plane = {normalized_or_zero(direction), 0.2 * feet};
+    return shows(look, plane, tolerance);
   }
 
   // Bound of the distance from any place in a ball that was looked at to the foot of its reading.

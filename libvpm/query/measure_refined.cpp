@@ -5,11 +5,12 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/passage.h"
+#include "libvpm/query/patch.h"
 
 namespace vpm {
 
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level, bool coherent)
-    : tool_(tool), level_(tool, level) {
+    : tool_(tool), reach_(tool.reach), level_(tool, level) {
   if (coherent) memory_.emplace(level_.size());
   cells_.resize(level_.size());
   results_.resize(level_.size());
@@ -23,82 +24,115 @@ Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose,
                            std::vector<SphereState>& states) {
   const Pose from_center_of_mass{pose.rotation, pose * tool_.center_of_mass};
   const PointsOfSphere points(cloud, pose);
-  if (cloud.is_organised()) {
-    const Pose& frame = cloud.camera_to_world();
-    return run_on(cloud.depth_surface(), relative_to(frame, from_center_of_mass), frame, points,
-                  states);
-  }
-  return run_on(cloud.disk_surface(), relative_to({{}, cloud.origin()}, from_center_of_mass),
-                Pose{{}, cloud.origin()}, points, states);
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  ToolSum sum;
+  Result result;
+  const auto run_on = [&](const auto& surface, const Pose& frame) {
+    const Pose to_surface = relative_to(frame, from_center_of_mass);
+    result.points = find_inside(surface, to_surface, frame, points);
+    result.boundary = static_cast<std::uint32_t>(cut_.size());
+    result.inside = add_up(states, sum);
+  };
+  if (cloud.is_organised())
+    run_on(cloud.depth_surface(), cloud.camera_to_world());
+  else
+    run_on(cloud.disk_surface(), Pose{{}, cloud.origin()});
+  sum.write(tool_, pose.rotation, result);
+  return result;
 }
 
 template <class Surface>
-Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_surface, const Pose& to_world,
-                              const PointsOfSphere& points, std::vector<SphereState>& states) {
-  std::fill(states.begin(), states.end(), SphereState::outside);
-  Result result;
-  result.points = classify(surface, to_surface, points);
+std::uint32_t RefinedMeasure::find_inside(const Surface& surface, const Pose& to_surface,
+                                          const Pose& to_world, const PointsOfSphere& points) {
+  const std::uint32_t found = classify(surface, to_surface, points);
   flood(surface, to_surface);
   if (memory_) {
     if (cut_.empty()) flood_from_memory(surface, to_surface, to_world);
     remember(surface, to_surface, to_world);
   }
   count_inside(surface, to_surface);
+  return found;
+}
 
-  ToolSum sum;
+std::uint32_t RefinedMeasure::add_up(std::vector<SphereState>& states, ToolSum& sum) const {
   for (const std::uint32_t i : cut_) {
     states[level_.sphere(i)] = SphereState::boundary;
     sum.add(results_[i].sum);
   }
-  result.boundary = static_cast<std::uint32_t>(cut_.size());
+  std::uint32_t inside = 0;
   for (const std::uint32_t i : inside_) {
     if (results_[i].sum.volume.value == 0) continue;  // the flood passed through the hidden
     states[level_.sphere(i)] = SphereState::inside;
     sum.add(results_[i].sum);
-    ++result.inside;
+    ++inside;
   }
-  sum.write(tool_, to_world.rotation, result);
-  return result;
+  return inside;
 }
 
-// Of clusters first: what holds for a ball holds for the balls in it.
 template <class Surface>
 std::uint32_t RefinedMeasure::classify(const Surface& surface, const Pose& to_surface,
                                        const PointsOfSphere& points) {
   std::atomic<std::uint32_t> found{0};
   constexpr std::size_t kGrain = 4;
-  const std::vector<ShareTreeNode>& nodes = level_.nodes();
   parallel_for(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     std::uint32_t found_here = 0;
-    for (std::size_t root = begin; root < end; ++root) {
-      std::uint32_t node = level_.roots()[root];
-      const std::uint32_t after = nodes[node].next;
-      while (node < after) {
-        const auto& [cluster, next] = nodes[node];
-        const bool is_leaf = next == node + 1;
-        if (classify_cluster(surface, to_surface, cluster)) {
-          node = next;
-          continue;
-        }
-        if (is_leaf) {
-          for (std::uint32_t i = cluster.begin; i < cluster.end; ++i)
-            found_here += classify_share(surface, to_surface, points, i);
-        }
-        ++node;
-      }
-    }
+    for (std::size_t root = begin; root < end; ++root)
+      found_here += classify_cluster(surface, to_surface, points, level_.roots()[root]);
     if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
   });
   return found;
 }
 
-// False where the surface may pass through the cluster.
 template <class Surface>
-bool RefinedMeasure::classify_cluster(const Surface& surface, const Pose& to_surface,
-                                      const ShareCluster& cluster) {
+std::uint32_t RefinedMeasure::classify_cluster(const Surface& surface, const Pose& to_surface,
+                                               const PointsOfSphere& points, std::uint32_t root) {
+  const ShareCluster& cluster = level_.nodes()[root].cluster;
   const Vec3 center = to_surface * cluster.center;
   const auto look = surface.look_at_ball(center, cluster.reach);
-  if (look.side == Side::mixed) return false;
+  if (look.side == Side::mixed) {
+    TangentPlane plane;
+    return is_patch(cluster.reach, tool_.reach) &&
+                   sees_patch(surface, look, center, cluster.reach, plane)
+               ? classify_crossed(surface, to_surface, points, cluster, look, {plane, to_surface})
+               : classify_nodes(surface, to_surface, points, root);
+  }
+  decide(surface, look, cluster, center);
+  if (passages_[cluster.begin] == Passage::near && is_patch(cluster.reach, tool_.reach))
+    count_behind(
+        surface, to_surface, cluster,
+        transpose(to_surface.rotation) * surface.closest_normal(center, surface.read(center)));
+  return 0;
+}
+
+// Clusters in a cluster before shares: what holds for a ball holds for the balls in it.
+template <class Surface>
+std::uint32_t RefinedMeasure::classify_nodes(const Surface& surface, const Pose& to_surface,
+                                             const PointsOfSphere& points, std::uint32_t root) {
+  const std::vector<ShareTreeNode>& nodes = level_.nodes();
+  std::uint32_t found = 0, node = root;
+  while (node < nodes[root].next) {
+    const auto& [cluster, next] = nodes[node];
+    const bool is_leaf = next == node + 1;
+    const Vec3 center = to_surface * cluster.center;
+    const auto look = surface.look_at_ball(center, cluster.reach);
+    if (look.side != Side::mixed) {
+      decide(surface, look, cluster, center);
+      node = next;
+      continue;
+    }
+    if (is_leaf) {
+      for (std::uint32_t i = cluster.begin; i < cluster.end; ++i)
+        found += classify_share(surface, to_surface, points, i);
+    }
+    ++node;
+  }
+  return found;
+}
+
+// Of a cluster through which the surface does not pass.
+template <class Surface>
+void RefinedMeasure::decide(const Surface& surface, const typename Surface::Look& look,
+                            const ShareCluster& cluster, Vec3 center) {
   Cell cell = look.side == Side::free ? Cell::free : Cell::open;
   Passage passage = Passage::unknown;
   if (look.side == Side::behind) {
@@ -107,7 +141,59 @@ bool RefinedMeasure::classify_cluster(const Surface& surface, const Pose& to_sur
   }
   std::fill(cells_.begin() + cluster.begin, cells_.begin() + cluster.end, cell);
   std::fill(passages_.begin() + cluster.begin, passages_.begin() + cluster.end, passage);
-  return true;
+}
+
+// Of a patch wholly behind the surface near it: one direction for all shares.
+template <class Surface>
+void RefinedMeasure::count_behind(const Surface& surface, const Pose& to_surface,
+                                  const ShareCluster& cluster, Vec3 normal) {
+  for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+    results_[i] = {};
+    CellMeasure(surface, to_surface, reach_, level_.cell(i))
+        .add_whole(level_.mass(i), normal, results_[i].sum);
+    cells_[i] = Cell::partial;
+  }
+}
+
+// Of a patch through which the surface passes as one plane.
+template <class Surface>
+std::uint32_t RefinedMeasure::classify_crossed(const Surface& surface, const Pose& to_surface,
+                                               const PointsOfSphere& points,
+                                               const ShareCluster& cluster,
+                                               const typename Surface::Look& look,
+                                               const CrossingPlane& plane) {
+  std::uint32_t found = 0;
+  for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+    const CellView view = level_.cell(i);
+    const double distance = plane.distance(view.center);
+    passages_[i] = Passage::open;
+    squared_gaps_[i] = distance * distance;
+    cells_[i] = Cell::free;
+    if (distance < view.reach) {
+      const CellMeasure measure(surface, to_surface, reach_, view);
+      CellResult& result = results_[i];
+      result = {};
+      if (distance <= -view.reach)
+        measure.add_whole(level_.mass(i), plane.normal, result.sum);
+      else
+        for (std::uint32_t b = view.begin; b < view.end; ++b) measure.add_block(b, plane, result);
+      cells_[i] = cell_of(result);
+    }
+    found += count_points(surface, to_surface, points, i, look);
+  }
+  return found;
+}
+
+// Points in a sphere of a patch; `look` is at the patch.
+template <class Surface>
+std::uint32_t RefinedMeasure::count_points(const Surface& surface, const Pose& to_surface,
+                                           const PointsOfSphere& points, std::uint32_t i,
+                                           const typename Surface::Look& patch) const {
+  const Vec3 center = to_surface * level_.cell(i).center;
+  const double radius = level_.radius(i);
+  if (!surface.may_touch(patch, center, radius)) return 0;
+  const auto look = surface.look_at_ball(center, radius);
+  return look.side == Side::mixed ? points.count(tool_.spheres[level_.sphere(i)], look) : 0;
 }
 
 template <class Surface>
@@ -123,9 +209,8 @@ std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose&
   } else if (side == Side::uncut) {
     cells_[i] = Cell::open;
   } else {
-    results_[i] = CellMeasure(surface, to_surface, tool_.reach, view).run();
-    const bool counts = results_[i].sum.volume.value > 0;
-    cells_[i] = results_[i].plane.count > 0 ? Cell::cut : (counts ? Cell::partial : Cell::free);
+    results_[i] = CellMeasure(surface, to_surface, reach_, view).run();
+    cells_[i] = cell_of(results_[i]);
     const Sphere& sphere = tool_.spheres[level_.sphere(i)];
     const auto look = surface.look_at_ball(to_surface * view.center, sphere.radius);
     if (look.side == Side::mixed) return points.count(sphere, look);
@@ -216,7 +301,7 @@ void RefinedMeasure::count_inside(const Surface& surface, const Pose& to_surface
       const auto nearest = [&] {
         return cut_.empty() ? CutShare{} : cut_share(to_surface, nearest_cut(i));
       };
-      const CellMeasure measure(surface, to_surface, tool_.reach, level_.cell(i));
+      const CellMeasure measure(surface, to_surface, reach_, level_.cell(i));
       if (whole && is_compact(level_.reach(i), tool_.reach)) {
         results_[i].sum = ToolSum{};
         measure.add_reached(nearest, piece_of(level_.mass(i)), results_[i].sum);

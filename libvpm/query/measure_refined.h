@@ -46,9 +46,12 @@ class RefinedMeasure {
     taken,
   };
 
+  // Leaves what is cut and inside with its results. Returns the number of points in spheres.
   template <class Surface>
-  Result run_on(const Surface& surface, const Pose& to_surface, const Pose& to_world,
-                const PointsOfSphere& points, std::vector<SphereState>& states);
+  std::uint32_t find_inside(const Surface& surface, const Pose& to_surface, const Pose& to_world,
+                            const PointsOfSphere& points);
+  // Returns the number of shares that are inside.
+  std::uint32_t add_up(std::vector<SphereState>& states, ToolSum& sum) const;
   // Returns the number of points in spheres.
   template <class Surface>
   std::uint32_t classify(const Surface& surface, const Pose& to_surface,
@@ -57,8 +60,25 @@ class RefinedMeasure {
   std::uint32_t classify_share(const Surface& surface, const Pose& to_surface,
                                const PointsOfSphere& points, std::uint32_t row);
   template <class Surface>
-  bool classify_cluster(const Surface& surface, const Pose& to_surface,
-                        const ShareCluster& cluster);
+  std::uint32_t classify_cluster(const Surface& surface, const Pose& to_surface,
+                                 const PointsOfSphere& points, std::uint32_t root);
+  template <class Surface>
+  std::uint32_t classify_nodes(const Surface& surface, const Pose& to_surface,
+                               const PointsOfSphere& points, std::uint32_t root);
+  template <class Surface>
+  void decide(const Surface& surface, const typename Surface::Look& look,
+              const ShareCluster& cluster, Vec3 center);
+  template <class Surface>
+  void count_behind(const Surface& surface, const Pose& to_surface, const ShareCluster& cluster,
+                    Vec3 normal);
+  template <class Surface>
+  std::uint32_t classify_crossed(const Surface& surface, const Pose& to_surface,
+                                 const PointsOfSphere& points, const ShareCluster& cluster,
+                                 const typename Surface::Look& look, const CrossingPlane& plane);
+  template <class Surface>
+  std::uint32_t count_points(const Surface& surface, const Pose& to_surface,
+                             const PointsOfSphere& points, std::uint32_t row,
+                             const typename Surface::Look& patch) const;
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
@@ -73,10 +93,15 @@ class RefinedMeasure {
   Passage find_passage(const Surface& surface, const Pose& to_surface, std::uint32_t row);
   template <class Surface>
   bool enters(const Surface& surface, const Pose& to_surface, std::uint32_t cut, std::uint32_t row);
+  static Cell cell_of(const CellResult& result) {
+    if (result.plane.count > 0) return Cell::cut;
+    return result.sum.volume.value > 0 ? Cell::partial : Cell::free;
+  }
   std::uint32_t nearest_cut(std::uint32_t row) const;
   CutShare cut_share(const Pose& to_surface, std::uint32_t cut) const;
 
   const ToolModel& tool_;
+  ToolReach reach_;
   SpatialLevel level_;  // all that follows is in its rows
   std::optional<FloodMemory> memory_;
   std::vector<Cell> cells_;

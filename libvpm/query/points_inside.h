@@ -65,25 +65,43 @@ class PointsOfSphere {
 
   // `look`: what the cloud's surface says of the sphere.
   std::uint32_t count(const Sphere& sphere, const DepthSurface::Look& look) const {
+    const Near near = near_to(sphere);
     std::uint32_t found = 0;
     cloud_.for_ranges_in_pixels(look.pixels, [&](std::uint32_t begin, std::uint32_t end) {
-      found += count(sphere, begin, end);
+      found += count(near, begin, end);
     });
     return found;
   }
   std::uint32_t count(const Sphere& sphere, const DiskSurface::Look&) const {
+    const Near near = near_to(sphere);
     std::uint32_t found = 0;
     cloud_.for_ranges_in_ball(
-        to_cloud_ * sphere.center, sphere.radius,
-        [&](std::uint32_t begin, std::uint32_t end) { found += count(sphere, begin, end); });
+        near.center, sphere.radius,
+        [&](std::uint32_t begin, std::uint32_t end) { found += count(near, begin, end); });
     return found;
   }
 
  private:
-  std::uint32_t count(const Sphere& sphere, std::uint32_t begin, std::uint32_t end) const {
+  // A ball about the cloud's origin that holds the sphere, whatever is rounded.
+  struct Near {
+    const Sphere& sphere;
+    Vec3 center;
+    double squared;
+  };
+  Near near_to(const Sphere& sphere) const {
+    constexpr double kRounding = 1e-9;  // far above that of double
+    const Vec3 center = to_cloud_ * sphere.center;
+    const double radius = sphere.radius + kRounding * (sphere.radius + norm(center));
+    return {sphere, center, radius * radius};
+  }
+  // Few points are near enough for the exact test.
+  std::uint32_t count(const Near& near, std::uint32_t begin, std::uint32_t end) const {
     std::uint32_t found = 0;
-    for (std::uint32_t k = begin; k < end; ++k)
-      found += strictly_inside(sphere, to_tool_ * widen(cloud_.positions()[k]));
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const Vec3 x = widen(cloud_.positions()[k]);
+      if (squared_norm(x - near.center) < near.squared)
+        found += strictly_inside(near.sphere, to_tool_ * x);
+    }
     return found;
   }
 

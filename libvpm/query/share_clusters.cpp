@@ -8,10 +8,6 @@
 namespace vpm {
 namespace {
 
-// Balls of more than a few shares, and few of them: most are decided at once, and those that the
-// surface may pass hold few shares.
-constexpr double kClusterReach = 0.1;  // of the tool's reach
-
 // Rounding must not let a share's ball leave its cluster's.
 constexpr double kRounding = 1 + 1e-12;
 
@@ -44,7 +40,7 @@ BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Ve
 void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end,
                   ShareClusters& out) {
   const ShareCluster cluster = enclosing_cluster(tool, level, out.shares, begin, end);
-  if (end - begin == 1 || cluster.reach <= kClusterReach * tool.reach) {
+  if (end - begin == 1 || cluster.reach <= kPatchReach * tool.reach) {
     std::sort(out.shares.begin() + begin, out.shares.begin() + end);
     out.clusters.push_back(cluster);
     return;

@@ -30,6 +30,9 @@ VPM_HD constexpr bool is_compact(double reach, double tool_reach) {
   return reach <= kCompactReach * tool_reach;
 }
 
+// Clusters of several shares are no larger than this part of the tool's reach.
+inline constexpr double kPatchReach = 0.1;
+
 ShareClusters cluster_shares(const ToolModel& tool, const Level& level);
 
 // Of the shares listed in rows [begin, end): the ball that encloses them.

@@ -38,7 +38,7 @@ void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uin
 
 void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
   Share share{tool.spheres[sphere].center - tool.center_of_mass, level.share_reach[sphere],
-              static_cast<std::uint32_t>(blocks_.size()), 0};
+              tool.spheres[sphere].radius, static_cast<std::uint32_t>(blocks_.size()), 0};
   for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
     CellBlock block = level.blocks[b];
     const auto begin = static_cast<std::uint32_t>(samples_.size());

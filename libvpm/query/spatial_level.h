@@ -28,6 +28,7 @@ class SpatialLevel {
             share.end,      share.center,         share.reach};
   }
   double reach(std::uint32_t row) const { return shares_[row].reach; }
+  double radius(std::uint32_t row) const { return shares_[row].radius; }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
   std::span<const std::uint32_t> neighbors(std::uint32_t row) const {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
@@ -37,8 +38,8 @@ class SpatialLevel {
 
  private:
   struct Share {
-    Vec3 center;  // of the sphere, about the tool's centre of mass
-    double reach = 0;
+    Vec3 center;                       // of the sphere, about the tool's centre of mass
+    double reach = 0, radius = 0;      // of the share, of the sphere
     std::uint32_t begin = 0, end = 0;  // blocks
   };
 

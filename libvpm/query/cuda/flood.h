@@ -302,7 +302,7 @@ __device__ ToolSum Flood<Surface, Team>::sum_of_share(const Tile& warp, std::uin
   const CellView view = level_.cell(i);
   const Measure measure(surface_, to_surface_, level_.tool_reach, view);
   const bool whole = (word & kWhole) != 0;
-  const bool compact = whole && is_compact(view.reach, level_.tool_reach);
+  const bool compact = whole && is_compact(view.reach, level_.tool_reach.length);
   ToolSum sum;
   if (compact && warp.leads()) measure.add_reached(nearest, piece_of(level_.share_masses[i]), sum);
   for (std::uint32_t b = view.begin; b < view.end && !compact; ++b) {

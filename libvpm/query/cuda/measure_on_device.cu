@@ -50,7 +50,7 @@ void MeasureOnDevice::bring(const PreparedCloud& cloud) {
 
 Result MeasureOnDevice::result_of(const RawResult& raw, const Pose& pose) const {
   Result result;
-  raw.sum.write(tool_, axes(pose), result);
+  raw.sum.write(tool_, pose.rotation, result);
   result.boundary = raw.boundary;
   result.inside = raw.inside;
   result.points = raw.points;

@@ -25,8 +25,6 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
   // Many, of poses and to results on the device.
   virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
-  // What results are written in, to world axes.
-  virtual Rotation axes(const Pose& pose) const = 0;
   // No point further from the centre of mass matters.
   virtual double reach() const = 0;
   // A word for each sphere, of query number `sequence`, and what it says.

@@ -155,7 +155,6 @@ class PaperOnDevice : public MeasureOnDevice {
         arguments, cloud().frame(), poses, count, results);
     check(cudaGetLastError());
   }
-  Rotation axes(const Pose& pose) const override { return pose.rotation; }
   // As on the CPU: of an image, the same pixels are looked at.
   double reach() const override { return level_.tool.reach; }
   const std::uint32_t* state_words(unsigned sequence) const override {

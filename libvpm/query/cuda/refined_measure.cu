@@ -32,6 +32,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.cut = first.cut + shares;
   space.hidden = first.hidden + team * level.piece_count;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
+  space.planes = first.planes + team * kThreads;
   return space;
 }
 
@@ -169,7 +170,8 @@ class RefinedMemory {
         parents_((std::size_t{level.count} + 1) * teams),
         cut_(level.count * teams),
         hidden_(level.piece_count * teams),
-        flats_(2 * TaskLists::kTasks * blocks) {
+        flats_(2 * TaskLists::kTasks * blocks),
+        patches_(kThreads * blocks) {
     words_.clear();
     points_.clear();
     sums_.clear();
@@ -184,7 +186,8 @@ class RefinedMemory {
             parents_.get(),
             cut_.get(),
             hidden_.get(),
-            flats_.get()};
+            flats_.get(),
+            patches_.get()};
   }
 
   // Of a team of one block.
@@ -193,7 +196,7 @@ class RefinedMemory {
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
     return level.count * kOfShare + level.piece_count * sizeof(HiddenPiece) +
-           2 * TaskLists::kTasks * sizeof(FlatLook);
+           2 * TaskLists::kTasks * sizeof(FlatBlock) + kThreads * sizeof(CrossingPlane);
   }
 
  private:
@@ -203,7 +206,8 @@ class RefinedMemory {
   DeviceArray<double> gaps_;
   DeviceArray<std::uint32_t> parents_, cut_;
   DeviceArray<HiddenPiece> hidden_;
-  DeviceArray<FlatLook> flats_;
+  DeviceArray<FlatBlock> flats_;
+  DeviceArray<CrossingPlane> patches_;
 };
 
 class RefinedOnDevice : public MeasureOnDevice {
@@ -240,7 +244,6 @@ class RefinedOnDevice : public MeasureOnDevice {
     else
       launch_on(cloud().disk_surface(), poses, count, results);
   }
-  Rotation axes(const Pose&) const override { return cloud().frame().camera_to_world.rotation; }
   double reach() const override { return level_.view().spheres_reach; }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().notes[sequence % 2].words;

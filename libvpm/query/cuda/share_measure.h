@@ -8,6 +8,7 @@
 #pragma once
 
 #include "libvpm/query/cuda/shares.h"
+#include "libvpm/query/patch.h"
 
 namespace vpm::cuda {
 
@@ -43,22 +44,37 @@ struct TaskLists {
   }
 };
 
-// A unit that may count, with what is known of its cluster.
-struct SeenUnit {
-  std::uint32_t bits;
-
-  __device__ static SeenUnit of(std::uint32_t index, Side side, bool is_near) {
-    return {index << 3 | static_cast<std::uint32_t>(side) << 1 | (is_near ? 1U : 0U)};
-  }
-  __device__ std::uint32_t index() const { return bits >> 3; }
-  __device__ Side side() const { return static_cast<Side>(bits >> 1 & 3); }
-  // No place of the cluster is further behind the surface than the tool's reach.
-  __device__ bool is_near() const { return (bits & 1) != 0; }
+// What the surface shows of a cluster that may count.
+enum class Seen : std::uint32_t {
+  mixed,
+  uncut,
+  behind,
+  behind_near,  // no place of it is further behind the surface than the tool's reach
+  crossed,      // a patch: the surface passes through it as one plane
+  pushed,       // a patch, behind near the surface: in one direction
 };
+
+// A unit of such a cluster: the chunk by the thread that has looked at it.
+struct SeenUnit {
+  std::uint16_t bits;
+
+  __device__ static SeenUnit of(unsigned thread, unsigned unit, Seen seen) {
+    return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | thread << 3 | unit)};
+  }
+  __device__ Seen seen() const { return static_cast<Seen>(bits >> 11); }
+  __device__ unsigned thread() const { return bits >> 3 & 255U; }
+  __device__ unsigned unit() const { return bits & 7U; }
+  __device__ bool is_in_patch() const { return seen() >= Seen::crossed; }
+  __device__ Side side() const {
+    return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
+  }
+};
+static_assert(kThreads <= 256 && Chunk::kUnits <= 8);
 
 // Memory that the threads of a block share.
 struct MeasureShared {
   SeenUnit seen[kThreads * Chunk::kUnits];
+  std::uint32_t first_units[kThreads];  // of the chunk at which a thread has looked
   unsigned seen_count;
   TaskLists lists;
   double terms[4][kThreads];  // of sums in the samples' order
@@ -111,11 +127,29 @@ class ShareMeasure {
     const Vec3 at = to_surface_ * chunk.ball.center;
     const auto look = surface_.look_at_ball(at, chunk.ball.radius);
     if (look.side == Side::free) return;
-    const bool near = look.side == Side::behind &&
-                      surface_.largest_gap(look, at, chunk.ball.radius) < level_.tool_reach;
-    unsigned slot = atomicAdd(&shared_.seen_count, chunk.end - chunk.begin);
-    for (std::uint32_t u = chunk.begin; u < chunk.end; ++u)
-      shared_.seen[slot++] = SeenUnit::of(u, look.side, near);
+    const Seen seen = what_is_seen(chunk.ball, look, at);
+    shared_.first_units[threadIdx.x] = chunk.begin;
+    const unsigned count = chunk.end - chunk.begin, slot = atomicAdd(&shared_.seen_count, count);
+    for (unsigned u = 0; u < count; ++u)
+      shared_.seen[slot + u] = SeenUnit::of(threadIdx.x, u, seen);
+  }
+  template <class Look>
+  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at) {
+    const bool patch = is_patch(ball.radius, level_.tool_reach.length);
+    CrossingPlane& plane = space_.planes[part_.part * blockDim.x + threadIdx.x];
+    if (look.side == Side::uncut) return Seen::uncut;
+    if (look.side == Side::mixed) {
+      TangentPlane tangent;
+      if (!patch || !sees_patch(surface_, look, at, ball.radius, tangent)) return Seen::mixed;
+      plane = {tangent, to_surface_};
+      return Seen::crossed;
+    }
+    if (!(surface_.largest_gap(look, at, ball.radius) < level_.tool_reach.length))
+      return Seen::behind;
+    if (!patch) return Seen::behind_near;
+    plane.normal = transpose(to_surface_.rotation) *
+                   surface_.closest_normal(at, surface_.read(at, look.point));
+    return Seen::pushed;
   }
   // By rounds, as long as their tasks have room.
   __device__ void classify_seen() {
@@ -146,20 +180,22 @@ class ShareMeasure {
   __device__ Measure measure_of(const CellView& view) const {
     return {surface_, to_surface_, level_.tool_reach, view};
   }
-  __device__ FlatLook& flat(unsigned list, unsigned slot) const {
+  __device__ FlatBlock& flat(unsigned list, unsigned slot) const {
     const unsigned row = 2 * part_.part + (list == TaskLists::flat_wide);
     return space_.flats[row * TaskLists::kTasks + slot];
   }
 
   __device__ void classify(SeenUnit seen, bool active);
+  __device__ void classify_crossed(const Unit& unit, unsigned lane, const CrossingPlane& plane);
+  __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
-  __device__ void list_block(const Unit& unit, Vec3 center, Side side, bool is_flat,
-                             const TangentPlane& tangent);
+  __device__ void list_block(const Unit& unit, Side side);
+  __device__ void list_crossed(const Unit& unit, const CrossingPlane& plane, bool is_far);
   __device__ void measure_tasks();
   __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
   __device__ bool add_piece(const Measure& measure, const Task& task, std::uint32_t k,
                             CellResult& result);
-  __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatLook& flat,
+  __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatBlock& flat,
                            const Task& task, CellResult& result);
   __device__ void note_task(const Task& task, const CellResult& result, bool hidden_counts);
 
@@ -178,7 +214,16 @@ class ShareMeasure {
 template <class Surface>
 __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const Tile lanes(kLanes);
-  const Unit& unit = level_.units[seen.index()];
+  const Unit& unit = level_.units[shared_.first_units[seen.thread()] + seen.unit()];
+  if (seen.is_in_patch()) {
+    const CrossingPlane& plane = space_.planes[part_.part * blockDim.x + seen.thread()];
+    if (!active) return;
+    if (seen.seen() == Seen::crossed)
+      classify_crossed(unit, lanes.lane, plane);
+    else if (lanes.lane == Unit::of_share && (unit.flags & Unit::is_head) != 0)
+      note_pushed(unit, plane.normal);
+    return;
+  }
   const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const std::uint32_t flags = unit.flags;
   const bool head = (flags & Unit::is_head) != 0;
@@ -204,7 +249,8 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
 
   const double gap = squared_gap(at, reading);
   const bool hidden =
-      lanes.from(!seen.is_near() && is_hidden_share(gap, level_.tool_reach), Unit::of_share);
+      lanes.from(seen.seen() != Seen::behind_near && is_hidden_share(gap, level_.tool_reach.length),
+                 Unit::of_share);
   const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
   const bool whole = side == Side::behind || (side == Side::uncut && behind);
   if (!active) return;
@@ -226,7 +272,10 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
         reads_block &&
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         !measure.is_hidden(tangent.foot);
-    list_block(unit, at, look.side, is_flat, tangent);
+    if (is_flat)
+      list_crossed(unit, {tangent, to_surface_}, measure.is_far(at, tangent.foot));
+    else
+      list_block(unit, look.side);
   } else if (whole && (flags & Unit::is_compact) != 0) {
     if (head) lists_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
   } else if (whole && (flags & Unit::has_block) != 0) {
@@ -243,29 +292,77 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
   space_.parents[i + 1] = i + 1;
 }
 
+// One unit of a patch that a plane crosses, by three lanes.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::classify_crossed(const Unit& unit, unsigned lane,
+                                                        const CrossingPlane& plane) {
+  const UnitBall ball = unit.balls[min(lane, Unit::kBalls - 1U)];
+  const bool head = (unit.flags & Unit::is_head) != 0;
+  const double distance = plane.distance(unit.balls[Unit::of_share].center);
+  const double reach = unit.balls[Unit::of_share].radius;
+  if (lane == Unit::of_share && head) {
+    ToolSum sum;
+    if (distance <= -reach) {
+      measure_of({}).add_whole(level_.share_masses[unit.share], plane.normal, sum);
+      notes_.sums[unit.share] = sum;
+    }
+    note_share(unit, sum.volume.value > 0 ? kPartial : 0U, distance * distance);
+  }
+  if (lane == Unit::of_sphere && head &&
+      surface_.look_at_ball(to_surface_ * ball.center, ball.radius).side == Side::mixed)
+    atomicOr(&notes_.words[unit.share], static_cast<std::uint32_t>(kCountsPoints));
+  if (lane == Unit::of_block && (unit.flags & Unit::has_block) != 0 && distance < reach &&
+      !(distance <= -reach))
+    list_crossed(unit, plane, false);
+}
+
+// A share of a patch behind the surface.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal) {
+  ToolSum sum;
+  measure_of({}).add_whole(level_.share_masses[unit.share], normal, sum);
+  notes_.sums[unit.share] = sum;
+  const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
+  note_share(unit, kWhole, squared_gap(at, surface_.read(at)));
+}
+
 // Lists a block of a mixed share.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Vec3 center, Side side,
-                                                  bool is_flat, const TangentPlane& tangent) {
+__device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Side side) {
   if (side == Side::free) return;
   if (side != Side::mixed) {
     lists_.add(TaskLists::pieces, {unit.share, Task::block, unit.block, 1});
     return;
   }
   const std::uint32_t begin = unit.begin, count = unit.end - begin;
-  const bool narrow = count <= TaskLists::kNarrow;
-  if (is_flat) {
-    const unsigned list = narrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    const unsigned slot = lists_.add(list, {unit.share, Task::samples, begin, count});
-    flat(list, slot) = {tangent, center};
-  } else if (narrow) {
+  if (count <= TaskLists::kNarrow) {
     lists_.add(TaskLists::samples_narrow, {unit.share, Task::samples, begin, count});
-  } else {
-    const std::uint32_t half = count > TaskLists::kWide ? (count + 1) / 2 : count;
-    lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
-    if (half < count)
-      lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
+    return;
   }
+  const std::uint32_t half = count > TaskLists::kWide ? (count + 1) / 2 : count;
+  lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
+  if (half < count)
+    lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
+}
+
+// Lists a block where the surface is one plane, if the plane crosses it.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const CrossingPlane& plane,
+                                                    bool is_far) {
+  const UnitBall& ball = unit.balls[Unit::of_block];
+  const double distance = plane.distance(ball.center);
+  const Task task{unit.share, Task::samples, unit.begin, unit.end - unit.begin};
+  if (distance > -ball.radius && distance < ball.radius) {
+    const unsigned list =
+        task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
+    flat(list, lists_.add(list, task)) = {plane, unit.block, is_far};
+    return;
+  }
+  CellResult result;
+  result.is_far = is_far;
+  if (distance <= -ball.radius)
+    measure_of({}).add_whole(level_.block_masses[unit.block], plane.normal, result.sum);
+  note_task(task, result, false);
 }
 
 // Warps take bundles of tasks of one list, as many as have room in a warp; those that take longest
@@ -341,12 +438,8 @@ __device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const T
 // is there for the first thread of the tile.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure& measure,
-                                                const FlatLook& flat, const Task& task,
+                                                const FlatBlock& flat, const Task& task,
                                                 CellResult& result) {
-  typename Measure::BlockLook look;
-  look.tangent = flat.tangent;
-  look.center = flat.center;
-  const typename Measure::FlatCut cut = measure.flat_cut(look);
   const unsigned slot = threadIdx.x - tile.lane;
   bool is_cut = false;
   double sum = 0;  // of this thread's row of terms
@@ -354,7 +447,7 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   for (std::uint32_t begin = 0; begin < task.count; begin += tile.width) {
     const std::uint32_t k = begin + tile.lane;
     const CellSample sample = level_.samples[task.begin + (k < task.count ? k : 0)];
-    const double inside = k < task.count ? measure.weight_inside(sample, cut, is_cut) : 0;
+    const double inside = k < task.count ? measure.weight_inside(sample, flat.plane, is_cut) : 0;
     const Vec3 moment = inside != 0 ? inside * widen(sample.center) : Vec3{};
     shared_.terms[0][slot + tile.lane] = inside;
     shared_.terms[1][slot + tile.lane] = moment.x;
@@ -371,7 +464,10 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   is_cut = tile.any(is_cut);
   const double sums[4] = {tile.from(sum, 0), tile.from(sum, 1), tile.from(sum, 2),
                           tile.from(sum, 3)};
-  if (tile.leads()) measure.add_flat(look, sums[0], {sums[1], sums[2], sums[3]}, is_cut, result);
+  if (!tile.leads()) return;
+  measure.add_crossed(level_.blocks[flat.block], flat.plane, sums[0], {sums[1], sums[2], sums[3]},
+                      is_cut, result);
+  result.is_far = flat.is_far;
 }
 
 // By one thread, what all threads of its tile have found. Where nothing of a share is cut, its

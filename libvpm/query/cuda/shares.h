@@ -47,9 +47,10 @@ struct ShareNotes {
 };
 
 // The plane that crosses a flat block.
-struct FlatLook {
-  TangentPlane tangent;
-  Vec3 center;  // of the block
+struct FlatBlock {
+  CrossingPlane plane;
+  std::uint32_t block = 0;
+  bool is_far = false;  // further behind the surface than the tool's reach
 };
 
 // A piece of a mixed share for which the share's own plane must vouch, and what it adds then.
@@ -66,7 +67,8 @@ struct RefinedSpace {
   std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
   std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
   HiddenPiece* hidden = nullptr;
-  FlatLook* flats = nullptr;  // of each block's list of flat tasks
+  FlatBlock* flats = nullptr;       // of each thread block's lists of flat tasks
+  CrossingPlane* planes = nullptr;  // of the patches that a thread block looks at
 };
 
 // Counters of a query; 0 at the start.

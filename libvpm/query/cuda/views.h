@@ -60,7 +60,7 @@ struct LevelView {
   const Edge* edges = nullptr;
   GridView grid;
   Vec3 center_of_mass;
-  double tool_reach = 0;
+  ToolReach tool_reach;
   double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
 
   __host__ __device__ CellView cell(std::uint32_t i) const {

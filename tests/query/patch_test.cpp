@@ -1,0 +1,98 @@
+// The surface across a patch, seen as one plane.
+#include "libvpm/query/patch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libvpm/query/prepared_cloud.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::see;
+
+constexpr double kReach = 0.015;  // of the patches
+
+// The plane of a patch about a place of the scene, if it is seen as one; camera coordinates.
+bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
+  const DepthSurface surface = cloud.depth_surface();
+  return sees_patch(surface, surface.look_at_ball(center, kReach), center, kReach, plane);
+}
+
+// Mean of the plane's height over the surface's at places of a box in the patch's ball.
+double mean_height(const TangentPlane& plane, const synthetic::Surface& surface, Vec3 center) {
+  constexpr int kPlaces = 5;
+  const double half = kReach / std::sqrt(3.0);
+  double sum = 0;
+  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
+    const auto along = [&](int place) { return half * ((place + 0.5) / kPlaces * 2 - 1); };
+    const Vec3 x = center + Vec3{along(k % kPlaces), along(k / kPlaces % kPlaces),
+                                 along(k / kPlaces / kPlaces)};
+    sum += surface.distance(x) - plane.distance(x);
+  }
+  return sum / (kPlaces * kPlaces * kPlaces);
+}
+
+class PatchOnABall : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PatchOnABall, IsAsHighAsTheSurfaceInTheMean) {
+  const synthetic::Scene scene = synthetic::make_scene(GetParam());
+  const PreparedCloud cloud(see(scene));
+  // Of a tangent plane the mean height is this much.
+  constexpr double kSmallestRadius = 0.25, kLargestRadius = 0.3;
+  const double sagitta = kReach * kReach / (9 * kLargestRadius);
+  int seen = 0;
+  for (const double u : {-0.08, -0.03, 0.0, 0.05}) {
+    for (const double deep : {-0.005, 0.0, 0.005}) {
+      Vec3 center{u, 0.02, 1};
+      center -= (scene.surface->distance(center) + deep) * scene.surface->gradient(center);
+      TangentPlane plane;
+      if (!plane_at(cloud, center, plane)) continue;
+      ++seen;
+      EXPECT_LE(std::abs(mean_height(plane, *scene.surface, center)), 0.35 * sagitta)
+          << "at " << center.x << ", " << deep << " m deep";
+      const double tilt = norm(plane.normal - scene.surface->gradient(plane.foot));
+      EXPECT_LE(tilt, 0.1 * kReach / kSmallestRadius);
+    }
+  }
+  EXPECT_EQ(seen, 12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Balls, PatchOnABall, ::testing::Values("ball", "inverted-ball"),
+                         [](const auto& variant) {
+                           return std::string(variant.param == std::string("ball") ? "Outside"
+                                                                                   : "Inside");
+                         });
+
+TEST(Patch, NoneWhereSeveralSurfacesMeet) {
+  TangentPlane plane;
+  const PreparedCloud step(see(synthetic::make_scene("step")));
+  EXPECT_TRUE(plane_at(step, {0.05, 0, 1}, plane));
+  EXPECT_FALSE(plane_at(step, {-0.03, 0, 1}, plane)) << "half wall, half step";
+  const PreparedCloud groove(see(synthetic::make_scene("groove")));
+  EXPECT_TRUE(plane_at(groove, {0.05, 0, 0.95}, plane));
+  EXPECT_FALSE(plane_at(groove, {0, 0, 0.997}, plane)) << "the bottom, where both walls are seen";
+}
+
+TEST(Patch, NoneWhereTheImageHasAHole) {
+  const synthetic::Scene scene = synthetic::make_scene("wall");
+  const Vec3 middle{0.05, 0.03, 1};
+  Cloud cloud = see(scene);
+  TangentPlane plane;
+  EXPECT_TRUE(plane_at(PreparedCloud(cloud), middle, plane));
+  DepthImage& depth = cloud.sensor->depth;
+  const auto u = static_cast<std::uint32_t>(scene.camera.intrinsics.fx * middle.x +
+                                            scene.camera.intrinsics.cx);
+  const auto v = static_cast<std::uint32_t>(scene.camera.intrinsics.fy * middle.y +
+                                            scene.camera.intrinsics.cy);
+  for (std::uint32_t row = v - 3; row <= v + 3; ++row) {
+    for (std::uint32_t column = u - 3; column <= u + 3; ++column)
+      depth.depth[row * depth.width + column] = 0;
+  }
+  EXPECT_FALSE(plane_at(PreparedCloud(cloud), middle, plane));
+}
+
+}  // namespace
+}  // namespace vpm
