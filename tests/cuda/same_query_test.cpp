@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "libvpm/query/query.h"
 #include "tests/query/lattice_model.h"
@@ -83,6 +84,62 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                                                               "inverted-ball", "step"),
                                             ::testing::Bool(),
                                             ::testing::Values(Measure::refined, Measure::paper)));
+
+// Its middle sphere is joined to all others, as a large sphere of a packing is to small ones.
+ToolModel lattice_with_hub(std::uint32_t n) {
+  ToolModel tool = testing::lattice_cube(0.3, n, 1);
+  const std::uint32_t count = n * n * n, hub = count / 2;
+  SphereGraph joined{{0}, {}};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const SphereGraph& graph = tool.levels[0].graph;
+    std::set<std::uint32_t> neighbors(graph.neighbors.begin() + graph.begin[i],
+                                      graph.neighbors.begin() + graph.begin[i + 1]);
+    if (i != hub) neighbors.insert(hub);
+    for (std::uint32_t j = 0; i == hub && j < count; ++j)
+      if (j != hub) neighbors.insert(j);
+    joined.neighbors.insert(joined.neighbors.end(), neighbors.begin(), neighbors.end());
+    joined.begin.push_back(static_cast<std::uint32_t>(joined.neighbors.size()));
+  }
+  tool.levels[0].graph = joined;
+  return tool;
+}
+
+// Through the wall, so that the hub is cut by it and reached by the flood.
+void expect_same_at_hub(std::uint32_t n) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  constexpr int kPoses = 16;
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_with_hub(n);
+  QueryOptions options;
+  options.measure = Measure::paper;
+  Query on_cpu(tool, options);
+  options.device = {Device::Kind::cuda, 0};
+  Query on_device(tool, options);
+  std::vector<Pose> poses(kPoses);
+  std::vector<Result> expected(kPoses), batch(kPoses);
+  int cut = 0, reached = 0;
+  for (int k = 0; k < kPoses; ++k) {
+    SCOPED_TRACE(k);
+    poses[k] = {testing::generic_rotation(), {0, 0, 0.9 + 0.0125 * k}};
+    expected[k] = on_cpu.run(cloud, poses[k]);
+    const SphereState hub = on_cpu.states()[n * n * n / 2];
+    cut += hub == SphereState::boundary;
+    reached += hub == SphereState::inside;
+    expect_equal(expected[k], on_device.run(cloud, poses[k]));
+  }
+  on_device.run(cloud, poses, batch);
+  for (int k = 0; k < kPoses; ++k) expect_equal(expected[k], batch[k]);
+  EXPECT_GT(cut, 0);
+  EXPECT_GT(reached, 0);
+}
+
+TEST(HubOnDevice, GivesTheSame) {
+  expect_same_at_hub(19);
+}
+
+TEST(SmallQueryOnDevice, GivesTheSameAtAHub) {
+  expect_same_at_hub(5);
+}
 
 // Small enough for compute-sanitizer, with every path through the kernels: contact, hidden places,
 // one pose and several.

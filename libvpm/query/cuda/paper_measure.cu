@@ -7,10 +7,6 @@
 namespace vpm::cuda {
 namespace {
 
-// Threads that go through a sphere's neighbours together: where all blocks answer one query there
-// are more threads than spheres in a front.
-constexpr unsigned kWidthOfGrid = 32, kWidthOfBlock = 8;
-
 struct PaperLaunch {
   PaperLevel level;
   PointsView points;
@@ -28,6 +24,7 @@ __device__ PaperSpace space_of(const PaperSpace& first, std::size_t spheres) {
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose(const __grid_constant__ PaperLaunch launch, const __grid_constant__ PoseFrame frame,
              Totals* totals, PaperCounters* counters, Answer* answer, unsigned sequence) {
+  __shared__ HubShared shared;
   __shared__ RawResult total;
   const PaperLevel& level = launch.level;
   const unsigned turn = sequence % 2;
@@ -38,8 +35,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   gather(level, launch.points, frame, {blockIdx.x, gridDim.x}, space, counters[turn]);
   team.sync();
   const std::uint64_t met = now();
-  const RawResult part =
-      PaperFlood<GridTeam>(level, space, counters[turn], team, kWidthOfGrid).run();
+  const RawResult part = PaperFlood<GridTeam>(level, space, counters[turn], team, shared).run();
   add_block(part, totals->result);
   if (!is_last_block(totals->done)) return;
   if (threadIdx.x == 0) {
@@ -57,6 +53,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     many_poses(const __grid_constant__ PaperLaunch launch, const __grid_constant__ CloudFrame cloud,
                const Pose* poses, unsigned count, RawResult* results) {
+  __shared__ HubShared shared;
   __shared__ PoseFrame frame;
   __shared__ PaperCounters counters;
   __shared__ RawResult total;
@@ -72,7 +69,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     __syncthreads();
     gather(level, launch.points, frame, {}, space, counters);
     team.sync();
-    const RawResult part = PaperFlood<BlockTeam>(level, space, counters, team, kWidthOfBlock).run();
+    const RawResult part = PaperFlood<BlockTeam>(level, space, counters, team, shared).run();
     add_block(part, total);
     __syncthreads();
     if (threadIdx.x == 0) {
@@ -109,6 +106,13 @@ class PaperMemory {
   DeviceArray<Vec3> normals_;
 };
 
+std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
+  std::vector<std::uint32_t> hubs;
+  for (std::uint32_t i = 0; i + 1 < graph.begin.size(); ++i)
+    if (graph.begin[i + 1] - graph.begin[i] > PaperLevel::kMostNeighbors) hubs.push_back(i);
+  return hubs;
+}
+
 class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
@@ -116,11 +120,12 @@ class PaperOnDevice : public MeasureOnDevice {
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),
+        hubs_(hubs_of(level.graph)),
         grid_begin_(level.grid.begin),
         grid_spheres_(level.grid.spheres),
-        level_{
-            level.sphere_count,  spheres_.get(),    graph_begin_.get(),           neighbors_.get(),
-            view_of(level.grid), measures_of(tool), reach_of_spheres(tool, level)},
+        level_{level.sphere_count,  spheres_.get(),    graph_begin_.get(),
+               neighbors_.get(),    hubs_.get(),       static_cast<std::uint32_t>(hubs_.size()),
+               view_of(level.grid), measures_of(tool), reach_of_spheres(tool, level)},
         memory_(level.sphere_count, 2),
         totals_(1),
         counters_(2) {
@@ -167,7 +172,7 @@ class PaperOnDevice : public MeasureOnDevice {
   }
 
   DeviceArray<Sphere> spheres_;
-  DeviceArray<std::uint32_t> graph_begin_, neighbors_, grid_begin_, grid_spheres_;
+  DeviceArray<std::uint32_t> graph_begin_, neighbors_, hubs_, grid_begin_, grid_spheres_;
   PaperLevel level_;
   PaperMemory memory_;
   DeviceArray<Totals> totals_;

@@ -20,6 +20,7 @@ class BlockTeam {
  public:
   __device__ unsigned thread() const { return threadIdx.x; }
   __device__ unsigned threads() const { return blockDim.x; }
+  __device__ Part block() const { return {}; }
   __device__ void sync() { __syncthreads(); }
 };
 
@@ -29,6 +30,7 @@ class GridTeam {
   __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
   __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
   __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
+  __device__ Part block() const { return {blockIdx.x, gridDim.x}; }
   __device__ void sync() {
     __syncthreads();
     target_ += gridDim.x;
