@@ -33,7 +33,8 @@ class MeasureOnDevice : public DeviceMeasure {
 
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
-  unsigned processors() const { return processors_; }
+  // Of a launch that answers one query.
+  unsigned blocks() const { return kBlocksPerProcessor * processors_; }
   cudaStream_t stream() const { return stream_.get(); }
 
  private:

@@ -150,8 +150,7 @@ class PaperOnDevice : public MeasureOnDevice {
     Totals* totals = totals_.get();
     PaperCounters* counters = counters_.get();
     void* values[] = {&arguments, &pose, &totals, &counters, &answer, &sequence};
-    check(cudaLaunchCooperativeKernel(one_pose, kBlocksPerProcessor * processors(), kThreads,
-                                      values, 0, stream()));
+    check(cudaLaunchCooperativeKernel(one_pose, blocks(), kThreads, values, 0, stream()));
   }
   void launch(const Pose* poses, unsigned count, RawResult* results) override {
     if (!teams_) teams_ = std::make_unique<Teams>(level_.count);

@@ -215,7 +215,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   RefinedOnDevice(const ToolModel& tool, const Level& level, int device)
       : MeasureOnDevice(tool, device),
         level_(tool, level),
-        memory_(level_.view(), 1, processors()),
+        memory_(level_.view(), 1, blocks()),
         totals_(1),
         counters_(1) {
     totals_.clear();
@@ -261,13 +261,13 @@ class RefinedOnDevice : public MeasureOnDevice {
     PoseFrame pose = frame;
     Totals* totals = totals_.get();
     RefinedCounters* counters = counters_.get();
-    unsigned sphere_blocks = processors();
+    // Few points lie in reach: they take less than a large level's spheres.
+    unsigned sphere_blocks = is_small(level_.view()) ? blocks() / 2 : blocks() - blocks() / 8;
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
-    const unsigned blocks = kBlocksPerProcessor * processors();
     if (is_small(level_.view())) {
-      check(cudaLaunchKernel(one_pose_small<Surface>, blocks, kThreads, values, 0, stream()));
+      check(cudaLaunchKernel(one_pose_small<Surface>, blocks(), kThreads, values, 0, stream()));
     } else {
-      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks, kThreads, values, 0, stream()));
+      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));
     }
   }
 
