@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -33,8 +34,10 @@ constexpr double kBehind = 1e-3, kTouching = 1e-9;
 constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
 
+// 2^-level, by its bits: std::ldexp is a call, and this is asked for every cell.
 double edge(int level) {
-  return std::ldexp(1.0, -level);
+  constexpr int kBias = 1023, kFraction = 52;
+  return std::bit_cast<double>(static_cast<std::uint64_t>(kBias - level) << kFraction);
 }
 
 // Half the diagonal of a cube, rounded up.
@@ -51,7 +54,7 @@ float round_up(double v) {
 }
 
 BlockIndex::Coordinates cube_of(Vec3 x, int level) {
-  const double scale = std::ldexp(1.0, level);
+  const double scale = edge(-level);
   const auto index = [&](double v) {
     return static_cast<std::uint32_t>(std::clamp(v * scale, 0.0, scale - 1));
   };
