@@ -213,8 +213,9 @@ class CellMeasure {
       return false;
     }
     bool any_hidden = false;
+    const auto& near = surface_.around_ball(look.center, block.radius, look.point);
     for (std::uint32_t s = block.begin; s < block.end; ++s)
-      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result);
+      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result, near);
     return any_hidden;
   }
 
@@ -239,9 +240,14 @@ class CellMeasure {
     bool is_hidden = false;  // by another surface than that of the cell, maybe
   };
   VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point = kNoPoint) const {
+    return look_at(piece, point, surface_);
+  }
+  // `near`: the surface as far as it concerns the piece.
+  template <class Near>
+  VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point, const Near& near) const {
     PieceLook look;
     look.x = to_surface_ * piece.at;
-    look.reading = surface_.read(look.x, point);
+    look.reading = near.read(look.x, point);
     look.is_inside = look.reading.known && look.reading.distance < piece.radius;
     if (!look.is_inside) return look;
     look.is_far = is_far(look.x, look.reading.foot);
@@ -273,7 +279,12 @@ class CellMeasure {
   // Adds what one piece contributes to run(): first of all pieces that are seen, then, knowing the
   // plane, of those that are hidden. Returns whether the piece was left for the second pass.
   VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
-    const PieceLook look = look_at(piece, result.point);
+    return add_piece(piece, pass, result, surface_);
+  }
+  template <class Near>
+  VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result,
+                        const Near& near) const {
+    const PieceLook look = look_at(piece, result.point, near);
     result.point = look.reading.point;
     if (!look.is_inside) return false;
     result.is_far |= look.is_far;

@@ -91,11 +91,18 @@ struct DiskSurface {
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
   VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
-    const std::uint32_t i = nearest(x, HUGE_VAL, near);
+    return read_point(x, nearest(x, HUGE_VAL, near));
+  }
+  VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
     const Vec3 normal = widen(normals[i]), foot = widen(positions[i]);
     return {true, dot(normal, x - foot), normal, foot, i};
   }
+
+  // The surface for places in a ball: the few points that may be nearest to one of them, if they
+  // are few. `nearest`: the point nearest to the centre.
+  class AroundBall;
+  VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t nearest) const;
 
   // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
   // towards the rim beside it (at a crease, where the gradient fans out).
@@ -111,7 +118,7 @@ struct DiskSurface {
   // Each disk is a plane of its own: nothing is taken for flat, and no bound of the gap is known.
   struct Look {
     Side side = Side::free;
-    std::uint32_t point = kNoPoint;  // a point that the ball may touch
+    std::uint32_t point = kNoPoint;  // the nearest to the centre, where the ball may touch it
   };
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
     const std::uint32_t point = nearest(center, radius + largest_radius);
@@ -128,5 +135,85 @@ struct DiskSurface {
   VPM_HD bool mean_plane(const Look&, Vec3, double, double, TangentPlane&) const { return false; }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
 };
+
+// Sparse points: a tool's piece is far from most of them, and a list of a dozen is quicker to
+// search than the tree. Answers have the same bits.
+class DiskSurface::AroundBall {
+ public:
+  VPM_HD AroundBall(const DiskSurface& surface, Vec3 center, double radius, std::uint32_t nearest)
+      : surface_(surface), center_(center) {
+    if (nearest == kNoPoint) return;
+    const double covered = kSlack * radius;
+    const double distance = norm(widen(surface.positions[nearest]) - center);
+    if (are_many(nearest, covered * (distance + covered))) return;
+    squared_radius_ = covered * covered;
+    const double reach = kSlack * (distance + 2 * covered);
+    gather(reach * reach);
+  }
+
+  VPM_HD Reading read(Vec3 x, std::uint32_t near) const {
+    if (count_ == 0 || !(squared_norm(x - center_) <= squared_radius_))
+      return surface_.read(x, near);
+    std::uint32_t best = points_[0];
+    double best_squared = squared_norm(widen(surface_.positions[best]) - x);
+    for (int k = 1; k < count_; ++k) {
+      const double squared = squared_norm(widen(surface_.positions[points_[k]]) - x);
+      if (squared < best_squared || (squared == best_squared && points_[k] < best)) {
+        best_squared = squared;
+        best = points_[k];
+      }
+    }
+    return surface_.read_point(x, best);
+  }
+
+ private:
+  static constexpr int kMostPoints = 48;
+  static constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+
+  // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
+  // radius is 4 `quarter`. The nearest point's leaf tells how densely.
+  VPM_HD bool are_many(std::uint32_t nearest, double quarter) const {
+    const PointBox& leaf = surface_.nodes[surface_.leaves + nearest / kLeafSize];
+    const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
+    const double area = 12 * quarter, area_of_leaf = 0.5 * squared_diagonal;  // roughly
+    return area * kLeafSize > 2 * kMostPoints * area_of_leaf;
+  }
+
+  // The points that may be nearest; none if they are more than kMostPoints.
+  VPM_HD void gather(double squared_reach) {
+    std::uint32_t stack[kMaxDepth];
+    int size = 0;
+    stack[size++] = 1;
+    while (size > 0) {
+      const std::uint32_t node = stack[--size];
+      if (squared_distance(surface_.nodes[node], center_) > squared_reach) continue;
+      if (node < surface_.leaves) {
+        stack[size++] = 2 * node + 1;
+        stack[size++] = 2 * node;
+        continue;
+      }
+      const std::uint32_t begin = (node - surface_.leaves) * kLeafSize;
+      for (std::uint32_t i = begin; i < begin + kLeafSize && i < surface_.count; ++i) {
+        if (squared_norm(widen(surface_.positions[i]) - center_) > squared_reach) continue;
+        if (count_ == kMostPoints) {
+          count_ = 0;
+          return;
+        }
+        points_[count_++] = i;
+      }
+    }
+  }
+
+  const DiskSurface& surface_;
+  Vec3 center_;
+  double squared_radius_ = 0;
+  int count_ = 0;
+  std::uint32_t points_[kMostPoints];
+};
+
+VPM_HD inline DiskSurface::AroundBall DiskSurface::around_ball(Vec3 center, double radius,
+                                                               std::uint32_t nearest) const {
+  return {*this, center, radius, nearest};
+}
 
 }  // namespace vpm

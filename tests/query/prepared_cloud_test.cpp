@@ -111,6 +111,34 @@ TEST(DepthSurface, SideOfBallIsConservative) {
   }
 }
 
+TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
+  // A lattice, so that many distances are equal, coarse enough for short lists and too fine for
+  // such.
+  for (const double spacing : {0.001, 0.01, 0.1}) {
+    Cloud cloud;
+    for (int i = -20; i <= 20; ++i) {
+      for (int k = -20; k <= 20; ++k) {
+        cloud.positions.push_back(narrow(Vec3{i * spacing, k * spacing, 0.25 * spacing * (k % 2)}));
+        cloud.normals.push_back({0, 0, 1});
+        cloud.radii.push_back(static_cast<float>(spacing));
+      }
+    }
+    const PreparedCloud prepared(cloud);
+    const DiskSurface disks = prepared.disk_surface();
+    for (const double height : {0.0, 0.02, -0.3}) {
+      for (const double radius : {0.004, 0.02}) {
+        const Vec3 center{0.5 * spacing, 0, height};
+        const auto around = disks.around_ball(center, radius, disks.nearest(center, HUGE_VAL));
+        for (int k = 0; k < 200; ++k) {
+          const Vec3 x = center + radius * Vec3{std::sin(k), std::cos(1.7 * k), std::sin(2.3 * k)};
+          ASSERT_EQ(around.read(x, kNoPoint).point, disks.nearest(x, HUGE_VAL)) << spacing;
+        }
+        ASSERT_EQ(around.read(center, kNoPoint).point, disks.nearest(center, HUGE_VAL));
+      }
+    }
+  }
+}
+
 TEST(PreparedCloud, RefusesAPointOffItsPixel) {
   Cloud cloud = see(synthetic::make_scene("wall"));
   cloud.positions[5].x += 0.1f;

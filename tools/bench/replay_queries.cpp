@@ -104,6 +104,27 @@ Cloud wide_view(std::uint32_t width, bool keeps_camera) {
   return cloud;
 }
 
+// A wall 80 degrees off the optical axis by every eighth pixel: points far apart with disks larger
+// than the tool.
+Cloud sparse_grazing_view() {
+  constexpr double kTilt = 80 * kPi / 180;
+  constexpr std::uint32_t kStep = 8;
+  const Vec3 normal{0, std::sin(kTilt), -std::cos(kTilt)};
+  const Camera camera = the_scene().camera;
+  Cloud cloud;
+  for (std::uint32_t v = 0; v < camera.height; v += kStep) {
+    for (std::uint32_t u = 0; u < camera.width; u += kStep) {
+      const Vec3 ray = unproject(camera.intrinsics, u, v, 1);
+      const double z = normal.z / dot(normal, ray);  // through (0, 0, 1)
+      if (!(z > 0 && z < 5)) continue;
+      cloud.positions.push_back(narrow(z * ray));
+      cloud.normals.push_back(narrow(normal));
+      cloud.radii.push_back(static_cast<float>(10 * kStep * z / camera.intrinsics.fx));
+    }
+  }
+  return cloud;
+}
+
 }  // namespace
 
 Durations timed(int calls, int warm_up, const std::function<void(int call)>& body) {
@@ -120,6 +141,7 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
   const DepthImage depth = noisy_depth(scene);
   const Cloud cloud = make_cloud(depth, scene.camera, NormalOptions{});
   const PreparedCloud prepared(cloud);
+  const PreparedCloud sparse(sparse_grazing_view());
   const Peers peers(tool.solid);
   const PixelCloud pixels = make_pixel_cloud(depth, scene.camera);
   constexpr double kRadius = 1e-3;
@@ -140,6 +162,13 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
       });
       add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
     }
+    Query query(tool.model, {.level = tool.levels.front()});
+    Result result;
+    const Durations of_sparse = timed(few, 1, [&](int k) {
+      result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
+    });
+    add_query(report, "refined, sparse points", tool.levels.front(), threads, of_sparse,
+              result.volume_fraction);
     const Camera& camera = scene.camera;
     const auto to_camera = [&](int k) { return relative_to(camera.to_world, pose(k)); };
     Wrench force;
