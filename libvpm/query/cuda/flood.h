@@ -11,6 +11,14 @@
 
 namespace vpm::cuda {
 
+// Shares with a word: most of a large level have none.
+struct NotedShares {
+  static constexpr unsigned kRoom = 4096;
+
+  std::uint32_t shares[kRoom], words[kRoom];
+  unsigned count;
+};
+
 // Shares of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodShares = 3072;
 inline constexpr std::uint32_t kFloodEdges = 4096;  // of such a level
@@ -19,6 +27,11 @@ struct FloodShared {
   Edge edges[kFloodEdges];     // from the front: between shares that the flood may pass
   unsigned passages, entries;  // from the back: by which it may enter
 };
+// What a block needs for one way or the other.
+union FloodBlock {
+  FloodShared shared;
+  NotedShares noted;
+};
 
 template <class Surface, class Team>
 class Flood {
@@ -26,7 +39,7 @@ class Flood {
   // `in_shared`: the level has no more than kFloodShares and kFloodEdges.
   __device__ Flood(const LevelView& level, const Surface& surface, const Pose& to_surface,
                    const RefinedSpace& space, unsigned turn, RefinedCounters& counters, Team& team,
-                   FloodShared& shared, bool in_shared)
+                   FloodBlock& block, bool in_shared)
       : level_(level),
         surface_(surface),
         to_surface_(to_surface),
@@ -34,9 +47,10 @@ class Flood {
         notes_(space.notes[turn % 2]),
         counters_(counters),
         team_(team),
-        shared_(shared),
+        shared_(block.shared),
+        noted_(block.noted),
         in_shared_(in_shared),
-        words_(in_shared ? shared.words : notes_.words),
+        words_(in_shared ? block.shared.words : notes_.words),
         flood_(space.parents) {
     if (in_shared) bring_to_shared();
   }
@@ -67,6 +81,7 @@ class Flood {
 
  private:
   using Measure = CellMeasure<Surface>;
+  static constexpr std::uint32_t kEdgesOfThread = 4;  // at which all are looked at
 
   __device__ void bring_to_shared() {
     if (threadIdx.x == 0) shared_.passages = shared_.entries = 0;
@@ -86,6 +101,13 @@ class Flood {
   // by which it may enter.
   template <class Join, class Enter>
   __device__ void for_edges(const Join& join, const Enter& enter) const;
+  // Does so for one edge.
+  template <class Join, class Enter>
+  __device__ void look_at_edge(std::uint32_t i, std::uint32_t word_of_i, std::uint32_t j,
+                               std::uint32_t word_of_j, const Join& join, const Enter& enter) const;
+  // Calls visit(i, word) for the shares that have a word, dealt out to the threads of the team.
+  template <class Visit>
+  __device__ void for_noted_shares(const Visit& visit) const;
   __device__ void join_shares() const;
   __device__ void flood_in_shared();
   __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
@@ -108,6 +130,7 @@ class Flood {
   RefinedCounters& counters_;
   Team& team_;
   FloodShared& shared_;
+  NotedShares& noted_;
   bool in_shared_;
   std::uint32_t* words_;
   UnionFind flood_;  // node 0 is the entry, node i + 1 share i
@@ -134,23 +157,91 @@ __device__ void Flood<Surface, Team>::for_edges(const Join& join, const Enter& e
 #pragma unroll
     for (unsigned k = 0; k < kTogether; ++k) {
       if (first + k * team_.threads() >= level_.edge_count) break;
-      const std::uint32_t i = edges[k].larger, j = edges[k].smaller;
-      if (is_passable(words[k][0]) && is_passable(words[k][1]))
-        join(i, j);
-      else if ((words[k][0] & kCut) != 0 && is_passable(words[k][1]))
-        enter(i, j);
-      else if ((words[k][1] & kCut) != 0 && is_passable(words[k][0]))
-        enter(j, i);
+      look_at_edge(edges[k].larger, words[k][0], edges[k].smaller, words[k][1], join, enter);
     }
   }
 }
 
 template <class Surface, class Team>
+template <class Join, class Enter>
+__device__ void Flood<Surface, Team>::look_at_edge(std::uint32_t i, std::uint32_t word_of_i,
+                                                   std::uint32_t j, std::uint32_t word_of_j,
+                                                   const Join& join, const Enter& enter) const {
+  if (is_passable(word_of_i) && is_passable(word_of_j))
+    join(i, j);
+  else if ((word_of_i & kCut) != 0 && is_passable(word_of_j))
+    enter(i, j);
+  else if ((word_of_j & kCut) != 0 && is_passable(word_of_i))
+    enter(j, i);
+}
+
+// Blocks take shares side by side in turns, and list those that have a word.
+template <class Surface, class Team>
+template <class Visit>
+__device__ void Flood<Surface, Team>::for_noted_shares(const Visit& visit) const {
+  constexpr unsigned kTogether = 8;  // words whose reads wait together
+  const Part part = team_.block();
+  const unsigned step = part.parts * blockDim.x;
+  const Tile warp(32);
+  for (std::uint32_t first = part.part * blockDim.x; first < level_.count;) {
+    __syncthreads();
+    if (threadIdx.x == 0) noted_.count = 0;
+    __syncthreads();
+    bool has_room = true;
+    for (; has_room && first < level_.count; first += kTogether * step) {
+      std::uint32_t words[kTogether];
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k) {
+        const std::uint32_t i = first + k * step + threadIdx.x;
+        words[k] = i < level_.count ? notes_.words[i] : 0;
+      }
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k) {
+        const unsigned found = __ballot_sync(~0U, words[k] != 0);
+        unsigned slot = 0;
+        if (warp.leads() && found != 0) slot = atomicAdd(&noted_.count, __popc(found));
+        slot = warp.from(slot, 0) + __popc(found & ((1U << warp.lane) - 1));
+        if (words[k] == 0) continue;
+        noted_.shares[slot] = first + k * step + threadIdx.x;
+        noted_.words[slot] = words[k];
+      }
+      __syncthreads();
+      has_room = noted_.count + kTogether * blockDim.x <= NotedShares::kRoom;
+      __syncthreads();
+    }
+    for (unsigned k = threadIdx.x; k < noted_.count; k += blockDim.x)
+      visit(noted_.shares[k], noted_.words[k]);
+  }
+}
+
+// Of a large level, edges are looked at from the shares that have a word: each from its larger
+// index, of which a share has few.
+template <class Surface, class Team>
 __device__ void Flood<Surface, Team>::join_shares() const {
-  for_edges([&](std::uint32_t i, std::uint32_t j) { flood_.join(i + 1, j + 1); },
-            [&](std::uint32_t cut, std::uint32_t i) {
-              if (enters(cut, i)) flood_.join(0, i + 1);
-            });
+  const auto join = [&](std::uint32_t i, std::uint32_t j) { flood_.join(i + 1, j + 1); };
+  const auto enter = [&](std::uint32_t cut, std::uint32_t i) {
+    if (enters(cut, i)) flood_.join(0, i + 1);
+  };
+  if (level_.edge_count <= kEdgesOfThread * team_.threads()) {
+    for_edges(join, enter);
+    return;
+  }
+  for_noted_shares([&](std::uint32_t i, std::uint32_t word) {
+    if (!is_passable(word) && (word & kCut) == 0) return;
+    constexpr unsigned kTogether = 4;  // edges whose reads wait together
+    const std::uint32_t end = level_.edge_begin[i + 1];
+    for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kTogether) {
+      std::uint32_t others[kTogether], words[kTogether];
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k)
+        others[k] = level_.edges[e + k < end ? e + k : e].smaller;
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k) words[k] = words_[others[k]];
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k)
+        if (e + k < end) look_at_edge(i, word, others[k], words[k], join, enter);
+    }
+  });
 }
 
 // Edges that matter are listed first; in each round the flood passes all of them.
@@ -261,11 +352,16 @@ __device__ void Flood<Surface, Team>::decide_hidden() {
 template <class Surface, class Team>
 __device__ RawResult Flood<Surface, Team>::add_up_shares() const {
   RawResult result;
-  for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
-    const std::uint32_t word = words_[i];
+  const auto add = [&](std::uint32_t i, std::uint32_t word) {
     if ((word & kCountsPoints) != 0) result.points += notes_.points[i];
     if ((word & kCut) != 0 || (may_be_inside(word) && (word & kUnsure) == 0))
       add_share(i, word, notes_.sums[i], result);
+  };
+  if (in_shared_ || level_.count <= team_.threads()) {
+    for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
+      add(i, words_[i]);
+  } else {
+    for_noted_shares(add);
   }
   return result;
 }

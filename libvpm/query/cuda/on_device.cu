@@ -55,6 +55,18 @@ std::vector<Edge> edges_of(const SphereGraph& graph) {
   return edges;
 }
 
+// Of each sphere, where the edges begin of which it has the larger index.
+std::vector<std::uint32_t> edge_begins(const SphereGraph& graph) {
+  std::vector<std::uint32_t> begins{0};
+  for (std::uint32_t i = 0; i + 1 < graph.begin.size(); ++i) {
+    std::uint32_t count = 0;
+    for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k)
+      count += graph.neighbors[k] < i ? 1 : 0;
+    begins.push_back(begins.back() + count);
+  }
+  return begins;
+}
+
 std::vector<Vec3> centers_of(const ToolModel& tool, const Level& level) {
   std::vector<Vec3> centers(level.sphere_count);
   for (std::size_t i = 0; i < centers.size(); ++i)
@@ -85,7 +97,8 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
       samples_(level.samples),
-      edges_(edges_of(level.graph)) {
+      edges_(edges_of(level.graph)),
+      edge_begin_(edge_begins(level.graph)) {
   std::vector<Chunk> chunks;
   units_ = DeviceArray<Unit>(units_of(tool, level, clusters, chunks));
   chunks_ = DeviceArray<Chunk>(chunks);
@@ -102,6 +115,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.units = units_.get();
   view_.share_masses = share_masses_.get();
   view_.edges = edges_.get();
+  view_.edge_begin = edge_begin_.get();
   view_.edge_count = static_cast<std::uint32_t>(edges_.size());
   view_.piece_count = static_cast<std::uint32_t>(samples_.size() + blocks_.size());
   view_.grid = view_of(level.grid);

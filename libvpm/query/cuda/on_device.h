@@ -46,6 +46,7 @@ class DeviceLevel {
   DeviceArray<Unit> units_;
   DeviceArray<Chunk> chunks_;
   DeviceArray<Edge> edges_;
+  DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;
 };
 

@@ -44,7 +44,7 @@ __host__ __device__ bool is_small(const LevelView& level) {
 // Memory of a block; the steps of a query follow each other.
 union BlockShared {
   MeasureShared measure;
-  FloodShared flood;
+  FloodBlock flood;
 };
 
 // The first step of one query by all blocks of a launch: `sphere_blocks` deal with spheres, the

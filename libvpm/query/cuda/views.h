@@ -57,7 +57,8 @@ struct LevelView {
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
   const Chunk* chunks = nullptr;
-  const Edge* edges = nullptr;
+  const Edge* edges = nullptr;                // by their larger index
+  const std::uint32_t* edge_begin = nullptr;  // count + 1
   GridView grid;
   Vec3 center_of_mass;
   ToolReach tool_reach;
