@@ -6,6 +6,10 @@
 //   measure=refined  or paper; the path is the same
 //   level=0       spheres; 0 is the finest level
 //   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
+//   frames=none   counts or metres: every query sees a new depth image of the cloud's camera, which
+//                 lies in the frames' own memory when the time begins
+//   behind=0      1: a query looks at the image before the newest, which is made ready meanwhile
+//   method=inverse-depth   of the images' normals; or pca
 //   batch=1       so many poses are asked at once, as planners do
 //   json=FILE     the figures, also as JSON
 //   poses=FILE    the first path=400 poses, for vpm-query --poses
@@ -21,6 +25,7 @@
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
+#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/query.h"
 
 namespace {
@@ -128,6 +133,71 @@ Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
   return figures;
 }
 
+// The depth images of a camera that looks at one scene.
+class CameraStream {
+ public:
+  CameraStream(const CloudSensor& sensor, bool in_counts, const NormalOptions& normals,
+               const Device& device)
+      : sensor_(sensor),
+        in_counts_(in_counts),
+        frames_({sensor.camera.intrinsics, sensor.camera.width, sensor.camera.height,
+                 in_counts ? std::optional(kCountsPerMetre) : std::nullopt, normals, device}) {}
+
+  void receive() {
+    const std::vector<float>& depth = sensor_.depth.depth;
+    if (in_counts_)
+      std::transform(depth.begin(), depth.end(), frames_.counts().begin(), [](float z) {
+        return static_cast<std::uint16_t>(std::min(z * kCountsPerMetre + 0.5, 65535.0));
+      });
+    else
+      std::copy(depth.begin(), depth.end(), frames_.metres().begin());
+  }
+  DepthFrame prepare() { return frames_.prepare(sensor_.camera.to_world); }
+
+ private:
+  static constexpr double kCountsPerMetre = 5000;
+  const CloudSensor& sensor_;
+  bool in_counts_;
+  DepthFrames frames_;
+};
+
+// With a new image for each query. Copies of the camera take turns as those of the tool.
+Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
+                   const ToolModel& tool, const Path& path, int count, bool behind) {
+  Figures figures;
+  std::optional<DepthFrame> last;
+  for (int k = -kWarmUp; k < count; ++k) {
+    const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
+    const Pose pose = path.at(tool, k);
+    cameras[copy].receive();
+    const auto begin = std::chrono::steady_clock::now();
+    const DepthFrame newest = cameras[copy].prepare();
+    const Result result = queries[copy].run(behind && last ? *last : newest, pose);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    last = newest;
+    if (k < 0) continue;
+    figures.microseconds.push_back(took.count());
+    figures.fraction += result.volume_fraction / count;
+  }
+  std::sort(figures.microseconds.begin(), figures.microseconds.end());
+  return figures;
+}
+
+// Until an image is ready, without a query.
+double prepare_microseconds(std::deque<CameraStream>& cameras, int count) {
+  Figures figures;
+  for (int k = -kWarmUp; k < count; ++k) {
+    CameraStream& camera = cameras[static_cast<std::size_t>(k + kWarmUp) % cameras.size()];
+    camera.receive();
+    const auto begin = std::chrono::steady_clock::now();
+    camera.prepare().points();
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    if (k >= 0) figures.microseconds.push_back(took.count());
+  }
+  std::sort(figures.microseconds.begin(), figures.microseconds.end());
+  return figures.quantile(0.5);
+}
+
 // Bars over classes that widen by a fifth.
 void print_histogram(const Figures& figures) {
   const std::vector<double>& times = figures.microseconds;
@@ -171,14 +241,15 @@ void write_poses(const std::string& name, const ToolModel& tool, const Path& pat
 Options parse(int argc, char** argv) {
   Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
-                  {"json", ""},       {"poses", ""},          {"path", "400"}};
+                  {"json", ""},       {"poses", ""},          {"path", "400"},
+                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
       throw Error(ErrorKind::usage, text +
                                         ": the options are device= measure= queries= level= "
-                                        "rotate= batch= json= poses= path=");
+                                        "rotate= frames= behind= method= batch= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -222,7 +293,23 @@ void control(int argc, char** argv) {
     json["poses"] = count;
     json["poses_per_second"] = run_batches(queries[0], clouds[0], tool, path, count, batch);
   } else {
-    const Figures figures = run(queries, clouds, tool, path, count);
+    const std::string& frames = options.at("frames");
+    std::deque<CameraStream> cameras;
+    if (frames != "none") {
+      if (!cloud.sensor || (frames != "counts" && frames != "metres"))
+        throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
+      for (int k = 0; k < copies; ++k)
+        cameras.emplace_back(*cloud.sensor, frames == "counts",
+                             NormalOptions{normal_method_from_text(options.at("method"))},
+                             query_options.device);
+      json["frames"] = frames;
+      json["behind"] = number(options, "behind", 0);
+      json["method"] = options.at("method");
+      json["prepare_us"] = prepare_microseconds(cameras, count);
+    }
+    const Figures figures =
+        cameras.empty() ? run(queries, clouds, tool, path, count)
+                        : run_frames(queries, cameras, tool, path, count, json["behind"] != 0);
     print_histogram(figures);
     json.update(to_json(figures));
     json["copies"] = copies;

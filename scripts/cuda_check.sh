@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, vpm-query and cuda_tests; LEVELS are like 1000,17000.
+# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages, vpm-normals and vpm-query, with cuda_tests
+# beside them; LEVELS are like 1000,17000.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one and in batches; 4. ten thousand queries at each level, with the data of
-# eight tools and clouds by turns; 5. a hundred thousand poses in batches. Exit code 1 if anything differs.
+# eight tools and clouds by turns; 5. a hundred thousand poses in batches; 6. scripts/cuda_frames_check.sh, which writes
+# OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -62,4 +64,5 @@ for r in report["control_loop"]:
 for r in report["batch"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON
+"$(dirname "$0")/cuda_frames_check.sh" "$bundle" "${out%.json}_frames.json" "$tool" "$cloud" "$levels" "$commit" || failed=1
 exit $failed

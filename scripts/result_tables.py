@@ -217,6 +217,24 @@ def cuda(report):
                   for r in report["control_loop"] if r["copies"] == copies])
 
 
+def cuda_frames(report):
+    of = {}
+    for r in report["control_loop"]:
+        kind = ("prepared" if "frames" not in r else "behind" if r["behind"] else "pca" if r["method"] == "pca"
+                else r["frames"])
+        of.setdefault(r["spheres"], {})[kind] = r
+    micro = lambda r: f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
+    rows = [[thousands(n), micro(r["prepared"]), micro(r["counts"]),
+             f"{r['counts']['median_us'] - r['prepared']['median_us']:.0f}", micro(r["metres"]), micro(r["pca"]),
+             micro(r["behind"])] for n, r in sorted(of.items())]
+    stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}"]
+              for r in report["stages"]]
+    return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts", "added",
+                   "of metres", "of counts, PCA", "in the image before, while the new one is prepared"], rows)
+            + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "image", "copy alone (the floor), µs",
+                              "brought by the kernel", "normals and all that queries read"], stages))
+
+
 def scaling(report):
     rows = [r for r in report["results"] if r["part"] == "spheres"]
     line = lambda name, key, digits=0: [name] + [f"{r[key]:.{digits}f}" for r in rows]
@@ -246,7 +264,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
-         "libvpm/query/README.md": {"cuda": (cuda, "cuda")},
+         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
 

@@ -17,9 +17,13 @@ struct Camera {
   Pose to_world;  // camera coordinates to world coordinates
 };
 
-// The point seen at pixel (u, v) with depth z along the optical axis, in camera coordinates.
+// The point of depth z along the optical axis on the ray (x, y, 1), in camera coordinates.
+VPM_HD constexpr Vec3 point_on_ray(double x, double y, double z) {
+  return {x * z, y * z, z};
+}
+// That seen at pixel (u, v).
 VPM_HD constexpr Vec3 unproject(const Intrinsics& k, double u, double v, double z) {
-  return {(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
+  return point_on_ray((u - k.cx) / k.fx, (v - k.cy) / k.fy, z);
 }
 
 // The same about the camera in world axes, as clouds hold points.

@@ -156,6 +156,9 @@ template <int Steps>
     return root;
   } else {
     const double value = ((root - 1) * root + minors) * root - determinant;
+#ifdef __CUDA_ARCH__
+    if (!(value < 0)) return root;  // no later step would change it
+#endif
     const double slope = (3 * root - 2) * root + minors;
     const double step = value / (slope > 0 ? slope : 1.0);
     return smallest_root<Steps - 1>(root - (value < 0 ? step : 0.0), minors, determinant);

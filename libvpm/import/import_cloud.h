@@ -9,6 +9,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
+#include "libvpm/query/device.h"
 
 namespace vpm {
 
@@ -17,6 +18,7 @@ struct ImportOptions {
   std::optional<double> units_per_metre;  // otherwise 1000 for PNG, 1 for the rest
   std::optional<Pose> to_world;           // otherwise a PCD's VIEWPOINT, or identity
   NormalOptions normals;
+  Device device;  // where normals are computed; changes none
 };
 
 inline constexpr double kPngUnitsPerMetre = 1000;

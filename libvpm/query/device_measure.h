@@ -7,6 +7,7 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/device.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/result.h"
@@ -26,6 +27,15 @@ class DeviceMeasure {
   // device's memory.
   virtual void run(const PreparedCloud& cloud, std::span<const Pose> poses,
                    std::span<Result> results) = 0;
+
+  // The same of frames, which lie on the device already.
+  virtual Result run_frame(const DepthFrame& frame, const Pose& pose) {
+    return run(frame.cloud(), pose);
+  }
+  virtual void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
+                         std::span<Result> results) {
+    run(frame.cloud(), poses, results);
+  }
 
   // Of the last single run.
   virtual void read_states(std::vector<SphereState>& states) = 0;

@@ -63,19 +63,28 @@ Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
   return result;
 }
 
+Result Query::run(const DepthFrame& frame, const Pose& pose) {
+  if (!device_) return run(frame.cloud(), pose);
+  check_pose(pose);
+  Result result = device_->run_frame(frame, pose);
+  scale(result);
+  return result;
+}
+
 void Query::forget() {
   if (refined_) refined_->forget();
 }
 
-void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                std::span<Result> results) {
+template <class OnDevice>
+void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
+                      std::span<Result> results, const OnDevice& on_device) {
   if (results.size() != poses.size()) {
     throw Error(ErrorKind::usage, "query: " + std::to_string(poses.size()) +
                                       " poses, but room for " + std::to_string(results.size()) +
                                       " results");
   }
   if (!device_) {
-    for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(cloud, poses[k]);
+    for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(*cloud, poses[k]);
     return;
   }
   // What a device would wait for.
@@ -83,10 +92,20 @@ void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
   parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
     for (const Pose& pose : poses.subspan(begin, end - begin)) check_pose(pose);
   });
-  device_->run(cloud, poses, results);
+  on_device();
   parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) scale(results[k]);
   });
+}
+
+void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                std::span<Result> results) {
+  run_batch(&cloud, poses, results, [&] { device_->run(cloud, poses, results); });
+}
+
+void Query::run(const DepthFrame& frame, std::span<const Pose> poses, std::span<Result> results) {
+  run_batch(device_ ? nullptr : &frame.cloud(), poses, results,
+            [&] { device_->run_frame(frame, poses, results); });
 }
 
 std::span<const SphereState> Query::states() const {

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/device_measure.h"
 #include "libvpm/query/measure_paper.h"
 #include "libvpm/query/measure_refined.h"
@@ -47,6 +48,11 @@ class Query {
   // at once.
   void run(const PreparedCloud& cloud, std::span<const Pose> poses, std::span<Result> results);
 
+  // The same on a frame of depth_frames.h, which must have been made for the query's device to be
+  // used where it lies.
+  Result run(const DepthFrame& frame, const Pose& pose);
+  void run(const DepthFrame& frame, std::span<const Pose> poses, std::span<Result> results);
+
   // Of coherent poses: the next one does not follow from the last.
   void forget();
 
@@ -55,6 +61,9 @@ class Query {
   std::span<const SphereState> states() const;
 
  private:
+  template <class OnDevice>
+  void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
+                 std::span<Result> results, const OnDevice& on_device);
   void scale(Result& result) const;
 
   const Level& level_;

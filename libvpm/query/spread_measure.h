@@ -15,6 +15,11 @@ class SpreadMeasure : public DeviceMeasure {
   Result run(const PreparedCloud& cloud, const Pose& pose) override {
     return measures_.front()->run(cloud, pose);
   }
+  // A batch goes to all devices, for which the CPU prepares the frame.
+  using DeviceMeasure::run_frame;
+  Result run_frame(const DepthFrame& frame, const Pose& pose) override {
+    return measures_.front()->run_frame(frame, pose);
+  }
   void read_states(std::vector<SphereState>& states) override {
     measures_.front()->read_states(states);
   }

@@ -14,19 +14,46 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+bool same_image_size_and_rays(const Camera& a, const Camera& b) {
+  const Intrinsics &k = a.intrinsics, &l = b.intrinsics;
+  return a.width == b.width && a.height == b.height && k.fx == l.fx && k.fy == l.fy &&
+         k.cx == l.cx && k.cy == l.cy;
+}
+
 }  // namespace
 
-std::unique_ptr<PreparedCloud> FrameReader::read(const RecordedFrame& frame) {
+void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
   ImportOptions options = options_;
   if (frame.camera) options.to_world = frame.camera;
   const ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
+  if (scan.image && options.device.is_cuda())
+    result.depth = on_device(scan, frame.path);
+  else
+    result.cloud = prepared(scan, frame.path);
+}
+
+DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& name) {
+  const auto& [camera, depth] = *scan.image;
+  if (!frames_ || !same_image_size_and_rays(camera, camera_)) {
+    frames_.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height, std::nullopt,
+                                      options_.normals, options_.device});
+    camera_ = camera;
+  }
+  std::copy(depth.depth.begin(), depth.depth.end(), frames_->metres().begin());
+  DepthFrame frame = frames_->prepare(camera.to_world);
+  if (frame.points() == 0) throw nothing_with_normal(scan, name);
+  return frame;
+}
+
+std::unique_ptr<PreparedCloud> FrameReader::prepared(const ImportedScan& scan,
+                                                     const std::string& name) {
   if (!scan.image) return std::make_unique<PreparedCloud>(scan.points);
   std::unique_ptr<PreparedCloud> cloud =
       spare_ ? std::move(spare_) : std::make_unique<PreparedCloud>(Cloud{});
   preparation_.prepare(scan.image->depth, scan.image->camera, *cloud);
   if (cloud->positions().empty()) {
     spare_ = std::move(cloud);
-    throw nothing_with_normal(scan, frame.path);
+    throw nothing_with_normal(scan, name);
   }
   return cloud;
 }
@@ -34,7 +61,7 @@ std::unique_ptr<PreparedCloud> FrameReader::read(const RecordedFrame& frame) {
 PreparedChange FrameReader::prepare(FrameChange change) {
   const auto start = std::chrono::steady_clock::now();
   PreparedChange result;
-  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.cloud; ++at) {
+  for (auto at = change.frames.rbegin(); at != change.frames.rend() && !result.has_frame(); ++at) {
     const RecordedFrame& frame = recording_.frames[*at];
     const auto fails = [&](FrameFault fault, const std::string& message) {
       result.unusable.push_back({*at, fault, message});
@@ -44,7 +71,7 @@ PreparedChange FrameReader::prepare(FrameChange change) {
       continue;
     }
     try {
-      result.cloud = read(frame);
+      read(frame, result);
       result.frame = *at;
     } catch (const NothingMeasured& fault) {
       fails(FrameFault::empty, fault.what());
@@ -114,15 +141,15 @@ PreparedChange FrameFeed::take() {
   if (ready_.empty()) std::rethrow_exception(failure_);
   PreparedChange change = std::move(ready_.front());
   ready_.pop_front();
-  if (change.cloud) done_.push_back(std::move(cloud_));
+  if (change.has_frame() && cloud_) done_.push_back(std::move(cloud_));
   lock.unlock();
   moved_.notify_all();
   return change;
 }
 
 void FrameFeed::count(const PreparedChange& taken) {
-  counts_.used += taken.cloud != nullptr;
-  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - (taken.cloud != nullptr);
+  counts_.used += taken.has_frame();
+  counts_.unseen += taken.change.frames.size() - taken.unusable.size() - taken.has_frame();
   counts_.late += taken.change.is_late;
   for (const UnusableFrame& frame : taken.unusable) {
     counts_.lost += frame.fault == FrameFault::lost;
@@ -137,8 +164,9 @@ const PreparedChange* FrameFeed::advance_to(std::size_t step) {
   taken_ = take();
   next_ = schedule_.next();
   count(taken_);
-  if (taken_.cloud) {
+  if (taken_.has_frame()) {
     cloud_ = std::move(taken_.cloud);
+    depth_ = std::exchange(taken_.depth, std::nullopt);
     frame_ = taken_.frame;
   }
   return &taken_;

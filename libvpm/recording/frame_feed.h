@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "libvpm/import/import_cloud.h"
+#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/frame_preparation.h"
 #include "libvpm/recording/frame_schedule.h"
 
@@ -30,16 +31,21 @@ struct UnusableFrame {
 // What the frames that come at one step bring: the newest that can be used.
 struct PreparedChange {
   FrameChange change;
-  std::unique_ptr<PreparedCloud> cloud;  // none: the loop goes on with the one it has
-  std::size_t frame = 0;                 // of the recording; where there is a cloud
+  // One of them, or none: the loop goes on with what it has.
+  std::unique_ptr<PreparedCloud> cloud;
+  std::optional<DepthFrame> depth;  // on a device
+  std::size_t frame = 0;            // of the recording; where there is one
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // from the file to the prepared cloud
+
+  bool has_frame() const { return cloud != nullptr || depth.has_value(); }
 };
 
 // Reads and prepares frames, on the calling thread. The recording must outlive it.
 class FrameReader {
  public:
-  // `options`: how images become clouds; the cameras' poses are the recording's.
+  // `options`: how images become clouds, and where: those for a device are prepared there. The
+  // cameras' poses are the recording's.
   FrameReader(const Recording& recording, const ImportOptions& options)
       : recording_(recording), options_(options), preparation_(options.normals) {}
 
@@ -48,12 +54,16 @@ class FrameReader {
   void give_back(std::unique_ptr<PreparedCloud> cloud) { spare_ = std::move(cloud); }
 
  private:
-  std::unique_ptr<PreparedCloud> read(const RecordedFrame& frame);
+  void read(const RecordedFrame& frame, PreparedChange& result);
+  std::unique_ptr<PreparedCloud> prepared(const ImportedScan& scan, const std::string& name);
+  DepthFrame on_device(const ImportedScan& scan, const std::string& name);
 
   const Recording& recording_;
   ImportOptions options_;
   FramePreparation preparation_;
   std::unique_ptr<PreparedCloud> spare_;
+  std::optional<DepthFrames> frames_;
+  Camera camera_;  // of frames_
 };
 
 // What the prepared frames of a loop were.
@@ -77,12 +87,14 @@ class FrameFeed {
   // Waits until the first change is ready, so that a loop by the clock begins with a frame.
   void wait_for_first();
 
-  // To be called for each step in turn. What comes with this step, or null. It has the cloud no
-  // more: that is cloud() now, until the next change.
+  // To be called for each step in turn. What comes with this step, or null. It has the frame no
+  // more: that is cloud() or depth_frame() now, until the next change.
   const PreparedChange* advance_to(std::size_t step);
 
   // Empty, and frame() nothing, before the first frame that can be used.
-  const PreparedCloud& cloud() const { return *cloud_; }
+  const PreparedCloud& cloud() const { return depth_ ? depth_->cloud() : *cloud_; }
+  // Null where the frame is not on a device.
+  const DepthFrame* depth_frame() const { return depth_ ? &*depth_ : nullptr; }
   std::optional<std::size_t> frame() const { return frame_; }
   const FrameCounts& counts() const { return counts_; }
 
@@ -98,6 +110,7 @@ class FrameFeed {
   FrameSchedule schedule_;  // of the loop; the thread has a copy
   std::optional<FrameChange> next_;
   std::unique_ptr<PreparedCloud> cloud_;
+  std::optional<DepthFrame> depth_;
   std::optional<std::size_t> frame_;
   PreparedChange taken_;
   FrameCounts counts_;

@@ -78,7 +78,10 @@ void say_notes(const Tool& tool, const std::string& name, const ImportedCloud& i
 
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
-  const ImportOptions options = import_options(tool, a.import);
+  ImportOptions options = import_options(tool, a.import);
+  // For one image, a device takes longer to wake up than the CPU to be done: only where it is
+  // named.
+  if (tool.common().device != "auto") options.device = tool.device();
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);
@@ -103,5 +106,6 @@ int main(int argc, char** argv) {
   Tool tool("vpm-normals", "Points with normals of a depth image or of another program's cloud");
   Arguments arguments;
   declare(tool.app(), arguments);
+  tool.computes_on_devices();
   return tool.run(argc, argv, [&] { run(tool, arguments); });
 }

@@ -70,12 +70,28 @@ std::size_t LevelQuery::finest_wanted(const ToolModel& tool, const QueryOptions&
   return tool.levels.size() - 1;
 }
 
-Result LevelQuery::run(const PreparedCloud& cloud, const Pose& pose) {
+template <class Scene>
+double LevelQuery::timed_run(std::size_t k, const Scene& scene, const Pose& pose) {
+  const auto begin = std::chrono::steady_clock::now();
+  result_ = queries_[k].run(scene, pose);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <class Scene>
+Result LevelQuery::run_in(const Scene& scene, const Pose& pose) {
   used_ = deadline_ ? deadline_->level() : 0;
   reason_ = reason_now();
-  seconds_ = timed_run(used_, cloud, pose);
+  seconds_ = timed_run(used_, scene, pose);
   if (deadline_) deadline_->took(std::max(seconds_, kShortest));
   return result_;
+}
+
+Result LevelQuery::run(const PreparedCloud& cloud, const Pose& pose) {
+  return run_in(cloud, pose);
+}
+
+Result LevelQuery::run(const DepthFrame& frame, const Pose& pose) {
+  return run_in(frame, pose);
 }
 
 void LevelQuery::run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -93,12 +109,6 @@ std::string LevelQuery::reason_now() const {
   if (!deadline_->keeps()) return "deadline missed";
   if (wanted.empty()) return "deadline";
   return used_ + 1 < queries_.size() ? "deadline over " + wanted : wanted;
-}
-
-double LevelQuery::timed_run(std::size_t k, const PreparedCloud& cloud, const Pose& pose) {
-  const auto begin = std::chrono::steady_clock::now();
-  result_ = queries_[k].run(cloud, pose);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::vector<double> LevelQuery::probe(const ToolModel& tool, const PreparedCloud& cloud) {

@@ -32,6 +32,7 @@ class LevelQuery {
              const PreparedCloud& cloud, const Pose& first_pose);
 
   Result run(const PreparedCloud& cloud, const Pose& pose);
+  Result run(const DepthFrame& frame, const Pose& pose);
   // Many at once, without a deadline; seconds() is then the time of each on average.
   void run(const PreparedCloud& cloud, std::span<const Pose> poses, std::span<Result> results);
 
@@ -47,7 +48,10 @@ class LevelQuery {
   std::size_t finest_wanted(const ToolModel& tool, const QueryOptions& options,
                             const PreparedCloud& cloud, const Pose& pose);
   std::string reason_now() const;
-  double timed_run(std::size_t k, const PreparedCloud& cloud, const Pose& pose);
+  template <class Scene>
+  Result run_in(const Scene& scene, const Pose& pose);
+  template <class Scene>
+  double timed_run(std::size_t k, const Scene& scene, const Pose& pose);
   std::vector<double> probe(const ToolModel& tool, const PreparedCloud& cloud);
 
   LevelRequest request_;

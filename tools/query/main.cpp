@@ -256,7 +256,7 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
       throw Error(ErrorKind::usage, "--rate and the rate of --coupling differ; give one of them");
     rate = parameters->rate;
   }
-  Replay replay(tool, a.replay, rate);
+  Replay replay(tool, a.replay, rate, options.device);
   const Pose first = replay.path().pose(0);
   LevelQuery query(model, options, level_request(a), replay.first_cloud(), first);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());

@@ -68,12 +68,14 @@ void declare(CLI::App& app, ReplayArguments& a) {
   for (const char* name : {"--cloud", "--pose", "--poses"}) frames->excludes(app.get_option(name));
 }
 
-Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate)
+Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
+               const Device& device)
     : tool_(tool),
       arguments_(arguments),
       rate_(rate),
       path_(read_path(tool, arguments.trajectory, rate)),
       import_(import_options(tool, arguments.import)) {
+  import_.device = device;
   recording_ = read_recording(arguments.frames, recording_options(arguments, import_));
   if (!import_.intrinsics && recording_.intrinsics) {
     import_.intrinsics = recording_.intrinsics;
@@ -114,7 +116,9 @@ double Replay::start_time() const {
 
 void Replay::find_first_cloud() {
   FrameSchedule schedule(recording_, schedule_);
-  FrameReader reader(recording_, import_);
+  ImportOptions on_cpu = import_;
+  on_cpu.device = {};
+  FrameReader reader(recording_, on_cpu);
   std::string why = "none comes before the path ends";
   // Of frames that repeat nothing new can be learnt.
   std::size_t looked_at = 0;
@@ -142,7 +146,9 @@ void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Mea
     if (arguments_.realtime) change = feed_->advance_to(k);
     CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
     last_pose_ = step.tool = coupling ? coupling->tool() : step.device;
-    step.contact = query.run(feed_->cloud(), step.tool);
+    const DepthFrame* const frame = feed_->depth_frame();
+    step.contact =
+        frame != nullptr ? query.run(*frame, step.tool) : query.run(feed_->cloud(), step.tool);
     if (coupling) {
       step.rendered = coupling->advance(step.device, step.contact.wrench);
       step.energy = coupling->energy();

@@ -32,7 +32,8 @@ class Replay {
  public:
   // Reads the recording and the path, which outlive nothing else. Throws what they throw, and
   // Error(refused) where they share no time or no frame can be used.
-  Replay(const Tool& tool, const ReplayArguments& arguments, double rate);
+  // Depth images are prepared on the device of the queries.
+  Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device);
 
   const SampledPath& path() const { return path_; }
   // The first frame that can be used: what levels are chosen by.

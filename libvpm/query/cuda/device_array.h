@@ -24,7 +24,7 @@ inline void finish_transfers() {
   check(cudaStreamSynchronize(cudaStreamLegacy));
 }
 
-// Values on the device, there when a constructor or clear() returns. Owns them.
+// Values on the device, there when a constructor, fill() or clear() returns. Owns them.
 template <class T>
 class DeviceArray {
  public:
@@ -32,11 +32,7 @@ class DeviceArray {
   explicit DeviceArray(std::size_t count) : count_(count) {
     if (count > 0) check(cudaMalloc(&data_, count * sizeof(T)));
   }
-  DeviceArray(const T* values, std::size_t count) : DeviceArray(count) {
-    if (count == 0) return;
-    check(cudaMemcpy(data_, values, count * sizeof(T), cudaMemcpyHostToDevice));
-    finish_transfers();
-  }
+  DeviceArray(const T* values, std::size_t count) : DeviceArray(count) { fill(values); }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
   ~DeviceArray() { cudaFree(data_); }
   DeviceArray(DeviceArray&& other) noexcept { swap(other); }
@@ -47,6 +43,11 @@ class DeviceArray {
 
   T* get() const { return data_; }
   std::size_t size() const { return count_; }
+  void fill(const T* values) {
+    if (count_ == 0) return;
+    check(cudaMemcpy(data_, values, count_ * sizeof(T), cudaMemcpyHostToDevice));
+    finish_transfers();
+  }
   void clear() {
     if (count_ == 0) return;
     check(cudaMemset(data_, 0, count_ * sizeof(T)));

@@ -7,6 +7,36 @@ namespace vpm::cuda {
 Result MeasureOnDevice::run(const PreparedCloud& cloud, const Pose& pose) {
   const CurrentDevice current(device_);
   bring(cloud);
+  return ask(pose);
+}
+
+void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                          std::span<Result> results) {
+  const CurrentDevice current(device_);
+  bring(cloud);
+  ask(poses, results);
+}
+
+Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
+  const CurrentDevice current(device_);
+  if (const CloudSlot* const slot = bring(frame)) {
+    const Result result = ask(pose);
+    if (slot->is_sound()) return result;
+  }
+  return run(frame.cloud(), pose);
+}
+
+void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> poses,
+                                std::span<Result> results) {
+  const CurrentDevice current(device_);
+  if (const CloudSlot* const slot = bring(frame)) {
+    ask(poses, results);
+    if (slot->is_sound()) return;
+  }
+  run(frame.cloud(), poses, results);
+}
+
+Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
   launch(frame, answer_.device(), ++sequence_);
   const RawResult raw = wait_for(*answer_.host(), sequence_, stream_.get());
@@ -14,10 +44,7 @@ Result MeasureOnDevice::run(const PreparedCloud& cloud, const Pose& pose) {
   return result_of(raw, pose);
 }
 
-void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                          std::span<Result> results) {
-  const CurrentDevice current(device_);
-  bring(cloud);
+void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
   if (!batch_) batch_ = std::make_unique<Batch>();
   for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
     const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
@@ -43,9 +70,23 @@ void MeasureOnDevice::read_states(std::vector<SphereState>& states) {
 }
 
 void MeasureOnDevice::bring(const PreparedCloud& cloud) {
-  if (cloud_ && cloud.serial() == serial_) return;
-  cloud_ = on_device(cloud);
-  serial_ = cloud.serial();
+  if (!copy_ || cloud.serial() != serial_) {
+    copy_ = on_device(cloud);
+    serial_ = cloud.serial();
+  }
+  cloud_ = copy_.get();
+}
+
+const CloudSlot* MeasureOnDevice::bring(const DepthFrame& frame) {
+  const auto* const slot = dynamic_cast<const CloudSlot*>(&frame.slot());
+  if (slot == nullptr || slot->options().device.first() != device_ || !slot->is_on_device())
+    return nullptr;
+  if (slot->serial() != frame_serial_) {
+    check(cudaStreamWaitEvent(stream_.get(), slot->ready()));
+    frame_serial_ = slot->serial();
+  }
+  cloud_ = &slot->device_cloud();
+  return slot;
 }
 
 Result MeasureOnDevice::result_of(const RawResult& raw, const Pose& pose) const {

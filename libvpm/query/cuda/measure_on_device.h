@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "libvpm/query/cuda/cloud_slot.h"
 #include "libvpm/query/cuda/launch.h"
 #include "libvpm/query/cuda/on_device.h"
 #include "libvpm/query/device_measure.h"
@@ -17,6 +18,9 @@ class MeasureOnDevice : public DeviceMeasure {
   Result run(const PreparedCloud& cloud, const Pose& pose) final;
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
            std::span<Result> results) final;
+  Result run_frame(const DepthFrame& frame, const Pose& pose) final;
+  void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
+                 std::span<Result> results) final;
   void read_states(std::vector<SphereState>& states) final;
   double flood_microseconds() const final { return flood_microseconds_; }
 
@@ -49,6 +53,10 @@ class MeasureOnDevice : public DeviceMeasure {
   };
 
   void bring(const PreparedCloud& cloud);
+  // Null where the frame's cloud is not made on this device.
+  const CloudSlot* bring(const DepthFrame& frame);
+  Result ask(const Pose& pose);
+  void ask(std::span<const Pose> poses, std::span<Result> results);
   Result result_of(const RawResult& raw, const Pose& pose) const;
 
   int device_;
@@ -58,8 +66,9 @@ class MeasureOnDevice : public DeviceMeasure {
   MappedArray<Answer> answer_{1};
   unsigned sequence_ = 0;
   double flood_microseconds_ = 0;
-  std::shared_ptr<const DeviceCloud> cloud_;
-  std::uint64_t serial_ = 0;
+  std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
+  std::uint64_t serial_ = 0, frame_serial_ = 0;
+  const DeviceCloud* cloud_ = nullptr;  // of the queries under way
   std::unique_ptr<Batch> batch_;
 };
 

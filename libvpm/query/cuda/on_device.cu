@@ -135,12 +135,66 @@ DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
     copy_points(cloud);
 }
 
-void DeviceCloud::copy_image(const PreparedCloud& cloud) {
-  depth_ = cloud.depth_surface();
-  frame_.camera_to_world = cloud.camera_to_world();
+DeviceCloud::DeviceCloud(const Camera& camera) {
+  DepthSurface image;
+  image.k = camera.intrinsics;
+  image.width = static_cast<std::int32_t>(camera.width);
+  image.height = static_cast<std::int32_t>(camera.height);
+  image.levels = 1;
+  while (image.levels < DepthSurface::kMaxLevels &&
+         ((std::max(image.width, image.height) - 1) >> (image.levels - 1)) > 0)
+    ++image.levels;
+  frame_.is_organised = true;
+  make_room(image);
+  stand_at(camera.to_world);
+}
+
+void DeviceCloud::stand_at(const Pose& camera_to_world) {
+  frame_.origin = camera_to_world.translation;
+  frame_.camera_to_world = camera_to_world;
+}
+
+CloudRoom DeviceCloud::room() const {
+  CloudRoom room{positions_.get(), normals_.get(), pixel_normals_.get(), nullptr, {},
+                 depth_.levels};
+  for (int level = 0; level < depth_.levels; ++level)
+    room.tiles[level] = tiles_.get() + tile_begin_[level];
+  return room;
+}
+
+void DeviceCloud::make_room(const DepthSurface& image) {
+  depth_ = image;
   frame_.intrinsics = depth_.k;
   frame_.width = depth_.width;
   frame_.height = depth_.height;
+  const auto pixels =
+      static_cast<std::size_t>(depth_.width) * static_cast<std::size_t>(depth_.height);
+  positions_ = DeviceArray<Vec3f>(pixels);
+  normals_ = DeviceArray<Vec3f>(pixels);
+  pixel_normals_ = DeviceArray<Vec3f>(pixels);
+  points_ = {positions_.get(), normals_.get(), static_cast<std::uint32_t>(pixels), depth_.width,
+             nullptr};
+  std::size_t count = 0;
+  for (int level = 0; level < depth_.levels; ++level) {
+    tile_begin_[level] = count;
+    count += tile_count(level);
+  }
+  tiles_ = DeviceArray<InverseDepthRange>(count);
+  depth_.normals = pixel_normals_.get();
+  for (int level = 0; level < depth_.levels; ++level)
+    depth_.tiles[level] = tiles_.get() + tile_begin_[level];
+}
+
+std::size_t DeviceCloud::tile_count(int level) const {
+  const auto rows = static_cast<std::size_t>(((depth_.height - 1) >> level) + 1);
+  return rows * static_cast<std::size_t>(depth_.tiles_per_row(level));
+}
+
+void DeviceCloud::copy_image(const PreparedCloud& cloud) {
+  const DepthSurface image = cloud.depth_surface();
+  make_room(image);
+  stand_at(cloud.camera_to_world());
+  frame_.origin = cloud.origin();
 
   const std::vector<std::uint32_t>& begin = cloud.pixel_begin();
   const std::size_t pixels = begin.size() - 1;
@@ -151,24 +205,13 @@ void DeviceCloud::copy_image(const PreparedCloud& cloud) {
     positions[p] = cloud.positions()[begin[p]];
     normals[p] = cloud.normals()[begin[p]];
   }
-  positions_ = DeviceArray<Vec3f>(positions);
-  normals_ = DeviceArray<Vec3f>(normals);
-  points_ = {positions_.get(), normals_.get(), static_cast<std::uint32_t>(pixels), depth_.width,
-             nullptr};
-
-  pixel_normals_ = DeviceArray<Vec3f>(depth_.normals, pixels);
-  depth_.normals = pixel_normals_.get();
+  positions_.fill(positions.data());
+  normals_.fill(normals.data());
+  pixel_normals_.fill(image.normals);
   std::vector<InverseDepthRange> tiles;
-  std::size_t begins[DepthSurface::kMaxLevels] = {};
-  for (int level = 0; level < depth_.levels; ++level) {
-    const auto rows = static_cast<std::size_t>(((depth_.height - 1) >> level) + 1);
-    const std::size_t count = rows * static_cast<std::size_t>(depth_.tiles_per_row(level));
-    begins[level] = tiles.size();
-    tiles.insert(tiles.end(), depth_.tiles[level], depth_.tiles[level] + count);
-  }
-  tiles_ = DeviceArray<InverseDepthRange>(tiles);
-  for (int level = 0; level < depth_.levels; ++level)
-    depth_.tiles[level] = tiles_.get() + begins[level];
+  for (int level = 0; level < image.levels; ++level)
+    tiles.insert(tiles.end(), image.tiles[level], image.tiles[level] + tile_count(level));
+  tiles_.fill(tiles.data());
 }
 
 void DeviceCloud::copy_points(const PreparedCloud& cloud) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "libvpm/query/cuda/cloud_room.h"
 #include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/cuda/views.h"
 #include "libvpm/query/prepared_cloud.h"
@@ -53,6 +54,10 @@ class DeviceLevel {
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
+  // Room for the cloud of an image, which a kernel makes (cloud_prepare.h).
+  explicit DeviceCloud(const Camera& camera);
+  void stand_at(const Pose& camera_to_world);
+  CloudRoom room() const;
 
   const CloudFrame& frame() const { return frame_; }
   const PointsView& points() const { return points_; }
@@ -60,11 +65,14 @@ class DeviceCloud {
   const DiskSurface& disk_surface() const { return disks_; }    // of the others
 
  private:
+  void make_room(const DepthSurface& image);
+  std::size_t tile_count(int level) const;
   void copy_image(const PreparedCloud& cloud);
   void copy_points(const PreparedCloud& cloud);
 
   DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
   DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
+  std::size_t tile_begin_[DepthSurface::kMaxLevels] = {};
   DeviceArray<PointBox> boxes_;
   CloudFrame frame_;
   PointsView points_;

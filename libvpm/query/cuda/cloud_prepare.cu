@@ -1,0 +1,428 @@
+#include <math_constants.h>
+
+#include "libvpm/query/cuda/cloud_normals.h"
+#include "libvpm/query/cuda/cloud_prepare.h"
+#include "libvpm/query/cuda/device_array.h"
+
+namespace vpm::cuda {
+namespace {
+
+// The tile of the whole image that holds tile (u, v) of level `fine`.
+__device__ InverseDepthRange* tile_above(const CloudRecipe& recipe, int level, int u0, int v0) {
+  const int per_row = ((static_cast<int>(recipe.camera.width) - 1) >> level) + 1;
+  return recipe.room.tiles[level] + static_cast<std::size_t>(v0 >> level) * per_row + (u0 >> level);
+}
+
+// Arrays of a block.
+template <class Normals, int Radius>
+struct TileArrays {
+  using Column = typename Normals::Column;
+  Column* columns;  // of the windows; then the positions
+  double *ray_x, *ray_y;
+  float *inverse, *depth;  // with the margin
+  float* closed;           // after the first pass, with a margin of 1
+  float* surface;          // after both: the tile's own pixels
+  Vec3f* normals;          // camera axes
+  Vec3f* world_normals;
+  std::uint16_t* gated;  // pixels whose windows are not smooth
+  InverseDepthRange* ranges;
+
+  static constexpr int kClosedWidth = kTileWidth + 2, kClosedHeight = kTileHeight + 2;
+  static constexpr int kRanges = kTilePixels / 4 + kTilePixels / 16 + kTilePixels / 64 + 2;
+  static_assert(sizeof(Column) * kTileWidth >= sizeof(Vec3f) * kTileWidth);
+
+  __device__ TileArrays(const TileFrame<Radius>& tile, SharedArrays arrays)
+      : columns(arrays.take<Column>(kTileHeight * tile.columns())),
+        ray_x(arrays.take<double>(kTileWidth)),
+        ray_y(arrays.take<double>(kTileHeight)),
+        inverse(arrays.take<float>(tile.rows() * tile.pitch())),
+        depth(arrays.take<float>(Normals::kNeedsDepth ? tile.rows() * tile.pitch() : 0)),
+        closed(arrays.take<float>(kClosedWidth * kClosedHeight)),
+        surface(arrays.take<float>(kTilePixels)),
+        normals(arrays.take<Vec3f>(kTilePixels)),
+        world_normals(arrays.take<Vec3f>(kTilePixels)),
+        gated(arrays.take<std::uint16_t>(kTilePixels)),
+        ranges(arrays.take<InverseDepthRange>(kRanges)) {}
+
+  static std::size_t bytes(int radius) {
+    const int margin = TileFrame<Radius>::margin_of(radius);
+    const int image = (kTileHeight + 2 * margin) * (kTileWidth + 2 * margin);
+    const auto size = [](std::size_t of_one, int count) {
+      return of_one * static_cast<std::size_t>(count);
+    };
+    return size(sizeof(Column), kTileHeight * (kTileWidth + 2 * radius)) +
+           size(sizeof(double), kTileWidth + kTileHeight) +
+           size(sizeof(float), (Normals::kNeedsDepth ? 2 : 1) * image +
+                                   kClosedWidth * kClosedHeight + kTilePixels) +
+           size(2 * sizeof(Vec3f) + sizeof(std::uint16_t), kTilePixels) +
+           size(sizeof(InverseDepthRange), kRanges);
+  }
+};
+
+// One tile of an image, by a block.
+template <class Normals, int Radius>
+class TileWork {
+ public:
+  __device__ __forceinline__ TileWork(const CloudRecipe& recipe, void* shared)
+      : recipe_(recipe),
+        tile_(recipe),
+        arrays_(tile_, SharedArrays(shared)),
+        normals_(recipe, {tile_, arrays_.inverse, arrays_.depth, arrays_.ray_x, arrays_.ray_y}) {}
+
+  // Does not need the image.
+  __device__ __forceinline__ void find_rays() const {
+    const Intrinsics& k = recipe_.camera.intrinsics;
+    const int i = thread();
+    if (i < kTileWidth) arrays_.ray_x[i] = (tile_.u0 + i - k.cx) / k.fx;
+    if (i < kTileHeight) arrays_.ray_y[i] = (tile_.v0 + i - k.cy) / k.fy;
+  }
+
+  // Whether pixels of the image in the tile or its margin are unknown.
+  __device__ __forceinline__ bool load() const {
+    bool unknown = false;
+    const int count = tile_.rows() * tile_.pitch();
+#pragma unroll 4
+    for (int k = thread(); k < count; k += kTileThreads) {
+      const int x = k % tile_.pitch() - tile_.margin(), y = k / tile_.pitch() - tile_.margin();
+      const bool is_inside = tile_.u0 + x >= 0 && tile_.v0 + y >= 0 && tile_.holds(x, y);
+      const float inverse = is_inside ? recipe_.inverse[tile_.pixel(x, y)] : 0.0F;
+      arrays_.inverse[k] = inverse;
+      if constexpr (Normals::kNeedsDepth)
+        arrays_.depth[k] = is_inside ? recipe_.depth[tile_.pixel(x, y)] : 0.0F;
+      unknown |= is_inside && !(inverse > 0);
+    }
+    return unknown;
+  }
+
+  __device__ __forceinline__ void sum_columns() const {
+    for (int k = thread(); k < kTileHeight * tile_.columns(); k += kTileThreads)
+      arrays_.columns[k] =
+          normals_.sum_column(k % tile_.columns() - tile_.radius(), k / tile_.columns());
+  }
+
+  // The first pass of closing holes, of the tile and the pixels beside it.
+  __device__ __forceinline__ void close_once() const {
+    const auto image = [&](int u, int v) {
+      return arrays_.inverse[tile_.index(u - tile_.u0, v - tile_.v0)];
+    };
+    for (int k = thread(); k < kClosedWidth * Arrays::kClosedHeight; k += kTileThreads) {
+      const int x = k % kClosedWidth - 1, y = k / kClosedWidth - 1;
+      const int u = tile_.u0 + x, v = tile_.v0 + y;
+      const float value = arrays_.inverse[tile_.index(x, y)];
+      const bool is_hole = !(value > 0) && u >= 0 && v >= 0 && tile_.holds(x, y);
+      arrays_.closed[k] =
+          is_hole ? between_neighbors(image, tile_.width, tile_.height, u, v) : value;
+    }
+  }
+
+  // Normals of smooth windows; the others are listed. The surface without holes.
+  __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
+    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
+      const int x = k % kTileWidth, y = k / kTileWidth;
+      const float inverse = arrays_.inverse[tile_.index(x, y)];
+      Vec3f normal;
+      if (inverse > 0 &&
+          !normals_.smooth_normal(arrays_.columns + y * tile_.columns() + x + tile_.radius(), x, y,
+                                  normal))
+        arrays_.gated[atomicAdd(&gated, 1U)] = static_cast<std::uint16_t>(k);
+      arrays_.normals[k] = normal;
+      arrays_.surface[k] = has_holes ? closed_twice(x, y) : inverse;
+    }
+  }
+  __device__ __forceinline__ void find_gated_normals(unsigned count) const {
+    for (unsigned k = threadIdx.x; k < count; k += kTileThreads) {
+      const int pixel = arrays_.gated[k];
+      arrays_.normals[pixel] = normals_.gated_normal(pixel % kTileWidth, pixel / kTileWidth);
+    }
+  }
+
+  // What queries read, but in shared memory. Adds up the points.
+  __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
+    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
+      const int x = k % kTileWidth, y = k / kTileWidth;
+      const Vec3f normal = arrays_.normals[k];
+      const bool is_point = normal.x != 0 || normal.y != 0 || normal.z != 0;
+      if (recipe_.room.estimated != nullptr && tile_.holds(x, y))
+        recipe_.room.estimated[tile_.pixel(x, y)] = normal;
+      Vec3f position{CUDART_NAN_F, CUDART_NAN_F, CUDART_NAN_F}, in_world{}, turned_back{};
+      if (is_point) {
+        const Rotation& to_world = recipe_.camera.to_world.rotation;
+        const double depth = recipe_.depth[tile_.pixel(x, y)];
+        position = narrow(to_world * point_on_ray(arrays_.ray_x[x], arrays_.ray_y[y], depth));
+        in_world = narrow(to_world * widen(normal));
+        turned_back = narrow(recipe_.to_camera * widen(in_world));
+      }
+      positions()[k] = position;
+      arrays_.world_normals[k] = in_world;
+      arrays_.normals[k] = turned_back;
+      add_up(is_point, points);
+      add_up(is_point && is_doubtful(normal), doubtful);
+    }
+  }
+  __device__ __forceinline__ void write_points() const {
+    write(positions(), recipe_.room.positions);
+    write(arrays_.world_normals, recipe_.room.normals);
+    write(arrays_.normals, recipe_.room.pixel_normals);
+  }
+
+  // Levels 0 to kTileLevels, and this tile's part of what lies above.
+  __device__ __forceinline__ void write_tiles() const {
+    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
+      const int x = k % kTileWidth, y = k / kTileWidth;
+      const float value = arrays_.surface[k];
+      if (tile_.holds(x, y)) recipe_.room.tiles[0][tile_.pixel(x, y)] = {value, value};
+    }
+    InverseDepthRange* fine = nullptr;
+    InverseDepthRange* coarse = arrays_.ranges;
+    for (int level = 1; level <= kTileLevels; ++level) {
+      const int count = (kTileWidth >> level) * (kTileHeight >> level);
+      if (thread() < count) coarse[thread()] = write_tile(level, fine);
+      fine = coarse;
+      coarse += count;
+      __syncthreads();
+    }
+    // Inverse depths are not negative, so they are in the order of their bits.
+    const int level = kTileLevels + 1 + thread();
+    if (level >= recipe_.room.levels) return;
+    const InverseDepthRange range = united(fine[0], fine[1]);
+    auto* const above = reinterpret_cast<int*>(tile_above(recipe_, level, tile_.u0, tile_.v0));
+    atomicMin(above, __float_as_int(range.low));
+    atomicMax(above + 1, __float_as_int(range.high));
+  }
+
+ private:
+  using Arrays = TileArrays<Normals, Radius>;
+  static constexpr int kClosedWidth = Arrays::kClosedWidth;
+
+  __device__ __forceinline__ static int thread() {
+    return static_cast<int>(threadIdx.x);
+  }
+
+  __device__ __forceinline__ float closed_twice(int x, int y) const {
+    const auto image = [&](int u, int v) {
+      return arrays_.closed[(v - tile_.v0 + 1) * kClosedWidth + u - tile_.u0 + 1];
+    };
+    const int u = tile_.u0 + x, v = tile_.v0 + y;
+    const float value = image(u, v);
+    return value > 0 || !tile_.holds(x, y)
+               ? value
+               : between_neighbors(image, tile_.width, tile_.height, u, v);
+  }
+
+  // Normals are at most this far off unit length (squared), or a PreparedCloud might refuse them.
+  __device__ __forceinline__ static bool is_doubtful(Vec3f n) {
+    constexpr float kSquaredTolerance = 1e-3F;
+    return !(std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1) <= kSquaredTolerance);
+  }
+
+  // By whole warps.
+  __device__ __forceinline__ static void add_up(bool is_one, unsigned& count) {
+    const unsigned ones = __ballot_sync(~0U, is_one);
+    if (ones != 0 && threadIdx.x % 32 == 0) atomicAdd(&count, static_cast<unsigned>(__popc(ones)));
+  }
+
+  __device__ __forceinline__ Vec3f* positions() const {
+    return reinterpret_cast<Vec3f*>(arrays_.columns);
+  }
+
+  // Rows of the tile, word by word, so that a warp's words lie together.
+  __device__ __forceinline__ void write(const Vec3f* from, Vec3f* to) const {
+    const auto* const words = reinterpret_cast<const float*>(from);
+    auto* const image = reinterpret_cast<float*>(to);
+    constexpr int kRow = 3 * kTileWidth;
+#pragma unroll 6
+    for (int k = thread(); k < 3 * kTilePixels; k += kTileThreads) {
+      const int x = k % kRow, y = k / kRow;
+      if (x < 3 * (tile_.width - tile_.u0) && tile_.v0 + y < tile_.height)
+        image[3 * tile_.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
+    }
+  }
+
+  // What lies outside of the image adds nothing.
+  __device__ __forceinline__ InverseDepthRange write_tile(int level,
+                                                          const InverseDepthRange* fine) const {
+    const int per_row = kTileWidth >> level, x = thread() % per_row, y = thread() / per_row;
+    InverseDepthRange range{CUDART_INF_F, 0};
+#pragma unroll
+    for (int child = 0; child < 4; ++child) {
+      const int cx = 2 * x + child % 2, cy = 2 * y + child / 2;
+      if (fine != nullptr) {
+        range = united(range, fine[cy * 2 * per_row + cx]);
+      } else if (tile_.holds(cx, cy)) {
+        const float value = arrays_.surface[cy * kTileWidth + cx];
+        range = united(range, {value, value});
+      }
+    }
+    const int u = (tile_.u0 >> level) + x, v = (tile_.v0 >> level) + y;
+    if (level < recipe_.room.levels && u <= (tile_.width - 1) >> level &&
+        v <= (tile_.height - 1) >> level)
+      *tile_above(recipe_, level, u << level, v << level) = range;
+    return range;
+  }
+
+  const CloudRecipe& recipe_;
+  TileFrame<Radius> tile_;
+  Arrays arrays_;
+  Normals normals_;
+};
+
+template <class Normals, int Radius>
+__global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
+    prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
+                  CloudAnswer* answer, unsigned sequence) {
+  extern __shared__ double2 shared_memory[];
+  __shared__ unsigned gated, points, doubtful;
+  const TileWork<Normals, Radius> work(recipe, shared_memory);
+  if (threadIdx.x == 0) gated = points = doubtful = 0;
+  work.find_rays();
+#if __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+  const bool has_holes = __syncthreads_or(work.load()) != 0;
+  work.sum_columns();
+  if (has_holes) work.close_once();
+  __syncthreads();
+  work.find_normals(has_holes, gated);
+  __syncthreads();
+  work.find_gated_normals(gated);
+  work.write_tiles();  // meets at its end
+  work.place_points(points, doubtful);
+  __syncthreads();
+  work.write_points();
+  if (threadIdx.x != 0) return;
+  if (points > 0) atomicAdd(&counters->points, points);
+  if (doubtful > 0) atomicAdd(&counters->doubtful, doubtful);
+  __threadfence();
+  if (atomicAdd(&counters->done, 1U) != gridDim.x - 1) return;
+  __threadfence();
+  const std::uint64_t number = std::uint64_t{sequence} << 32;
+  const volatile CloudCounters& all = *counters;
+  *static_cast<volatile std::uint64_t*>(&answer->doubtful) = number | all.doubtful;
+  *static_cast<volatile std::uint64_t*>(&answer->points) = number | all.points;
+  *counters = CloudCounters{};
+}
+
+__device__ void put(float* values, const float (&group)[kPixelsAtOnce]) {
+  auto* const four = reinterpret_cast<float4*>(values);
+  four[0] = {group[0], group[1], group[2], group[3]};
+  four[1] = {group[4], group[5], group[6], group[7]};
+}
+
+// The coarse tiles begin with what adds nothing.
+__device__ void clear_tiles(const CloudRoom& room, const Camera& camera, std::size_t first,
+                            std::size_t step) {
+  for (int level = kTileLevels + 1; level < room.levels; ++level) {
+    const std::size_t count =
+        std::size_t{((camera.width - 1) >> level) + 1} * (((camera.height - 1) >> level) + 1);
+    for (std::size_t k = first; k < count; k += step) room.tiles[level][k] = {CUDART_INF_F, 0};
+  }
+}
+
+__global__ void __launch_bounds__(kTileThreads)
+    take(const __grid_constant__ DepthSource source, float* depth, float* inverse,
+         std::size_t pixels, const __grid_constant__ CloudRoom room,
+         const __grid_constant__ Camera camera) {
+  const std::size_t group = std::size_t{blockIdx.x} * kTileThreads + threadIdx.x;
+  const std::size_t first = group * kPixelsAtOnce;
+  float z[kPixelsAtOnce], s[kPixelsAtOnce];
+  if (first < pixels) {
+    if (source.counts != nullptr) {
+      const uint4 words = *reinterpret_cast<const uint4*>(source.counts + first);
+      const unsigned pairs[] = {words.x, words.y, words.z, words.w};
+#pragma unroll
+      for (unsigned k = 0; k < kPixelsAtOnce; ++k) {
+        const unsigned count = (k % 2 == 0 ? pairs[k / 2] : pairs[k / 2] >> 16) & 0xffffU;
+        z[k] = usable_depth(depth_in_metres(count, source.counts_per_metre));
+      }
+    } else {
+      const auto* const four = reinterpret_cast<const float4*>(source.metres + first);
+      const float4 a = four[0], b = four[1];
+      const float metres[] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
+#pragma unroll
+      for (unsigned k = 0; k < kPixelsAtOnce; ++k) z[k] = usable_depth(metres[k]);
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kPixelsAtOnce; ++k) s[k] = inverse_of_usable(z[k]);
+    put(depth + first, z);
+    put(inverse + first, s);
+  }
+  clear_tiles(room, camera, group, std::size_t{gridDim.x} * kTileThreads);
+}
+
+using Kernel = void (*)(CloudRecipe, CloudCounters*, CloudAnswer*, unsigned);
+
+struct Choice {
+  Kernel kernel;
+  std::size_t bytes;
+};
+
+template <template <int> class Normals>
+Choice choose(int radius) {
+  constexpr int kUsual = 3;  // of the default window
+  if (radius == kUsual)
+    return {prepare_cloud<Normals<kUsual>, kUsual>,
+            TileArrays<Normals<kUsual>, kUsual>::bytes(radius)};
+  return {prepare_cloud<Normals<0>, 0>, TileArrays<Normals<0>, 0>::bytes(radius)};
+}
+
+Choice choose(NormalMethod method, int radius) {
+  return method == NormalMethod::pca ? choose<PcaNormals>(radius)
+                                     : choose<InverseDepthNormals>(radius);
+}
+
+// Whether the kernel waits for its image itself, so that it may be launched before that is there.
+// Machine code made from older PTX does not.
+bool waits_for_image(Kernel kernel) {
+  cudaFuncAttributes attributes;
+  check(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)));
+  return attributes.ptxVersion >= 90 && attributes.binaryVersion >= 90;
+}
+
+// What every kernel may take without asking.
+constexpr std::size_t kSharedBytes = 48 * 1024;
+
+}  // namespace
+
+void take_image(const DepthSource& source, float* depth, float* inverse, std::size_t pixels,
+                const CloudRoom& room, const Camera& camera, cudaStream_t stream) {
+  const std::size_t groups = (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce;
+  const auto blocks = static_cast<unsigned>((groups + kTileThreads - 1) / kTileThreads);
+  take<<<blocks, kTileThreads, 0, stream>>>(source, depth, inverse, pixels, room, camera);
+  check(cudaGetLastError());
+}
+
+Preparation preparation_of(const NormalOptions& options) {
+  int device = 0, most = 0;
+  check(cudaGetDevice(&device));
+  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+  const Choice choice = choose(options.method, options.window / 2);
+  if (choice.bytes > static_cast<std::size_t>(most)) return {};
+  if (choice.bytes > kSharedBytes)
+    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(choice.kernel),
+                               cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(choice.bytes)));
+  return {true, waits_for_image(choice.kernel)};
+}
+
+void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
+                       const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
+                       unsigned sequence, cudaStream_t stream) {
+  const Choice choice = choose(method, recipe.window / 2);
+  const auto tiles_along = [](std::uint32_t size, int tile) {
+    return (size + static_cast<unsigned>(tile) - 1) / static_cast<unsigned>(tile);
+  };
+  cudaLaunchConfig_t launch{};
+  launch.gridDim =
+      tiles_along(recipe.camera.width, kTileWidth) * tiles_along(recipe.camera.height, kTileHeight);
+  launch.blockDim = kTileThreads;
+  launch.dynamicSmemBytes = choice.bytes;
+  launch.stream = stream;
+  cudaLaunchAttribute overlap;
+  overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  overlap.val.programmaticStreamSerializationAllowed = 1;
+  launch.attrs = &overlap;
+  launch.numAttrs = preparation.overlaps ? 1 : 0;
+  check(cudaLaunchKernelEx(&launch, choice.kernel, recipe, counters, answer, sequence));
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,50 @@
+// From a depth image in the host's memory to a cloud that queries can read on a device: what
+// make_cloud() and PreparedCloud make of it, bit by bit.
+#pragma once
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/query/cuda/cloud_tile.h"
+
+namespace vpm::cuda {
+
+// A depth image as the sensor gives it, counts or metres, in memory of the host that the device
+// reads over the bus.
+struct DepthSource {
+  const std::uint16_t* counts = nullptr;
+  const float* metres = nullptr;
+  double counts_per_metre = 1;
+};
+
+// Where the host looks for what came of an image: each word has the image's number above it.
+struct CloudAnswer {
+  std::uint64_t points = 0;    // with a normal
+  std::uint64_t doubtful = 0;  // points that a PreparedCloud might refuse
+};
+
+// All 0 between launches: the last block clears them.
+struct CloudCounters {
+  unsigned points = 0, doubtful = 0;
+  unsigned done = 0;  // blocks
+};
+
+// Pixels that one thread takes; images and what is made of them have room for the last thread's.
+inline constexpr unsigned kPixelsAtOnce = 8;
+
+// Brings the image to the device: depths and their inverses, as recipes want them. Clears what
+// prepare_on_device() adds up in `room`.
+void take_image(const DepthSource& source, float* depth, float* inverse, std::size_t pixels,
+                const CloudRoom& room, const Camera& camera, cudaStream_t stream);
+
+// What the current device can do with windows of this size.
+struct Preparation {
+  bool fits = false;      // its shared memory holds them
+  bool overlaps = false;  // the kernel may be launched before take_image() is done
+};
+Preparation preparation_of(const NormalOptions& options);
+
+// After take_image() in the same stream. The answer comes when the last normal is known.
+void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
+                       const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
+                       unsigned sequence, cudaStream_t stream);
+
+}  // namespace vpm::cuda

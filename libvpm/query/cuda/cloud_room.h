@@ -1,0 +1,17 @@
+#pragma once
+
+#include "libvpm/query/depth_surface.h"
+
+namespace vpm::cuda {
+
+// Memory for what is made of an image, by pixel.
+struct CloudRoom {
+  Vec3f* positions = nullptr;      // about the camera, world axes; NaN where there is no point
+  Vec3f* normals = nullptr;        // world axes
+  Vec3f* pixel_normals = nullptr;  // camera axes, turned back from the former
+  Vec3f* estimated = nullptr;      // camera axes, as estimate_normals() has them; may be null
+  InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
+  std::int32_t levels = 0;
+};
+
+}  // namespace vpm::cuda

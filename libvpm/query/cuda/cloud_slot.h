@@ -1,0 +1,73 @@
+// A depth frame whose cloud lies on a device.
+#pragma once
+
+#include "libvpm/query/cuda/cloud_prepare.h"
+#include "libvpm/query/cuda/launch.h"
+#include "libvpm/query/cuda/on_device.h"
+#include "libvpm/query/frame_slot.h"
+
+namespace vpm::cuda {
+
+class Event {
+ public:
+  Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming)); }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+class CloudSlot : public FrameSlot {
+ public:
+  explicit CloudSlot(const DepthFrameOptions& options);
+  ~CloudSlot() override;
+
+  std::byte* image() override { return reinterpret_cast<std::byte*>(image_.host()); }
+  void wait() const override;
+  std::size_t points() const override;
+
+  // Different for any two frames of a process.
+  std::uint64_t serial() const { return serial_; }
+  // Whether the device makes the cloud. Otherwise the CPU does, since it might refuse something.
+  bool is_on_device() const { return is_plain_; }
+  // Whether that has no point that the CPU might refuse. Waits for it.
+  bool is_sound() const {
+    wait();
+    return doubtful() == 0;
+  }
+
+  const DeviceCloud& device_cloud() const { return cloud_; }
+  cudaEvent_t ready() const { return ready_.get(); }
+
+  // Of the image, in camera axes, whether the cloud can be made here or not.
+  std::vector<Vec3f> estimate_normals();
+
+  // The two steps of begin(), for those who time them.
+  void take(cudaStream_t stream);
+  void make(cudaStream_t stream, Vec3f* estimated = nullptr);
+
+ protected:
+  void begin() override;
+
+ private:
+  CloudRecipe recipe() const;
+  bool is_answered() const;
+  unsigned doubtful() const;
+
+  Stream stream_;
+  MappedArray<uint4> image_;
+  DeviceArray<float> depth_, inverse_;
+  DeviceCloud cloud_;
+  DeviceArray<CloudCounters> counters_;
+  MappedArray<CloudAnswer> answer_;
+  Event ready_;
+  Preparation preparation_;
+  bool is_plain_ = false;
+  unsigned sequence_ = 0;
+  std::uint64_t serial_ = 0;
+};
+
+}  // namespace vpm::cuda

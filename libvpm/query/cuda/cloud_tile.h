@@ -1,0 +1,82 @@
+// What the kernels of cloud_prepare.cu know of an image, and of the tile of it that a block works
+// on.
+#pragma once
+
+#include "libvpm/cloud/depth_image.h"
+#include "libvpm/cloud/normal_window.h"
+#include "libvpm/query/cuda/cloud_room.h"
+#include "libvpm/query/hole_closing.h"
+
+namespace vpm::cuda {
+
+// An image and how its cloud is made.
+struct CloudRecipe {
+  const float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
+  const float* inverse = nullptr;  // of that
+  Camera camera;
+  Rotation to_camera;  // from the cloud's axes
+  double per_fx = 0, per_fy = 0;
+  int window = 0;
+  EdgeGate edges;
+  WholeWindow whole;
+  CloudRoom room;
+};
+
+inline constexpr int kTileWidth = 32, kTileHeight = 16, kTilePixels = kTileWidth * kTileHeight;
+inline constexpr unsigned kTileThreads = 256;
+// Coarser levels whose tiles lie whole in one tile of the kernel.
+inline constexpr int kTileLevels = 4;
+static_assert(kTileHeight == 1 << kTileLevels && kTileWidth % kTileHeight == 0);
+
+// Where a block's tile lies, and its image with a margin. `Radius`: of the windows; 0 if it is
+// known at run time only.
+template <int Radius>
+class TileFrame {
+ public:
+  int u0, v0, width, height;  // width, height: of the image
+
+  __device__ explicit TileFrame(const CloudRecipe& recipe)
+      : width(static_cast<int>(recipe.camera.width)),
+        height(static_cast<int>(recipe.camera.height)),
+        radius_(recipe.window / 2) {
+    const unsigned per_row = static_cast<unsigned>((width + kTileWidth - 1) / kTileWidth);
+    u0 = static_cast<int>(blockIdx.x % per_row) * kTileWidth;
+    v0 = static_cast<int>(blockIdx.x / per_row) * kTileHeight;
+  }
+  __host__ __device__ static constexpr int margin_of(int radius) {
+    return radius > kFillPasses ? radius : kFillPasses;
+  }
+  __device__ int radius() const { return Radius > 0 ? Radius : radius_; }
+  __device__ int margin() const { return margin_of(radius()); }
+  __device__ int pitch() const { return kTileWidth + 2 * margin(); }
+  __device__ int rows() const { return kTileHeight + 2 * margin(); }
+  // Columns of windows: the tile's, and those beside it.
+  __device__ int columns() const { return kTileWidth + 2 * radius(); }
+  // Of the tile's own pixel (x, y), from -margin on.
+  __device__ int index(int x, int y) const { return (y + margin()) * pitch() + x + margin(); }
+  __device__ bool holds(int x, int y) const { return u0 + x < width && v0 + y < height; }
+  __device__ std::size_t pixel(int x, int y) const {
+    return static_cast<std::size_t>(v0 + y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(u0 + x);
+  }
+
+ private:
+  int radius_;
+};
+
+// A block's shared memory, cut into arrays.
+class SharedArrays {
+ public:
+  __device__ explicit SharedArrays(void* memory) : next_(static_cast<unsigned char*>(memory)) {}
+  template <class T>
+  __device__ T* take(int count) {
+    T* const array = reinterpret_cast<T*>(next_);
+    next_ += static_cast<std::size_t>(count) * sizeof(T);
+    return array;
+  }
+
+ private:
+  unsigned char* next_;
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks and times depth frames on a machine with an
+# NVIDIA device: images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages,
+# vpm-normals and vpm-query; CLOUD has a camera. 1. vpm-normals of the cloud's image, both methods, CPU and device compared
+# byte for byte; 2. the stages on the device's clock; 3. ten thousand queries at each level, each in a new image, from the
+# image in the frames' memory to the result. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
+set -euo pipefail
+bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+
+same=()
+python3 - "$work" <<'PYTHON'
+# A depth image as PNG: a tilted wall with a step, a hole, edges and noise of 0.2 %.
+import random, struct, sys, zlib
+random.seed(5)
+width, height = 640, 480
+rows = b""
+for v in range(height):
+    rows += b"\0"
+    for u in range(width):
+        z = 1 / (1 + 3e-4 * (u - 320) + 2e-4 * (v - 240)) * (0.9 if (u // 80 + v // 60) % 5 == 0 else 1)
+        hole = (u - 400) ** 2 + (v - 200) ** 2 < 900 or random.random() < 0.02
+        rows += struct.pack(">H", 0 if hole else int(5000 * z * random.uniform(0.998, 1.002)))
+def chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+with open(sys.argv[1] + "/image.png", "wb") as image:
+    image.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0))
+                + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+PYTHON
+normals=("$bundle/bin/vpm-normals" "$work/image.png" --intrinsics 525,525,319.5,239.5 --depth-scale 5000 --quiet --force)
+for method in inverse-depth pca; do
+  for device in cpu cuda; do
+    "${normals[@]}" --method $method --device $device -o "$work/$device.vpmc"
+  done
+  if cmp "$work/cpu.vpmc" "$work/cuda.vpmc" >&2; then same+=("$method=pass"); else failed=1 && same+=("$method=FAIL"); fi
+done
+
+"$bundle/bin/frame-stages" "$cloud" "$work/stages.json" >/dev/null
+loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=10000)
+for level in ${levels//,/ }; do
+  "${loop[@]}" level="$level" json="$work/loop-$level-none.json" >/dev/null
+  for frames in counts metres; do
+    "${loop[@]}" level="$level" frames=$frames json="$work/loop-$level-$frames.json" >/dev/null
+  done
+  "${loop[@]}" level="$level" frames=counts method=pca json="$work/loop-$level-pca.json" >/dev/null
+  "${loop[@]}" level="$level" frames=counts behind=1 json="$work/loop-$level-behind.json" >/dev/null
+done
+
+python3 - "$out" "$work" "$commit" "${same[*]}" <<'PYTHON'
+import glob, json, subprocess, sys
+out, work, commit, same = sys.argv[1:]
+smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version,pcie.link.gen.max,pcie.link.width.max",
+                      "--format=csv,noheader"], capture_output=True, text=True).stdout.strip().split(", ")
+report = {
+    "command": "scripts/cuda_frames_check.sh", "commit": commit, "device": ", ".join(smi[:2]),
+    "bus": f"PCIe {smi[2]} x{smi[3]}", "same_bytes_as_cpu": dict(item.split("=") for item in same.split()),
+    "stages": json.load(open(f"{work}/stages.json")),
+    "control_loop": sorted((json.load(open(path)) for path in glob.glob(f"{work}/loop-*.json")),
+                           key=lambda r: (r["spheres"], "frames" in r, r.get("behind", 0), r.get("method", ""), r.get("frames", ""))),
+}
+json.dump(report, open(out, "w"), indent=2)
+print(f"{report['device']}, {report['bus']}, commit {commit}: CPU and device the same {same}")
+for r in report["stages"]:
+    print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f} us")
+for r in report["control_loop"]:
+    what = f"{r['frames']}, {r['method']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
+    print(f"{r['spheres']:8} spheres  {what:30} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+PYTHON
+exit $failed

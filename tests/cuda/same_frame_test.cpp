@@ -1,0 +1,276 @@
+// A depth image that the device makes ready has the bits of one that the CPU prepares, and so do
+// queries on it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <random>
+#include <thread>
+
+#include "libvpm/core/error.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "tests/cuda/frame_memory.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+const Device kDevice{Device::Kind::cuda, 0};
+const Pose kFarPose{testing::generic_rotation(), {1e6, -3, 2}};
+
+using Depths = std::function<float(std::uint32_t u, std::uint32_t v, std::mt19937& random)>;
+
+float uniform(std::mt19937& random, float low, float high) {
+  return low + (high - low) * static_cast<float>(random() >> 8) * 0x1p-24F;
+}
+
+// Tilted, with holes and noise.
+Depths wall(float hole_share, float noise) {
+  return [=](std::uint32_t u, std::uint32_t v, std::mt19937& random) {
+    const float z = 1.0F / (1.0F + 1e-3F * static_cast<float>(u) - 5e-4F * static_cast<float>(v));
+    const float noisy = z * (1 + uniform(random, -noise, noise));
+    return uniform(random, 0, 1) < hole_share ? 0.0F : noisy;
+  };
+}
+
+const std::pair<const char*, Depths> kImages[] = {
+    {"wall", wall(0, 0)},
+    {"wall with noise", wall(0, 0.004F)},
+    {"wall with holes", wall(0.1F, 0.004F)},
+    {"mostly holes", wall(0.7F, 0.002F)},
+    {"noise", [](auto, auto, auto& random) { return uniform(random, 0.4F, 4); }},
+    {"nothing", [](auto, auto, auto&) { return 0.0F; }},
+    {"one pixel", [](auto u, auto v, auto&) { return u == 3 && v == 2 ? 1.5F : 0.0F; }},
+    {"steps",
+     [](auto u, auto v, auto& random) {
+       return (1 + 0.1F * static_cast<float>((u / 9 + v / 7) % 3)) *
+              uniform(random, 0.999F, 1.001F);
+     }},
+    {"stripes and what is no measurement",
+     [](auto u, auto v, auto& random) {
+       const float odd[] = {NAN, -1, HUGE_VALF, 1e-30F, 1e30F, 0};
+       return (u + 2 * v) % 4 == 0 ? odd[random() % 6] : 0.8F;
+     }},
+};
+
+DepthImage image_of(const Depths& depths, std::uint32_t width, std::uint32_t height) {
+  std::mt19937 random(width * 7919 + height);
+  DepthImage image{width, height, {}};
+  for (std::uint32_t v = 0; v < height; ++v) {
+    for (std::uint32_t u = 0; u < width; ++u) image.depth.push_back(depths(u, v, random));
+  }
+  return image;
+}
+
+DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& normals) {
+  return {{525, 510, 0.5 * image.width - 0.7, 0.5 * image.height},
+          image.width,
+          image.height,
+          {},
+          normals,
+          kDevice};
+}
+
+DepthFrame frame_of(DepthFrames& frames, const DepthImage& image, const Pose& camera) {
+  std::memcpy(frames.metres().data(), image.depth.data(), image.depth.size() * sizeof(float));
+  return frames.prepare(camera);
+}
+
+void expect_same(const DepthImage& image, const NormalOptions& normals) {
+  const DepthFrameOptions options = options_of(image, normals);
+  const std::vector<Vec3f> expected = estimate_normals(image, options.intrinsics, normals);
+  const std::vector<Vec3f> estimated =
+      estimate_normals(image, options.intrinsics, normals, kDevice);
+  ASSERT_EQ(expected.size(), estimated.size());
+  EXPECT_EQ(std::memcmp(expected.data(), estimated.data(), expected.size() * sizeof(Vec3f)), 0);
+
+  DepthFrames frames(options);
+  for (const Pose& camera : {Pose{}, kFarPose}) {
+    const DepthFrame frame = frame_of(frames, image, camera);
+    const auto memory = testing::memory_on_device(frame);
+    ASSERT_TRUE(memory);
+    const PreparedCloud cloud(
+        make_cloud(image, {options.intrinsics, image.width, image.height, camera}, normals));
+    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
+    EXPECT_EQ(frame.points(), cloud.positions().size());
+  }
+}
+
+class SameFrame : public ::testing::TestWithParam<NormalMethod> {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Methods, SameFrame,
+                         ::testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
+                         [](const auto& method) {
+                           return method.param == NormalMethod::pca ? "pca" : "inverse_depth";
+                         });
+
+TEST_P(SameFrame, OfImagesOfAnySize) {
+  const std::pair<std::uint32_t, std::uint32_t> sizes[] = {
+      {1, 1}, {2, 1}, {1, 9}, {7, 7}, {31, 15}, {32, 16}, {33, 17}, {97, 61}, {640, 480}};
+  for (const auto& [name, depths] : kImages) {
+    for (const auto& [width, height] : sizes) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(width) + " x " +
+                   std::to_string(height));
+      expect_same(image_of(depths, width, height), {GetParam()});
+    }
+  }
+}
+
+TEST_P(SameFrame, WithAnyWindowAndGate) {
+  for (const auto& [name, depths] : kImages) {
+    const DepthImage image = image_of(depths, 83, 45);
+    for (const int window : {3, 5, 7, 9, 17, 31}) {
+      for (const double gate : {0.0, 0.002, 0.02, 0.5}) {
+        SCOPED_TRACE(std::string(name) + " " + std::to_string(window) + " " + std::to_string(gate));
+        expect_same(image, {GetParam(), window, gate});
+      }
+    }
+  }
+}
+
+TEST_P(SameFrame, OfCounts) {
+  const DepthImage seen = image_of(wall(0.05F, 0.003F), 97, 61);
+  for (const double counts_per_metre : {1000.0, 5000.0, 0.37, 12345.678}) {
+    DepthFrameOptions options = options_of(seen, {GetParam()});
+    options.counts_per_metre = counts_per_metre;
+    DepthFrames frames(options);
+    DepthImage image = seen;
+    const std::span<std::uint16_t> counts = frames.counts();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      counts[i] = static_cast<std::uint16_t>(seen.depth[i] * 5000);
+      image.depth[i] = depth_in_metres(counts[i], counts_per_metre);
+    }
+    const DepthFrame frame = frames.prepare(kFarPose);
+    const auto memory = testing::memory_on_device(frame);
+    ASSERT_TRUE(memory);
+    const PreparedCloud cloud(make_cloud(
+        image, {options.intrinsics, image.width, image.height, kFarPose}, options.normals));
+    EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
+  }
+}
+
+// Depths over the whole range of lengths, without a gate: sums overflow, so some normals may be no
+// unit vectors. What the CPU refuses is refused, what it takes gives the same.
+TEST_P(SameFrame, OrTheSameRefusal) {
+  const auto wild = [](auto, auto, auto& random) {
+    return std::ldexp(1.0F, static_cast<int>(random() % 150) - 75);
+  };
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
+  QueryOptions query_options;
+  query_options.device = kDevice;
+  Query query(tool, query_options);
+  const Intrinsics all_intrinsics[] = {{525, 525, 20, 10},
+                                       {1e-3, 1e-3, 20, 10},
+                                       {1e-35, 9, 3, 10},
+                                       {1e9, 1e9, 0, 0},
+                                       {525, 525, 1e9, 0}};
+  for (const Depths& depths : {Depths(wild), wall(0.1F, 0.01F)}) {
+    for (const double gate : {0.0, 0.02}) {
+      for (const Intrinsics& intrinsics : all_intrinsics) {
+        const DepthImage image = image_of(depths, 37, 23);
+        DepthFrameOptions options = options_of(image, {GetParam(), 7, gate});
+        options.intrinsics = intrinsics;
+        DepthFrames frames(options);
+        std::string expected, found;
+        Result at_host, at_device;
+        const Pose pose{testing::generic_rotation(), {0, 0, 0.9}};
+        try {
+          const PreparedCloud cloud(
+              make_cloud(image, {intrinsics, image.width, image.height, {}}, options.normals));
+          at_host = Query(tool, {}).run(cloud, pose);
+        } catch (const Error& fault) {
+          expected = fault.what();
+        }
+        try {
+          at_device = query.run(frame_of(frames, image, {}), pose);
+        } catch (const Error& fault) {
+          found = fault.what();
+        }
+        EXPECT_EQ(expected, found);
+        EXPECT_EQ(at_host.volume, at_device.volume);
+        EXPECT_EQ(at_host.points, at_device.points);
+      }
+    }
+  }
+}
+
+void expect_equal(const Result& a, const Result& b) {
+  EXPECT_EQ(a.volume, b.volume);
+  EXPECT_EQ(a.wrench.force, b.wrench.force);
+  EXPECT_EQ(a.wrench.torque, b.wrench.torque);
+  EXPECT_EQ(a.boundary, b.boundary);
+  EXPECT_EQ(a.inside, b.inside);
+  EXPECT_EQ(a.points, b.points);
+}
+
+Pose pose_of(int k) {
+  return {testing::generic_rotation(), {0.02 * std::sin(k), 0.03 * std::cos(k), 0.8 + 0.01 * k}};
+}
+
+// The next frame is on its way while queries, of several threads, look at the one before.
+TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const Camera camera = synthetic::default_camera();
+  const auto scene = synthetic::make_scene("wall");
+  const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
+  DepthFrames frames({camera.intrinsics, camera.width, camera.height, {}, {}, kDevice});
+  std::vector<DepthImage> images;
+  for (std::uint64_t k = 0; k < 4; ++k)
+    images.push_back(synthetic::render_with_kinect_noise(*scene.surface, camera, k));
+  QueryOptions options;
+  Query on_cpu(tool, options);
+  options.device = kDevice;
+  Query first(tool, options), second(tool, options);
+  std::uint32_t boundary = 0;
+  DepthFrame frame = frame_of(frames, images[0], camera.to_world);
+  for (int k = 0; k < 12; ++k) {
+    const DepthFrame next = frame_of(frames, images[(k + 1) % 4], camera.to_world);
+    const PreparedCloud cloud(make_cloud(images[k % 4], camera, {}));
+    const Result expected = on_cpu.run(cloud, pose_of(k));
+    boundary += expected.boundary;
+    std::thread other([&, frame] { expect_equal(expected, second.run(frame, pose_of(k))); });
+    expect_equal(expected, first.run(frame, pose_of(k)));
+    const Pose poses[] = {pose_of(k), pose_of(k)};
+    Result results[2];
+    first.run(frame, poses, results);
+    expect_equal(expected, results[1]);
+    other.join();
+    EXPECT_EQ(frame.points(), cloud.positions().size());
+    frame = next;
+  }
+  EXPECT_GT(boundary, 100U);
+}
+
+// Small enough for compute-sanitizer.
+TEST(FramesOnDevice, SmallQuery) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  for (const NormalMethod method : {NormalMethod::inverse_depth, NormalMethod::pca}) {
+    for (const int window : {7, 9}) {
+      for (const auto& [name, depths] : kImages) {
+        SCOPED_TRACE(name);
+        expect_same(image_of(depths, 83, 45), {method, window});
+      }
+    }
+  }
+  const DepthImage image = image_of(wall(0.05F, 0.002F), 83, 45);
+  const ToolModel tool = testing::lattice_cube(0.05, 4, 3);
+  QueryOptions options;
+  options.device = kDevice;
+  Query query(tool, options);
+  DepthFrames frames(options_of(image, {}));
+  const DepthFrame frame = frame_of(frames, image, {});
+  const Pose pose{testing::generic_rotation(), {0, 0, 0.95}};
+  const Result expected = Query(tool, {}).run(frame.cloud(), pose);
+  EXPECT_GT(expected.boundary, 0U);
+  expect_equal(expected, query.run(frame, pose));
+}
+
+}  // namespace
+}  // namespace vpm

@@ -1,0 +1,117 @@
+// Depth frames on the CPU; tests/cuda has those on a device.
+
+#include "libvpm/query/depth_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libvpm/core/error.h"
+#include "libvpm/query/query.h"
+#include "libvpm/synthetic/render.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+constexpr Intrinsics kIntrinsics{525, 525, 39.5, 29.5};
+
+DepthFrameOptions options_of(std::optional<double> counts_per_metre = {}) {
+  return {kIntrinsics, 80, 60, counts_per_metre, {}, {}};
+}
+
+DepthImage wall() {
+  const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
+  return synthetic::render(*scene.surface, {kIntrinsics, 80, 60, {}});
+}
+
+Result query_in(const DepthImage& image, const Pose& camera, const Pose& pose) {
+  const PreparedCloud cloud(make_cloud(image, {kIntrinsics, 80, 60, camera}, {}));
+  return Query(testing::lattice_cube(0.1, 6, 2), {}).run(cloud, pose);
+}
+
+const Pose kPose{testing::generic_rotation(), {0, 0, 0.98}};
+
+TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
+  const DepthImage image = wall();
+  const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
+  Query query(tool, {});
+  DepthFrames frames(options_of());
+  std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
+  const DepthFrame frame = frames.prepare({});
+  const Result expected = query_in(image, {}, kPose), found = query.run(frame, kPose);
+  EXPECT_GT(expected.boundary, 0U);
+  EXPECT_EQ(expected.volume, found.volume);
+  EXPECT_EQ(expected.wrench.torque, found.wrench.torque);
+  EXPECT_EQ(frame.points(), image.depth.size());
+  const Pose poses[] = {kPose, kPose};
+  Result results[2];
+  query.run(frame, poses, results);
+  EXPECT_EQ(expected.volume, results[1].volume);
+}
+
+TEST(DepthFrames, OfCountsAreThoseOfTheirMetres) {
+  DepthImage image = wall();
+  DepthFrames frames(options_of(4000.0));
+  const std::span<std::uint16_t> counts = frames.counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    counts[i] = static_cast<std::uint16_t>(4000 * image.depth[i]);
+    image.depth[i] = static_cast<float>(counts[i] / 4000.0);
+  }
+  const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
+  EXPECT_EQ(query_in(image, {}, kPose).volume,
+            Query(tool, {}).run(frames.prepare({}), kPose).volume);
+}
+
+TEST(DepthFrames, StayAsTheyWereWhileOthersCome) {
+  DepthFrames frames(options_of());
+  const auto prepare = [&](float depth) {
+    std::ranges::fill(frames.metres(), depth);
+    return frames.prepare({});
+  };
+  const DepthFrame near = prepare(1);
+  for (int k = 0; k < 4; ++k) {
+    const DepthFrame far = prepare(2);
+    EXPECT_EQ(near.cloud().positions().front().z, 1);
+    EXPECT_EQ(far.cloud().positions().front().z, 2);
+  }
+}
+
+TEST(DepthFrames, TakeTheMemoryOfThoseThatNobodyHolds) {
+  DepthFrames frames(options_of());
+  const float* const first = frames.metres().data();
+  std::optional<DepthFrame> held = frames.prepare({});
+  const float* const second = frames.metres().data();
+  EXPECT_NE(first, second);
+  held = frames.prepare({});
+  EXPECT_EQ(frames.metres().data(), first);
+}
+
+TEST(DepthFrames, RefuseWhatTheyCannotBeMadeOf) {
+  const auto kind_of = [](const auto& job) {
+    try {
+      job();
+    } catch (const Error& fault) {
+      return fault.kind();
+    }
+    return ErrorKind::cannot_write;
+  };
+  const auto made_with = [&](const auto& change) {
+    DepthFrameOptions options = options_of();
+    change(options);
+    return kind_of([&] { DepthFrames frames(options); });
+  };
+  EXPECT_EQ(made_with([](auto& o) { o.width = 0; }), ErrorKind::usage);
+  EXPECT_EQ(made_with([](auto& o) { o.intrinsics.fx = 0; }), ErrorKind::usage);
+  EXPECT_EQ(made_with([](auto& o) { o.normals.window = 4; }), ErrorKind::usage);
+  EXPECT_EQ(made_with([](auto& o) { o.counts_per_metre = 0; }), ErrorKind::usage);
+  DepthFrames metres(options_of()), counts(options_of(1000.0));
+  EXPECT_EQ(kind_of([&] { metres.counts(); }), ErrorKind::usage);
+  EXPECT_EQ(kind_of([&] { counts.metres(); }), ErrorKind::usage);
+  Pose mirrored;
+  mirrored.rotation.row0.x = -1;
+  EXPECT_EQ(kind_of([&] { metres.prepare(mirrored); }), ErrorKind::refused);
+}
+
+}  // namespace
+}  // namespace vpm
