@@ -2,7 +2,7 @@
 # cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks and times depth frames on a machine with an
 # NVIDIA device: images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages,
 # vpm-normals and vpm-query; CLOUD has a camera. 1. vpm-normals of the cloud's image, both methods, CPU and device compared
-# byte for byte; 2. the stages on the device's clock; 3. ten thousand queries at each level, each in a new image, from the
+# byte for byte; 2. the stages on the device's clock; 3. two thousand queries at each level, each in a new image, from the
 # image in the frames' memory to the result. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
@@ -38,7 +38,7 @@ for method in inverse-depth pca; do
 done
 
 "$bundle/bin/frame-stages" "$cloud" "$work/stages.json" >/dev/null
-loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=10000)
+loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=2000)
 for level in ${levels//,/ }; do
   "${loop[@]}" level="$level" json="$work/loop-$level-none.json" >/dev/null
   for frames in counts metres; do
