@@ -201,6 +201,19 @@ struct DepthSurface {
     return !((center.z + radius) * look.range.high < 1 || (center.z - radius) * look.range.low > 1);
   }
 
+  // False where a ball in one that was looked at is not Side::free, as far as the looked at or the
+  // pixel at its centre tell: a short way to most answers of side_of_ball.
+  VPM_HD bool may_be_free(const Look& look, Vec3 center, double radius) const {
+    const double farthest = center.z + radius;
+    if (!(farthest * look.range.low < 1)) return false;
+    if (!(center.z - radius > 0)) return true;
+    const double per_depth = 1 / center.z;
+    const double u = k.fx * (center.x * per_depth) + k.cx + 0.5;
+    const double v = k.fy * (center.y * per_depth) + k.cy + 0.5;
+    if (!(u >= 0 && v >= 0 && u < width && v < height)) return true;
+    return farthest * inverse_depth(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) < 1;
+  }
+
   // Whether the surface in a ball that was looked at is one plane, as far as the range of its
   // pixels tells: the plane at its centre must predict their least and greatest depth to
   // `tolerance`, m.

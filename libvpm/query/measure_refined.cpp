@@ -155,7 +155,8 @@ void RefinedMeasure::count_behind(const Surface& surface, const Pose& to_surface
   }
 }
 
-// Of a patch through which the surface passes as one plane.
+// Of a patch through which the surface passes as one plane. What a share's own pixels show to be
+// free is free, whatever the mean of all says.
 template <class Surface>
 std::uint32_t RefinedMeasure::classify_crossed(const Surface& surface, const Pose& to_surface,
                                                const PointsOfSphere& points,
@@ -169,7 +170,9 @@ std::uint32_t RefinedMeasure::classify_crossed(const Surface& surface, const Pos
     passages_[i] = Passage::open;
     squared_gaps_[i] = distance * distance;
     cells_[i] = Cell::free;
-    if (distance < view.reach) {
+    const Vec3 center = to_surface * view.center;
+    if (distance < view.reach && !(surface.may_be_free(look, center, view.reach) &&
+                                   surface.side_of_ball(center, view.reach) == Side::free)) {
       const CellMeasure measure(surface, to_surface, reach_, view);
       CellResult& result = results_[i];
       result = {};

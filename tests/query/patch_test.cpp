@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/query.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -92,6 +93,56 @@ TEST(Patch, NoneWhereTheImageHasAHole) {
       depth.depth[row * depth.width + column] = 0;
   }
   EXPECT_FALSE(plane_at(PreparedCloud(cloud), middle, plane));
+}
+
+// Whether every pixel that a ball may cover shows a surface behind all of it.
+bool is_seen_free(const DepthImage& depth, const Intrinsics& k, Vec3 center, double radius) {
+  const double nearest = center.z - radius, farthest = center.z + radius;
+  const auto first = [&](double f, double x, double c) {
+    return static_cast<int>(std::floor(f * (x - radius) / (x < radius ? nearest : farthest) + c));
+  };
+  const auto last = [&](double f, double x, double c) {
+    return static_cast<int>(std::ceil(f * (x + radius) / (x > -radius ? nearest : farthest) + c));
+  };
+  for (int v = first(k.fy, center.y, k.cy); v <= last(k.fy, center.y, k.cy); ++v) {
+    for (int u = first(k.fx, center.x, k.cx); u <= last(k.fx, center.x, k.cx); ++u) {
+      const float seen =
+          depth.depth[depth.index(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v))];
+      if (!(static_cast<double>(seen) > farthest)) return false;
+    }
+  }
+  return true;
+}
+
+// Small pits in a wall leave patches as they are, and are wider than shares.
+TEST(Patch, SharesThatAreSeenFreeDoNotCount) {
+  constexpr std::uint32_t kPit = 14, kEvery = 40;  // pixels
+  constexpr float kDeep = 0.016F;
+  const synthetic::Scene scene = synthetic::make_scene("wall");
+  Cloud seen = see(scene);
+  DepthImage& depth = seen.sensor->depth;
+  for (std::uint32_t v = 0; v < depth.height; ++v) {
+    for (std::uint32_t u = 0; u < depth.width; ++u)
+      if (u % kEvery < kPit && v % kEvery < kPit) depth.depth[v * depth.width + u] += kDeep;
+  }
+  const PreparedCloud cloud(seen);
+  const ToolModel tool = testing::lattice_cube(0.2, 24, 2);
+  Query query(tool, {});
+  int free = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Pose pose{testing::generic_rotation(), {0.003 * k, 0.002 * k, 0.88 + 0.001 * k}};
+    query.run(cloud, pose);
+    for (std::size_t i = 0; i < tool.spheres.size(); ++i) {
+      // A tenth beyond the share: rounding of pixels is not what this is about.
+      const double reach = 1.1 * tool.levels[0].share_reach[i];
+      const Vec3 center = pose * tool.spheres[i].center;
+      if (!is_seen_free(depth, scene.camera.intrinsics, center, reach)) continue;
+      if (center.z < 1) continue;  // free before the wall too
+      ++free;
+      EXPECT_EQ(query.states()[i], SphereState::outside) << "pose " << k << ", sphere " << i;
+    }
+  }
+  EXPECT_GT(free, 20) << "no share was in a pit";
 }
 
 }  // namespace

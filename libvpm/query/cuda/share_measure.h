@@ -186,7 +186,7 @@ class ShareMeasure {
   }
 
   __device__ void classify(SeenUnit seen, bool active);
-  __device__ void classify_crossed(const Unit& unit, unsigned lane, const CrossingPlane& plane);
+  __device__ void classify_crossed(const Unit& unit, const Tile& lanes, const CrossingPlane& plane);
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void list_block(const Unit& unit, Side side);
@@ -219,7 +219,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
     const CrossingPlane& plane = space_.planes[part_.part * blockDim.x + seen.thread()];
     if (!active) return;
     if (seen.seen() == Seen::crossed)
-      classify_crossed(unit, lanes.lane, plane);
+      classify_crossed(unit, lanes, plane);
     else if (lanes.lane == Unit::of_share && (unit.flags & Unit::is_head) != 0)
       note_pushed(unit, plane.normal);
     return;
@@ -292,26 +292,30 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
   space_.parents[i + 1] = i + 1;
 }
 
-// One unit of a patch that a plane crosses, by three lanes.
+// One unit of a patch that a plane crosses, by all its lanes.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::classify_crossed(const Unit& unit, unsigned lane,
+__device__ void ShareMeasure<Surface>::classify_crossed(const Unit& unit, const Tile& lanes,
                                                         const CrossingPlane& plane) {
-  const UnitBall ball = unit.balls[min(lane, Unit::kBalls - 1U)];
+  const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const bool head = (unit.flags & Unit::is_head) != 0;
   const double distance = plane.distance(unit.balls[Unit::of_share].center);
   const double reach = unit.balls[Unit::of_share].radius;
-  if (lane == Unit::of_share && head) {
+  bool free = !(distance < reach);
+  if (lanes.lane == Unit::of_share && !free)
+    free = surface_.side_of_ball(to_surface_ * ball.center, reach) == Side::free;
+  free = lanes.from(free, Unit::of_share);
+  if (lanes.lane == Unit::of_share && head) {
     ToolSum sum;
-    if (distance <= -reach) {
+    if (!free && distance <= -reach) {
       measure_of({}).add_whole(level_.share_masses[unit.share], plane.normal, sum);
       notes_.sums[unit.share] = sum;
     }
     note_share(unit, sum.volume.value > 0 ? kPartial : 0U, distance * distance);
   }
-  if (lane == Unit::of_sphere && head &&
+  if (lanes.lane == Unit::of_sphere && head &&
       surface_.look_at_ball(to_surface_ * ball.center, ball.radius).side == Side::mixed)
     atomicOr(&notes_.words[unit.share], static_cast<std::uint32_t>(kCountsPoints));
-  if (lane == Unit::of_block && (unit.flags & Unit::has_block) != 0 && distance < reach &&
+  if (lanes.lane == Unit::of_block && (unit.flags & Unit::has_block) != 0 && !free &&
       !(distance <= -reach))
     list_crossed(unit, plane, false);
 }
