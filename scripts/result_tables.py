@@ -26,7 +26,9 @@ def table(head, rows):
 
 
 def source(report):
-    device = report.get("device") or report["settings"].get("device")
+    devices = report.get("devices")
+    device = (f"{len(devices)} x {devices[0]}" if devices else
+              report.get("device") or report["settings"].get("device"))
     if device:
         return f"`{report['command']}`, commit {report['commit'][:7]}, {device}."
     machine = report["machine"]
@@ -235,6 +237,14 @@ def cuda_frames(report):
                               "brought by the kernel", "normals and all that queries read"], stages))
 
 
+def cuda_devices(report):
+    count = len(report["devices"])
+    rounded = lambda rate: thousands(int(float(f"{rate:.3g}")))
+    return table(["spheres", "poses/s of one device", f"of {count}", "ratio"],
+                 [[thousands(r["spheres"]), rounded(r["poses_per_second_of_one"]), rounded(r["poses_per_second_of_all"]),
+                   f"{r['ratio']:.2f}"] for r in report["batch"]])
+
+
 def scaling(report):
     rows = [r for r in report["results"] if r["part"] == "spheres"]
     line = lambda name, key, digits=0: [name] + [f"{r[key]:.{digits}f}" for r in rows]
@@ -264,7 +274,8 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
-         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames")},
+         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
+                                     "cuda devices": (cuda_devices, "cuda_devices")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
 
