@@ -182,20 +182,17 @@ std::uint32_t RefinedMeasure::classify_crossed(const Surface& surface, const Pos
         for (std::uint32_t b = view.begin; b < view.end; ++b) measure.add_block(b, plane, result);
       cells_[i] = cell_of(result);
     }
-    found += count_points(surface, to_surface, points, i, look);
+    if (surface.may_touch(look, center, level_.radius(i)))
+      found += count_points(surface, points, i, center);
   }
   return found;
 }
 
-// Points in a sphere of a patch; `look` is at the patch.
+// Points in the sphere of a share; `center` is the sphere's, in the surface's frame.
 template <class Surface>
-std::uint32_t RefinedMeasure::count_points(const Surface& surface, const Pose& to_surface,
-                                           const PointsOfSphere& points, std::uint32_t i,
-                                           const typename Surface::Look& patch) const {
-  const Vec3 center = to_surface * level_.cell(i).center;
-  const double radius = level_.radius(i);
-  if (!surface.may_touch(patch, center, radius)) return 0;
-  const auto look = surface.look_at_ball(center, radius);
+std::uint32_t RefinedMeasure::count_points(const Surface& surface, const PointsOfSphere& points,
+                                           std::uint32_t i, Vec3 center) const {
+  const auto look = surface.look_at_ball(center, level_.radius(i));
   return look.side == Side::mixed ? points.count(tool_.spheres[level_.sphere(i)], look) : 0;
 }
 
@@ -204,7 +201,8 @@ std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose&
                                              const PointsOfSphere& points, std::uint32_t i) {
   passages_[i] = Passage::unknown;
   const CellView view = level_.cell(i);
-  const Side side = surface.side_of_ball(to_surface * view.center, view.reach);
+  const Vec3 center = to_surface * view.center;
+  const Side side = surface.side_of_ball(center, view.reach);
   if (side == Side::free) {
     cells_[i] = Cell::free;
   } else if (side == Side::behind) {
@@ -214,9 +212,7 @@ std::uint32_t RefinedMeasure::classify_share(const Surface& surface, const Pose&
   } else {
     results_[i] = CellMeasure(surface, to_surface, reach_, view).run();
     cells_[i] = cell_of(results_[i]);
-    const Sphere& sphere = tool_.spheres[level_.sphere(i)];
-    const auto look = surface.look_at_ball(to_surface * view.center, sphere.radius);
-    if (look.side == Side::mixed) return points.count(sphere, look);
+    return count_points(surface, points, i, center);
   }
   return 0;
 }

@@ -76,9 +76,8 @@ class RefinedMeasure {
                                  const PointsOfSphere& points, const ShareCluster& cluster,
                                  const typename Surface::Look& look, const CrossingPlane& plane);
   template <class Surface>
-  std::uint32_t count_points(const Surface& surface, const Pose& to_surface,
-                             const PointsOfSphere& points, std::uint32_t row,
-                             const typename Surface::Look& patch) const;
+  std::uint32_t count_points(const Surface& surface, const PointsOfSphere& points,
+                             std::uint32_t row, Vec3 center) const;
   template <class Surface>
   void flood(const Surface& surface, const Pose& to_surface);
   template <class Surface>
