@@ -8,18 +8,6 @@
 
 namespace vpm::cuda {
 
-class Event {
- public:
-  Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming)); }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  cudaEvent_t get() const { return event_; }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
-
 class CloudSlot : public FrameSlot {
  public:
   explicit CloudSlot(const DepthFrameOptions& options);
@@ -63,7 +51,7 @@ class CloudSlot : public FrameSlot {
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
-  Event ready_;
+  Event ready_{cudaEventDisableTiming};
   Preparation preparation_;
   bool is_plain_ = false;
   unsigned sequence_ = 0;

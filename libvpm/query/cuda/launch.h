@@ -1,4 +1,4 @@
-// Streams, sizes of launches, and waiting for answers.
+// Streams, events, sizes of launches, and waiting for answers.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +21,27 @@ class Stream {
  private:
   cudaStream_t stream_ = nullptr;
 };
+
+class Event {
+ public:
+  explicit Event(unsigned flags = cudaEventDefault) {
+    check(cudaEventCreateWithFlags(&event_, flags));
+  }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// By the device's clock; of events that have happened.
+inline double microseconds_between(const Event& begin, const Event& end) {
+  float milliseconds = 0;
+  check(cudaEventElapsedTime(&milliseconds, begin.get(), end.get()));
+  return 1e3 * static_cast<double>(milliseconds);
+}
 
 // Of the current device.
 inline unsigned processor_count() {

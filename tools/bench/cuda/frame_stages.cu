@@ -20,21 +20,15 @@ constexpr int kCopies = 8, kLaunches = 40, kRounds = 50, kWarmUp = 10;
 // Microseconds of one of many launches in a row, the median of rounds.
 template <class Launch>
 double time_of(cudaStream_t stream, const Launch& launch) {
-  cudaEvent_t begin = nullptr, end = nullptr;
-  device::check(cudaEventCreate(&begin));
-  device::check(cudaEventCreate(&end));
+  const device::Event begin, end;
   std::vector<double> times;
   for (int round = -kWarmUp; round < kRounds; ++round) {
-    device::check(cudaEventRecord(begin, stream));
+    device::check(cudaEventRecord(begin.get(), stream));
     for (int k = 0; k < kLaunches; ++k) launch(static_cast<std::size_t>(k % kCopies));
-    device::check(cudaEventRecord(end, stream));
-    device::check(cudaEventSynchronize(end));
-    float milliseconds = 0;
-    device::check(cudaEventElapsedTime(&milliseconds, begin, end));
-    if (round >= 0) times.push_back(1e3 * milliseconds / kLaunches);
+    device::check(cudaEventRecord(end.get(), stream));
+    device::check(cudaEventSynchronize(end.get()));
+    if (round >= 0) times.push_back(microseconds_between(begin, end) / kLaunches);
   }
-  device::check(cudaEventDestroy(begin));
-  device::check(cudaEventDestroy(end));
   std::nth_element(times.begin(), times.begin() + kRounds / 2, times.end());
   return times[kRounds / 2];
 }

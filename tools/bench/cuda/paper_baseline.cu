@@ -2,6 +2,7 @@
 #include <string>
 
 #include "libvpm/query/cuda/device_array.h"
+#include "libvpm/query/cuda/launch.h"
 #include "tools/bench/cuda/paper_kernels.h"
 #include "tools/bench/paper_baseline.h"
 
@@ -10,6 +11,7 @@ namespace {
 
 using cuda::check;
 using cuda::DeviceArray;
+using cuda::Event;
 
 constexpr unsigned kThreads = 256;
 
@@ -28,24 +30,6 @@ int depth_of(const Hierarchy& tree) {
     for (std::uint32_t k = node.begin; k < node.end; ++k) depth[k] = depth[n] + 1;
   }
   return deepest;
-}
-
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_)); }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  cudaEvent_t get() const { return event_; }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
-
-double microseconds_between(const Event& begin, const Event& end) {
-  float milliseconds = 0;
-  check(cudaEventElapsedTime(&milliseconds, begin.get(), end.get()));
-  return 1e3 * static_cast<double>(milliseconds);
 }
 
 class PaperOnDevice : public PaperBaseline {
