@@ -133,9 +133,7 @@ void InverseDepthRows::fit_gated_windows(int v, NormalRow& row) {
           {planes.found[i] != 0, planes.a[i], planes.b[i], planes.c[i]}, fx, fy, du[i], dv_axis);
       x[i] = n.x, y[i] = n.y, z[i] = n.z;
     }
-    for (int u = first; u < std::min(first + kLanes, width); ++u) {
-      if (!windows_.smooth(u)) row.take(u, x + u - first, y + u - first, z + u - first, 1);
-    }
+    take_rough(windows_, first, x, y, z, row);
   }
 }
 

@@ -166,16 +166,10 @@ void PcaRows::fit_gated_windows(int v, NormalRow& row) {
       const Vec3f n = normal_of_moments(
           {m.n[i], m.x[i], m.y[i], m.z[i], m.xx[i], m.xy[i], m.xz[i], m.yy[i], m.yz[i], m.zz[i]},
           per_fx, per_fy, (first + i - k_.cx) / k_.fx, ry);
-      x[i] = n.x, y[i] = n.y, z[i] = n.z;
+      const bool found = planes.found[i] != 0;
+      x[i] = found ? n.x : 0, y[i] = found ? n.y : 0, z[i] = found ? n.z : 0;
     }
-    for (int u = first; u < std::min(first + kLanes, width); ++u) {
-      if (windows_.smooth(u)) continue;
-      const auto i = static_cast<std::size_t>(u);
-      const int lane = u - first;
-      const bool found = planes.found[lane] != 0;
-      row.x[i] = found ? x[lane] : 0, row.y[i] = found ? y[lane] : 0;
-      row.z[i] = found ? z[lane] : 0;
-    }
+    take_rough(windows_, first, x, y, z, row);
   }
 }
 

@@ -1,11 +1,13 @@
 // Windows over a depth image, and which of their pixels lie on the surface of the centre.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "libvpm/cloud/normal_fit.h"
+#include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/padded_image.h"
 #include "libvpm/core/lanes.h"
@@ -37,6 +39,14 @@ class SmoothWindows {
   std::vector<std::int32_t> column_min_, column_max_;  // as integers, see scan()
   std::vector<std::uint8_t> smooth_;
 };
+
+// Takes those of kLanes normals from pixel `first` on whose windows are not smooth.
+inline void take_rough(const SmoothWindows& windows, int first, const float* x, const float* y,
+                       const float* z, NormalRow& row) {
+  const int count = std::min(kLanes, static_cast<int>(row.width) - first);
+  for (int i = 0; i < count; ++i)
+    if (!windows.smooth(first + i)) row.take(first + i, x + i, y + i, z + i, 1);
+}
 
 // The pixels that belong to the surface of their window's centre, and their plane: of kLanes
 // windows at once, whose centres are neighbours in a row.
