@@ -66,8 +66,7 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
                                 &t.torque[2].value};
   unsigned* const counts[] = {&total.boundary, &total.inside, &total.points};
   if (threadIdx.x < 7) {
-    atomicAdd(reinterpret_cast<unsigned long long*>(sums[threadIdx.x]),
-              static_cast<unsigned long long>(sum));
+    add_term(*sums[threadIdx.x], sum);
   } else {
     atomicAdd(counts[threadIdx.x - 7], static_cast<unsigned>(sum));
   }

@@ -41,7 +41,7 @@ Result MeasureOnDevice::ask(const Pose& pose) {
   launch(frame, answer_.device(), ++sequence_);
   const RawResult raw = wait_for(*answer_.host(), sequence_, stream_.get());
   flood_microseconds_ = 1e-3 * raw.flood_ns;
-  return result_of(raw, pose);
+  return result_of(raw, tool_, pose.rotation);
 }
 
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
@@ -55,7 +55,7 @@ void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results
                           cudaMemcpyDeviceToHost, stream_.get()));
     check(cudaStreamSynchronize(stream_.get()));
     for (std::size_t k = 0; k < count; ++k)
-      results[begin + k] = result_of(batch_->answers[k], poses[begin + k]);
+      results[begin + k] = result_of(batch_->answers[k], tool_, poses[begin + k].rotation);
   }
 }
 
@@ -87,15 +87,6 @@ const CloudSlot* MeasureOnDevice::bring(const DepthFrame& frame) {
   }
   cloud_ = &slot->device_cloud();
   return slot;
-}
-
-Result MeasureOnDevice::result_of(const RawResult& raw, const Pose& pose) const {
-  Result result;
-  raw.sum.write(tool_, pose.rotation, result);
-  result.boundary = raw.boundary;
-  result.inside = raw.inside;
-  result.points = raw.points;
-  return result;
 }
 
 }  // namespace vpm::cuda

@@ -57,7 +57,6 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   void ask(std::span<const Pose> poses, std::span<Result> results);
-  Result result_of(const RawResult& raw, const Pose& pose) const;
 
   int device_;
   const ToolModel& tool_;

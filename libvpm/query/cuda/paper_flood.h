@@ -54,10 +54,6 @@ __device__ inline void clear(const PaperSpace& space, const PaperCounters& count
   for (std::uint32_t k = first; k < counters.inside; k += step) space.words[space.inside[k]] = 0;
 }
 
-__device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
-  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
-}
-
 // Steps 1 and 2 for a part of the points, by all threads of a block.
 __device__ inline void gather(const PaperLevel& level, const PointsView& points,
                               const PoseFrame& frame, Part part, const PaperSpace& space,

@@ -94,13 +94,18 @@ __device__ void add_up(const Tile& tile, Sum& sum) {
   }
 }
 
+// Many threads may add to a sum at once.
+__device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
+  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
+}
+
 template <class Sum>
 __device__ void add_atomically(Sum part, Sum& sum) {
   const std::int64_t* const terms = terms_of(part);
-  auto* const totals = reinterpret_cast<unsigned long long*>(terms_of(sum));
+  std::int64_t* const totals = terms_of(sum);
 #pragma unroll
   for (int k = 0; k < kTerms; ++k)
-    if (terms[k] != 0) atomicAdd(totals + k, static_cast<unsigned long long>(terms[k]));
+    if (terms[k] != 0) add_term(totals[k], terms[k]);
 }
 
 }  // namespace vpm::cuda

@@ -122,4 +122,14 @@ struct RawResult {
   std::uint32_t flood_ns = 0;  // of one pose: what came after the boundary was known
 };
 
+inline Result result_of(const RawResult& raw, const ToolModel& tool,
+                        const Rotation& tool_to_world) {
+  Result result;
+  raw.sum.write(tool, tool_to_world, result);
+  result.boundary = raw.boundary;
+  result.inside = raw.inside;
+  result.points = raw.points;
+  return result;
+}
+
 }  // namespace vpm::cuda

@@ -65,14 +65,9 @@ class PaperOnDevice : public PaperBaseline {
   Result run(const Pose& pose) override {
     launch_boundary(pose);
     launch_flood();
-    PaperTotals totals;
+    cuda::RawResult totals;
     check(cudaMemcpy(&totals, totals_.get(), sizeof totals, cudaMemcpyDeviceToHost));
-    Result result;
-    totals.sum.write(tool_, pose.rotation, result);
-    result.boundary = totals.boundary;
-    result.inside = totals.inside;
-    result.points = totals.points;
-    return result;
+    return result_of(totals, tool_, pose.rotation);
   }
 
   Phases run_in_phases(const Pose& pose) override {
@@ -97,7 +92,7 @@ class PaperOnDevice : public PaperBaseline {
  private:
   void launch_boundary(const Pose& pose) {
     check(cudaMemsetAsync(contacts_.get(), 0, contacts_.size() * sizeof(PaperContact)));
-    check(cudaMemsetAsync(totals_.get(), 0, sizeof(PaperTotals)));
+    check(cudaMemsetAsync(totals_.get(), 0, sizeof(cuda::RawResult)));
     gather_points<<<blocks_for(view_.point_count), kThreads>>>(
         view_, relative_to(pose, {{}, cloud_.origin()}), transpose(pose.rotation));
     find_boundary<<<blocks_for(view_.sphere_count), kThreads>>>(view_);
@@ -118,7 +113,7 @@ class PaperOnDevice : public PaperBaseline {
   DeviceArray<PaperContact> contacts_;
   DeviceArray<std::uint32_t> states_, below_;
   DeviceArray<Vec3> sphere_normals_;
-  DeviceArray<PaperTotals> totals_;
+  DeviceArray<cuda::RawResult> totals_;
   PaperView view_;
   Event begin_, middle_, end_;
 };

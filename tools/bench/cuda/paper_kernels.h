@@ -4,15 +4,12 @@
 
 #include <cstdint>
 
+#include "libvpm/query/cuda/team.h"
+#include "libvpm/query/cuda/views.h"
 #include "libvpm/query/paper_contact.h"
 #include "libvpm/query/sphere_location.h"
 
 namespace vpm::bench {
-
-struct PaperTotals {
-  ToolSum sum;
-  std::uint32_t boundary, inside, points;
-};
 
 // What kernels see of a tool, a cloud and a run's memory.
 struct PaperView {
@@ -35,20 +32,8 @@ struct PaperView {
   std::uint32_t* states;  // SphereState
   Vec3* sphere_normals;
   std::uint32_t* below;  // the next sphere of the stack that a claimed sphere lies on
-  PaperTotals* totals;
+  cuda::RawResult* totals;
 };
-
-__device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
-  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
-}
-
-__device__ inline void add_sum(const ToolSum& sum, ToolSum& total) {
-  add_term(total.volume.value, sum.volume.value);
-  for (int k = 0; k < 3; ++k) {
-    add_term(total.force[k].value, sum.force[k].value);
-    add_term(total.torque[k].value, sum.torque[k].value);
-  }
-}
 
 // Calls visit(sphere) for every sphere that holds x, by the tree; depth first.
 template <class Visit>
@@ -86,7 +71,7 @@ __global__ void gather_points(PaperView view, Pose to_tool, Rotation world_to_to
     inside = true;
     const Sphere& s = view.spheres[i];
     const Vec3 n = world_to_tool * widen(view.normals[k]);
-    PaperContact::of_point(s, x, n).add_to(view.contacts[i], add_term);
+    PaperContact::of_point(s, x, n).add_to(view.contacts[i], cuda::add_term);
   });
   if (inside) atomicAdd(&view.totals->points, 1U);
 }
@@ -103,7 +88,7 @@ __global__ void find_boundary(PaperView view) {
   view.sphere_normals[i] = normal;
   ToolSum sum;
   add_boundary(view.tool, view.spheres[i], c, normal, sum);
-  add_sum(sum, view.totals->sum);
+  cuda::add_atomically(sum, view.totals->sum);
   atomicAdd(&view.totals->boundary, 1U);
 }
 
@@ -151,7 +136,7 @@ __global__ void flood(PaperView view) {
     }
   }
   if (traversal.claimed == 0) return;
-  add_sum(traversal.sum, view.totals->sum);
+  cuda::add_atomically(traversal.sum, view.totals->sum);
   atomicAdd(&view.totals->inside, traversal.claimed);
 }
 
