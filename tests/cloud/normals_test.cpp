@@ -10,6 +10,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cloud/normal_scene.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -36,9 +37,7 @@ class Normals : public testing::TestWithParam<NormalMethod> {
 
 INSTANTIATE_TEST_SUITE_P(Methods, Normals,
                          testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
-                         [](const auto& method) {
-                           return method.param == NormalMethod::pca ? "pca" : "inverse_depth";
-                         });
+                         [](const auto& method) { return test::test_name(to_text(method.param)); });
 
 TEST_P(Normals, PlanesAreExactAtEveryTiltAndDistanceAndWindow) {
   for (const double tilt : {0.0, 20.0, 45.0, 70.0}) {

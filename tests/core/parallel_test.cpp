@@ -54,7 +54,8 @@ TEST_P(Parallel, MayBeNested) {
   EXPECT_EQ(visits, (std::vector<std::vector<int>>(20, std::vector<int>(50, 1))));
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 8));
+INSTANTIATE_TEST_SUITE_P(Threads, Parallel, testing::Values(1, 2, 8),
+                         testing::PrintToStringParamName());
 
 TEST(ThreadCount, IsWhatWasSet) {
   set_thread_count(3);

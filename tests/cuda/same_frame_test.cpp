@@ -14,6 +14,7 @@
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cuda/frame_memory.h"
 #include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -107,9 +108,7 @@ class SameFrame : public ::testing::TestWithParam<NormalMethod> {
 };
 INSTANTIATE_TEST_SUITE_P(Methods, SameFrame,
                          ::testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
-                         [](const auto& method) {
-                           return method.param == NormalMethod::pca ? "pca" : "inverse_depth";
-                         });
+                         [](const auto& method) { return test::test_name(to_text(method.param)); });
 
 TEST_P(SameFrame, OfImagesOfAnySize) {
   const std::pair<std::uint32_t, std::uint32_t> sizes[] = {

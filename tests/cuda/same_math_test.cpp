@@ -5,6 +5,7 @@
 
 #include "tests/cuda/device_cells.h"
 #include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -19,7 +20,14 @@ void expect_same_bits(const ToolSum& a, const ToolSum& b) {
   }
 }
 
-class SameMath : public ::testing::TestWithParam<std::tuple<const char*, bool>> {};
+using SceneCase = std::tuple<const char*, bool>;  // with camera
+
+std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
+  const auto& [scene, camera] = tested.param;
+  return test::test_name(scene) + (camera ? "_camera" : "_points");
+}
+
+class SameMath : public ::testing::TestWithParam<SceneCase> {};
 
 TEST_P(SameMath, OnHostAndDevice) {
   if (!testing::has_device()) GTEST_SKIP() << "no CUDA device here";
@@ -52,7 +60,8 @@ TEST_P(SameMath, OnHostAndDevice) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SameMath,
                          ::testing::Combine(::testing::Values("wall", "groove", "block",
                                                               "inverted-ball"),
-                                            ::testing::Bool()));
+                                            ::testing::Bool()),
+                         name_of);
 
 }  // namespace
 }  // namespace vpm

@@ -8,6 +8,7 @@
 
 #include "libvpm/query/query.h"
 #include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -34,7 +35,15 @@ void expect_equal(const Result& a, const Result& b) {
   EXPECT_EQ(a.points, b.points);
 }
 
-class SameQuery : public ::testing::TestWithParam<std::tuple<const char*, bool, Measure>> {
+using SceneCase = std::tuple<const char*, bool, Measure>;  // with camera
+
+std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
+  const auto& [scene, camera, measure] = tested.param;
+  return test::test_name(scene) + (camera ? "_camera" : "_points") +
+         (measure == Measure::paper ? "_paper" : "_refined");
+}
+
+class SameQuery : public ::testing::TestWithParam<SceneCase> {
  protected:
   void SetUp() override {
     if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
@@ -83,7 +92,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                          ::testing::Combine(::testing::Values("wall", "groove", "block", "plate",
                                                               "inverted-ball", "step"),
                                             ::testing::Bool(),
-                                            ::testing::Values(Measure::refined, Measure::paper)));
+                                            ::testing::Values(Measure::refined, Measure::paper)),
+                         name_of);
 
 // Its middle sphere is joined to all others, as a large sphere of a packing is to small ones.
 ToolModel lattice_with_hub(std::uint32_t n) {

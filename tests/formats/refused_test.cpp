@@ -7,6 +7,7 @@
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
 #include "tests/formats/refused_files.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -95,11 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Golden, DamagedFile,
                                          GoldenFile{"cube.vpmg", "tool model"},
                                          GoldenFile{"wall.vpmc", "cloud"},
                                          GoldenFile{"scattered.vpmc", "cloud"}),
-                         [](const auto& instance) {
-                           std::string name = instance.param.name;
-                           name[name.find('.')] = '_';
-                           return name;
-                         });
+                         [](const auto& instance) { return test::test_name(instance.param.name); });
 
 }  // namespace
 }  // namespace vpm

@@ -5,6 +5,7 @@
 
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -27,7 +28,8 @@ INSTANTIATE_TEST_SUITE_P(
         Frame{
             "d435_000000080-transparent-depth-img.exr", {921, 921, 642, 359}, 1, 1280, 720, 796325},
         Frame{"d435_000000080-opaque-depth-img.exr", {921, 921, 642, 359}, 1, 1280, 720, 840522},
-        Frame{"kinect_capture0001.pcd", {525, 525, 319.5, 239.5}, 1, 640, 480, 249647}));
+        Frame{"kinect_capture0001.pcd", {525, 525, 319.5, 239.5}, 1, 640, 480, 249647}),
+    [](const auto& frame) { return test::test_name(frame.param.file); });
 
 TEST_P(RealFrame, BecomesASoundCloud) {
   const Frame& frame = GetParam();

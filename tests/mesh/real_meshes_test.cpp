@@ -5,6 +5,7 @@
 
 #include "libvpm/core/error.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/test_name.h"
 
 namespace vpm::test {
 namespace {
@@ -46,12 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, SoundMesh,
                                          Sound{"cow.off", 2762, 5520, 2, 0.05348, 118},
                                          Sound{"bad_blobby_misoriented.off", 2027, 4050, 2, 0.0501,
                                                0}),
-                         [](const auto& tested) {
-                           std::string name = tested.param.name;
-                           for (char& c : name)
-                             c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
-                           return name;
-                         });
+                         [](const auto& tested) { return test_name(tested.param.name); });
 
 std::string refusal_of_file(const std::string& path) {
   try {

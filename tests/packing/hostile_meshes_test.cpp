@@ -15,6 +15,7 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/validation.h"
 #include "tests/packing/test_solids.h"
+#include "tests/test_name.h"
 
 namespace vpm::test {
 namespace {
@@ -293,6 +294,11 @@ struct Shared {
   Repair repair;
 };
 
+std::string name_of(const testing::TestParamInfo<Shared>& tested) {
+  constexpr const char* kRepaired[] = {"", "_holes_filled", "_from_voxels"};
+  return test_name(tested.param.name) + kRepaired[static_cast<std::size_t>(tested.param.repair)];
+}
+
 class SharedMesh : public testing::TestWithParam<Shared> {};
 
 TEST_P(SharedMesh, IsPackedAndCertified) {
@@ -315,7 +321,8 @@ INSTANTIATE_TEST_SUITE_P(Files, SharedMesh,
                                          Shared{"bad_blobby_misoriented.off", Repair::none},
                                          Shared{"cow.off", Repair::none},
                                          Shared{"featuretype.STL", Repair::none},
-                                         Shared{"plate_holes.STL", Repair::none}));
+                                         Shared{"plate_holes.STL", Repair::none}),
+                         name_of);
 
 }  // namespace
 }  // namespace vpm::test

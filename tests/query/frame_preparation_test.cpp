@@ -12,6 +12,7 @@
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -92,9 +93,7 @@ class FramePreparationOf : public ::testing::TestWithParam<NormalMethod> {};
 
 INSTANTIATE_TEST_SUITE_P(Methods, FramePreparationOf,
                          ::testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
-                         [](const auto& method) {
-                           return method.param == NormalMethod::pca ? "pca" : "inverse_depth";
-                         });
+                         [](const auto& method) { return test::test_name(to_text(method.param)); });
 
 TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
   const NormalOptions options{GetParam(), 7, kEdgeGate};

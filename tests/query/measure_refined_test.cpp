@@ -8,6 +8,7 @@
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
 
 namespace vpm {
 namespace {
@@ -64,22 +65,17 @@ TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, RefinedScene,
-                         ::testing::Values(SceneCase{"wall", true, 0.0005, true},
-                                           SceneCase{"tilted-wall", true, 0.0005, true},
-                                           SceneCase{"inverted-ball", true, 0.001, true},
-                                           SceneCase{"ball", true, 0.001, true},
-                                           SceneCase{"groove", true, 0.0015, true},
-                                           SceneCase{"step", true, 0.003, false},
-                                           SceneCase{"wall", false, 0.0005, true},
-                                           SceneCase{"tilted-wall", false, 0.0005, true},
-                                           SceneCase{"inverted-ball", false, 0.001, true},
-                                           SceneCase{"groove", false, 0.002, true}),
-                         [](const auto& variant) {
-                           std::string name = variant.param.scene;
-                           std::erase(name, '-');
-                           return name + (variant.param.camera ? "Camera" : "Points");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, RefinedScene,
+    ::testing::Values(
+        SceneCase{"wall", true, 0.0005, true}, SceneCase{"tilted-wall", true, 0.0005, true},
+        SceneCase{"inverted-ball", true, 0.001, true}, SceneCase{"ball", true, 0.001, true},
+        SceneCase{"groove", true, 0.0015, true}, SceneCase{"step", true, 0.003, false},
+        SceneCase{"wall", false, 0.0005, true}, SceneCase{"tilted-wall", false, 0.0005, true},
+        SceneCase{"inverted-ball", false, 0.001, true}, SceneCase{"groove", false, 0.002, true}),
+    [](const auto& variant) {
+      return test::test_name(variant.param.scene) + (variant.param.camera ? "_camera" : "_points");
+    });
 
 // A block of a large share is wider than the step is high.
 TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {

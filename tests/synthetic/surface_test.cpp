@@ -8,6 +8,7 @@
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
+#include "tests/test_name.h"
 
 namespace vpm::synthetic {
 namespace {
@@ -103,11 +104,8 @@ TEST_P(SceneTest, EveryPixelSeesTheSurfaceFromFreeSpace) {
   EXPECT_GT(seen, 500u);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scene_names()), [](const auto& scene) {
-  std::string name = scene.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scene_names()),
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 TEST(Scenes, UnknownNameIsRefusedWithTheKnownOnes) {
   try {

@@ -6,6 +6,7 @@
 #include "libvpm/model/sphere.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
+#include "tests/test_name.h"
 
 namespace vpm::synthetic {
 namespace {
@@ -71,11 +72,8 @@ TEST_P(TruthTest, KeepsItsErrorBound) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TruthTest, testing::ValuesIn(scene_names()), [](const auto& scene) {
-  std::string name = scene.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, TruthTest, testing::ValuesIn(scene_names()),
+                         [](const auto& scene) { return test::test_name(scene.param); });
 
 TEST(Truth, CubeIntoAWallIsASlab) {
   const TrueSolid cube(make_cube(0.2));

@@ -1,0 +1,15 @@
+// Names of the cases of parameterised tests.
+#pragma once
+
+#include <cctype>
+#include <string>
+
+namespace vpm::test {
+
+// What GoogleTest takes for a name: letters and digits stay, all else becomes '_'.
+inline std::string test_name(std::string text) {
+  for (char& c : text) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return text;
+}
+
+}  // namespace vpm::test
