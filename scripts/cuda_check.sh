@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages, vpm-normals and vpm-query, with cuda_tests
-# beside them; LEVELS are like 1000,17000.
+# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_tests, frame-stages, vpm-normals and vpm-query; LEVELS
+# are like 1000,17000.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one and in batches; 4. ten thousand queries at each level, with the data of
 # eight tools and clouds by turns; 5. a hundred thousand poses in batches; 6. scripts/cuda_frames_check.sh, which writes
