@@ -13,11 +13,14 @@
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cuda/frame_memory.h"
+#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 
 namespace vpm {
 namespace {
+
+using testing::expect_equal;
 
 const Device kDevice{Device::Kind::cuda, 0};
 const Pose kFarPose{testing::generic_rotation(), {1e6, -3, 2}};
@@ -193,20 +196,10 @@ TEST_P(SameFrame, OrTheSameRefusal) {
           found = fault.what();
         }
         EXPECT_EQ(expected, found);
-        EXPECT_EQ(at_host.volume, at_device.volume);
-        EXPECT_EQ(at_host.points, at_device.points);
+        expect_equal(at_host, at_device);
       }
     }
   }
-}
-
-void expect_equal(const Result& a, const Result& b) {
-  EXPECT_EQ(a.volume, b.volume);
-  EXPECT_EQ(a.wrench.force, b.wrench.force);
-  EXPECT_EQ(a.wrench.torque, b.wrench.torque);
-  EXPECT_EQ(a.boundary, b.boundary);
-  EXPECT_EQ(a.inside, b.inside);
-  EXPECT_EQ(a.points, b.points);
 }
 
 Pose pose_of(int k) {

@@ -7,11 +7,14 @@
 #include <set>
 
 #include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 
 namespace vpm {
 namespace {
+
+using testing::expect_equal;
 
 // Golden ratio and friends: places that never repeat.
 Pose pose_of(int k) {
@@ -23,16 +26,6 @@ Pose pose_of(int k) {
   return {rotation_from_quaternion({s * axis.x, s * axis.y, s * axis.z, std::cos(half)}),
           {0.3 * (fraction(0.324718) - 0.5), 0.3 * (fraction(0.754878) - 0.5),
            0.8 + 0.45 * fraction(0.569840)}};
-}
-
-void expect_equal(const Result& a, const Result& b) {
-  EXPECT_EQ(a.volume, b.volume);
-  EXPECT_EQ(a.volume_fraction, b.volume_fraction);
-  EXPECT_EQ(a.wrench.force, b.wrench.force);
-  EXPECT_EQ(a.wrench.torque, b.wrench.torque);
-  EXPECT_EQ(a.boundary, b.boundary);
-  EXPECT_EQ(a.inside, b.inside);
-  EXPECT_EQ(a.points, b.points);
 }
 
 using SceneCase = std::tuple<const char*, bool, Measure>;  // with camera

@@ -9,6 +9,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/render.h"
+#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -41,13 +42,12 @@ TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
   const DepthFrame frame = frames.prepare({});
   const Result expected = query_in(image, {}, kPose), found = query.run(frame, kPose);
   EXPECT_GT(expected.boundary, 0U);
-  EXPECT_EQ(expected.volume, found.volume);
-  EXPECT_EQ(expected.wrench.torque, found.wrench.torque);
+  testing::expect_equal(expected, found);
   EXPECT_EQ(frame.points(), image.depth.size());
   const Pose poses[] = {kPose, kPose};
   Result results[2];
   query.run(frame, poses, results);
-  EXPECT_EQ(expected.volume, results[1].volume);
+  testing::expect_equal(expected, results[1]);
 }
 
 TEST(DepthFrames, OfCountsAreThoseOfTheirMetres) {
@@ -59,8 +59,7 @@ TEST(DepthFrames, OfCountsAreThoseOfTheirMetres) {
     image.depth[i] = static_cast<float>(counts[i] / 4000.0);
   }
   const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
-  EXPECT_EQ(query_in(image, {}, kPose).volume,
-            Query(tool, {}).run(frames.prepare({}), kPose).volume);
+  testing::expect_equal(query_in(image, {}, kPose), Query(tool, {}).run(frames.prepare({}), kPose));
 }
 
 TEST(DepthFrames, StayAsTheyWereWhileOthersCome) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -111,13 +112,7 @@ TEST(PaperMeasure, GridAndHierarchyGiveTheSameBits) {
   Query by_grid(tool, grid), by_tree(tool, tree);
   for (int k = 0; k < 12; ++k) {
     const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.02 * k}};
-    const Result a = by_grid.run(cloud, pose), b = by_tree.run(cloud, pose);
-    EXPECT_EQ(a.volume, b.volume);
-    EXPECT_EQ(a.wrench.force, b.wrench.force);
-    EXPECT_EQ(a.wrench.torque, b.wrench.torque);
-    EXPECT_EQ(a.boundary, b.boundary);
-    EXPECT_EQ(a.inside, b.inside);
-    EXPECT_EQ(a.points, b.points);
+    testing::expect_equal(by_grid.run(cloud, pose), by_tree.run(cloud, pose));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/shapes.h"
+#include "tests/query/expect_equal.h"
 
 namespace vpm {
 namespace {
@@ -76,16 +77,10 @@ class Pipeline {
 
 void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, double scale) {
   ASSERT_EQ(a.size(), b.size());
-  const double cubed = scale * scale * scale;
   double moved = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(cubed * a[k].volume, b[k].volume) << k;
-    EXPECT_EQ(a[k].volume_fraction, b[k].volume_fraction) << k;
-    EXPECT_EQ(cubed * a[k].wrench.force, b[k].wrench.force) << k;
-    EXPECT_EQ(cubed * scale * a[k].wrench.torque, b[k].wrench.torque) << k;
-    EXPECT_EQ(a[k].boundary, b[k].boundary) << k;
-    EXPECT_EQ(a[k].inside, b[k].inside) << k;
-    EXPECT_EQ(a[k].points, b[k].points) << k;
+    SCOPED_TRACE(k);
+    testing::expect_equal(a[k], b[k], scale);
     moved += a[k].volume;
   }
   EXPECT_GT(moved, 0);

@@ -9,6 +9,7 @@
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/query/replay.h"
 
@@ -50,15 +51,9 @@ class SameBits : public ::testing::TestWithParam<Variant> {
 void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, double scale = 1) {
   ASSERT_EQ(a.size(), b.size());
   EXPECT_GT(a.back().volume, 0);
-  const double cubed = scale * scale * scale;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(cubed * a[k].volume, b[k].volume);
-    EXPECT_EQ(a[k].volume_fraction, b[k].volume_fraction);
-    EXPECT_EQ(cubed * a[k].wrench.force, b[k].wrench.force);
-    EXPECT_EQ(cubed * scale * a[k].wrench.torque, b[k].wrench.torque);
-    EXPECT_EQ(a[k].boundary, b[k].boundary);
-    EXPECT_EQ(a[k].inside, b[k].inside);
-    EXPECT_EQ(a[k].points, b[k].points);
+    SCOPED_TRACE(k);
+    testing::expect_equal(a[k], b[k], scale);
   }
 }
 

@@ -1,0 +1,22 @@
+// Results that must have the same bits.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "libvpm/query/result.h"
+
+namespace vpm::testing {
+
+// `scale`, a power of two: lengths of b's scene in those of a's.
+inline void expect_equal(const Result& a, const Result& b, double scale = 1) {
+  const double cubed = scale * scale * scale;
+  EXPECT_EQ(cubed * a.volume, b.volume);
+  EXPECT_EQ(a.volume_fraction, b.volume_fraction);
+  EXPECT_EQ(cubed * a.wrench.force, b.wrench.force);
+  EXPECT_EQ(cubed * scale * a.wrench.torque, b.wrench.torque);
+  EXPECT_EQ(a.boundary, b.boundary);
+  EXPECT_EQ(a.inside, b.inside);
+  EXPECT_EQ(a.points, b.points);
+}
+
+}  // namespace vpm::testing
