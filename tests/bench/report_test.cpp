@@ -4,7 +4,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "tools/bench/suite.h"
 
 namespace vpm::bench {
 namespace {
@@ -42,18 +41,6 @@ TEST(Report, FolderThatCannotBeMadeIsSaid) {
     FAIL();
   } catch (const Error& fault) {
     EXPECT_EQ(fault.kind(), ErrorKind::cannot_write);
-  }
-}
-
-TEST(Suite, UnknownOrMissingNameIsWrongUsage) {
-  for (const char* name : {"", "speed"}) {
-    try {
-      run_suite(name, {});
-      FAIL();
-    } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), ErrorKind::usage);
-      EXPECT_NE(std::string(fault.what()).find("accuracy"), std::string::npos);
-    }
   }
 }
 

@@ -28,7 +28,7 @@ Met expect_same(const PreparedCloud& cloud, const ToolModel& tool, int poses) {
   QueryOptions options;
   options.measure = Measure::paper;
   Query on_cpu(tool, options);
-  const auto baseline = bench::make_paper_baseline(tool, on_cpu.level(), cloud);
+  const auto baseline = bench::make_paper_baseline(tool, on_cpu.level(), cloud, 0);
   Met met;
   for (int k = 0; k < poses; ++k) {
     SCOPED_TRACE(k);

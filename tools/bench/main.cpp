@@ -10,8 +10,7 @@ int main(int argc, char** argv) {
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes, data;
   bool quick = false, all = false, baseline = false;
-  tool.app().add_option("suite", suite,
-                        "accuracy, extremes, packing, replay, scaling, timing or tradeoff");
+  tool.app().add_option("suite", suite, vpm::bench::suite_names());
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
       ->capture_default_str();
@@ -27,11 +26,18 @@ int main(int argc, char** argv) {
       "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
   tool.app().add_flag("--baseline", baseline,
                       "scaling: beside the measure as printed, by the algorithm as printed");
+  tool.app()
+      .get_option("--device")
+      ->description(
+          vpm::bench::suite_names(true) +
+          ": the device to time: cuda, cuda:N, or auto (cuda); all others: cpu, or auto (cpu)");
+  tool.computes_on_devices();
   return tool.run(argc, argv, [&] {
+    const bool asks_device = tool.common().device != "auto" || vpm::bench::takes_device(suite);
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(
-        suite,
-        {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data, baseline});
+        suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,
+                baseline, asks_device ? tool.device() : vpm::Device{}});
     vpm::bench::write(report,
                       "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
                           (baseline ? " --baseline" : "") +

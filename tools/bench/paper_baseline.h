@@ -35,9 +35,10 @@ class PaperBaseline {
   virtual std::vector<SphereState> states() const = 0;
 };
 
-// On device 0, where the level and the cloud are copied; both must outlive the baseline. Throws
-// Error(unavailable) where there is no device, Error(refused) for a tree of more than 64 levels.
+// On a CUDA device, where the level and the cloud are copied; both must outlive the baseline.
+// Throws Error(unavailable) where there is no device, Error(refused) for a tree of more than 64
+// levels.
 std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel& tool, const Level& level,
-                                                   const PreparedCloud& cloud);
+                                                   const PreparedCloud& cloud, int device);
 
 }  // namespace vpm::bench

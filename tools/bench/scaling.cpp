@@ -108,20 +108,30 @@ nlohmann::json in_words(const std::string& name, const Times& times) {
   return {{name + "_median_us", median_of(all)}, {name + "_p99_us", all[p99]}};
 }
 
+Device device_of(const SuiteOptions& options) {
+  if (cuda_device_count() == 0) {
+    throw Error(ErrorKind::unavailable,
+                is_built_with_cuda()
+                    ? "scaling: this machine has no CUDA device, or no driver for it; run the "
+                      "suite where there is one"
+                    : "scaling: this build has no CUDA; build with cmake --preset cuda");
+  }
+  if (!options.device.is_cuda() || options.device.index == Device::kAll) {
+    throw Error(ErrorKind::usage,
+                "scaling times one CUDA device; use --device cuda or cuda:N, or leave the option "
+                "out");
+  }
+  return options.device;
+}
+
 class Scaling {
  public:
   explicit Scaling(const SuiteOptions& options)
       : options_(options),
+        device_(device_of(options)),
         levels_(levels_of(options)),
         poses_(options.quick ? 20 : 200),
         rounds_(options.quick ? 2 : 5) {
-    if (cuda_device_count() == 0) {
-      throw Error(ErrorKind::unavailable,
-                  is_built_with_cuda()
-                      ? "scaling: this machine has no CUDA device, or no driver for it; run the "
-                        "suite where there is one"
-                      : "scaling: this build has no CUDA; build with cmake --preset cuda");
-    }
     report_.suite = "scaling";
     report_.table.columns = {"spheres", "refined_us", "refined_flood_us", "paper_us",
                              "paper_flood_us"};
@@ -139,7 +149,7 @@ class Scaling {
                    scene.camera, NormalOptions{}));
     const std::vector<Pose> path = sliding_path(tool, cloud, poses_);
     report_.settings = {{"quick", options_.quick},
-                        {"device", cuda_device_name(0)},
+                        {"device", device_name(device_)},
                         {"shape", "twisted-torus"},
                         {"scene", scene.name},
                         {"points", cloud.positions().size()},
@@ -175,7 +185,7 @@ class Scaling {
   Times measure_ours(const ToolModel& tool, const Level& level, Measure measure,
                      const std::string& name, const PreparedCloud& cloud,
                      const std::vector<Pose>& path, nlohmann::json& row) const {
-    const auto query = make_device_measure(tool, level, measure, {Device::Kind::cuda, 0});
+    const auto query = make_device_measure(tool, level, measure, device_);
     std::vector<double> flood;
     Times times = time(path, [&](const Pose& pose) {
       query->run(cloud, pose);
@@ -215,7 +225,7 @@ class Scaling {
 
   Times measure_baseline(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
                          const std::vector<Pose>& path, nlohmann::json& row) const {
-    const auto baseline = make_paper_baseline(tool, level, cloud);
+    const auto baseline = make_paper_baseline(tool, level, cloud, device_.index);
     Times times = time(path, [&](const Pose& pose) { baseline->run(pose); });
     std::vector<double> boundary, flood;
     for (const Pose& pose : path) {
@@ -238,9 +248,10 @@ class Scaling {
     options.measure = Measure::paper;
     options.level = level.sphere_count;
     Query on_cpu(tool, options);
-    options.device = {Device::Kind::cuda, 0};
+    options.device = device_;
     Query on_device(tool, options);
-    const auto baseline = options_.baseline ? make_paper_baseline(tool, level, cloud) : nullptr;
+    const auto baseline =
+        options_.baseline ? make_paper_baseline(tool, level, cloud, device_.index) : nullptr;
     std::size_t same_of_ours = 0, same = 0;
     for (const Pose& pose : path) {
       const Result expected = on_cpu.run(cloud, pose);
@@ -286,6 +297,7 @@ class Scaling {
   }
 
   const SuiteOptions& options_;
+  Device device_;
   std::vector<std::uint32_t> levels_;
   int poses_, rounds_;
   Report report_;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "libvpm/query/device.h"
 #include "tools/bench/report.h"
 
 namespace vpm::bench {
@@ -17,9 +18,15 @@ struct SuiteOptions {
   std::string data = {};    // accuracy --all: folder of recorded depth images; replay: likewise, or
                             // a recording; empty: none
   bool baseline = false;    // scaling: the measure as printed beside it
+  Device device = {};       // a CUDA device where the suite takes one
 };
 
-// Throws Error(usage) naming the suites there are.
+// "accuracy, extremes, ...": all suites, or those that take a CUDA device.
+std::string suite_names(bool on_device = false);
+bool takes_device(const std::string& name);
+
+// Throws Error(usage) naming the suites there are, Error(unavailable) naming those that take a
+// device for one that does not.
 Report run_suite(const std::string& name, const SuiteOptions& options);
 
 // Errors of volume, force and torque against the truth, for `paper` and `refined`.
@@ -44,7 +51,7 @@ Report run_packing(const SuiteOptions& options);
 Report run_replay(const SuiteOptions& options);
 
 // Queries on a CUDA device against the number of spheres and along a path. Throws
-// Error(unavailable) where there is no device.
+// Error(unavailable) where there is no device, Error(usage) for the CPU and for several devices.
 Report run_scaling(const SuiteOptions& options);
 
 }  // namespace vpm::bench

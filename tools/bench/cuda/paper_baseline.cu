@@ -3,6 +3,7 @@
 
 #include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/cuda/launch.h"
+#include "libvpm/query/cuda/on_device.h"
 #include "tools/bench/cuda/paper_kernels.h"
 #include "tools/bench/paper_baseline.h"
 
@@ -10,6 +11,7 @@ namespace vpm::bench {
 namespace {
 
 using cuda::check;
+using cuda::CurrentDevice;
 using cuda::DeviceArray;
 using cuda::Event;
 
@@ -34,8 +36,10 @@ int depth_of(const Hierarchy& tree) {
 
 class PaperOnDevice : public PaperBaseline {
  public:
-  PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud)
-      : tool_(tool),
+  // The device must be the current one.
+  PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud, int device)
+      : device_(device),
+        tool_(tool),
         cloud_(cloud),
         spheres_(tool.spheres.data(), level.sphere_count),
         nodes_(level.hierarchy.nodes),
@@ -63,6 +67,7 @@ class PaperOnDevice : public PaperBaseline {
   }
 
   Result run(const Pose& pose) override {
+    const CurrentDevice current(device_);
     launch_boundary(pose);
     launch_flood();
     cuda::RawResult totals;
@@ -71,6 +76,7 @@ class PaperOnDevice : public PaperBaseline {
   }
 
   Phases run_in_phases(const Pose& pose) override {
+    const CurrentDevice current(device_);
     check(cudaEventRecord(begin_.get()));
     launch_boundary(pose);
     check(cudaEventRecord(middle_.get()));
@@ -81,6 +87,7 @@ class PaperOnDevice : public PaperBaseline {
   }
 
   std::vector<SphereState> states() const override {
+    const CurrentDevice current(device_);
     std::vector<std::uint32_t> words(states_.size());
     check(cudaMemcpy(words.data(), states_.get(), words.size() * sizeof(std::uint32_t),
                      cudaMemcpyDeviceToHost));
@@ -104,6 +111,7 @@ class PaperOnDevice : public PaperBaseline {
     check(cudaGetLastError());
   }
 
+  int device_;
   const ToolModel& tool_;
   const PreparedCloud& cloud_;
   DeviceArray<Sphere> spheres_;
@@ -121,8 +129,9 @@ class PaperOnDevice : public PaperBaseline {
 }  // namespace
 
 std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel& tool, const Level& level,
-                                                   const PreparedCloud& cloud) {
-  return std::make_unique<PaperOnDevice>(tool, level, cloud);
+                                                   const PreparedCloud& cloud, int device) {
+  const CurrentDevice current(device);
+  return std::make_unique<PaperOnDevice>(tool, level, cloud, device);
 }
 
 }  // namespace vpm::bench
