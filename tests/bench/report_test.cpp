@@ -4,6 +4,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "tests/refusal.h"
 
 namespace vpm::bench {
 namespace {
@@ -36,12 +37,8 @@ TEST(Report, IsWrittenIntoANewFolder) {
 }
 
 TEST(Report, FolderThatCannotBeMadeIsSaid) {
-  try {
-    write(Report{}, "", "/dev/null/folder");
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::cannot_write);
-  }
+  EXPECT_EQ(test::kind_of_fault([] { write(Report{}, "", "/dev/null/folder"); }),
+            ErrorKind::cannot_write);
 }
 
 }  // namespace

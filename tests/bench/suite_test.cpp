@@ -3,19 +3,17 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"
+#include "tests/refusal.h"
 
 namespace vpm::bench {
 namespace {
 
 TEST(Suite, UnknownOrMissingNameIsWrongUsage) {
   for (const char* name : {"", "speed"}) {
-    try {
-      run_suite(name, {});
-      FAIL();
-    } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), ErrorKind::usage);
-      EXPECT_NE(std::string(fault.what()).find("accuracy"), std::string::npos);
-    }
+    const auto fault = test::fault_of([&] { run_suite(name, {}); });
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(fault->what()).find("accuracy"), std::string::npos);
   }
 }
 
@@ -24,15 +22,12 @@ TEST(Suite, RefusesADeviceWhereItComputesOnTheCpu) {
     SuiteOptions options;
     options.device = {Device::Kind::cuda, 0};
     EXPECT_FALSE(takes_device(name));
-    try {
-      run_suite(name, options);
-      FAIL() << name;
-    } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), ErrorKind::unavailable);
-      const std::string message = fault.what();
-      EXPECT_NE(message.find(name), std::string::npos) << message;
-      EXPECT_NE(message.find("scaling"), std::string::npos) << message;
-    }
+    const auto fault = test::fault_of([&] { run_suite(name, options); });
+    ASSERT_TRUE(fault) << name;
+    EXPECT_EQ(fault->kind(), ErrorKind::unavailable);
+    const std::string message = fault->what();
+    EXPECT_NE(message.find(name), std::string::npos) << message;
+    EXPECT_NE(message.find("scaling"), std::string::npos) << message;
   }
 }
 
@@ -42,12 +37,8 @@ TEST(Suite, ScalingTimesOneDevice) {
   for (const Device& device : {Device{}, Device{Device::Kind::cuda, Device::kAll}}) {
     SuiteOptions options;
     options.device = device;
-    try {
-      run_suite("scaling", options);
-      FAIL();
-    } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), cuda_device_count() == 0 ? ErrorKind::unavailable : ErrorKind::usage);
-    }
+    EXPECT_EQ(test::kind_of_fault([&] { run_suite("scaling", options); }),
+              cuda_device_count() == 0 ? ErrorKind::unavailable : ErrorKind::usage);
   }
 }
 

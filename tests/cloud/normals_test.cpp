@@ -10,6 +10,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cloud/normal_scene.h"
+#include "tests/refusal.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -204,12 +205,7 @@ TEST(NormalOptions, OutOfRangeIsWrongUsage) {
   const DepthImage image = plane_image(kSmallCamera, {0, 0, -1}, 1);
   const Intrinsics k = kSmallCamera.intrinsics;
   const auto kind = [&](const Intrinsics& intrinsics, const NormalOptions& options) {
-    try {
-      estimate_normals(image, intrinsics, options);
-    } catch (const Error& fault) {
-      return fault.kind();
-    }
-    return ErrorKind::refused;
+    return test::kind_of_fault([&] { estimate_normals(image, intrinsics, options); });
   };
   constexpr auto kMethod = NormalMethod::inverse_depth;
   for (const int window : {-1, 0, 1, 2, 8, 33})

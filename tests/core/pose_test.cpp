@@ -2,15 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
+
+using test::kind_of_fault;
 
 using Matrix = std::array<double, 9>;
 
@@ -49,16 +51,6 @@ std::vector<Quaternion> random_quaternions() {
 Matrix matrix_of(const Rotation& r, double scale = 1) {
   return {scale * r.row0.x, scale * r.row0.y, scale * r.row0.z, scale * r.row1.x, scale * r.row1.y,
           scale * r.row1.z, scale * r.row2.x, scale * r.row2.y, scale * r.row2.z};
-}
-
-ErrorKind kind_of_fault(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& fault) {
-    return fault.kind();
-  }
-  ADD_FAILURE() << "no error";
-  return ErrorKind::cannot_write;
 }
 
 TEST(Quaternions, TurnAsTheyShould) {

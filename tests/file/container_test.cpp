@@ -4,23 +4,21 @@
 
 #include <cmath>
 #include <cstring>
-#include <functional>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/vec3.h"
 #include "libvpm/file/container_layout.h"
+#include "tests/refusal.h"
 
 namespace vpm::file {
 namespace {
 
-std::string refusal_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::refused);
-    return fault.what();
-  }
-  return "";
+template <class Action>
+std::string refusal_of(const Action& action) {
+  const auto fault = test::fault_of(action);
+  if (!fault) return "";
+  EXPECT_EQ(fault->kind(), ErrorKind::refused);
+  return fault->what();
 }
 
 std::vector<std::byte> example() {

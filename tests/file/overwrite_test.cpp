@@ -2,6 +2,7 @@
 
 #include "libvpm/core/error.h"
 #include "tests/file/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace vpm::file {
 namespace {
@@ -17,13 +18,9 @@ class Overwrite : public TemporaryFolder {
 
   // The exit code of the refusal, 0 where none.
   template <class Check>
-  static int outcome(Check check) {
-    try {
-      check();
-    } catch (const Error& fault) {
-      return static_cast<int>(fault.kind());
-    }
-    return 0;
+  static int outcome(const Check& check) {
+    const std::optional<ErrorKind> kind = test::kind_of_fault(check);
+    return kind ? static_cast<int>(*kind) : 0;
   }
   int container(const std::string& name) const {
     return outcome([&] { check_container_output(path(name), Kind::cloud); });

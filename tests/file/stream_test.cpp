@@ -12,25 +12,18 @@
 
 #include "libvpm/core/error.h"
 #include "tests/file/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace vpm::file {
 namespace {
+
+using test::kind_of_fault;
 
 namespace fs = std::filesystem;
 using Stream = TemporaryFolder;
 using Names = std::vector<std::string>;
 
 constexpr std::size_t kLimit = 1 << 16;  // of a file's size, in children that must fail
-
-ErrorKind kind_of_fault(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& fault) {
-    return fault.kind();
-  }
-  ADD_FAILURE() << "no error";
-  return ErrorKind::usage;
-}
 
 // Runs `action` in a child whose files may not grow over kLimit, with `handler` for the signal that
 // says so; gives the child's exit status.

@@ -7,6 +7,7 @@
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
 #include "tests/formats/refused_files.h"
+#include "tests/refusal.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -22,14 +23,11 @@ void parse_as(const std::string& kind, std::vector<std::byte> bytes) {
 
 // The refusal's words, or "" where the bytes are accepted.
 std::string refusal_of(const std::string& kind, const std::vector<std::byte>& bytes) {
-  try {
-    parse_as(kind, bytes);
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::refused);
-    EXPECT_EQ(std::string(fault.what()).rfind("the file: ", 0), 0U) << fault.what();
-    return fault.what();
-  }
-  return "";
+  const auto fault = test::fault_of([&] { parse_as(kind, bytes); });
+  if (!fault) return "";
+  EXPECT_EQ(fault->kind(), ErrorKind::refused);
+  EXPECT_EQ(std::string(fault->what()).rfind("the file: ", 0), 0U) << fault->what();
+  return fault->what();
 }
 
 TEST(RefusedFiles, SayWhatIsWrong) {

@@ -8,6 +8,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/model/tool_model_file.h"
 #include "tests/graph/test_packing.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -126,31 +127,26 @@ TEST(BuildToolModel, OneSphereIsATool) {
 
 TEST(BuildToolModel, RefusesWhatIsNoPacking) {
   const auto kind_of = [](const Packing& packing, const GraphOptions& options) {
-    try {
-      build_tool_model(packing, options);
-    } catch (const Error& error) {
-      return static_cast<int>(error.kind());
-    }
-    return 0;
+    return test::kind_of_fault([&] { build_tool_model(packing, options); });
   };
   const Packing good = test::greedy_packing(test::cube(), 10, 1000);
-  EXPECT_EQ(kind_of(good, {}), 0);
+  EXPECT_FALSE(kind_of(good, {}));
   Packing bad = good;
   bad.spheres.clear();
-  EXPECT_EQ(kind_of(bad, {}), 1);
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::refused);
   bad = good;
   std::swap(bad.spheres.front(), bad.spheres.back());
-  EXPECT_EQ(kind_of(bad, {}), 1);
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::refused);
   bad = good;
   for (Triangle& t : bad.solid.triangles) std::swap(t[0], t[1]);
-  EXPECT_EQ(kind_of(bad, {}), 1);
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::refused);
   bad = good;
   for (Sphere& s : bad.spheres) s.radius *= 2;
-  EXPECT_EQ(kind_of(bad, {}), 1);
+  EXPECT_EQ(kind_of(bad, {}), ErrorKind::refused);
   GraphOptions negative;
   negative.epsilon = -1;
-  EXPECT_EQ(kind_of(good, negative), 2);
-  EXPECT_EQ(kind_of(good, with_levels({0})), 2);
+  EXPECT_EQ(kind_of(good, negative), ErrorKind::usage);
+  EXPECT_EQ(kind_of(good, with_levels({0})), ErrorKind::usage);
 }
 
 }  // namespace

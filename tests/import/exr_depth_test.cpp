@@ -11,6 +11,7 @@
 
 #include "libvpm/import/depth_files.h"
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -70,7 +71,7 @@ DepthImage parse(const std::string& file) {
   return parse_exr_depth(bytes_of(file), "file", 1);
 }
 std::string refused(const std::string& file) {
-  return refusal([&] { parse(file); });
+  return test::refusal([&] { parse(file); });
 }
 
 TEST(ExrDepth, ReadsEachKindOfChannel) {

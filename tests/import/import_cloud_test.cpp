@@ -6,6 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -40,7 +41,7 @@ ImportedCloud import(const std::string& file, const ImportOptions& options = {})
   return import_cloud(bytes_of(file), "file", options);
 }
 std::string refused(const std::string& file, const ImportOptions& options = {}) {
-  return refusal([&] { import(file, options); });
+  return test::refusal([&] { import(file, options); });
 }
 
 constexpr const char* kPly =
@@ -74,12 +75,7 @@ TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
 }
 
 TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {
-  try {
-    import(depth_png());
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::usage);
-  }
+  EXPECT_EQ(test::kind_of_fault([] { import(depth_png()); }), ErrorKind::usage);
   ImportOptions options;
   options.intrinsics = kCamera;
   options.to_world = Pose{{}, {1, 2, 3}};

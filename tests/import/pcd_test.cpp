@@ -6,6 +6,7 @@
 
 #include "libvpm/import/lzf.h"
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -14,7 +15,7 @@ PointSet parse(const std::string& file) {
   return parse_pcd(bytes_of(file), "file");
 }
 std::string refused(const std::string& file) {
-  return refusal([&] { parse(file); });
+  return test::refusal([&] { parse(file); });
 }
 
 std::string header(const std::string& fields, const std::string& size, const std::string& type,

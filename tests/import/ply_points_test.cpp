@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -13,7 +14,7 @@ PointSet parse(const std::string& file) {
   return parse_ply_points(bytes_of(file), "file");
 }
 std::string refused(const std::string& file) {
-  return refusal([&] { parse(file); });
+  return test::refusal([&] { parse(file); });
 }
 
 template <class Value>

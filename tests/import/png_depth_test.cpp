@@ -2,6 +2,7 @@
 
 #include "libvpm/import/depth_files.h"
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 const std::vector<std::uint16_t> kValues{0, 1, 255, 256, 1000, 65535};
 
 std::string refused(const std::string& file) {
-  return refusal([&] { parse_png_depth(bytes_of(file), "file", 1000); });
+  return test::refusal([&] { parse_png_depth(bytes_of(file), "file", 1000); });
 }
 
 TEST(PngDepth, GivesMetresAndNoDepthForZero) {

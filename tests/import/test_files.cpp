@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
-#include "libvpm/core/error.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 
@@ -39,15 +39,6 @@ std::string make_png(std::uint32_t width, std::uint32_t height, int bits,
   return file;
 }
 
-std::string refusal(const std::function<void()>& parse) {
-  try {
-    parse();
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return {};
-}
-
 testing::AssertionResult says(const std::string& message, const std::string& text) {
   if (message.find(text) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << message << "' does not say '" << text << "'";
@@ -59,14 +50,14 @@ void expect_damage_is_refused(const std::string& file, std::size_t samples,
   for (std::size_t size = 0; size < file.size(); size += step) {
     // A copy of its own size, so that reading past the end is seen by the sanitizer.
     const std::string cut(file, 0, size);
-    const std::string message = refusal([&] { parse(bytes_of(cut)); });
+    const std::string message = test::refusal([&] { parse(bytes_of(cut)); });
     ASSERT_EQ(message.substr(0, 4), "file") << "cut to " << size << " bytes: " << message;
   }
   for (std::size_t i = 0; i < file.size(); i += step) {
     for (const int flip : {0x01, 0x80, 0xFF}) {
       std::string damaged = file;
       damaged[i] = static_cast<char>(damaged[i] ^ flip);
-      refusal([&] { parse(bytes_of(damaged)); });
+      test::refusal([&] { parse(bytes_of(damaged)); });
     }
   }
 }

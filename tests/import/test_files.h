@@ -30,9 +30,6 @@ std::string make_png(std::uint32_t width, std::uint32_t height, int bits,
 void expect_damage_is_refused(const std::string& file, std::size_t samples,
                               const std::function<void(std::span<const std::byte>)>& parse);
 
-// What `parse` says when it refuses; empty if it does not.
-std::string refusal(const std::function<void()>& parse);
-
 // The message contains the text.
 testing::AssertionResult says(const std::string& message, const std::string& text);
 

@@ -6,6 +6,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/refusal.h"
 
 namespace vpm::test {
 namespace {
@@ -188,12 +189,7 @@ TEST(MeshCheck, RefusesWrongOptionsAsUsage) {
   for (const SolidOptions& options :
        {SolidOptions{.scale = 0}, SolidOptions{.scale = -1}, SolidOptions{.scale = NAN},
         SolidOptions{.scale = 1, .weld = -1e-9}, SolidOptions{.scale = 1, .weld = 0.5}}) {
-    try {
-      solid_of(make_cube(1), options);
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    EXPECT_EQ(kind_of_fault([&] { solid_of(make_cube(1), options); }), ErrorKind::usage);
   }
 }
 

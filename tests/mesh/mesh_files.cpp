@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "libvpm/core/error.h"
+#include "tests/refusal.h"
 
 namespace vpm::test {
 namespace {
@@ -111,12 +112,8 @@ CheckedSolid solid_of(const Solid& solid, const SolidOptions& options) {
 
 std::string refusal_of(const std::string& content, const std::string& name,
                        const SolidOptions& options) {
-  try {
-    solid_of(content, name, options);
-  } catch (const Error& error) {
-    return error.kind() == ErrorKind::refused ? error.what() : "";
-  }
-  return "";
+  const auto fault = fault_of([&] { solid_of(content, name, options); });
+  return fault && fault->kind() == ErrorKind::refused ? fault->what() : "";
 }
 
 std::string refusal_of(const Solid& solid) {

@@ -11,6 +11,7 @@
 #include "libvpm/model/sphere.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/refusal.h"
 
 namespace vpm::test {
 namespace {
@@ -292,12 +293,8 @@ TEST(RepairByVoxels, RefusesWhatHoldsNoVoxelAndWrongResolutions) {
       refusal_of(as_off(synthetic::make_box(1, 1, 1e-3)), "a.off", repair(Repair::voxel, 16));
   EXPECT_TRUE(contains(message, "a.off: no voxel of 1/16")) << message;
   for (const int voxels : {0, -5, 7, 1025}) {
-    try {
-      solid_of(make_cube(1), repair(Repair::voxel, voxels));
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-    }
+    const auto kind = kind_of_fault([&] { solid_of(make_cube(1), repair(Repair::voxel, voxels)); });
+    EXPECT_EQ(kind, ErrorKind::usage) << voxels;
   }
 }
 

@@ -5,6 +5,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
 #include "tests/formats/golden_content.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -17,13 +18,10 @@ TEST(ToolModel, LevelsAreFoundBySphereCount) {
 }
 
 TEST(ToolModel, AMissingLevelIsWrongUsageAndTheLevelsAreListed) {
-  try {
-    golden::cube_model().level(5);
-    FAIL() << "accepted";
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::usage);
-    EXPECT_STREQ(fault.what(), "the tool model has no level of 5 spheres; it has 4, 8");
-  }
+  const auto fault = test::fault_of([] { golden::cube_model().level(5); });
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind(), ErrorKind::usage);
+  EXPECT_STREQ(fault->what(), "the tool model has no level of 5 spheres; it has 4, 8");
 }
 
 TEST(ToolModel, SoundModelsAreValid) {

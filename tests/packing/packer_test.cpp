@@ -9,6 +9,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "test_solids.h"
+#include "tests/refusal.h"
 
 namespace vpm::test {
 namespace {
@@ -156,32 +157,27 @@ TEST(Packer, ThinPlateOfManyEqualSpheresStopsInTime) {
 
 TEST(Packer, RefusesWhatCannotBePacked) {
   const auto kind = [](const Solid& solid, const PackOptions& options) {
-    try {
-      pack(solid, options);
-    } catch (const Error& e) {
-      return static_cast<int>(e.kind());
-    }
-    return 0;
+    return kind_of_fault([&] { pack(solid, options); });
   };
   const Solid cube = synthetic::make_cube(1);
-  EXPECT_EQ(kind(cube, {.coverage = 0}), 2);
-  EXPECT_EQ(kind(cube, {.coverage = 1.1}), 2);
-  EXPECT_EQ(kind(cube, {.inertia_error = -1}), 2);
-  EXPECT_EQ(kind(cube, {.min_radius = -1}), 2);
-  EXPECT_EQ(kind(cube, {.min_radius = std::nan("")}), 2);
-  EXPECT_EQ(kind(cube, {.max_radius = 0}), 2);
-  EXPECT_EQ(kind(cube, {.min_radius = 2, .max_radius = 1}), 2);
-  EXPECT_EQ(kind({}, {}), 1);
-  EXPECT_EQ(kind(reversed(cube), {}), 1);
+  EXPECT_EQ(kind(cube, {.coverage = 0}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.coverage = 1.1}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.inertia_error = -1}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.min_radius = -1}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.min_radius = std::nan("")}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.max_radius = 0}), ErrorKind::usage);
+  EXPECT_EQ(kind(cube, {.min_radius = 2, .max_radius = 1}), ErrorKind::usage);
+  EXPECT_EQ(kind({}, {}), ErrorKind::refused);
+  EXPECT_EQ(kind(reversed(cube), {}), ErrorKind::refused);
   Solid broken = cube;
   broken.vertices[0].x = std::nan("");
-  EXPECT_EQ(kind(broken, {}), 1);
+  EXPECT_EQ(kind(broken, {}), ErrorKind::refused);
   Solid point = cube;
   for (Vec3& p : point.vertices) p = {1, 2, 3};
-  EXPECT_EQ(kind(point, {}), 1);
+  EXPECT_EQ(kind(point, {}), ErrorKind::refused);
   Solid dangling = cube;
   dangling.triangles[0][0] = 99;
-  EXPECT_EQ(kind(dangling, {}), 1);
+  EXPECT_EQ(kind(dangling, {}), ErrorKind::refused);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "libvpm/synthetic/render.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -87,29 +88,21 @@ TEST(DepthFrames, TakeTheMemoryOfThoseThatNobodyHolds) {
 }
 
 TEST(DepthFrames, RefuseWhatTheyCannotBeMadeOf) {
-  const auto kind_of = [](const auto& job) {
-    try {
-      job();
-    } catch (const Error& fault) {
-      return fault.kind();
-    }
-    return ErrorKind::cannot_write;
-  };
   const auto made_with = [&](const auto& change) {
     DepthFrameOptions options = options_of();
     change(options);
-    return kind_of([&] { DepthFrames frames(options); });
+    return test::kind_of_fault([&] { DepthFrames frames(options); });
   };
   EXPECT_EQ(made_with([](auto& o) { o.width = 0; }), ErrorKind::usage);
   EXPECT_EQ(made_with([](auto& o) { o.intrinsics.fx = 0; }), ErrorKind::usage);
   EXPECT_EQ(made_with([](auto& o) { o.normals.window = 4; }), ErrorKind::usage);
   EXPECT_EQ(made_with([](auto& o) { o.counts_per_metre = 0; }), ErrorKind::usage);
   DepthFrames metres(options_of()), counts(options_of(1000.0));
-  EXPECT_EQ(kind_of([&] { metres.counts(); }), ErrorKind::usage);
-  EXPECT_EQ(kind_of([&] { counts.metres(); }), ErrorKind::usage);
+  EXPECT_EQ(test::kind_of_fault([&] { metres.counts(); }), ErrorKind::usage);
+  EXPECT_EQ(test::kind_of_fault([&] { counts.metres(); }), ErrorKind::usage);
   Pose mirrored;
   mirrored.rotation.row0.x = -1;
-  EXPECT_EQ(kind_of([&] { metres.prepare(mirrored); }), ErrorKind::refused);
+  EXPECT_EQ(test::kind_of_fault([&] { metres.prepare(mirrored); }), ErrorKind::refused);
 }
 
 }  // namespace

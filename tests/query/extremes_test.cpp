@@ -6,13 +6,14 @@
 #include <limits>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
 #include "tests/query/lattice_model.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
 
+using test::refusal;
 using testing::lattice_cube;
 using testing::see;
 
@@ -38,17 +39,6 @@ void expect_sound(const Result& r) {
   EXPECT_TRUE(r.volume >= 0 && std::isfinite(r.volume));
   EXPECT_TRUE(r.volume_fraction >= 0 && r.volume_fraction <= 1 + 1e-6);
   EXPECT_TRUE(is_finite(r.wrench.force) && is_finite(r.wrench.torque));
-}
-
-// The words of the refusal; "" where nothing was refused.
-template <class Act>
-std::string refusal(Act act) {
-  try {
-    act();
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "";
 }
 
 TEST(ExtremePoints, NoneTouchesNothing) {

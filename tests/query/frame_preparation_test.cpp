@@ -12,6 +12,7 @@
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/query/lattice_model.h"
+#include "tests/refusal.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -39,15 +40,6 @@ std::string bytes_of(const PreparedCloud& cloud) {
     add(bytes, surface.tiles[level], rows * static_cast<std::size_t>(surface.tiles_per_row(level)));
   }
   return bytes;
-}
-
-std::string message_of(const auto& body) {
-  try {
-    body();
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "";
 }
 
 struct Frame {
@@ -129,9 +121,11 @@ TEST(FramePreparation, RefusesWhatCloudsAreRefusedFor) {
   FramePreparation preparation(options);
   PreparedCloud cloud{Cloud{}};
   const auto expect_refusal = [&](const Frame& f, const std::string& part) {
-    const std::string message = message_of([&] { preparation.prepare(f.depth, f.camera, cloud); });
+    const std::string message =
+        test::refusal([&] { preparation.prepare(f.depth, f.camera, cloud); });
     EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_EQ(message, message_of([&] { PreparedCloud{make_cloud(f.depth, f.camera, options)}; }));
+    EXPECT_EQ(message,
+              test::refusal([&] { PreparedCloud{make_cloud(f.depth, f.camera, options)}; }));
   };
   Frame f = frame(64, 48);
   f.camera.intrinsics.fx = 0;

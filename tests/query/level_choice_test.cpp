@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "libvpm/core/error.h"
 #include "tests/query/lattice_model.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
@@ -27,12 +27,7 @@ TEST(MaxError, TakesTheCoarsestLevelThatKeepsIt) {
 }
 
 std::string refusal(const ToolModel& tool, double max_error) {
-  try {
-    coarsest_level_within(tool, max_error);
-  } catch (const Error& fault) {
-    return fault.what();
-  }
-  return "";
+  return test::refusal([&] { coarsest_level_within(tool, max_error); });
 }
 
 TEST(MaxError, SaysWhyItCannotBeKept) {

@@ -8,6 +8,7 @@
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
+#include "tests/refusal.h"
 #include "tests/test_name.h"
 
 namespace vpm::synthetic {
@@ -108,13 +109,10 @@ INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scene_names()),
                          [](const auto& scene) { return test::test_name(scene.param); });
 
 TEST(Scenes, UnknownNameIsRefusedWithTheKnownOnes) {
-  try {
-    make_scene("cellar");
-    FAIL();
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::usage);
-    EXPECT_NE(std::string(fault.what()).find("inverted-ball"), std::string::npos);
-  }
+  const auto fault = test::fault_of([] { make_scene("cellar"); });
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind(), ErrorKind::usage);
+  EXPECT_NE(std::string(fault->what()).find("inverted-ball"), std::string::npos);
 }
 
 TEST(Render, PlacedCameraSeesTheSameWorld) {
