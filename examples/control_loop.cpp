@@ -11,6 +11,7 @@
 //   behind=0      1: a query looks at the image before the newest, which is made ready meanwhile
 //   method=inverse-depth   of the images' normals; or pca
 //   batch=1       so many poses are asked at once, as planners do
+//   points=0      1: also counts the cloud's points in spheres, which no control loop needs
 //   json=FILE     the figures, also as JSON
 //   poses=FILE    the first path=400 poses, for vpm-query --poses
 #include <algorithm>
@@ -242,14 +243,16 @@ Options parse(int argc, char** argv) {
   Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
-                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"}};
+                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
+                  {"points", "0"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(ErrorKind::usage, text +
-                                        ": the options are device= measure= queries= level= "
-                                        "rotate= frames= behind= method= batch= json= poses= path=");
+      throw Error(ErrorKind::usage,
+                  text +
+                      ": the options are device= measure= queries= level= "
+                      "rotate= frames= behind= method= batch= points= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -269,6 +272,7 @@ void control(int argc, char** argv) {
   QueryOptions query_options;
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
+  query_options.counts_points = number(options, "points", 0) != 0;
   const int copies = number(options, "rotate", 1), count = number(options, "queries", 1);
 
   const ToolModel tool = read_tool_model(argv[1]);

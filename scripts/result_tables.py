@@ -121,7 +121,8 @@ def for_scene(report):
 
 def replay(report):
     queries = {(r["what"], r["spheres"], r["threads"]): r for r in report["results"] if r["part"] == "query"}
-    names = {"refined": "frame prepared", "refined, cold cloud": "frame not prepared",
+    names = {"refined": "frame prepared", "refined, points counted": "frame prepared, points in spheres counted too",
+             "refined, cold cloud": "frame not prepared",
              "distance grid": "dense distance grid of the tool, penalty force, no volume",
              "voxel count": "OpenVDB voxel count, volume, no force"}
     rows = []

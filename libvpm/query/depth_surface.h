@@ -196,6 +196,14 @@ struct DepthSurface {
     return look;
   }
 
+  // Whether a look at a ball tells of the balls in it: their pixels are among its own where it is
+  // not so near that the bound of its projection is loose.
+  VPM_HD bool tells_of_parts(Vec3 center, double radius) const { return center.z > 2 * radius; }
+  // Whether such a look shows a ball in the one that was looked at to be free.
+  VPM_HD bool is_free_part(const Look& look, Vec3 center, double radius) const {
+    return (center.z + radius) * look.range.high < 1;
+  }
+
   // Whether the surface in a ball that was looked at may touch a ball in it, as far as that tells.
   VPM_HD bool may_touch(const Look& look, Vec3 center, double radius) const {
     return !((center.z + radius) * look.range.high < 1 || (center.z - radius) * look.range.low > 1);
@@ -212,6 +220,13 @@ struct DepthSurface {
     const double v = k.fy * (center.y * per_depth) + k.cy + 0.5;
     if (!(u >= 0 && v >= 0 && u < width && v < height)) return true;
     return farthest * inverse_depth(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) < 1;
+  }
+
+  // False where may_be_free says so of every ball in this one, which lies in one that was looked
+  // at.
+  VPM_HD bool may_hold_free(const Look& look, Vec3 center, double radius) const {
+    constexpr double kRounding = 1 - 1e-9;
+    return (center.z - radius) * look.range.low * kRounding < 1;
   }
 
   // Whether the surface in a ball that was looked at is one plane, as far as the range of its

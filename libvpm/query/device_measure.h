@@ -8,8 +8,8 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/depth_frames.h"
-#include "libvpm/query/device.h"
 #include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
 
 namespace vpm {
@@ -43,10 +43,10 @@ class DeviceMeasure {
   virtual double flood_microseconds() const = 0;
 };
 
-// On Device::kAll, single poses go to the first device. Throws Error(unavailable) where libvpm was
-// built without CUDA, or the device has too little
-// memory.
+// Of the options, what speaks of measure, points and device. On Device::kAll, single poses go to
+// the first device. Throws Error(unavailable) where libvpm was built without CUDA, or the device
+// has too little memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
-                                                   Measure measure, const Device& device);
+                                                   const QueryOptions& options);
 
 }  // namespace vpm

@@ -16,8 +16,8 @@ std::string cuda_device_name(int) {
   return {};
 }
 
-std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel&, const Level&, Measure,
-                                                   const Device&) {
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel&, const Level&,
+                                                   const QueryOptions&) {
   throw Error(ErrorKind::unavailable, "this build of libvpm has no CUDA");
 }
 

@@ -132,6 +132,9 @@ struct DiskSurface {
   VPM_HD bool may_be_flat(const Look&) const { return false; }
   VPM_HD bool is_flat(const Look&, const Reading&, double, TangentPlane&) const { return false; }
   VPM_HD bool may_be_free(const Look&, Vec3, double) const { return true; }
+  VPM_HD bool may_hold_free(const Look&, Vec3, double) const { return true; }
+  VPM_HD bool tells_of_parts(Vec3, double) const { return false; }
+  VPM_HD bool is_free_part(const Look&, Vec3, double) const { return false; }
   VPM_HD bool may_touch(const Look&, Vec3, double) const { return true; }
   VPM_HD bool mean_plane(const Look&, Vec3, double, double, TangentPlane&) const { return false; }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }

@@ -8,12 +8,10 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/prepared_cloud.h"
+#include "libvpm/query/query_options.h"
 #include "libvpm/query/sphere_location.h"
 
 namespace vpm {
-
-// How a point finds its sphere; the results are the same bits.
-enum class PointLocation { grid, hierarchy };
 
 using PointRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 

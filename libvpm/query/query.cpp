@@ -41,11 +41,11 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
                 "measure or device out");
   }
   if (options.device.is_cuda()) {
-    device_ = make_device_measure(tool, level_, options.measure, options.device);
+    device_ = make_device_measure(tool, level_, options);
   } else if (options.measure == Measure::paper) {
     paper_ = std::make_unique<PaperMeasure>(tool, level_, options.location);
   } else {
-    refined_ = std::make_unique<RefinedMeasure>(tool, level_, options.coherent);
+    refined_ = std::make_unique<RefinedMeasure>(tool, level_, options);
   }
 }
 
@@ -57,9 +57,9 @@ Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
   } else if (paper_) {
     result = paper_->run(cloud, pose, states_);
   } else {
-    result = refined_->run(cloud, pose, states_);
+    result = refined_->run(cloud, pose);
   }
-  scale(result);
+  finish(result);
   return result;
 }
 
@@ -67,7 +67,7 @@ Result Query::run(const DepthFrame& frame, const Pose& pose) {
   if (!device_) return run(frame.cloud(), pose);
   check_pose(pose);
   Result result = device_->run_frame(frame, pose);
-  scale(result);
+  finish(result);
   return result;
 }
 
@@ -94,7 +94,7 @@ void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
   });
   on_device();
   parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) scale(results[k]);
+    for (std::size_t k = begin; k < end; ++k) finish(results[k]);
   });
 }
 
@@ -110,10 +110,12 @@ void Query::run(const DepthFrame& frame, std::span<const Pose> poses, std::span<
 
 std::span<const SphereState> Query::states() const {
   if (device_) device_->read_states(states_);
+  if (refined_) refined_->read_states(states_);
   return states_;
 }
 
-void Query::scale(Result& result) const {
+void Query::finish(Result& result) const {
+  if (!options_.counts_points) result.points.reset();
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
 }

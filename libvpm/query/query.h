@@ -19,18 +19,9 @@
 #include "libvpm/query/device_measure.h"
 #include "libvpm/query/measure_paper.h"
 #include "libvpm/query/measure_refined.h"
+#include "libvpm/query/query_options.h"
 
 namespace vpm {
-
-struct QueryOptions {
-  Measure measure = Measure::refined;
-  std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
-  PointLocation location = PointLocation::grid;
-  Device device = {};     // device_from_text(); the tool's level is copied there
-  bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
-                          // surface stays inside until it comes out; refined measure, on the CPU
-  double stiffness = 1;   // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
-};
 
 class Query {
  public:
@@ -64,7 +55,7 @@ class Query {
   template <class OnDevice>
   void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
                  std::span<Result> results, const OnDevice& on_device);
-  void scale(Result& result) const;
+  void finish(Result& result) const;
 
   const Level& level_;
   QueryOptions options_;

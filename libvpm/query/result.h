@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "libvpm/core/vec3.h"
 
@@ -23,7 +24,8 @@ struct Result {
   Wrench wrench;
   std::uint32_t boundary = 0;  // spheres that the surface cuts
   std::uint32_t inside = 0;    // spheres reached by the flood
-  std::uint32_t points = 0;    // distinct cloud points strictly inside a sphere of the tool
+  // Distinct cloud points strictly inside a sphere of the tool; none where they were not counted.
+  std::optional<std::uint32_t> points;
 };
 
 }  // namespace vpm

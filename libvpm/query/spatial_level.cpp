@@ -4,6 +4,10 @@ namespace vpm {
 namespace {
 
 constexpr std::uint32_t kFewShares = 8;  // are looked at one by one
+constexpr std::size_t kGroupClusters = 8;
+constexpr double kGroupReach = 2.5 * kPatchReach;  // of the tool's
+// A group's ball holds those of its clusters, however their projections are rounded.
+constexpr double kGroupRounding = 1 + 1e-9;
 
 }  // namespace
 
@@ -11,9 +15,11 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
   ShareClusters clusters = cluster_shares(tool, level);
   spheres_ = std::move(clusters.shares);
   for (const ShareCluster& c : clusters.clusters) {
+    root_of_row_.resize(c.end, static_cast<std::uint32_t>(roots_.size()));
     roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
     add_nodes(tool, level, c.begin, c.end);
   }
+  add_groups(tool, level);
   const std::vector<BlockMass> block_masses = vpm::block_masses(level);
   for (const std::uint32_t sphere : spheres_) {
     masses_.push_back(clusters.masses[sphere]);
@@ -34,6 +40,27 @@ void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uin
     add_nodes(tool, level, middle, end);
   }
   nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
+}
+
+// As many clusters that follow each other as are no wider than a group may be.
+void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
+  const auto first_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.begin; };
+  const auto end_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.end; };
+  const auto count = static_cast<std::uint32_t>(roots_.size());
+  for (std::uint32_t root = 0; root < count; ++root) {
+    if (!groups_.empty() && root - groups_.back().begin < kGroupClusters) {
+      ShareGroup& last = groups_.back();
+      const ShareCluster ball =
+          enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
+      if (ball.reach <= kGroupReach * tool.reach) {
+        last.ball = ball;
+        last.end = root + 1;
+        continue;
+      }
+    }
+    groups_.push_back({nodes_[roots_[root]].cluster, root, root + 1});
+  }
+  for (ShareGroup& group : groups_) group.ball.reach *= kGroupRounding;
 }
 
 void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere) {

@@ -15,6 +15,12 @@ struct ShareTreeNode {
   std::uint32_t next = 0;  // the node after this one and all within
 };
 
+// Clusters side by side: roots [begin, end) of the level.
+struct ShareGroup {
+  ShareCluster ball;
+  std::uint32_t begin = 0, end = 0;
+};
+
 // Shares in rows, ordered by place. Immutable.
 class SpatialLevel {
  public:
@@ -34,7 +40,9 @@ class SpatialLevel {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
   }
   const std::vector<ShareTreeNode>& nodes() const { return nodes_; }
-  const std::vector<std::uint32_t>& roots() const { return roots_; }  // nodes in no other
+  const std::vector<std::uint32_t>& roots() const { return roots_; }         // nodes in no other
+  std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
+  const std::vector<ShareGroup>& groups() const { return groups_; }
 
  private:
   struct Share {
@@ -44,6 +52,7 @@ class SpatialLevel {
   };
 
   void add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end);
+  void add_groups(const ToolModel& tool, const Level& level);
   void add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
 
@@ -55,7 +64,8 @@ class SpatialLevel {
   std::vector<CellSample> samples_;
   std::vector<std::uint32_t> neighbor_begin_, neighbors_;
   std::vector<ShareTreeNode> nodes_;
-  std::vector<std::uint32_t> roots_;
+  std::vector<std::uint32_t> roots_, root_of_row_;
+  std::vector<ShareGroup> groups_;
 };
 
 }  // namespace vpm

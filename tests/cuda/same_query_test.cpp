@@ -56,6 +56,8 @@ TEST_P(SameQuery, OnCpuAndDevice) {
     Query on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     Query on_device(tool, options);
+    options.counts_points = false;
+    Query without_points(tool, options);
     std::vector<Pose> poses;
     std::vector<Result> expected;
     for (int k = 0; k < kPoses; ++k) {
@@ -67,6 +69,9 @@ TEST_P(SameQuery, OnCpuAndDevice) {
       expect_equal(expected.back(), on_device.run(cloud, poses.back()));
       const auto states = on_cpu.states(), states_there = on_device.states();
       EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
+      Result uncounted = expected.back();
+      uncounted.points.reset();
+      expect_equal(uncounted, without_points.run(cloud, poses.back()));
     }
     // More than a device takes at a time, so that memory is used again.
     for (int k = kPoses; k < 16 * kPoses; ++k) poses.push_back(poses[k % kPoses]);

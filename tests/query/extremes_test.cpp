@@ -46,7 +46,7 @@ TEST(ExtremePoints, NoneTouchesNothing) {
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     const Result r = ask(tool, points({}, {}), measure);
     EXPECT_EQ(r.volume, 0);
-    EXPECT_EQ(r.boundary + r.inside + r.points, 0u);
+    EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
   }
 }
 

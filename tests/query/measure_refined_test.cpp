@@ -96,7 +96,7 @@ TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
   const Result r = Query(tool, {}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
   EXPECT_EQ(r.volume, 0);
-  EXPECT_EQ(r.boundary + r.inside + r.points, 0u);
+  EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
   EXPECT_EQ(norm(r.wrench.force), 0);
 }
 

@@ -40,7 +40,7 @@ class Bytes {
     const Wrench& w = r.wrench;
     add(std::vector<double>{r.volume, r.volume_fraction, w.force.x, w.force.y, w.force.z,
                             w.torque.x, w.torque.y, w.torque.z});
-    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points});
+    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points.value()});
   }
   std::vector<std::byte> take() { return std::move(all_); }
 

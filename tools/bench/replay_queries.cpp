@@ -151,18 +151,23 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
     for (const std::uint32_t level : tool.levels) {
-      Query query(tool.model, {.level = level});
+      Query query(tool.model, {.level = level, .counts_points = false}),
+          counting(tool.model, {.level = level});
       Result result;
       const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
       const Durations of_warm = timed(calls, warm_up, warm);
       add_query(report, "refined", level, threads, of_warm, result.volume_fraction);
+      const Durations of_counting =
+          timed(calls, warm_up, [&](int k) { result = counting.run(prepared, pose(k)); });
+      add_query(report, "refined, points counted", level, threads, of_counting,
+                result.volume_fraction);
       const Durations of_cold = timed(few, 1, [&](int k) {
         const PreparedCloud anew(cloud);
         result = query.run(anew, pose(k));
       });
       add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
     }
-    Query query(tool.model, {.level = tool.levels.front()});
+    Query query(tool.model, {.level = tool.levels.front(), .counts_points = false});
     Result result;
     const Durations of_sparse = timed(few, 1, [&](int k) {
       result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
@@ -197,8 +202,8 @@ void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
   const std::vector<Pose> path = circle(pose_inside(tool.model, cloud), kRadius, poses);
   set_thread_count(1);
   for (const std::uint32_t level : tool.levels) {
-    Query stateless(tool.model, {.level = level}),
-        coherent(tool.model, {.level = level, .coherent = true});
+    Query stateless(tool.model, {.level = level, .counts_points = false}),
+        coherent(tool.model, {.level = level, .coherent = true, .counts_points = false});
     Result alone, following;
     bool same = true;
     const auto pose = [&](int k) { return path[static_cast<std::size_t>(k) % path.size()]; };
@@ -232,7 +237,7 @@ void time_points_outside(const ReplayTool& tool, bool quick, Report& report) {
     const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
-    Query query(tool.model, {.level = level});
+    Query query(tool.model, {.level = level, .counts_points = false});
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
         quick ? 64 : 1280, 8, [&](int k) { query.run(once, pose(k)); },

@@ -162,7 +162,8 @@ class ResultHash {
     for (const double number : {r.volume, r.wrench.force.x, r.wrench.force.y, r.wrench.force.z,
                                 r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z})
       words_.push_back(std::bit_cast<std::uint64_t>(number));
-    for (const std::uint32_t count : {r.boundary, r.inside, r.points}) words_.push_back(count);
+    for (const std::uint32_t count : {r.boundary, r.inside, r.points.value_or(0)})
+      words_.push_back(count);
   }
   std::string value() const { return file::content_hash({std::as_bytes(std::span(words_))}); }
 
@@ -192,7 +193,7 @@ void run_stream(const ReplayTool& tool, const std::string& folder, bool quick, R
   set_thread_count(1);  // for the loop; frames are prepared beside it
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
-    Query query(tool.model, {.level = level, .coherent = true});
+    Query query(tool.model, {.level = level, .coherent = true, .counts_points = false});
     add_pass(pass_over(stream, path, query), level, report);
   }
   set_thread_count(0);

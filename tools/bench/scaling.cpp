@@ -185,7 +185,8 @@ class Scaling {
   Times measure_ours(const ToolModel& tool, const Level& level, Measure measure,
                      const std::string& name, const PreparedCloud& cloud,
                      const std::vector<Pose>& path, nlohmann::json& row) const {
-    const auto query = make_device_measure(tool, level, measure, device_);
+    const auto query = make_device_measure(
+        tool, level, {.measure = measure, .device = device_, .counts_points = false});
     std::vector<double> flood;
     Times times = time(path, [&](const Pose& pose) {
       query->run(cloud, pose);

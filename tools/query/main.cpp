@@ -26,7 +26,7 @@ struct Arguments {
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
-  bool for_scene = false, coherent = false;
+  bool for_scene = false, coherent = false, no_points = false;
   double stiffness = 1;
   std::string coupling;
   std::size_t batch = 1;
@@ -58,6 +58,10 @@ void declare(CLI::App& app, Arguments& a) {
       "--coherent", a.coherent,
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
+  app.add_flag(
+      "--no-points", a.no_points,
+      "Do not count the cloud's points in spheres: quicker with many spheres; lines then have "
+      "no field points");
   app.add_option("--coupling", a.coupling,
                  "Take --poses or --trajectory for those of a haptic device that holds the tool by "
                  "a spring and "
@@ -284,6 +288,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
   options.coherent = a.coherent;
+  options.counts_points = !a.no_points;
   options.device = device_of(tool, a.coherent);
   a.replay.frames.empty() ? run_poses(tool, a, model, options)
                           : run_replay(tool, a, model, options);

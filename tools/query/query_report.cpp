@@ -21,7 +21,7 @@ std::string result_line(std::size_t pose_index, const Result& r, const Level& le
   line["torque"] = {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z};
   line["boundary"] = r.boundary;
   line["inside"] = r.inside;
-  line["points"] = r.points;
+  if (r.points) line["points"] = *r.points;
   line["level"] = level.sphere_count;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
   if (!level_reason.empty()) line["level_reason"] = level_reason;

@@ -15,6 +15,7 @@ struct RefinedLaunch {
   Surface surface;
   PointsView points;
   RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
+  bool counts_points;
 };
 
 // The memory of one of several teams, each of one block.
@@ -55,7 +56,8 @@ __device__ void measure_shares(const RefinedLaunch<Surface>& launch, const PoseF
                                BlockShared& shared) {
   if (blockIdx.x < sphere_blocks) {
     ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                          counters, {blockIdx.x, sphere_blocks}, shared.measure)
+                          counters, {blockIdx.x, sphere_blocks}, launch.counts_points,
+                          shared.measure)
         .run();
   } else {
     count_points(launch.level, launch.points, frame,
@@ -141,9 +143,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
       total = RawResult{};
     }
     __syncthreads();
-    count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
+    if (launch.counts_points)
+      count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
     ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
-                          shared.measure)
+                          launch.counts_points, shared.measure)
         .run();
     __syncthreads();
     const RawResult part =
@@ -212,9 +215,10 @@ class RefinedMemory {
 
 class RefinedOnDevice : public MeasureOnDevice {
  public:
-  RefinedOnDevice(const ToolModel& tool, const Level& level, int device)
+  RefinedOnDevice(const ToolModel& tool, const Level& level, bool counts_points, int device)
       : MeasureOnDevice(tool, device),
         level_(tool, level),
+        counts_points_(counts_points),
         memory_(level_.view(), 1, blocks()),
         totals_(1),
         counters_(1) {
@@ -257,30 +261,34 @@ class RefinedOnDevice : public MeasureOnDevice {
   template <class Surface>
   void launch_on(const Surface& surface, const PoseFrame& frame, Answer* answer,
                  unsigned sequence) {
-    RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(), memory_.space()};
+    RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(), memory_.space(),
+                                     counts_points_};
     PoseFrame pose = frame;
     Totals* totals = totals_.get();
     RefinedCounters* counters = counters_.get();
     // Few points lie in reach: they take less than a large level's spheres.
-    unsigned sphere_blocks = is_small(level_.view()) ? blocks() / 2 : blocks() - blocks() / 8;
+    unsigned sphere_blocks = blocks();
+    if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
     if (is_small(level_.view())) {
       check(cudaLaunchKernel(one_pose_small<Surface>, blocks(), kThreads, values, 0, stream()));
     } else {
-      check(cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));
+      check(
+          cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));
     }
   }
 
   template <class Surface>
   void launch_on(const Surface& surface, const Pose* poses, unsigned count, RawResult* results) {
     const RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(),
-                                           teams_->memory.space()};
+                                           teams_->memory.space(), counts_points_};
     many_poses<Surface><<<std::min(teams_->count, count), kThreads, 0, stream()>>>(
         arguments, cloud().frame(), poses, count, results);
     check(cudaGetLastError());
   }
 
   DeviceLevel level_;
+  bool counts_points_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
@@ -290,9 +298,9 @@ class RefinedOnDevice : public MeasureOnDevice {
 }  // namespace
 
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
-                                                    int device) {
+                                                    bool counts_points, int device) {
   const CurrentDevice current(device);
-  return std::make_unique<RefinedOnDevice>(tool, level, device);
+  return std::make_unique<RefinedOnDevice>(tool, level, counts_points, device);
 }
 
 }  // namespace vpm::cuda

@@ -85,7 +85,7 @@ class ShareMeasure {
  public:
   __device__ ShareMeasure(const LevelView& level, const Surface& surface, const Pose& to_surface,
                           const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
-                          Part part, MeasureShared& shared)
+                          Part part, bool counts_points, MeasureShared& shared)
       : level_(level),
         surface_(surface),
         to_surface_(to_surface),
@@ -94,6 +94,7 @@ class ShareMeasure {
         next_(space.notes[(turn + 1) % 2]),
         counters_(counters),
         part_(part),
+        counts_points_(counts_points),
         shared_(shared),
         lists_(shared.lists) {}
 
@@ -206,6 +207,7 @@ class ShareMeasure {
   const ShareNotes &notes_, &next_;
   RefinedCounters& counters_;
   Part part_;
+  bool counts_points_;
   MeasureShared& shared_;
   TaskLists& lists_;
 };
@@ -305,14 +307,15 @@ __device__ void ShareMeasure<Surface>::classify_crossed(const Unit& unit, const 
     free = surface_.side_of_ball(to_surface_ * ball.center, reach) == Side::free;
   free = lanes.from(free, Unit::of_share);
   if (lanes.lane == Unit::of_share && head) {
-    ToolSum sum;
-    if (!free && distance <= -reach) {
+    const bool behind = !free && distance <= -reach;
+    if (behind) {
+      ToolSum sum;
       measure_of({}).add_whole(level_.share_masses[unit.share], plane.normal, sum);
       notes_.sums[unit.share] = sum;
     }
-    note_share(unit, sum.volume.value > 0 ? kPartial : 0U, distance * distance);
+    note_share(unit, behind ? kPartial : 0U, distance * distance);
   }
-  if (lanes.lane == Unit::of_sphere && head &&
+  if (counts_points_ && lanes.lane == Unit::of_sphere && head &&
       surface_.look_at_ball(to_surface_ * ball.center, ball.radius).side == Side::mixed)
     atomicOr(&notes_.words[unit.share], static_cast<std::uint32_t>(kCountsPoints));
   if (lanes.lane == Unit::of_block && (unit.flags & Unit::has_block) != 0 && !free &&

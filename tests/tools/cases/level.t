@@ -20,6 +20,11 @@ $ python3 -c "import json; print([(r['level'], r['level_reason']) for r in map(j
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 0.05 | cmp - e.jsonl
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level 10 | cmp - <(sed 's/,"level_reason":"max-error"//' e.jsonl)
 
+# Points are counted unless nobody wants them.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5% --no-points -o n.jsonl && $VALIDATE query-result n.jsonl
+$ grep -c points e.jsonl; sed 's/,"points":[0-9]*//' e.jsonl | cmp - n.jsonl
+3
+
 # A generous deadline changes nothing but the reason; an impossible one takes the coarsest level and says so.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 1e7 -o d.jsonl --stats stats.json && $VALIDATE query-result d.jsonl && $VALIDATE query-stats stats.json
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt | cmp - <(sed 's/,"level_reason":"deadline"//' d.jsonl)

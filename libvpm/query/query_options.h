@@ -1,0 +1,26 @@
+// What a query is asked for.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/query/device.h"
+#include "libvpm/query/result.h"
+
+namespace vpm {
+
+// How a point finds its sphere; the results are the same bits.
+enum class PointLocation { grid, hierarchy };
+
+struct QueryOptions {
+  Measure measure = Measure::refined;
+  std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
+  PointLocation location = PointLocation::grid;
+  Device device = {};     // device_from_text(); the tool's level is copied there
+  bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
+                          // surface stays inside until it comes out; refined measure, on the CPU
+  bool counts_points = true;  // false: no Result::points. The refined measure does without them:
+                              // README.md has what that saves
+  double stiffness = 1;       // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+};
+
+}  // namespace vpm

@@ -1,0 +1,231 @@
+// The first step of the refined measure: how the surface meets each share. Groups of clusters are
+// looked at before clusters, clusters before shares: what holds for a ball holds for the balls in
+// it.
+#pragma once
+
+#include <atomic>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/query/patch.h"
+#include "libvpm/query/points_inside.h"
+#include "libvpm/query/share_states.h"
+
+namespace vpm {
+
+template <class Surface>
+class ShareClassifier {
+ public:
+  // `points`: those of the cloud, to be counted in the spheres that the surface may pass; null
+  // where nobody asks for their number.
+  ShareClassifier(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
+                  const Surface& surface, const Pose& to_surface, const PointsOfSphere* points,
+                  ShareStates& states)
+      : tool_(tool),
+        reach_(reach),
+        level_(level),
+        surface_(surface),
+        to_surface_(to_surface),
+        points_(points),
+        states_(states) {}
+
+  // Returns the number of points in spheres.
+  std::uint32_t run() {
+    std::atomic<std::uint32_t> found{0};
+    parallel_for(level_.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
+      std::uint32_t found_here = 0;
+      for (std::size_t g = begin; g < end; ++g) found_here += classify(level_.groups()[g]);
+      if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
+    });
+    return found;
+  }
+
+ private:
+  using Look = typename Surface::Look;
+
+  const ShareCluster& cluster(std::uint32_t root) const {
+    return level_.nodes()[level_.roots()[root]].cluster;
+  }
+
+  std::uint32_t classify(const ShareGroup& group) {
+    const bool is_one = group.end - group.begin == 1;
+    const Vec3 center = to_surface_ * group.ball.center;
+    Look look;
+    if (!is_one) look = surface_.look_at_ball(center, group.ball.reach);
+    const bool tells = !is_one && surface_.tells_of_parts(center, group.ball.reach);
+    if (tells && look.side == Side::free) {
+      states_.set(group.ball, Cell::free, Passage::closed);
+      return 0;
+    }
+    std::uint32_t found = 0;
+    for (std::uint32_t root = group.begin; root < group.end; ++root) {
+      const ShareCluster& part = cluster(root);
+      if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach))
+        states_.set(part, Cell::free, Passage::closed);
+      else
+        found += classify(root);
+    }
+    return found;
+  }
+
+  std::uint32_t classify(std::uint32_t root) {
+    const ShareCluster& whole = cluster(root);
+    const Vec3 center = to_surface_ * whole.center;
+    const Look look = surface_.look_at_ball(center, whole.reach);
+    const bool may_be_patch = is_patch(whole.reach, reach_.length);
+    if (look.side == Side::mixed) {
+      TangentPlane plane;
+      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, plane))
+        return classify_nodes(root);
+      states_.planes[root] = {plane, to_surface_};
+      classify_crossed(root, look);
+      return count_points(whole, look);
+    }
+    decide(look, whole, center);
+    if (may_be_patch && states_.passages[whole.begin] == Passage::near) {
+      states_.set(whole, Cell::pushed, Passage::near);
+      states_.planes[root].normal =
+          transpose(to_surface_.rotation) * surface_.closest_normal(center, surface_.read(center));
+    }
+    return 0;
+  }
+
+  // Of a cluster through which the surface does not pass.
+  void decide(const Look& look, const ShareCluster& whole, Vec3 center) {
+    if (look.side == Side::free)
+      states_.set(whole, Cell::free, Passage::closed);
+    else if (look.side == Side::uncut)
+      states_.set(whole, Cell::open, Passage::unknown);
+    else
+      states_.set(whole, Cell::whole,
+                  surface_.largest_gap(look, center, whole.reach) < reach_.length
+                      ? Passage::near
+                      : Passage::unknown);
+  }
+
+  // Of a cluster that is no patch.
+  std::uint32_t classify_nodes(std::uint32_t root) {
+    const std::vector<ShareTreeNode>& nodes = level_.nodes();
+    const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
+    std::uint32_t found = 0, node = first;
+    while (node < last) {
+      const auto& [part, next] = nodes[node];
+      const Vec3 center = to_surface_ * part.center;
+      const Look look = surface_.look_at_ball(center, part.reach);
+      if (look.side != Side::mixed) {
+        decide(look, part, center);
+        node = next;
+        continue;
+      }
+      if (next == node + 1) {
+        for (std::uint32_t i = part.begin; i < part.end; ++i) found += classify_share(i);
+      }
+      ++node;
+    }
+    return found;
+  }
+
+  std::uint32_t classify_share(std::uint32_t i) {
+    const CellView view = level_.cell(i);
+    const Vec3 center = to_surface_ * view.center;
+    const Side side = surface_.side_of_ball(center, view.reach);
+    if (side == Side::free) {
+      states_.set(i, Cell::free, Passage::closed);
+    } else if (side == Side::behind) {
+      states_.set(i, Cell::whole, Passage::unknown);
+    } else if (side == Side::uncut) {
+      states_.set(i, Cell::open, Passage::unknown);
+    } else {
+      states_.results[i] = measure(view).run();
+      take_result(i, Passage::unknown);
+      return points_ != nullptr ? count_points(i, center) : 0;
+    }
+    return 0;
+  }
+
+  // Of a patch through which the surface passes as one plane. Where that is further from a node
+  // than it reaches, it is so from each share in it.
+  void classify_crossed(std::uint32_t root, const Look& look) {
+    constexpr double kRounding = 1e-9;  // of the tool's reach: far above that of a distance
+    const CrossingPlane& plane = states_.planes[root];
+    const std::vector<ShareTreeNode>& nodes = level_.nodes();
+    const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
+    std::uint32_t node = first;
+    while (node < last) {
+      const auto& [part, next] = nodes[node];
+      const double distance = plane.distance(part.center),
+                   away = part.reach + kRounding * reach_.length;
+      if (distance >= away) {
+        states_.set(part, Cell::free, Passage::closed);
+        node = next;
+      } else if (distance <= -away &&
+                 !surface_.may_hold_free(look, to_surface_ * part.center, part.reach)) {
+        states_.set(part, Cell::pushed, Passage::patch);
+        node = next;
+      } else {
+        if (next == node + 1) {
+          for (std::uint32_t i = part.begin; i < part.end; ++i) classify_crossed(i, plane, look);
+        }
+        ++node;
+      }
+    }
+  }
+
+  // What a share's own pixels show to be free is free, whatever the mean of all says.
+  void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look) {
+    const CellView view = level_.cell(i);
+    const double distance = plane.distance(view.center);
+    const Vec3 center = to_surface_ * view.center;
+    if (distance >= view.reach || (surface_.may_be_free(look, center, view.reach) &&
+                                   surface_.side_of_ball(center, view.reach) == Side::free)) {
+      states_.set(i, Cell::free, Passage::closed);
+    } else if (distance <= -view.reach) {
+      states_.set(i, Cell::pushed, Passage::patch);
+    } else {
+      CellResult& result = states_.results[i];
+      result = {};
+      const CellMeasure measure = this->measure(view);
+      for (std::uint32_t b = view.begin; b < view.end; ++b) measure.add_block(b, plane, result);
+      take_result(i, Passage::patch);
+    }
+  }
+
+  // `passage`: where the share is not cut.
+  void take_result(std::uint32_t i, Passage passage) {
+    const CellResult& result = states_.results[i];
+    if (result.plane.count > 0)
+      states_.set(i, Cell::cut, Passage::closed);
+    else if (result.sum.volume.value > 0)
+      states_.set(i, Cell::partial, passage);
+    else
+      states_.set(i, Cell::free, Passage::closed);
+  }
+
+  // Points in the spheres of a patch that was looked at.
+  std::uint32_t count_points(const ShareCluster& patch, const Look& look) const {
+    if (points_ == nullptr) return 0;
+    std::uint32_t found = 0;
+    for (std::uint32_t i = patch.begin; i < patch.end; ++i) {
+      const Vec3 center = to_surface_ * level_.cell(i).center;
+      if (surface_.may_touch(look, center, level_.radius(i))) found += count_points(i, center);
+    }
+    return found;
+  }
+  std::uint32_t count_points(std::uint32_t i, Vec3 center) const {
+    const Look look = surface_.look_at_ball(center, level_.radius(i));
+    return look.side == Side::mixed ? points_->count(tool_.spheres[level_.sphere(i)], look) : 0;
+  }
+
+  CellMeasure<Surface> measure(const CellView& view) const {
+    return {surface_, to_surface_, reach_, view};
+  }
+
+  const ToolModel& tool_;
+  ToolReach reach_;
+  const SpatialLevel& level_;
+  const Surface& surface_;
+  const Pose& to_surface_;
+  const PointsOfSphere* points_;
+  ShareStates& states_;
+};
+
+}  // namespace vpm

@@ -1,0 +1,64 @@
+// What a query finds of each share of a level: how the surface meets it, and whether the flood may
+// pass it.
+#pragma once
+
+#include <vector>
+
+#include "libvpm/query/cell.h"
+#include "libvpm/query/spatial_level.h"
+
+namespace vpm {
+
+// How the surface meets a sphere's share.
+enum class Cell : std::uint8_t {
+  free,     // counts for nothing
+  cut,      // the surface passes through it: its result counts
+  partial,  // behind the surface as far as its result says, if the flood comes
+  pushed,   // behind the surface of its patch, along the normal of that, if the flood comes
+  whole,    // behind the surface, if the flood comes
+  open,     // no surface near; its centre decides when the flood comes
+};
+
+// Whether the flood may pass a share.
+enum class Passage : std::uint8_t {
+  closed,  // to what is free or cut, too
+  taken,   // the flood has come
+  unknown,
+  open,   // its squared gap is known
+  patch,  // open: the gap is that to the plane of its patch
+  near,   // open: no place of its cluster is further behind the surface than the tool's reach
+};
+
+struct ShareStates {
+  explicit ShareStates(const SpatialLevel& level)
+      : cells(level.size()),
+        passages(level.size()),
+        results(level.size()),
+        squared_gaps(level.size()),
+        planes(level.roots().size()) {
+    cut.reserve(level.size());
+    inside.reserve(level.size());
+  }
+
+  void set(std::uint32_t row, Cell cell, Passage passage) {
+    cells[row] = cell;
+    passages[row] = passage;
+  }
+  // Of all rows of a cluster.
+  void set(const ShareCluster& cluster, Cell cell, Passage passage) {
+    std::fill(cells.begin() + cluster.begin, cells.begin() + cluster.end, cell);
+    std::fill(passages.begin() + cluster.begin, passages.begin() + cluster.end, passage);
+  }
+
+  // Rows of the SpatialLevel.
+  std::vector<Cell> cells;
+  std::vector<Passage> passages;
+  std::vector<CellResult> results;   // of what is cut or partial
+  std::vector<double> squared_gaps;  // to the foot of the centre's reading, where asked; m^2
+  std::vector<CrossingPlane>
+      planes;                      // of each root that is a patch; of one behind, the normal only
+  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> inside;  // shares that the flood took, in the order of the flood
+};
+
+}  // namespace vpm
