@@ -208,7 +208,7 @@ class CellMeasure {
     if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
     if (look.is_flat) {
       if (pass == Pass::hidden) return false;
-      result.is_far |= is_far(look.center, look.tangent.foot);
+      result.is_far |= is_far(look.tangent.distance(look.center));
       add_block(b, {look.tangent, to_surface_}, result);
       return false;
     }
@@ -226,10 +226,8 @@ class CellMeasure {
     return squared_norm(foot - center_) > near * near;
   }
 
-  // Whether a place is further behind the surface than the tool's reach.
-  VPM_HD bool is_far(Vec3 x, Vec3 foot) const {
-    return squared_norm(foot - x) > tool_reach_.length * tool_reach_.length;
-  }
+  // Whether a place at this signed distance is further behind the surface than the tool's reach.
+  VPM_HD bool is_far(double distance) const { return distance < -tool_reach_.length; }
 
   // One piece as the surface shows it.
   struct PieceLook {
@@ -250,7 +248,7 @@ class CellMeasure {
     look.reading = near.read(look.x, point);
     look.is_inside = look.reading.known && look.reading.distance < piece.radius;
     if (!look.is_inside) return look;
-    look.is_far = is_far(look.x, look.reading.foot);
+    look.is_far = is_far(look.reading.distance);
     look.is_hidden = is_hidden(look.reading.foot);
     return look;
   }

@@ -36,6 +36,11 @@ struct DepthSurface {
   // or curved; those of a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
 
+  // Windows of normals that lie this many pixels to either side see one side of a crease each: they
+  // are up to twice as wide (7 pixels by default).
+  static constexpr std::int32_t kAcross = 4;
+  static constexpr double kSameCosine = 0.99;  // 8 degrees: normals of one side
+
   // Readings around the middle of a ball are taken at this part of its radius: where a paraboloid
   // is as high as in the mean over a box in the ball.
   static constexpr double kRim = 0.5;
@@ -93,6 +98,7 @@ struct DepthSurface {
     reading.known = true;
     const double to_foot = 1 / (x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
     reading.foot = to_foot * x;
+    reading.point = static_cast<std::uint32_t>(pixel.nearest);
     reading.normal = widen(normals[pixel.nearest]);
     const double along = dot(reading.normal, x), squared_length = squared_norm(x);
     if (along < 0 && along * along >= (kGrazing * kGrazing) * squared_length) {
@@ -111,15 +117,19 @@ struct DepthSurface {
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
   // point. Starts from the point on x's ray (`reading` is that of x), steps to the foot on its
   // tangent plane and, where that overshoots a crease, back by halves. A step that leads away
-  // without a crease has met noise: there the normals tell the direction, not single pixels.
+  // without a crease has met noise: there the normals tell the direction, not single pixels. Beside
+  // a crease, where windows of normals hold both sides, those of one side lead.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    Vec3 foot = reading.foot, normal = reading.normal;
+    Reading first = reading;
+    take_one_side(x, first);
+    Vec3 foot = first.foot, normal = first.normal;
     double squared = squared_norm(x - foot);
-    Vec3 target = x - reading.distance * normal;
+    Vec3 target = x - first.distance * normal;
     const double pixel = foot.z / k.fx, near = kFootPixels * pixel;
     for (int step = 0; step < kFootSteps && squared_norm(target - foot) > near * near; ++step) {
-      const Reading next = read(target);
+      Reading next = read(target);
       if (!next.known) break;
+      take_one_side(x, next);
       const double next_squared = squared_norm(x - next.foot);
       if (next_squared < squared) {
         foot = next.foot;
@@ -243,7 +253,9 @@ struct DepthSurface {
                       TangentPlane& plane) const {
     if (!reading.known) return false;
     plane = {reading.normal, reading.foot};
-    return shows(look, plane, tolerance);
+    if (!shows(look, plane, tolerance)) return false;
+    plane.normal = mean_normal(look, reading.normal);
+    return true;
   }
   // Whether the plane predicts the range of the ball's pixels.
   VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
@@ -295,6 +307,64 @@ struct DepthSurface {
   }
 
  private:
+  // The mean of the normal at a ball's middle and of four between it and the corners of its pixels,
+  // where they belong to one smooth surface: noise is averaged, and curvature cancels.
+  VPM_HD Vec3 mean_normal(const Look& look, Vec3 middle) const {
+    const PixelRectangle& p = look.pixels;
+    const std::int32_t u = (p.u1 - p.u0) / 4, v = (p.v1 - p.v0) / 4;
+    if (p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels) return middle;
+    const std::int32_t above = (p.v0 + v) * width, below = (p.v1 - v) * width;
+    const std::int32_t corners[4] = {above + p.u0 + u, above + p.u1 - u, below + p.u0 + u,
+                                     below + p.u1 - u};
+    Vec3 sum = middle;
+    for (const std::int32_t i : corners) {
+      const Vec3 normal = widen(normals[i]);
+      if (dot(normal, middle) > kSmoothCosine) sum += normal;
+    }
+    return normalized_or_zero(sum);
+  }
+
+  // The normal of what was read at x, where its pixel lies beside a crease: of that side of it on
+  // whose tangent plane the foot lies.
+  VPM_HD void take_one_side(Vec3 x, Reading& reading) const {
+    const auto i = static_cast<std::int32_t>(reading.point);
+    const std::int32_t v = i / width, u = i - v * width;
+    const bool in_row = u >= kAcross && u + kAcross < width && holds_crease(i, 1, reading.normal),
+               in_column =
+                   v >= kAcross && v + kAcross < height && holds_crease(i, width, reading.normal);
+    if (!in_row && !in_column) return;
+    const Vec3 foot = reading.foot;
+    double least = HUGE_VAL;
+    const auto consider = [&](std::int32_t j) {
+      const Vec3 normal = widen(normals[j]);
+      const double off = off_plane(foot, j, normal);
+      if (!(off < least)) return;
+      least = off;
+      reading.normal = normal;
+      reading.distance = dot(normal, x - foot);
+    };
+    for (std::int32_t side = -kAcross; side <= kAcross; side += 2 * kAcross) {
+      if (in_row) consider(i + side);
+      if (in_column) consider(i + side * width);
+    }
+  }
+  // Whether a crease passes between a pixel's neighbours on either side, and its normal is of
+  // neither.
+  VPM_HD bool holds_crease(std::int32_t i, std::int32_t step, Vec3 normal) const {
+    const Vec3 before = widen(normals[i - kAcross * step]),
+               after = widen(normals[i + kAcross * step]);
+    return dot(before, after) < kSmoothCosine && dot(before, normal) < kSameCosine &&
+           dot(after, normal) < kSameCosine;
+  }
+  // How far a place lies off the tangent plane of a pixel; without end where the pixel shows
+  // another surface, or nothing.
+  VPM_HD double off_plane(Vec3 place, std::int32_t i, Vec3 normal) const {
+    const double per_depth = tiles[0][i].high;
+    if (!(dot(normal, place) < 0 && std::fabs(per_depth * place.z - 1) <= kJump)) return HUGE_VAL;
+    const std::int32_t v = i / width;
+    return std::fabs(dot(normal, place - unproject(k, i - v * width, v, 1 / per_depth)));
+  }
+
   // Whether no pixel shows a surface nearer than `depth`: the middle one first, which mostly
   // says no.
   VPM_HD bool is_seen_past(const Look& look, double depth) const {

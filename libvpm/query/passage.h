@@ -6,10 +6,9 @@
 
 namespace vpm {
 
-// Squared distance from a place to the foot of its reading, m^2; without end where nothing is
-// known.
-VPM_HD inline double squared_gap(Vec3 at, const Reading& reading) {
-  return reading.known ? squared_norm(reading.foot - at) : HUGE_VAL;
+// Squared distance of a place from the surface, m^2; without end where nothing is known.
+VPM_HD inline double squared_gap(const Reading& reading) {
+  return reading.known ? reading.distance * reading.distance : HUGE_VAL;
 }
 
 // A share may be behind a surface that is not the tool's business: one further away than the tool's

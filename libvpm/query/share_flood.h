@@ -116,7 +116,7 @@ class ShareFlood {
       if (!(reading.known && reading.distance < 0)) return Passage::closed;
       states_.cells[j] = Cell::whole;
     }
-    states_.squared_gaps[j] = squared_gap(at, reading);
+    states_.squared_gaps[j] = squared_gap(reading);
     if (!is_hidden_share(states_.squared_gaps[j], reach_.length)) return Passage::open;
     return cut_share(nearest_cut(j)).height(at) < 0 ? Passage::open : Passage::closed;
   }
@@ -132,7 +132,7 @@ class ShareFlood {
     }
     if (states_.passages[row] == Passage::near) {
       const Vec3 at = center(row);
-      states_.squared_gaps[row] = squared_gap(at, surface_.read(at));
+      states_.squared_gaps[row] = squared_gap(surface_.read(at));
       states_.passages[row] = Passage::open;
     }
     return states_.squared_gaps[row];

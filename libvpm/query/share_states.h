@@ -54,7 +54,7 @@ struct ShareStates {
   std::vector<Cell> cells;
   std::vector<Passage> passages;
   std::vector<CellResult> results;   // of what is cut or partial
-  std::vector<double> squared_gaps;  // to the foot of the centre's reading, where asked; m^2
+  std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
   std::vector<CrossingPlane>
       planes;                      // of each root that is a patch; of one behind, the normal only
   std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "libvpm/cloud/normals.h"
 #include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/query/lattice_model.h"
@@ -91,6 +95,31 @@ TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
   }
 }
 
+// Along the rays the walls are half as far again: one cut share's plane, of both walls, must not
+// decide for what lies near one of them.
+TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
+  const synthetic::Scene scene = synthetic::make_scene("groove");
+  const PreparedCloud cloud(see(scene));
+  const ToolModel tool = lattice_cube(0.1, 2, 8);
+  const synthetic::TrueSolid solid(synthetic::make_cube(0.1));
+  Query query(tool, {});
+  int poses = 0;
+  for (int k = 0; k < 10 * 14; ++k) {
+    const int column = k % 10, row = k / 10;
+    const Pose pose{generic_rotation(), {0.01 * column, 0.01, 0.96 + 0.01 * row}};
+    const auto is_deep = [&](const CellSample& sample) {
+      return scene.surface->distance(pose * widen(sample.center)) < -tool.reach;
+    };
+    const std::vector<CellSample>& samples = tool.levels[0].samples;
+    if (std::any_of(samples.begin(), samples.end(), is_deep)) continue;
+    const Result r = query.run(cloud, pose);
+    if (r.boundary == 0) continue;
+    ++poses;
+    EXPECT_NEAR(r.volume, solid.penetration(pose, *scene.surface).volume, 0.001 * tool.volume) << k;
+  }
+  EXPECT_GT(poses, 10);
+}
+
 TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
@@ -161,6 +190,45 @@ TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   for (int k = 0; k < 10; ++k) {
     const Result r = query.run(cloud, {generic_rotation(), {0, 0, 0.9 + 0.02 * k}});
     EXPECT_NEAR(-r.wrench.force.z, r.volume, 1e-6 * tool.volume);
+  }
+}
+
+// Each place of the surface is seen by hundreds of pixels; the force must not follow few of them.
+TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
+  const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
+  const Vec3 normal = scene.surface->gradient({0, 0, 1.1});
+  const ToolModel tool = lattice_cube(kEdge, 10, 4);
+  double sum = 0;
+  constexpr int kPoses = 24;
+  for (int k = 0; k < kPoses; ++k) {
+    const PreparedCloud cloud(make_cloud(
+        synthetic::render_with_kinect_noise(*scene.surface, scene.camera, static_cast<unsigned>(k)),
+        scene.camera, NormalOptions{}));
+    const Vec3 force =
+        Query(tool, {}).run(cloud, {generic_rotation(), {0.01, 0, 0.95}}).wrench.force;
+    sum += std::asin(std::min(1.0, norm(cross(force, normal)) / norm(force))) * 180 / kPi;
+  }
+  EXPECT_LE(sum / kPoses, 0.2);
+}
+
+// Windows of normals at the bottom of a groove hold both walls. Two pixels from it, the nearest
+// surface lies on one of them.
+TEST(RefinedMeasure, PushesFromOneWallBesideACrease) {
+  const synthetic::Scene scene = synthetic::make_scene("groove");
+  const PreparedCloud cloud(
+      make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
+  const DepthSurface surface = cloud.depth_surface();
+  constexpr double kTwoPixels = 0.004;  // m, at the bottom
+  constexpr double kWithin = 5;         // degrees; windows that hold both walls err by up to 33
+  for (int k = 0; k < 40 * 30; ++k) {
+    const int column = k % 40, row = k / 40;
+    const Vec3 x{-0.1 + 0.005 * column, 0.01, 0.98 + 0.004 * row};
+    if (scene.surface->distance(x) > -0.001) continue;
+    const double from_bottom = (std::abs(x.x) - (x.z - 1)) / 2;  // of the foot on the nearer wall
+    if (from_bottom < kTwoPixels) continue;
+    const Vec3 normal = surface.closest_normal(x, surface.read(x));
+    EXPECT_GT(dot(normal, scene.surface->gradient(x)), std::cos(kWithin * kPi / 180))
+        << x.x << ' ' << x.z;
   }
 }
 

@@ -249,7 +249,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   Reading reading;
   if (reads_share || reads_block) reading = surface_.read(at, look.point);
 
-  const double gap = squared_gap(at, reading);
+  const double gap = squared_gap(reading);
   const bool hidden =
       lanes.from(seen.seen() != Seen::behind_near && is_hidden_share(gap, level_.tool_reach.length),
                  Unit::of_share);
@@ -275,7 +275,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         !measure.is_hidden(tangent.foot);
     if (is_flat)
-      list_crossed(unit, {tangent, to_surface_}, measure.is_far(at, tangent.foot));
+      list_crossed(unit, {tangent, to_surface_}, measure.is_far(tangent.distance(at)));
     else
       list_block(unit, look.side);
   } else if (whole && (flags & Unit::is_compact) != 0) {
@@ -330,7 +330,7 @@ __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal
   measure_of({}).add_whole(level_.share_masses[unit.share], normal, sum);
   notes_.sums[unit.share] = sum;
   const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
-  note_share(unit, kWhole, squared_gap(at, surface_.read(at)));
+  note_share(unit, kWhole, squared_gap(surface_.read(at)));
 }
 
 // Lists a block of a mixed share.
