@@ -8,9 +8,12 @@
 #include "libvpm/file/stream.h"
 #include "tests/file/temporary_folder.h"
 #include "tests/import/test_files.h"
+#include "tests/refusal.h"
 
 namespace vpm {
 namespace {
+
+using test::refusal;
 
 class ARecording : public file::TemporaryFolder {
  protected:
