@@ -84,7 +84,10 @@ class Accuracy {
   const PackedSolid& tool(const std::string& shape) {
     const auto found = tools_.find(shape);
     if (found != tools_.end()) return found->second;
-    return tools_.try_emplace(shape, make_packed(shape, levels_)).first->second;
+    return tools_
+        .try_emplace(shape, make_packed(shape, levels_,
+                                        options_.quick ? PackedSolid::kFewPlaces : kCountedPlaces))
+        .first->second;
   }
 
   void step() {

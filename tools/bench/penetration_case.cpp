@@ -78,9 +78,10 @@ ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels
   return build_tool_model(packing, graph_options);
 }
 
-PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels) {
+PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels,
+                        std::size_t places) {
   const Solid solid = make_shape(shape);
-  return {synthetic::TrueSolid(solid), make_tool(solid, levels), places_in(solid, kCountedPlaces)};
+  return {synthetic::TrueSolid(solid), make_tool(solid, levels), places_in(solid, places)};
 }
 
 Rotation turned() {

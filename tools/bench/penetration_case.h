@@ -1,6 +1,8 @@
 // A tool moved along +z into a scene, with the truth at every pose.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +24,17 @@ struct PackedSolid {
   synthetic::TrueSolid solid;
   ToolModel model;
   std::vector<Vec3> places;
+
+  // For errors of parts of a hundred.
+  std::span<const Vec3> few_places() const {
+    return std::span(places).first(std::min(kFewPlaces, places.size()));
+  }
+  static constexpr std::size_t kFewPlaces = 8192;
 };
-inline constexpr std::size_t kCountedPlaces = 8192;
-PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels);
+// So many resolve a hundredth of a per cent of the tool: a twentieth of the least bound.
+inline constexpr std::size_t kCountedPlaces = 524288;
+PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels,
+                        std::size_t places = kCountedPlaces);
 
 // A rotation along no axis of any solid or scene.
 Rotation turned();

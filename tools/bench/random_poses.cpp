@@ -29,8 +29,8 @@ Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
 
 double counted(const PackedSolid& tool, const Pose& pose, const synthetic::Surface& surface) {
   std::size_t inside = 0;
-  for (const Vec3& place : tool.places) inside += surface.distance(pose * place) < 0;
-  return static_cast<double>(inside) / static_cast<double>(tool.places.size());
+  for (const Vec3& place : tool.few_places()) inside += surface.distance(pose * place) < 0;
+  return static_cast<double>(inside) / static_cast<double>(tool.few_places().size());
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
         const double volume = queries[m].run(cloud, pose).volume_fraction;
         double error = volume_error(volume, truth, unseen);
         if (!(error <= kLeak / 2)) {  // worth asking what the camera can know
-          if (!looked) unseen = unseen_parts(tool.places, pose, *scene.surface, sights);
+          if (!looked) unseen = unseen_parts(tool.few_places(), pose, *scene.surface, sights);
           looked = true;
           error = volume_error(volume, truth, unseen);
         }

@@ -40,7 +40,7 @@ Count counted(const PackedSolid& tool, const Pose& pose, const CloudSensor& sens
   const Pose to_camera = relative_to(sensor.camera.to_world, pose);
   const Intrinsics& k = sensor.camera.intrinsics;
   std::size_t behind = 0, shadow = 0;
-  for (const Vec3& place : tool.places) {
+  for (const Vec3& place : tool.few_places()) {
     const Vec3 x = to_camera * place;
     if (!(x.z > 0)) continue;
     const double u = std::floor(k.fx * x.x / x.z + k.cx + 0.5),
@@ -51,7 +51,7 @@ Count counted(const PackedSolid& tool, const Pose& pose, const CloudSensor& sens
     behind += depth > 0 && x.z > depth;
     shadow += depth > 0 && x.z > depth + tool.model.reach;
   }
-  const auto all = static_cast<double>(tool.places.size());
+  const auto all = static_cast<double>(tool.few_places().size());
   return {static_cast<double>(behind) / all, static_cast<double>(shadow) / all};
 }
 

@@ -109,7 +109,7 @@ bool Sight::sees_well(Vec3 on_surface, Vec3 normal) const {
   return dot(towards, normal) > kGrazingCosine * norm(towards) && ray(at).sees;
 }
 
-Unseen unseen_parts(const std::vector<Vec3>& places, const Pose& pose,
+Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras) {
   constexpr std::size_t kTogether = 256;
   std::vector<std::array<int, 3>> counts((places.size() + kTogether - 1) / kTogether);

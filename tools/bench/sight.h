@@ -8,6 +8,7 @@
 // between both.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "libvpm/model/solid.h"
@@ -56,7 +57,7 @@ class Sight {
   const std::vector<bool>* hole_;
 };
 
-Unseen unseen_parts(const std::vector<Vec3>& places, const Pose& pose,
+Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras);
 
 }  // namespace vpm::bench
