@@ -60,6 +60,7 @@ struct DepthSurface {
   struct Pixel {
     double inverse_depth = 0;  // 0: unknown
     std::int32_t nearest = 0;  // index of the nearest pixel
+    Vec3f normal;              // of that
   };
 
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
@@ -79,15 +80,17 @@ struct DepthSurface {
     const std::int32_t u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
     const double a = inverse_depth(u0, v0), b = inverse_depth(u1, v0);
     const double c = inverse_depth(u0, v1), d = inverse_depth(u1, v1);
+    const std::int32_t nearest = vn * width + un;
+    const Vec3f normal = normals[nearest];  // all reads at once: a device waits for them together
     const double low_ab = a < b ? a : b, low_cd = c < d ? c : d,
                  low = low_ab < low_cd ? low_ab : low_cd;
     const double high_ab = a > b ? a : b, high_cd = c > d ? c : d,
                  high = high_ab > high_cd ? high_ab : high_cd;
-    const std::int32_t nearest = vn * width + un;
-    if (!(low > 0) || high - low > kJump * high) return {inverse_depth(un, vn), nearest};
+    if (!(low > 0) || high - low > kJump * high)
+      return {vn == v0 ? (un == u0 ? a : b) : (un == u0 ? c : d), nearest, normal};
     const double fu = u < 0 ? 0 : u - u0, fv = v < 0 ? 0 : v - v0;
     const double top = a + fu * (b - a), bottom = c + fu * (d - c);
-    return {top + fv * (bottom - top), nearest};
+    return {top + fv * (bottom - top), nearest, normal};
   }
 
   VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
@@ -99,7 +102,7 @@ struct DepthSurface {
     const double to_foot = 1 / (x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
     reading.foot = to_foot * x;
     reading.point = static_cast<std::uint32_t>(pixel.nearest);
-    reading.normal = widen(normals[pixel.nearest]);
+    reading.normal = widen(pixel.normal);
     const double along = dot(reading.normal, x), squared_length = squared_norm(x);
     if (along < 0 && along * along >= (kGrazing * kGrazing) * squared_length) {
       reading.distance = along * (1 - to_foot);
@@ -168,8 +171,24 @@ struct DepthSurface {
   // The same of a ball that was looked at. Tiles show what lies beside it too: where they do not
   // decide, its pixels tell whether it is free.
   VPM_HD Side side_of(const Look& look, Vec3 center, double radius) const {
-    return look.side == Side::mixed && is_seen_past(look, center.z + radius) ? Side::free
-                                                                             : look.side;
+    return look.side == Side::mixed && is_seen_past(look.pixels, center.z + radius, 0, 1)
+               ? Side::free
+               : look.side;
+  }
+  static VPM_HD PixelRectangle pixels_of(const Look& look) { return look.pixels; }
+  // Whether none of these pixels shows a surface nearer than `depth`; of their rows only the
+  // `first`, and every `step` after it. The middle is asked first, which mostly says no.
+  VPM_HD bool is_seen_past(const PixelRectangle& p, double depth, std::uint32_t first,
+                           std::uint32_t step) const {
+    if (std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) > kMostPixels) return false;
+    if (!(depth * inverse_depth((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
+    for (std::int32_t v = p.v0 + static_cast<std::int32_t>(first); v <= p.v1;
+         v += static_cast<std::int32_t>(step)) {
+      bool past = true;  // of a row at a time: reads that do not wait for each other
+      for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * inverse_depth(u, v) < 1;
+      if (!past) return false;
+    }
+    return true;
   }
 
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
@@ -222,14 +241,17 @@ struct DepthSurface {
   // False where a ball in one that was looked at is not Side::free, as far as the looked at or the
   // pixel at its centre tell: a short way to most answers of side_of_ball.
   VPM_HD bool may_be_free(const Look& look, Vec3 center, double radius) const {
-    const double farthest = center.z + radius;
-    if (!(farthest * look.range.low < 1)) return false;
+    return (center.z + radius) * look.range.low < 1 && may_be_free(center, radius);
+  }
+  VPM_HD bool may_be_free(Vec3 center, double radius) const {
     if (!(center.z - radius > 0)) return true;
     const double per_depth = 1 / center.z;
     const double u = k.fx * (center.x * per_depth) + k.cx + 0.5;
     const double v = k.fy * (center.y * per_depth) + k.cy + 0.5;
     if (!(u >= 0 && v >= 0 && u < width && v < height)) return true;
-    return farthest * inverse_depth(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) < 1;
+    return (center.z + radius) *
+               inverse_depth(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) <
+           1;
   }
 
   // False where may_be_free says so of every ball in this one, which lies in one that was looked
@@ -278,8 +300,9 @@ struct DepthSurface {
   // The mean plane of the surface across a ball that was looked at, from readings at its middle and
   // at four places around it; false where they do not belong to one smooth surface, or the range of
   // the ball's pixels does not agree with the plane.
+  template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
-                         TangentPlane& plane) const {
+                         const ReadAll& read_all, TangentPlane& plane) const {
     if (!may_be_flat(look)) return false;
     const Reading middle = read(center);
     if (!middle.known) return false;
@@ -287,8 +310,9 @@ struct DepthSurface {
     const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis)), other = cross(n, side);
     const Vec3 below = center - middle.distance * n;
-    const Reading around[4] = {read(below + side), read(below - side), read(below + other),
-                               read(below - other)};
+    const Vec3 places[4] = {below + side, below - side, below + other, below - other};
+    Reading around[4];
+    read_all(*this, places, around);
     Vec3 direction = n, feet = middle.foot;
     for (const Reading& reading : around) {
       if (!reading.known || dot(reading.normal, n) < kSmoothCosine) return false;
@@ -363,20 +387,6 @@ struct DepthSurface {
     if (!(dot(normal, place) < 0 && std::fabs(per_depth * place.z - 1) <= kJump)) return HUGE_VAL;
     const std::int32_t v = i / width;
     return std::fabs(dot(normal, place - unproject(k, i - v * width, v, 1 / per_depth)));
-  }
-
-  // Whether no pixel shows a surface nearer than `depth`: the middle one first, which mostly
-  // says no.
-  VPM_HD bool is_seen_past(const Look& look, double depth) const {
-    const PixelRectangle& p = look.pixels;
-    if (std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) > kMostPixels) return false;
-    if (!(depth * inverse_depth((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
-    for (std::int32_t v = p.v0; v <= p.v1; ++v) {
-      bool past = true;  // of a row at a time: reads that do not wait for each other
-      for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * inverse_depth(u, v) < 1;
-      if (!past) return false;
-    }
-    return true;
   }
 
   // Takes the range of the look's pixels from at most 3 by 3 tiles.

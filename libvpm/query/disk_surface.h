@@ -5,6 +5,7 @@
 // origin.
 #pragma once
 
+#include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/surface.h"
 
 namespace vpm {
@@ -128,15 +129,23 @@ struct DiskSurface {
     return look_at_ball(center, radius).side;
   }
   VPM_HD Side side_of(const Look& look, Vec3, double) const { return look.side; }
+  static VPM_HD PixelRectangle pixels_of(const Look&) { return {}; }
+  VPM_HD bool is_seen_past(const PixelRectangle&, double, std::uint32_t, std::uint32_t) const {
+    return false;
+  }
   VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
   VPM_HD bool may_be_flat(const Look&) const { return false; }
   VPM_HD bool is_flat(const Look&, const Reading&, double, TangentPlane&) const { return false; }
   VPM_HD bool may_be_free(const Look&, Vec3, double) const { return true; }
+  VPM_HD bool may_be_free(Vec3, double) const { return true; }
   VPM_HD bool may_hold_free(const Look&, Vec3, double) const { return true; }
   VPM_HD bool tells_of_parts(Vec3, double) const { return false; }
   VPM_HD bool is_free_part(const Look&, Vec3, double) const { return false; }
   VPM_HD bool may_touch(const Look&, Vec3, double) const { return true; }
-  VPM_HD bool mean_plane(const Look&, Vec3, double, double, TangentPlane&) const { return false; }
+  template <class ReadAll>
+  VPM_HD bool mean_plane(const Look&, Vec3, double, double, const ReadAll&, TangentPlane&) const {
+    return false;
+  }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
 };
 

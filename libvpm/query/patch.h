@@ -14,10 +14,11 @@ VPM_HD constexpr bool is_patch(double cluster_reach, double tool_reach) {
 
 // Whether the surface passes through a patch as one plane: not further away than kSheetReach of
 // its reaches.
-template <class Surface>
+// `read_all`: ReadInTurn, or what gives the same readings sooner.
+template <class Surface, class ReadAll>
 VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& look, Vec3 center,
-                       double reach, TangentPlane& plane) {
-  if (!surface.mean_plane(look, center, reach, reach, plane)) return false;
+                       double reach, const ReadAll& read_all, TangentPlane& plane) {
+  if (!surface.mean_plane(look, center, reach, reach, read_all, plane)) return false;
   const double near = kSheetReach * reach;
   return squared_norm(plane.foot - center) <= near * near;
 }

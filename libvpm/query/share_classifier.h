@@ -74,7 +74,7 @@ class ShareClassifier {
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
     if (look.side == Side::mixed) {
       TangentPlane plane;
-      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, plane))
+      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, ReadInTurn{}, plane))
         return classify_nodes(root);
       states_.planes[root] = {plane, to_surface_};
       classify_crossed(root, look);

@@ -30,6 +30,15 @@ struct Reading {
   std::uint32_t point = kNoPoint;  // the same, by index: a good place to begin the next search
 };
 
+// Reads a surface at several places, one after the other.
+struct ReadInTurn {
+  template <class Surface, int kPlaces>
+  VPM_HD void operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
+                         Reading (&readings)[kPlaces]) const {
+    for (int k = 0; k < kPlaces; ++k) readings[k] = surface.read(places[k]);
+  }
+};
+
 // The surface in a ball, where it is flat: a plane.
 struct TangentPlane {
   Vec3 normal;  // unit, into free space

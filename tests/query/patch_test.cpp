@@ -19,7 +19,8 @@ constexpr double kReach = 0.015;  // of the patches
 // The plane of a patch about a place of the scene, if it is seen as one; camera coordinates.
 bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
   const DepthSurface surface = cloud.depth_surface();
-  return sees_patch(surface, surface.look_at_ball(center, kReach), center, kReach, plane);
+  return sees_patch(surface, surface.look_at_ball(center, kReach), center, kReach, ReadInTurn{},
+                    plane);
 }
 
 // Mean of the plane's height over the surface's at places of a box in the patch's ball.

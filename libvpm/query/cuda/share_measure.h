@@ -1,10 +1,11 @@
 // The first step of a query: what each share is to the surface, and its sums.
 //
 // What a cluster of shares is to the surface is decided first, by a thread for each chunk of its
-// units. A unit (block of a share) is classified by four lanes, which look at the balls of its
-// share, the block and the sphere. What is to be measured is listed as tasks in
-// shared memory, and warps take these: a lane for each sample, or for each piece that is taken
-// whole.
+// units, or by four where chunks are few: they read the surface at four places of a patch at once.
+// A unit (block of a share) of a patch is classified by one thread, others by four lanes, which
+// look at the balls of its share, the block and the sphere. What is to be measured is listed as
+// tasks in shared memory, and warps take these: a lane for each sample, or for each piece that is
+// taken whole.
 #pragma once
 
 #include "libvpm/query/cuda/shares.h"
@@ -54,28 +55,50 @@ enum class Seen : std::uint32_t {
   pushed,       // a patch, behind near the surface: in one direction
 };
 
-// A unit of such a cluster: the chunk by the thread that has looked at it.
+// A unit of such a cluster: the chunk by the slot of those who have looked at it.
 struct SeenUnit {
   std::uint16_t bits;
 
-  __device__ static SeenUnit of(unsigned thread, unsigned unit, Seen seen) {
-    return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | thread << 3 | unit)};
+  __device__ static SeenUnit of(unsigned slot, unsigned unit, Seen seen) {
+    return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | slot << 3 | unit)};
   }
   __device__ Seen seen() const { return static_cast<Seen>(bits >> 11); }
-  __device__ unsigned thread() const { return bits >> 3 & 255U; }
+  __device__ unsigned slot() const { return bits >> 3 & 255U; }
   __device__ unsigned unit() const { return bits & 7U; }
-  __device__ bool is_in_patch() const { return seen() >= Seen::crossed; }
   __device__ Side side() const {
     return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
   }
 };
 static_assert(kThreads <= 256 && Chunk::kUnits <= 8);
 
+// Reads a surface at four places by four lanes.
+struct ReadByLanes {
+  static constexpr unsigned kLanes = 4;
+  Tile lanes;
+
+  template <class Surface>
+  __device__ void operator()(const Surface& surface, const Vec3 (&places)[kLanes],
+                             Reading (&readings)[kLanes]) const {
+    const unsigned k = lanes.lane;
+    const Reading mine =
+        surface.read(k == 0 ? places[0] : (k == 1 ? places[1] : (k == 2 ? places[2] : places[3])));
+#pragma unroll
+    for (unsigned from = 0; from < kLanes; ++from) {
+      readings[from].known = lanes.from(static_cast<int>(mine.known), from) != 0;
+      readings[from].normal = lanes.from(mine.normal, from);
+      readings[from].foot = lanes.from(mine.foot, from);
+    }
+  }
+};
+
 // Memory that the threads of a block share.
 struct MeasureShared {
-  SeenUnit seen[kThreads * Chunk::kUnits];
-  std::uint32_t first_units[kThreads];  // of the chunk at which a thread has looked
-  unsigned seen_count;
+  static constexpr unsigned kSeen = kThreads * Chunk::kUnits;
+  SeenUnit seen[kSeen];  // in no patch from the front, in crossed patches from the end
+  unsigned seen_count, crossed_count;
+  std::uint32_t pushed[kThreads];  // chunks
+  unsigned pushed_count;
+  std::uint32_t first_units[kThreads];  // of the chunk at which a slot's threads have looked
   TaskLists lists;
   double terms[4][kThreads];  // of sums in the samples' order
 };
@@ -103,14 +126,23 @@ class ShareMeasure {
     if (part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
     next_.clear(level_, part_.part * blockDim.x + threadIdx.x, part_.parts * blockDim.x);
     clear_lists();
-    const unsigned step = blockDim.x * part_.parts;
-    for (unsigned first = part_.part; first < level_.chunk_count; first += step) {
-      const unsigned c = first + threadIdx.x * part_.parts;
-      if (c < level_.chunk_count) look_at(level_.chunks[c]);
+    const bool are_few =
+        level_.chunk_count <= kFewRounds * (blockDim.x / ReadByLanes::kLanes) * part_.parts;
+    const Tile lanes(are_few ? ReadByLanes::kLanes : 1);
+    const unsigned slot = threadIdx.x / lanes.width, slots = blockDim.x / lanes.width;
+    for (unsigned first = part_.part; first < level_.chunk_count; first += slots * part_.parts) {
+      const unsigned c = first + slot * part_.parts;
+      if (c < level_.chunk_count) {
+        if (are_few)
+          look_at(c, slot, lanes.leads(), ReadByLanes{lanes});
+        else
+          look_at(c, slot, true, ReadInTurn{});
+      }
       __syncthreads();
+      note_pushed();
       classify_seen();
       __syncthreads();
-      if (threadIdx.x == 0) shared_.seen_count = 0;
+      clear_seen();
       __syncthreads();
     }
     measure_tasks();
@@ -118,65 +150,107 @@ class ShareMeasure {
 
  private:
   using Measure = CellMeasure<Surface>;
-  static constexpr unsigned kLanes = 4;  // of a unit
+  static constexpr unsigned kLanes = 4;      // of a unit in no patch
+  static constexpr unsigned kFewRounds = 2;  // of more, each lane looks at a chunk of its own
+  // What a round adds to a list: a task of each unit in a patch, two of each other.
+  static constexpr unsigned kTasksOfRound = kThreads;
+  static_assert(2 * kThreads / kLanes <= kTasksOfRound && kTasksOfRound <= TaskLists::kTasks);
 
   __device__ void clear_lists() {
-    if (threadIdx.x == 0) shared_.seen_count = 0;
+    clear_seen();
     clear_task_lists();
   }
-  __device__ void look_at(const Chunk& chunk) {
+  __device__ void clear_seen() {
+    if (threadIdx.x == 0) shared_.seen_count = shared_.crossed_count = shared_.pushed_count = 0;
+  }
+  // By all threads of a slot; one notes what they have seen.
+  template <class ReadAll>
+  __device__ void look_at(std::uint32_t c, unsigned slot, bool notes, const ReadAll& read_all) {
+    const Chunk& chunk = level_.chunks[c];
     const Vec3 at = to_surface_ * chunk.ball.center;
     const auto look = surface_.look_at_ball(at, chunk.ball.radius);
     if (look.side == Side::free) return;
-    const Seen seen = what_is_seen(chunk.ball, look, at);
-    shared_.first_units[threadIdx.x] = chunk.begin;
-    const unsigned count = chunk.end - chunk.begin, slot = atomicAdd(&shared_.seen_count, count);
-    for (unsigned u = 0; u < count; ++u)
-      shared_.seen[slot + u] = SeenUnit::of(threadIdx.x, u, seen);
+    CrossingPlane plane;
+    const Seen seen = what_is_seen(chunk.ball, look, at, read_all, plane);
+    if (!notes) return;
+    if (seen == Seen::pushed) {
+      shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
+      return;
+    }
+    shared_.first_units[slot] = chunk.begin;
+    const unsigned count = chunk.end - chunk.begin;
+    const bool crossed = seen == Seen::crossed;
+    if (crossed) plane_of(slot) = plane;
+    const unsigned begin =
+        crossed ? MeasureShared::kSeen - count - atomicAdd(&shared_.crossed_count, count)
+                : atomicAdd(&shared_.seen_count, count);
+    for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = SeenUnit::of(slot, u, seen);
   }
-  template <class Look>
-  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at) {
+  __device__ CrossingPlane& plane_of(unsigned slot) const {
+    return space_.planes[part_.part * blockDim.x + slot];
+  }
+  template <class Look, class ReadAll>
+  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at,
+                               const ReadAll& read_all, CrossingPlane& plane) {
     const bool patch = is_patch(ball.radius, level_.tool_reach.length);
-    CrossingPlane& plane = space_.planes[part_.part * blockDim.x + threadIdx.x];
     if (look.side == Side::uncut) return Seen::uncut;
     if (look.side == Side::mixed) {
       TangentPlane tangent;
-      if (!patch || !sees_patch(surface_, look, at, ball.radius, tangent)) return Seen::mixed;
+      if (!patch || !sees_patch(surface_, look, at, ball.radius, read_all, tangent))
+        return Seen::mixed;
       plane = {tangent, to_surface_};
       return Seen::crossed;
     }
     if (!(surface_.largest_gap(look, at, ball.radius) < level_.tool_reach.length))
       return Seen::behind;
-    if (!patch) return Seen::behind_near;
-    plane.normal = transpose(to_surface_.rotation) *
-                   surface_.closest_normal(at, surface_.read(at, look.point));
-    return Seen::pushed;
+    return patch ? Seen::pushed : Seen::behind_near;
   }
-  // By rounds, as long as their tasks have room.
-  __device__ void classify_seen() {
-    const unsigned per_round = blockDim.x / kLanes, count = shared_.seen_count;
-    for (unsigned first = 0; first < count; first += per_round) {
-      const unsigned k = first + threadIdx.x / kLanes;
-      if (first + threadIdx.x / 32 * (32 / kLanes) < count)  // of the warp
-        classify(shared_.seen[k < count ? k : first], k < count);
-      __syncthreads();
-      if (__syncthreads_and(has_room(per_round)) != 0) continue;
-      measure_tasks();
-      __syncthreads();
-      clear_task_lists();
+  // A thread for each unit; those of a patch find its normal together. It takes long, so the last
+  // warps begin with it while the first ones deal with crossed patches.
+  __device__ void note_pushed() {
+    const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % Chunk::kUnits;
+    for (unsigned k = thread / Chunk::kUnits; k < shared_.pushed_count;
+         k += blockDim.x / Chunk::kUnits) {
+      const Chunk& chunk = level_.chunks[shared_.pushed[k]];
+      const Vec3 at = to_surface_ * chunk.ball.center;
+      const Vec3 normal =
+          transpose(to_surface_.rotation) * surface_.closest_normal(at, surface_.read(at));
+      if (u >= chunk.end - chunk.begin) continue;
+      const Unit& unit = level_.units[chunk.begin + u];
+      if ((unit.flags & Unit::is_head) != 0) note_pushed(unit, normal);
     }
+  }
+  // By rounds, before each of which the lists have room for its tasks: units of crossed patches by
+  // the first warps, a thread each, others by the next, kLanes each.
+  __device__ void classify_seen() {
+    const unsigned crossed = shared_.crossed_count, lanes = kLanes * shared_.seen_count;
+    const unsigned others = (crossed + 31) / 32 * 32;  // the first of their threads
+    for (unsigned first = 0; first < others + lanes; first += blockDim.x) {
+      const unsigned thread = first + threadIdx.x;
+      if (thread < crossed) {
+        classify_crossed(shared_.seen[MeasureShared::kSeen - 1 - thread]);
+      } else if (thread >= others && thread - thread % 32 < others + lanes) {
+        const unsigned k = (thread - others) / kLanes;
+        const bool active = k < shared_.seen_count;
+        classify(shared_.seen[active ? k : 0], active);
+      }
+      make_room();
+    }
+  }
+  __device__ void make_room() {
+    __syncthreads();
+    bool room = true;
+    for (unsigned k = 0; k < TaskLists::kLists; ++k)
+      room &= lists_.counts[k] + kTasksOfRound <= TaskLists::kTasks;
+    if (__syncthreads_and(room) != 0) return;
+    measure_tasks();
+    __syncthreads();
+    clear_task_lists();
   }
   __device__ void clear_task_lists() {
     if (threadIdx.x < TaskLists::kLists) lists_.counts[threadIdx.x] = 0;
     if (threadIdx.x == TaskLists::kLists) lists_.next_bundle = 0;
     __syncthreads();
-  }
-  // For what so many units may add: samples_wide takes two tasks of each.
-  __device__ bool has_room(unsigned units) const {
-    bool room = true;
-    for (unsigned k = 0; k < TaskLists::kLists; ++k)
-      room &= lists_.counts[k] + 2 * units <= TaskLists::kTasks;
-    return room;
   }
   __device__ Measure measure_of(const CellView& view) const {
     return {surface_, to_surface_, level_.tool_reach, view};
@@ -187,7 +261,9 @@ class ShareMeasure {
   }
 
   __device__ void classify(SeenUnit seen, bool active);
-  __device__ void classify_crossed(const Unit& unit, const Tile& lanes, const CrossingPlane& plane);
+  __device__ void classify_crossed(SeenUnit seen);
+  template <class Look>
+  __device__ bool is_seen_past(const Tile& lanes, Side side, const Look& look, double depth) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void list_block(const Unit& unit, Side side);
@@ -216,16 +292,7 @@ class ShareMeasure {
 template <class Surface>
 __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const Tile lanes(kLanes);
-  const Unit& unit = level_.units[shared_.first_units[seen.thread()] + seen.unit()];
-  if (seen.is_in_patch()) {
-    const CrossingPlane& plane = space_.planes[part_.part * blockDim.x + seen.thread()];
-    if (!active) return;
-    if (seen.seen() == Seen::crossed)
-      classify_crossed(unit, lanes, plane);
-    else if (lanes.lane == Unit::of_share && (unit.flags & Unit::is_head) != 0)
-      note_pushed(unit, plane.normal);
-    return;
-  }
+  const Unit& unit = level_.units[shared_.first_units[seen.slot()] + seen.unit()];
   const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const std::uint32_t flags = unit.flags;
   const bool head = (flags & Unit::is_head) != 0;
@@ -234,7 +301,8 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   Side own = look.side;
   if (seen.side() == Side::mixed) {
     look = surface_.look_at_ball(at, ball.radius);
-    own = lanes.lane == Unit::of_share ? surface_.side_of(look, at, ball.radius) : look.side;
+    own = look.side;
+    if (is_seen_past(lanes, own, look, at.z + ball.radius)) own = Side::free;
   }
   const auto side_of = [&](unsigned lane) {
     return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
@@ -285,6 +353,21 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   }
 }
 
+// Whether the share's lane has looked at a ball that is free, its pixels read by all lanes. (Of a
+// surface without pixels, what the look says stands.)
+template <class Surface>
+template <class Look>
+__device__ bool ShareMeasure<Surface>::is_seen_past(const Tile& lanes, Side side, const Look& look,
+                                                    double depth) const {
+  constexpr unsigned kShare = Unit::of_share;
+  if (static_cast<Side>(lanes.from(static_cast<unsigned>(side), kShare)) != Side::mixed)
+    return false;
+  const PixelRectangle of_share = lanes.from(Surface::pixels_of(look), kShare);
+  const double farthest = lanes.from(depth, kShare);
+  const bool past = surface_.is_seen_past(of_share, farthest, lanes.lane, lanes.width);
+  return !lanes.any(!past) && lanes.lane == kShare;
+}
+
 template <class Surface>
 __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_t word,
                                                   double gap) {
@@ -294,33 +377,35 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
   space_.parents[i + 1] = i + 1;
 }
 
-// One unit of a patch that a plane crosses, by all its lanes.
+// One unit of a patch that a plane crosses.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::classify_crossed(const Unit& unit, const Tile& lanes,
-                                                        const CrossingPlane& plane) {
-  const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
+__device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
+  const Unit& unit = level_.units[shared_.first_units[seen.slot()] + seen.unit()];
+  const CrossingPlane plane = plane_of(seen.slot());
+  const UnitBall share = unit.balls[Unit::of_share];
   const bool head = (unit.flags & Unit::is_head) != 0;
-  const double distance = plane.distance(unit.balls[Unit::of_share].center);
-  const double reach = unit.balls[Unit::of_share].radius;
-  bool free = !(distance < reach);
-  if (lanes.lane == Unit::of_share && !free)
-    free = surface_.side_of_ball(to_surface_ * ball.center, reach) == Side::free;
-  free = lanes.from(free, Unit::of_share);
-  if (lanes.lane == Unit::of_share && head) {
-    const bool behind = !free && distance <= -reach;
+  const double distance = plane.distance(share.center);
+  const Vec3 at = to_surface_ * share.center;
+  const bool free =
+      !(distance < share.radius) || (surface_.may_be_free(at, share.radius) &&
+                                     surface_.side_of_ball(at, share.radius) == Side::free);
+  const bool behind = !free && distance <= -share.radius;
+  if (head) {
+    std::uint32_t word = 0;
     if (behind) {
       ToolSum sum;
       measure_of({}).add_whole(level_.share_masses[unit.share], plane.normal, sum);
       notes_.sums[unit.share] = sum;
+      word = kPartial;
     }
-    note_share(unit, behind ? kPartial : 0U, distance * distance);
+    if (counts_points_) {
+      const UnitBall& sphere = unit.balls[Unit::of_sphere];
+      if (surface_.look_at_ball(to_surface_ * sphere.center, sphere.radius).side == Side::mixed)
+        word |= kCountsPoints;
+    }
+    note_share(unit, word, distance * distance);
   }
-  if (counts_points_ && lanes.lane == Unit::of_sphere && head &&
-      surface_.look_at_ball(to_surface_ * ball.center, ball.radius).side == Side::mixed)
-    atomicOr(&notes_.words[unit.share], static_cast<std::uint32_t>(kCountsPoints));
-  if (lanes.lane == Unit::of_block && (unit.flags & Unit::has_block) != 0 && !free &&
-      !(distance <= -reach))
-    list_crossed(unit, plane, false);
+  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) list_crossed(unit, plane, false);
 }
 
 // A share of a patch behind the surface.

@@ -4,6 +4,7 @@
 #include <cuda/atomic>
 
 #include "libvpm/query/cell.h"
+#include "libvpm/query/pixel_rectangle.h"
 
 namespace vpm::cuda {
 
@@ -64,6 +65,12 @@ struct Tile {
   template <class T>
   __device__ T from(T value, unsigned source) const {
     return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
+  }
+  __device__ Vec3 from(Vec3 v, unsigned source) const {
+    return {from(v.x, source), from(v.y, source), from(v.z, source)};
+  }
+  __device__ PixelRectangle from(const PixelRectangle& r, unsigned source) const {
+    return {from(r.u0, source), from(r.v0, source), from(r.u1, source), from(r.v1, source)};
   }
   __device__ std::int64_t sum(std::int64_t value) const {
     for (unsigned other = width / 2; other > 0; other /= 2)
