@@ -235,7 +235,7 @@ struct DepthSurface {
 
   // Whether the surface in a ball that was looked at may touch a ball in it, as far as that tells.
   VPM_HD bool may_touch(const Look& look, Vec3 center, double radius) const {
-    return !((center.z + radius) * look.range.high < 1 || (center.z - radius) * look.range.low > 1);
+    return !(is_free_part(look, center, radius) || (center.z - radius) * look.range.low > 1);
   }
 
   // False where a ball in one that was looked at is not Side::free, as far as the looked at or the
@@ -281,9 +281,7 @@ struct DepthSurface {
   }
   // Whether the plane predicts the range of the ball's pixels.
   VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
-    if (look.pixels.u1 - look.pixels.u0 <= kFewPixels &&
-        look.pixels.v1 - look.pixels.v0 <= kFewPixels)
-      return look.range.high - look.range.low <= kJump * look.range.high;
+    if (spans_few_pixels(look)) return look.range.high - look.range.low <= kJump * look.range.high;
     const double per_height = 1 / dot(plane.normal, plane.foot);
     const double per_u = plane.normal.x * per_height / k.fx;
     const double per_v = plane.normal.y * per_height / k.fy;
@@ -331,12 +329,17 @@ struct DepthSurface {
   }
 
  private:
+  static VPM_HD bool spans_few_pixels(const Look& look) {
+    const PixelRectangle& p = look.pixels;
+    return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
+  }
+
   // The mean of the normal at a ball's middle and of four between it and the corners of its pixels,
   // where they belong to one smooth surface: noise is averaged, and curvature cancels.
   VPM_HD Vec3 mean_normal(const Look& look, Vec3 middle) const {
+    if (spans_few_pixels(look)) return middle;
     const PixelRectangle& p = look.pixels;
     const std::int32_t u = (p.u1 - p.u0) / 4, v = (p.v1 - p.v0) / 4;
-    if (p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels) return middle;
     const std::int32_t above = (p.v0 + v) * width, below = (p.v1 - v) * width;
     const std::int32_t corners[4] = {above + p.u0 + u, above + p.u1 - u, below + p.u0 + u,
                                      below + p.u1 - u};

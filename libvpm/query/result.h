@@ -16,6 +16,8 @@ enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
 // mass. Both push the tool into free space. m^3 and m^4.
 struct Wrench {
   Vec3 force, torque;
+
+  friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
 };
 
 struct Result {
@@ -26,6 +28,8 @@ struct Result {
   std::uint32_t inside = 0;    // spheres reached by the flood
   // Distinct cloud points strictly inside a sphere of the tool; none where they were not counted.
   std::optional<std::uint32_t> points;
+
+  friend constexpr bool operator==(const Result&, const Result&) = default;
 };
 
 }  // namespace vpm

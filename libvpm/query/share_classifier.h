@@ -47,11 +47,11 @@ class ShareClassifier {
   }
 
   std::uint32_t classify(const ShareGroup& group) {
-    const bool is_one = group.end - group.begin == 1;
     const Vec3 center = to_surface_ * group.ball.center;
+    const bool tells =
+        group.end - group.begin > 1 && surface_.tells_of_parts(center, group.ball.reach);
     Look look;
-    if (!is_one) look = surface_.look_at_ball(center, group.ball.reach);
-    const bool tells = !is_one && surface_.tells_of_parts(center, group.ball.reach);
+    if (tells) look = surface_.look_at_ball(center, group.ball.reach);
     if (tells && look.side == Side::free) {
       states_.set(group.ball, Cell::free, Passage::closed);
       return 0;

@@ -2,6 +2,7 @@
 // pass it.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "libvpm/query/cell.h"
@@ -55,9 +56,9 @@ struct ShareStates {
   std::vector<Passage> passages;
   std::vector<CellResult> results;   // of what is cut or partial
   std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
-  std::vector<CrossingPlane>
-      planes;                      // of each root that is a patch; of one behind, the normal only
-  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  // Of each root that is a patch; of one behind the surface, the normal only.
+  std::vector<CrossingPlane> planes;
+  std::vector<std::uint32_t> cut;     // shares that the surface cuts, ascending
   std::vector<std::uint32_t> inside;  // shares that the flood took, in the order of the flood
 };
 

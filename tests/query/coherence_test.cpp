@@ -23,12 +23,6 @@ QueryOptions coherent() {
   return options;
 }
 
-bool equal(const Result& a, const Result& b) {
-  return a.volume == b.volume && a.wrench.force == b.wrench.force &&
-         a.wrench.torque == b.wrench.torque && a.boundary == b.boundary && a.inside == b.inside &&
-         a.points == b.points;
-}
-
 // The wall is at 1 m; the cube goes in until it is `deepest` and comes back.
 std::vector<Pose> through_the_wall(double deepest) {
   std::vector<Pose> path;
@@ -46,7 +40,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   for (const Pose& pose : through_the_wall(1.6)) {
     const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
     if (seen_alone.boundary > 0 || pose.translation.z < 1) {
-      EXPECT_TRUE(equal(r, seen_alone)) << pose.translation.z;  // the memory adds nothing
+      EXPECT_TRUE(r == seen_alone) << pose.translation.z;  // the memory adds nothing
     } else {
       was_wholly_behind = true;
       EXPECT_EQ(seen_alone.volume, 0);
@@ -77,7 +71,7 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   Query query(tool, coherent()), alone(tool, {});
   for (double x = -0.4; x < 0.4; x += kStep) {
     const Pose pose{generic_rotation(), {x, 0.01, 1.25}};
-    EXPECT_TRUE(equal(query.run(cloud, pose), alone.run(cloud, pose))) << x;
+    EXPECT_TRUE(query.run(cloud, pose) == alone.run(cloud, pose)) << x;
   }
 }
 
@@ -128,7 +122,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
       const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
       if (seen_alone.boundary > 0 || z > 1) {
         ++cut;
-        ASSERT_TRUE(equal(r, seen_alone)) << z << ' ' << n;
+        ASSERT_TRUE(r == seen_alone) << z << ' ' << n;
       } else {
         ++wholly_behind;
         ASSERT_EQ(seen_alone.volume, 0);

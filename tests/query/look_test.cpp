@@ -1,6 +1,7 @@
 // What a look at a ball tells of the balls in it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "libvpm/query/prepared_cloud.h"

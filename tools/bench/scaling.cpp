@@ -42,12 +42,6 @@ std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) 
   return part;
 }
 
-bool are_equal(const Result& a, const Result& b) {
-  return a.volume == b.volume && a.wrench.force == b.wrench.force &&
-         a.wrench.torque == b.wrench.torque && a.boundary == b.boundary && a.inside == b.inside &&
-         a.points == b.points;
-}
-
 // From far in front of the wall until this part of the tool is inside, then by bisection.
 double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
                      double fraction) {
@@ -256,7 +250,7 @@ class Scaling {
     std::size_t same_of_ours = 0, same = 0;
     for (const Pose& pose : path) {
       const Result expected = on_cpu.run(cloud, pose);
-      same_of_ours += are_equal(expected, on_device.run(cloud, pose));
+      same_of_ours += expected == on_device.run(cloud, pose);
       if (!baseline) continue;
       const Result result = baseline->run(pose);
       same += result.volume == expected.volume && result.points == expected.points &&
