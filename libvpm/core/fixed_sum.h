@@ -5,6 +5,7 @@
 // adds states why that holds.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "libvpm/core/host_device.h"
@@ -16,12 +17,13 @@ struct FixedSum {
   static constexpr double kOne = static_cast<double>(std::int64_t{1} << Bits);
   std::int64_t value = 0;
 
-  // Rounds half away from zero, with nothing but IEEE operations and a truncating conversion.
-  VPM_HD static constexpr std::int64_t round(double term) {
+  // Rounds half away from zero, with nothing but IEEE operations and a truncating conversion. Signs
+  // of terms are anybody's guess: no branch.
+  VPM_HD static std::int64_t round(double term) {
     const double scaled = term * kOne;
-    return static_cast<std::int64_t>(scaled < 0 ? scaled - 0.5 : scaled + 0.5);
+    return static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled));
   }
-  VPM_HD constexpr void add(double term) { value += round(term); }
+  VPM_HD void add(double term) { value += round(term); }
   VPM_HD constexpr void add(const FixedSum& other) { value += other.value; }
   VPM_HD constexpr double real() const { return static_cast<double>(value) / kOne; }
 };

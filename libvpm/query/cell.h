@@ -115,6 +115,11 @@ VPM_HD inline SharePiece piece_of(const CellSample& sample) {
   return {widen(sample.center), sample.radius, sample.weight};
 }
 
+// Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
+VPM_HD inline void add_whole(ToolReach tool, const BlockMass& mass, Vec3 normal, ToolSum& sum) {
+  sum.add(mass.weight, normal, tool.inverse * mass.centroid);
+}
+
 // A block sees one plane where that is right to its radius, and to this part of the tool's reach:
 // blocks of few large shares are wider than what they may overlook.
 inline constexpr double kFlatness = 0.1;
@@ -333,7 +338,7 @@ class CellMeasure {
     const double distance = plane.distance(widen(block.center));
     if (distance >= block.radius) return;
     if (distance <= -block.radius) {
-      add_whole(cell_.masses[b], plane.normal, result.sum);
+      add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
       return;
     }
     double weight = 0;
@@ -347,11 +352,6 @@ class CellMeasure {
     }
     add_crossed(block, plane, weight, moment, is_cut, result);
   }
-  // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
-  VPM_HD void add_whole(const BlockMass& mass, Vec3 normal, ToolSum& sum) const {
-    sum.add(mass.weight, normal, arm(mass.centroid));
-  }
-
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:

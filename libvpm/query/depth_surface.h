@@ -407,16 +407,9 @@ struct DepthSurface {
       all.low = tile.low < all.low ? tile.low : all.low;
       all.high = tile.high > all.high ? tile.high : all.high;
     };
-#ifdef __CUDA_ARCH__
-    // Always nine, some of them twice: loads that do not wait for each other.
-#pragma unroll
-    for (std::int32_t k = 0; k < 9; ++k)
-      take(u0 + k % 3 < u1 ? u0 + k % 3 : u1, v0 + k / 3 < v1 ? v0 + k / 3 : v1);
-#else
-    for (std::int32_t v = v0; v <= v1; ++v) {
-      for (std::int32_t u = u0; u <= u1; ++u) take(u, v);
-    }
-#endif
+    // Always nine, some of them twice: loads that do not wait for each other, and no branch.
+    for (std::int32_t i = 0; i < 9; ++i)
+      take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
     const std::int32_t right = ((u1 + 1) << level) - 1, bottom = ((v1 + 1) << level) - 1;
     look.range = all;
     look.tiles = {u0 << level, v0 << level, right < width ? right : width - 1,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <mutex>
 
-#include "libvpm/core/parallel.h"
 #include "libvpm/query/share_classifier.h"
 #include "libvpm/query/share_flood.h"
 
@@ -38,36 +37,36 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   const PointsOfSphere points(cloud, pose);
   ShareClassifier classifier(tool_, reach_, level_, surface, to_surface,
                              counts_points_ ? &points : nullptr, shares_);
-  result.points = classifier.run();
+  ParallelRegion region;
+  result.points = classifier.run(region);
   ShareFlood flood(tool_, reach_, level_, surface, to_surface, shares_);
-  flood.run();
+  flood.run(region);
   if (memory_) {
     if (shares_.cut.empty()) flood.run_from(*memory_, to_world);
     flood.remember(to_world, *memory_);
   }
   for (const std::uint32_t i : shares_.cut) sum.add(shares_.results[i].sum);
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
-  result.inside = add_inside(surface, to_surface, flood, sum);
+  result.inside = add_inside(surface, to_surface, flood, region, sum);
 }
 
 template <class Surface, class Flood>
 std::uint32_t RefinedMeasure::add_inside(const Surface& surface, const Pose& to_surface,
-                                         const Flood& flood, ToolSum& sum) {
-  constexpr std::size_t kGrain = 128;
+                                         const Flood& flood, ParallelRegion& region, ToolSum& sum) {
+  constexpr std::size_t kGrain = 512;
   std::mutex adding;
   std::uint32_t inside = 0;
-  parallel_for(shares_.inside.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  region.loop(level_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
     std::uint32_t count = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = shares_.inside[k];
+    for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
       const ToolSum part = sum_of(surface, to_surface, flood, i);
       of_all.add(part);
       if (part.volume.value != 0)
         ++count;
       else
         shares_.cells[i] = Cell::free;  // the flood passed through the hidden
-    }
+    });
     const std::lock_guard lock(adding);
     sum.add(of_all);
     inside += count;
@@ -78,14 +77,14 @@ std::uint32_t RefinedMeasure::add_inside(const Surface& surface, const Pose& to_
 template <class Surface, class Flood>
 ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Flood& flood,
                                std::uint32_t row) const {
+  ToolSum sum;
+  if (shares_.cells[row] == Cell::pushed) {
+    add_whole(reach_, level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
+    return sum;
+  }
   const CellResult& result = shares_.results[row];
   if (shares_.cells[row] == Cell::partial && !result.is_far) return result.sum;
   const CellMeasure measure(surface, to_surface, reach_, level_.cell(row));
-  ToolSum sum;
-  if (shares_.cells[row] == Cell::pushed) {
-    measure.add_whole(level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
-    return sum;
-  }
   const auto nearest = [&] { return flood.nearest_cut_share(row); };
   const bool whole = shares_.cells[row] == Cell::whole;
   if (!whole || !is_compact(level_.reach(row), reach_.length))
@@ -97,9 +96,9 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {
   std::fill(states.begin(), states.end(), SphereState::outside);
   for (const std::uint32_t i : shares_.cut) states[level_.sphere(i)] = SphereState::boundary;
-  for (const std::uint32_t i : shares_.inside) {
+  for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {
     if (shares_.cells[i] != Cell::free) states[level_.sphere(i)] = SphereState::inside;
-  }
+  });
 }
 
 }  // namespace vpm

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "libvpm/core/parallel_region.h"
 #include "libvpm/query/flood_memory.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
@@ -37,7 +38,7 @@ class RefinedMeasure {
   // What the flood has taken; returns the number of shares that count.
   template <class Surface, class Flood>
   std::uint32_t add_inside(const Surface& surface, const Pose& to_surface, const Flood& flood,
-                           ToolSum& sum);
+                           ParallelRegion& region, ToolSum& sum);
   template <class Surface, class Flood>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Flood& flood,
                  std::uint32_t row) const;

@@ -53,8 +53,8 @@ class Query {
 
  private:
   template <class OnDevice>
-  void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
-                 std::span<Result> results, const OnDevice& on_device);
+  void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses, std::span<Result> results,
+                 const OnDevice& on_device);
   void finish(Result& result) const;
 
   const Level& level_;

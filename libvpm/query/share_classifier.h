@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/core/parallel_region.h"
 #include "libvpm/query/patch.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/share_states.h"
@@ -29,9 +29,9 @@ class ShareClassifier {
         states_(states) {}
 
   // Returns the number of points in spheres.
-  std::uint32_t run() {
+  std::uint32_t run(ParallelRegion& region) {
     std::atomic<std::uint32_t> found{0};
-    parallel_for(level_.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
+    region.loop(level_.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
       std::uint32_t found_here = 0;
       for (std::size_t g = begin; g < end; ++g) found_here += classify(level_.groups()[g]);
       if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);

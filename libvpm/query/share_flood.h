@@ -4,9 +4,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
+#include "libvpm/core/parallel_region.h"
 #include "libvpm/query/flood_memory.h"
 #include "libvpm/query/passage.h"
 #include "libvpm/query/share_states.h"
@@ -25,27 +25,29 @@ class ShareFlood {
         to_surface_(to_surface),
         states_(states) {}
 
-  void run() {
+  // By all threads of the region, each in its part of the tool: what leads from one part to another
+  // is taken up in the next round.
+  void run(ParallelRegion& region) {
     list_cut();
-    states_.inside.clear();
-    for (const std::uint32_t i : states_.cut) {
-      for (const std::uint32_t j : level_.neighbors(i)) {
-        if (is_passable(j) && enters(i, j)) take(j);
-      }
-    }
-    for (std::size_t next = 0; next < states_.inside.size(); ++next) {
-      for (const std::uint32_t j : level_.neighbors(states_.inside[next])) {
-        if (is_passable(j)) take(j);
-      }
+    split(region.threads());
+    std::vector<FloodPart>& parts = states_.parts;
+    region.loop(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) enter(parts[k]);
+    });
+    while (change_round()) {
+      region.loop(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) take_up(parts[k]);
+      });
     }
   }
 
   // Where the surface passes through no share: those stay inside that were, or were cut, as long as
   // they are behind the same surface; so does what the graph reaches from them near it.
   void run_from(const FloodMemory& memory, const Pose& to_world) {
+    FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
       if (states_.cells[i] == Cell::open) states_.cells[i] = Cell::whole;
-      take(i);
+      take(part, i);
     };
     for (std::uint32_t i = 0; i < level_.size(); ++i) {
       if (memory.was_inside(i) && is_behind(i, [&](Vec3, Vec3 foot) {
@@ -56,8 +58,8 @@ class ShareFlood {
     const auto is_near = [&](Vec3 at, Vec3 foot) {
       return squared_norm(foot - at) <= reach_.length * reach_.length;
     };
-    for (std::size_t next = 0; next < states_.inside.size(); ++next) {
-      for (const std::uint32_t j : level_.neighbors(states_.inside[next])) {
+    while (!part.front.empty()) {
+      for (const std::uint32_t j : level_.neighbors(next_of(part))) {
         if (is_behind(j, is_near)) take_open(j);
       }
     }
@@ -74,7 +76,7 @@ class ShareFlood {
       });
     };
     for (const std::uint32_t i : states_.cut) keep(i);
-    for (const std::uint32_t i : states_.inside) keep(i);
+    for_rows_in(Passage::taken, states_.passages, 0, level_.size(), keep);
   }
 
   // The cut share nearest to one that the flood has taken; without plane where nothing is cut.
@@ -86,20 +88,88 @@ class ShareFlood {
   Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
 
   void list_cut() {
-    static_assert(sizeof(Cell) == 1);  // memchr looks at many at once
     states_.cut.clear();
-    const Cell *const begin = states_.cells.data(), *const end = begin + level_.size();
-    for (const Cell* at = begin; at < end; ++at) {
-      at = static_cast<const Cell*>(
-          std::memchr(at, static_cast<int>(Cell::cut), static_cast<std::size_t>(end - at)));
-      if (at == nullptr) return;
-      states_.cut.push_back(static_cast<std::uint32_t>(at - begin));
+    for_rows_in(Cell::cut, states_.cells, 0, level_.size(),
+                [&](std::uint32_t i) { states_.cut.push_back(i); });
+  }
+
+  // The cut shares are shared out evenly.
+  void split(int threads) {
+    constexpr std::size_t kFewCut = 128;  // take less time than two rounds
+    const std::vector<std::uint32_t>& cut = states_.cut;
+    const std::size_t count = std::clamp<std::size_t>(cut.size() / kFewCut, 1, threads);
+    states_.parts.resize(std::max(count, states_.parts.size()));
+    while (states_.parts.size() > count) states_.parts.pop_back();
+    std::uint32_t begin = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      FloodPart& part = states_.parts[k];
+      part.begin = begin;
+      part.end = begin = k + 1 < count ? cut[(k + 1) * cut.size() / count] : level_.size();
+      part.front.clear();
+      part.leaving.clear();
+      part.left.clear();
     }
   }
 
-  void take(std::uint32_t j) {
+  // From the cut shares.
+  void enter(FloodPart& part) {
+    const auto first = std::lower_bound(states_.cut.begin(), states_.cut.end(), part.begin);
+    const auto last = std::lower_bound(first, states_.cut.end(), part.end);
+    for (auto i = first; i < last; ++i) {
+      for (const std::uint32_t j : level_.neighbors(*i)) step(part, *i, j);
+    }
+    spread(part);
+  }
+
+  // From the shares of other parts.
+  void take_up(FloodPart& part) {
+    for (const FloodPart& other : states_.parts) {
+      for (const FloodPart::Step& s : other.left) {
+        if (part.owns(s.to)) step(part, s.from, s.to);
+      }
+    }
+    spread(part);
+  }
+
+  void spread(FloodPart& part) {
+    while (!part.front.empty()) {
+      const std::uint32_t i = next_of(part);
+      for (const std::uint32_t j : level_.neighbors(i)) {
+        if (!part.owns(j))
+          part.leaving.push_back({i, j});
+        else if (is_passable(j))
+          take(part, j);
+      }
+    }
+  }
+
+  void step(FloodPart& part, std::uint32_t from, std::uint32_t to) {
+    if (!part.owns(to)) {
+      part.leaving.push_back({from, to});
+    } else if (is_passable(to) && (states_.cells[from] != Cell::cut || enters(from, to))) {
+      take(part, to);
+    }
+  }
+
+  // False where no part has left anything for another.
+  bool change_round() {
+    bool goes_on = false;
+    for (FloodPart& part : states_.parts) {
+      part.left.clear();
+      part.left.swap(part.leaving);
+      goes_on = goes_on || !part.left.empty();
+    }
+    return goes_on;
+  }
+
+  void take(FloodPart& part, std::uint32_t j) {
     states_.passages[j] = Passage::taken;
-    states_.inside.push_back(j);
+    part.front.push_back(j);
+  }
+  static std::uint32_t next_of(FloodPart& part) {
+    const std::uint32_t next = part.front.back();
+    part.front.pop_back();
+    return next;
   }
 
   bool is_passable(std::uint32_t j) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "libvpm/query/cell.h"
@@ -30,15 +31,41 @@ enum class Passage : std::uint8_t {
   near,   // open: no place of its cluster is further behind the surface than the tool's reach
 };
 
+// Where one thread floods: the rows from `begin` to `end`.
+struct FloodPart {
+  struct Step {
+    std::uint32_t from, to;
+  };
+
+  bool owns(std::uint32_t row) const { return row - begin < end - begin; }
+
+  std::uint32_t begin = 0, end = 0;
+  std::vector<std::uint32_t> front;  // taken, but not yet left
+  std::vector<Step> leaving, left;   // to rows of other parts, in this round and in the last
+};
+
+// Calls visit(row) for the rows from `begin` to `end` in this state, ascending.
+template <class State, class Visit>
+void for_rows_in(State state, const std::vector<State>& states, std::size_t begin, std::size_t end,
+                 const Visit& visit) {
+  static_assert(sizeof(State) == 1);  // memchr looks at many at once
+  while (begin < end) {
+    const void* at = std::memchr(states.data() + begin, static_cast<int>(state), end - begin);
+    if (at == nullptr) return;
+    begin = static_cast<std::size_t>(static_cast<const State*>(at) - states.data());
+    for (; begin < end && states[begin] == state; ++begin) visit(static_cast<std::uint32_t>(begin));
+  }
+}
+
 struct ShareStates {
   explicit ShareStates(const SpatialLevel& level)
       : cells(level.size()),
         passages(level.size()),
         results(level.size()),
         squared_gaps(level.size()),
-        planes(level.roots().size()) {
+        planes(level.roots().size()),
+        parts(1) {
     cut.reserve(level.size());
-    inside.reserve(level.size());
   }
 
   void set(std::uint32_t row, Cell cell, Passage passage) {
@@ -58,8 +85,8 @@ struct ShareStates {
   std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
   // Of each root that is a patch; of one behind the surface, the normal only.
   std::vector<CrossingPlane> planes;
-  std::vector<std::uint32_t> cut;     // shares that the surface cuts, ascending
-  std::vector<std::uint32_t> inside;  // shares that the flood took, in the order of the flood
+  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<FloodPart> parts;    // one or more
 };
 
 }  // namespace vpm

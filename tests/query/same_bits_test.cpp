@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libvpm/core/parallel.h"
@@ -39,10 +40,10 @@ class SameBits : public ::testing::TestWithParam<Variant> {
     options.measure = GetParam().measure;
     Query query(tool, options);
     const PreparedCloud prepared(cloud);
-    std::vector<Result> results;
+    std::vector<Result> results(12);
     for (int k = 0; k < 12; ++k) {
-      results.push_back(query.run(
-          prepared, {generic_rotation(), scale * Vec3{0.01, -0.02, 0.84 + 0.015 * k} + shift}));
+      results[k] = query.run(
+          prepared, {generic_rotation(), scale * Vec3{0.01, -0.02, 0.84 + 0.015 * k} + shift});
     }
     return results;
   }
@@ -65,6 +66,69 @@ TEST_P(SameBits, ForAnyNumberOfThreads) {
   for (int threads = 2; threads <= 16; ++threads) {
     set_thread_count(threads);
     expect_same(one, sweep(seen, tool));
+  }
+  set_thread_count(0);
+}
+
+// The lattice's spheres in one long line, which leads from one side of the cube to the other again
+// and again: so does the flood.
+ToolModel lattice_line(double edge, std::uint32_t n) {
+  ToolModel tool = lattice_cube(edge, n, 2);
+  SphereGraph& graph = tool.levels[0].graph;
+  graph = {{0}, {}};
+  const auto at = [n](std::uint32_t step) {
+    const std::uint32_t x = step % n, y = step / n % n, z = step / (n * n);
+    const std::uint32_t along_y = z % 2 == 0 ? y : n - 1 - y;
+    return (z * n + along_y) * n + (step / n % 2 == 0 ? x : n - 1 - x);
+  };
+  const std::uint32_t count = n * n * n;
+  std::vector<std::uint32_t> step_of(count);
+  for (std::uint32_t step = 0; step < count; ++step) step_of[at(step)] = step;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (step_of[i] > 0) graph.neighbors.push_back(at(step_of[i] - 1));
+    if (step_of[i] + 1 < count) graph.neighbors.push_back(at(step_of[i] + 1));
+    std::sort(graph.neighbors.begin() + graph.begin.back(), graph.neighbors.end());
+    graph.begin.push_back(static_cast<std::uint32_t>(graph.neighbors.size()));
+  }
+  return tool;
+}
+
+struct Step {
+  Result result;
+  std::vector<SphereState> states;
+};
+std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) {
+  Query query(tool, {.coherent = true});
+  std::vector<Step> steps(12);
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Pose pose{generic_rotation(), {0.01, -0.02, 0.84 + 0.03 * static_cast<double>(k)}};
+    steps[k].result = query.run(cloud, pose);
+    steps[k].states.assign(query.states().begin(), query.states().end());
+  }
+  return steps;
+}
+
+// Of tools large enough that the threads share out the flood.
+TEST(SameBitsOfAFlood, ForAnyNumberOfThreads) {
+  const PreparedCloud cloud(see(synthetic::make_scene("inverted-ball")));
+  for (const ToolModel& tool : {lattice_cube(0.2, 24, 2), lattice_line(0.2, 24)}) {
+    set_thread_count(1);
+    const std::vector<Step> one = go_through(cloud, tool);
+    std::uint32_t most_cut = 0, most_inside = 0;
+    for (const Step& step : one) {
+      most_cut = std::max(most_cut, step.result.boundary);
+      most_inside = std::max(most_inside, step.result.inside);
+    }
+    EXPECT_GT(most_cut, 500u);
+    EXPECT_GT(most_inside, 5000u);
+    for (const int threads : {2, 3, 5, 16}) {
+      set_thread_count(threads);
+      const std::vector<Step> steps = go_through(cloud, tool);
+      for (std::size_t k = 0; k < one.size(); ++k) {
+        EXPECT_TRUE(steps[k].result == one[k].result) << threads << ' ' << k;
+        EXPECT_EQ(steps[k].states, one[k].states) << threads << ' ' << k;
+      }
+    }
   }
   set_thread_count(0);
 }

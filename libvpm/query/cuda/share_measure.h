@@ -394,7 +394,7 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
     std::uint32_t word = 0;
     if (behind) {
       ToolSum sum;
-      measure_of({}).add_whole(level_.share_masses[unit.share], plane.normal, sum);
+      add_whole(level_.tool_reach, level_.share_masses[unit.share], plane.normal, sum);
       notes_.sums[unit.share] = sum;
       word = kPartial;
     }
@@ -412,7 +412,7 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
 template <class Surface>
 __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal) {
   ToolSum sum;
-  measure_of({}).add_whole(level_.share_masses[unit.share], normal, sum);
+  add_whole(level_.tool_reach, level_.share_masses[unit.share], normal, sum);
   notes_.sums[unit.share] = sum;
   const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
   note_share(unit, kWhole, squared_gap(surface_.read(at)));
@@ -453,7 +453,7 @@ __device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const Cros
   CellResult result;
   result.is_far = is_far;
   if (distance <= -ball.radius)
-    measure_of({}).add_whole(level_.block_masses[unit.block], plane.normal, result.sum);
+    add_whole(level_.tool_reach, level_.block_masses[unit.block], plane.normal, result.sum);
   note_task(task, result, false);
 }
 

@@ -1,0 +1,50 @@
+// Several short parallel loops one after the other, by the same threads: between two loops they
+// wait for the next instead of falling asleep, since waking takes longer than such a loop does.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+
+namespace vpm {
+
+// Lives on the stack of the thread that runs the loops. Within a loop of a region, another region
+// has no threads but its own.
+class ParallelRegion {
+ public:
+  ParallelRegion();
+  ~ParallelRegion();
+  ParallelRegion(const ParallelRegion&) = delete;
+  ParallelRegion& operator=(const ParallelRegion&) = delete;
+
+  // How many may share the work, this one included.
+  int threads() const { return threads_; }
+
+  // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long.
+  // Threads that come late find the rest; nobody waits for one that has not come.
+  void loop(std::size_t count, std::size_t grain,
+            const std::function<void(std::size_t begin, std::size_t end)>& body);
+
+ private:
+  struct Helpers;
+
+  void help();
+  bool take_range(std::uint64_t& range);
+  void run(std::uint64_t range);
+
+  // Which loop it is and how many of its ranges nobody has taken, in one word: who takes a range of
+  // a loop can be sure that the loop lasts until the range is done.
+  std::atomic<std::uint64_t> open_ranges_{0};
+  std::atomic<std::uint64_t> done_{0};
+  std::atomic<bool> is_over_{false};
+  std::size_t count_ = 0, grain_ = 1;
+  const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
+  std::atomic<bool> has_failed_{false};
+  std::exception_ptr failure_;
+  int threads_;
+  std::unique_ptr<Helpers> helpers_;
+};
+
+}  // namespace vpm
