@@ -100,6 +100,28 @@ struct DiskSurface {
     return {true, dot(normal, x - foot), normal, foot, i};
   }
 
+  // Calls visit(point) for the points in a ball until it says false, and returns what it said last.
+  template <class Visit>
+  VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
+    std::uint32_t stack[kMaxDepth];
+    int size = 0;
+    stack[size++] = 1;
+    while (size > 0) {
+      const std::uint32_t node = stack[--size];
+      if (squared_distance(nodes[node], center) > squared_radius) continue;
+      if (node < leaves) {
+        stack[size++] = 2 * node + 1;
+        stack[size++] = 2 * node;
+        continue;
+      }
+      const std::uint32_t begin = (node - leaves) * kLeafSize;
+      for (std::uint32_t i = begin; i < begin + kLeafSize && i < count; ++i) {
+        if (squared_norm(widen(positions[i]) - center) <= squared_radius && !visit(i)) return false;
+      }
+    }
+    return true;
+  }
+
   // The surface for places in a ball: the few points that may be nearest to one of them, if they
   // are few. `nearest`: the point nearest to the centre.
   class AroundBall;
@@ -116,14 +138,16 @@ struct DiskSurface {
     return normalized_or_zero(towards - (largest_radius / std::sqrt(aside_squared)) * aside);
   }
 
-  // Each disk is a plane of its own: nothing is taken for flat, and no bound of the gap is known.
+  // What a ball is to the disks. No bound of the gap is known.
   struct Look {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // the nearest to the centre, where the ball may touch it
+    Vec3 center;
+    double radius = 0;
   };
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
     const std::uint32_t point = nearest(center, radius + largest_radius);
-    return {point == kNoPoint ? Side::uncut : Side::mixed, point};
+    return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
   }
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return look_at_ball(center, radius).side;
@@ -133,20 +157,79 @@ struct DiskSurface {
   VPM_HD bool is_seen_past(const PixelRectangle&, double, std::uint32_t, std::uint32_t) const {
     return false;
   }
-  VPM_HD bool is_flat(const Look&, Vec3, double, TangentPlane&) const { return false; }
-  VPM_HD bool may_be_flat(const Look&) const { return false; }
-  VPM_HD bool is_flat(const Look&, const Reading&, double, TangentPlane&) const { return false; }
-  VPM_HD bool may_be_free(const Look&, Vec3, double) const { return true; }
-  VPM_HD bool may_be_free(Vec3, double) const { return true; }
-  VPM_HD bool may_hold_free(const Look&, Vec3, double) const { return true; }
+  VPM_HD bool may_be_flat(const Look& look) const { return look.point != kNoPoint; }
+  VPM_HD bool is_flat(const Look& look, Vec3, double tolerance, TangentPlane& plane) const {
+    return mean_plane(look, tolerance, plane);
+  }
+  VPM_HD bool is_flat(const Look& look, const Reading&, double tolerance,
+                      TangentPlane& plane) const {
+    return mean_plane(look, tolerance, plane);
+  }
+  // Points do not tell what is free.
+  VPM_HD bool may_be_free(const Look&, Vec3, double) const { return false; }
+  VPM_HD bool may_be_free(Vec3, double) const { return false; }
+  VPM_HD bool may_hold_free(const Look&, Vec3, double) const { return false; }
   VPM_HD bool tells_of_parts(Vec3, double) const { return false; }
   VPM_HD bool is_free_part(const Look&, Vec3, double) const { return false; }
   VPM_HD bool may_touch(const Look&, Vec3, double) const { return true; }
   template <class ReadAll>
-  VPM_HD bool mean_plane(const Look&, Vec3, double, double, const ReadAll&, TangentPlane&) const {
-    return false;
+  VPM_HD bool mean_plane(const Look& look, Vec3, double, double tolerance, const ReadAll&,
+                         TangentPlane& plane) const {
+    return mean_plane(look, tolerance, plane);
+  }
+  // The mean plane of the disks below a ball that was looked at; false where they do not show one
+  // smooth surface: one faces away from it or lies off it by more than a part of `tolerance`, or
+  // those to one side of the middle are too few or face elsewhere.
+  VPM_HD bool mean_plane(const Look& look, double tolerance, TangentPlane& plane) const {
+    if (look.point == kNoPoint) return false;
+    const Reading nearest = read_point(look.center, look.point);
+    const double height = nearest.distance, near = kMiddle * look.radius;
+    const Vec3 middle = look.center - height * nearest.normal;
+    Vec3 normal_sum, place_sum;
+    std::uint32_t found = 0;
+    const bool few = for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
+      normal_sum += widen(normals[i]);
+      place_sum += widen(positions[i]);
+      return ++found <= kMostOfPatch;
+    });
+    if (!few || found == 0) return false;
+    plane = {normalized_or_zero(normal_sum), 1.0 / found * place_sum};
+    return shows(plane, middle, look.center, look.radius * look.radius + height * height,
+                 kOffPlane * tolerance);
   }
   VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
+
+ private:
+  static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more would take longer than shares
+  static constexpr std::uint32_t kFewestAside = 3;     // points of a patch to one side
+  static constexpr double kSmoothCosine = 0.9;         // as in an image
+  // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
+  static constexpr double kMiddle = 0.65;
+  static constexpr double kOffPlane = 0.5;  // of the tolerance
+
+  // Whether the points in a ball show this plane, on all sides of a place of it.
+  VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
+                    double tolerance) const {
+    const Vec3 n = plane.normal;
+    const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 side = cross(n, axis), other = cross(n, side);
+    Vec3 sums[4];
+    std::uint32_t counts[4] = {};
+    std::uint32_t found = 0;
+    const bool agree = for_points_in_ball(center, squared_radius, [&](std::uint32_t i) {
+      const Vec3 place = widen(positions[i]), away = place - middle, normal = widen(normals[i]);
+      const int aside = (dot(away, side) > 0 ? 1 : 0) + (dot(away, other) > 0 ? 2 : 0);
+      sums[aside] += normal;
+      ++counts[aside];
+      return ++found <= kMostOfPatch && dot(normal, n) > 0 &&
+             std::fabs(plane.distance(place)) <= tolerance;
+    });
+    for (int k = 0; agree && k < 4; ++k) {
+      if (counts[k] < kFewestAside || dot(normalized_or_zero(sums[k]), n) < kSmoothCosine)
+        return false;
+    }
+    return agree;
+  }
 };
 
 // Sparse points: a tool's piece is far from most of them, and a list of a dozen is quicker to
@@ -194,27 +277,12 @@ class DiskSurface::AroundBall {
 
   // The points that may be nearest; none if they are more than kMostPoints.
   VPM_HD void gather(double squared_reach) {
-    std::uint32_t stack[kMaxDepth];
-    int size = 0;
-    stack[size++] = 1;
-    while (size > 0) {
-      const std::uint32_t node = stack[--size];
-      if (squared_distance(surface_.nodes[node], center_) > squared_reach) continue;
-      if (node < surface_.leaves) {
-        stack[size++] = 2 * node + 1;
-        stack[size++] = 2 * node;
-        continue;
-      }
-      const std::uint32_t begin = (node - surface_.leaves) * kLeafSize;
-      for (std::uint32_t i = begin; i < begin + kLeafSize && i < surface_.count; ++i) {
-        if (squared_norm(widen(surface_.positions[i]) - center_) > squared_reach) continue;
-        if (count_ == kMostPoints) {
-          count_ = 0;
-          return;
-        }
-        points_[count_++] = i;
-      }
-    }
+    const bool few = surface_.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
+      if (count_ == kMostPoints) return false;
+      points_[count_++] = i;
+      return true;
+    });
+    if (!few) count_ = 0;
   }
 
   const DiskSurface& surface_;

@@ -23,4 +23,17 @@ VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& loo
   return squared_norm(plane.foot - center) <= near * near;
 }
 
+// Of a patch in which there is no surface: whether it is behind one, as its middle is.
+enum class OpenPatch {
+  free,
+  behind,
+  near
+};  // near: no place is further behind than the tool's reach
+
+VPM_HD inline OpenPatch open_patch(const Reading& middle, Vec3 center, double reach,
+                                   double tool_reach) {
+  if (!(middle.known && middle.distance < 0)) return OpenPatch::free;
+  return norm(middle.foot - center) + reach < tool_reach ? OpenPatch::near : OpenPatch::behind;
+}
+
 }  // namespace vpm

@@ -80,6 +80,10 @@ class ShareClassifier {
       classify_crossed(root, look);
       return count_points(whole, look);
     }
+    if (look.side == Side::uncut && may_be_patch) {
+      states_.set(whole, Cell::open, Passage::middle);
+      return 0;
+    }
     decide(look, whole, center);
     if (may_be_patch && states_.passages[whole.begin] == Passage::near) {
       states_.set(whole, Cell::pushed, Passage::near);

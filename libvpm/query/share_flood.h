@@ -9,6 +9,7 @@
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/flood_memory.h"
 #include "libvpm/query/passage.h"
+#include "libvpm/query/patch.h"
 #include "libvpm/query/share_states.h"
 
 namespace vpm {
@@ -104,11 +105,16 @@ class ShareFlood {
     for (std::size_t k = 0; k < count; ++k) {
       FloodPart& part = states_.parts[k];
       part.begin = begin;
-      part.end = begin = k + 1 < count ? cut[(k + 1) * cut.size() / count] : level_.size();
+      part.end = begin =
+          k + 1 < count ? first_of_patch(cut[(k + 1) * cut.size() / count]) : level_.size();
       part.front.clear();
       part.leaving.clear();
       part.left.clear();
     }
+  }
+
+  std::uint32_t first_of_patch(std::uint32_t row) const {
+    return level_.nodes()[level_.roots()[level_.root(row)]].cluster.begin;
   }
 
   // From the cut shares.
@@ -175,8 +181,26 @@ class ShareFlood {
   bool is_passable(std::uint32_t j) {
     Passage& passage = states_.passages[j];
     if (passage == Passage::closed || passage == Passage::taken) return false;
+    if (passage == Passage::middle) decide_patch(level_.root(j));
     if (passage == Passage::unknown) passage = find_passage(j);
     return passage != Passage::closed;
+  }
+
+  // Of an open patch, which one part owns.
+  void decide_patch(std::uint32_t root) {
+    const ShareCluster& patch = level_.nodes()[level_.roots()[root]].cluster;
+    const Vec3 at = to_surface_ * patch.center;
+    const Reading middle = surface_.read(at);
+    const OpenPatch open = open_patch(middle, at, patch.reach, reach_.length);
+    if (open == OpenPatch::free) {
+      states_.set(patch, Cell::free, Passage::closed);
+    } else if (open == OpenPatch::behind) {
+      states_.set(patch, Cell::whole, Passage::unknown);
+    } else {
+      states_.set(patch, Cell::pushed, Passage::near);
+      states_.planes[root].normal =
+          transpose(to_surface_.rotation) * surface_.closest_normal(at, middle);
+    }
   }
 
   Passage find_passage(std::uint32_t j) {

@@ -26,9 +26,10 @@ enum class Passage : std::uint8_t {
   closed,  // to what is free or cut, too
   taken,   // the flood has come
   unknown,
-  open,   // its squared gap is known
-  patch,  // open: the gap is that to the plane of its patch
-  near,   // open: no place of its cluster is further behind the surface than the tool's reach
+  middle,  // unknown: the middle of its cluster, an open patch, decides
+  open,    // its squared gap is known
+  patch,   // open: the gap is that to the plane of its patch
+  near,    // open: no place of its cluster is further behind the surface than the tool's reach
 };
 
 // Where one thread floods: the rows from `begin` to `end`.

@@ -45,8 +45,9 @@ struct TaskLists {
   }
 };
 
-// What the surface shows of a cluster that may count.
+// What the surface shows of a cluster.
 enum class Seen : std::uint32_t {
+  free,
   mixed,
   uncut,
   behind,
@@ -172,7 +173,7 @@ class ShareMeasure {
     if (look.side == Side::free) return;
     CrossingPlane plane;
     const Seen seen = what_is_seen(chunk.ball, look, at, read_all, plane);
-    if (!notes) return;
+    if (!notes || seen == Seen::free) return;
     if (seen == Seen::pushed) {
       shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
       return;
@@ -193,7 +194,17 @@ class ShareMeasure {
   __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at,
                                const ReadAll& read_all, CrossingPlane& plane) {
     const bool patch = is_patch(ball.radius, level_.tool_reach.length);
-    if (look.side == Side::uncut) return Seen::uncut;
+    if (look.side == Side::uncut) {
+      if (!patch) return Seen::uncut;
+      switch (open_patch(surface_.read(at), at, ball.radius, level_.tool_reach.length)) {
+        case OpenPatch::free:
+          return Seen::free;
+        case OpenPatch::behind:
+          return Seen::behind;
+        case OpenPatch::near:
+          return Seen::pushed;
+      }
+    }
     if (look.side == Side::mixed) {
       TangentPlane tangent;
       if (!patch || !sees_patch(surface_, look, at, ball.radius, read_all, tangent))
