@@ -33,15 +33,14 @@ ParallelRegion::~ParallelRegion() {
   is_in_region = false;
 }
 
-void ParallelRegion::loop(std::size_t count, std::size_t grain,
-                          const std::function<void(std::size_t, std::size_t)>& body) {
+void ParallelRegion::loop(std::size_t count, std::size_t grain, BodyView body) {
   count_ = count;
   grain_ = std::max<std::size_t>(grain, 1);
-  body_ = &body;
+  body_ = body;
   const std::uint64_t ranges = (count + grain_ - 1) / grain_;
   if (threads_ == 1 || ranges <= 1) {
     for (std::uint64_t range = 0; range < ranges; ++range)
-      body(range * grain_, std::min(count, (range + 1) * grain_));
+      body.call(body.body, range * grain_, std::min(count, (range + 1) * grain_));
     return;
   }
   done_.store(0, std::memory_order_relaxed);
@@ -65,7 +64,7 @@ bool ParallelRegion::take_range(std::uint64_t& range) {
 
 void ParallelRegion::run(std::uint64_t range) {
   try {
-    (*body_)(range * grain_, std::min(count_, (range + 1) * grain_));
+    body_.call(body_.body, range * grain_, std::min(count_, (range + 1) * grain_));
   } catch (...) {
     if (!has_failed_.exchange(true)) failure_ = std::current_exception();
   }

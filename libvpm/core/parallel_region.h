@@ -3,9 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <memory>
 
 namespace vpm {
@@ -24,12 +24,22 @@ class ParallelRegion {
 
   // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long.
   // Threads that come late find the rest; nobody waits for one that has not come.
-  void loop(std::size_t count, std::size_t grain,
-            const std::function<void(std::size_t begin, std::size_t end)>& body);
+  template <class Body>
+  void loop(std::size_t count, std::size_t grain, const Body& body) {
+    loop(count, grain, {&body, [](const void* it, std::size_t begin, std::size_t end) {
+                          (*static_cast<const Body*>(it))(begin, end);
+                        }});
+  }
 
  private:
   struct Helpers;
+  // What a loop calls; unlike a std::function it takes no memory.
+  struct BodyView {
+    const void* body = nullptr;
+    void (*call)(const void* body, std::size_t begin, std::size_t end) = nullptr;
+  };
 
+  void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();
   bool take_range(std::uint64_t& range);
   void run(std::uint64_t range);
@@ -40,7 +50,7 @@ class ParallelRegion {
   std::atomic<std::uint64_t> done_{0};
   std::atomic<bool> is_over_{false};
   std::size_t count_ = 0, grain_ = 1;
-  const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
+  BodyView body_;
   std::atomic<bool> has_failed_{false};
   std::exception_ptr failure_;
   int threads_;

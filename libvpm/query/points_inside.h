@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/core/parallel_region.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/sphere_location.h"
@@ -24,13 +24,15 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
   const Pose to_tool = relative_to(pose, {{}, cloud.origin()});
   const Vec3 center = pose.rotation * tool.center_of_mass + (pose.translation - cloud.origin());
   ranges.clear();
+  ranges.reserve(cloud.most_ranges());
   cloud.for_ranges_in_ball(center, tool.reach,
                            [&](std::uint32_t b, std::uint32_t e) { ranges.emplace_back(b, e); });
 
   const GridView grid = view_of(level.grid);
   std::atomic<std::uint32_t> total{0};
   constexpr std::size_t kRangesPerTask = 16;
-  parallel_for(ranges.size(), kRangesPerTask, [&](std::size_t begin, std::size_t end) {
+  ParallelRegion region;
+  region.loop(ranges.size(), kRangesPerTask, [&](std::size_t begin, std::size_t end) {
     std::uint32_t found = 0;
     for (std::size_t r = begin; r < end; ++r) {
       for (std::uint32_t k = ranges[r].first; k < ranges[r].second; ++k) {

@@ -53,6 +53,8 @@ class PreparedCloud {
   // Of organised clouds: for the points of these pixels.
   template <class Visit>
   void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
+  // Bound of their number.
+  std::size_t most_ranges() const { return is_organised() ? camera_->height : leaves_; }
 
  private:
   friend class FramePreparation;

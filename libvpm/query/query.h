@@ -6,9 +6,10 @@
 //   const Result r = query.run(cloud, pose);               // a thousand times a second
 //
 // The tool must outlive its queries. A Query belongs to one thread at a time (it may use several
-// inside); tools and clouds may be shared. run() allocates nothing after the first call on a cloud.
-// The same input gives the same bits, whatever the device, the number of threads and the order of
-// the points: README.md states the domain of that promise.
+// inside); tools and clouds may be shared. run() of one pose allocates nothing after the first call
+// on a cloud; several threads take what their scheduler needs for its tasks. The same input gives
+// the same bits, whatever the device, the number of threads and the order of the points: README.md
+// states the domain of that promise.
 #pragma once
 
 #include <memory>

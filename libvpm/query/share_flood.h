@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "libvpm/core/parallel_region.h"
@@ -31,14 +32,11 @@ class ShareFlood {
   void run(ParallelRegion& region) {
     list_cut();
     split(region.threads());
-    std::vector<FloodPart>& parts = states_.parts;
-    region.loop(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) enter(parts[k]);
-    });
+    region.loop(states_.part_count, 1,
+                [&](std::size_t k, std::size_t) { enter(states_.parts[k]); });
     while (change_round()) {
-      region.loop(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) take_up(parts[k]);
-      });
+      region.loop(states_.part_count, 1,
+                  [&](std::size_t k, std::size_t) { take_up(states_.parts[k]); });
     }
   }
 
@@ -100,7 +98,7 @@ class ShareFlood {
     const std::vector<std::uint32_t>& cut = states_.cut;
     const std::size_t count = std::clamp<std::size_t>(cut.size() / kFewCut, 1, threads);
     states_.parts.resize(std::max(count, states_.parts.size()));
-    while (states_.parts.size() > count) states_.parts.pop_back();
+    states_.part_count = count;
     std::uint32_t begin = 0;
     for (std::size_t k = 0; k < count; ++k) {
       FloodPart& part = states_.parts[k];
@@ -112,6 +110,8 @@ class ShareFlood {
       part.left.clear();
     }
   }
+
+  std::span<FloodPart> parts() const { return {states_.parts.data(), states_.part_count}; }
 
   std::uint32_t first_of_patch(std::uint32_t row) const {
     return level_.nodes()[level_.roots()[level_.root(row)]].cluster.begin;
@@ -129,7 +129,7 @@ class ShareFlood {
 
   // From the shares of other parts.
   void take_up(FloodPart& part) {
-    for (const FloodPart& other : states_.parts) {
+    for (const FloodPart& other : parts()) {
       for (const FloodPart::Step& s : other.left) {
         if (part.owns(s.to)) step(part, s.from, s.to);
       }
@@ -160,7 +160,7 @@ class ShareFlood {
   // False where no part has left anything for another.
   bool change_round() {
     bool goes_on = false;
-    for (FloodPart& part : states_.parts) {
+    for (FloodPart& part : parts()) {
       part.left.clear();
       part.left.swap(part.leaving);
       goes_on = goes_on || !part.left.empty();

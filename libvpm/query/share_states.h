@@ -67,6 +67,7 @@ struct ShareStates {
         planes(level.roots().size()),
         parts(1) {
     cut.reserve(level.size());
+    parts[0].front.reserve(level.size());
   }
 
   void set(std::uint32_t row, Cell cell, Passage passage) {
@@ -87,7 +88,9 @@ struct ShareStates {
   // Of each root that is a patch; of one behind the surface, the normal only.
   std::vector<CrossingPlane> planes;
   std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
-  std::vector<FloodPart> parts;    // one or more
+  // As many as ever flooded side by side; those from `part_count` on are not in use.
+  std::vector<FloodPart> parts;
+  std::size_t part_count = 1;
 };
 
 }  // namespace vpm

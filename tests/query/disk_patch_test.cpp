@@ -43,6 +43,19 @@ void add_points(const std::function<Height(double x, double y)>& at, Cloud& clou
   }
 }
 
+// Deviations of the height, m, and of the normal's slopes.
+Cloud noisy_wall(double height, double slope) {
+  Noise noise;
+  Cloud cloud;
+  add_points(
+      [&](double, double) {
+        const double z = noise.next(height), x = noise.next(slope), y = noise.next(slope);
+        return Height{z, {x, y, 1}};
+      },
+      cloud);
+  return cloud;
+}
+
 bool sees_plane(const Cloud& cloud, Vec3 center, TangentPlane& plane) {
   const PreparedCloud prepared(cloud);
   const DiskSurface disks = prepared.disk_surface();
@@ -50,14 +63,7 @@ bool sees_plane(const Cloud& cloud, Vec3 center, TangentPlane& plane) {
 }
 
 TEST(PatchOfPoints, NoiseIsAveraged) {
-  Noise noise;
-  Cloud cloud;
-  add_points(
-      [&](double, double) {
-        const double height = noise.next(0.002), x = noise.next(0.15), y = noise.next(0.15);
-        return Height{height, {x, y, 1}};
-      },
-      cloud);
+  const Cloud cloud = noisy_wall(0.002, 0.15);
   for (const double height : {0.01, 0.0, -0.015}) {
     TangentPlane plane;
     ASSERT_TRUE(sees_plane(cloud, {0.001, -0.002, height}, plane)) << height;
@@ -118,15 +124,7 @@ TEST(PatchOfPoints, ThereIsNoneBeyondTheRim) {
 // Behind the wall everything is pushed, before it nothing, and the cut shares by the mean plane.
 TEST(PatchOfPoints, CountsWhatIsBehindANoisyWall) {
   constexpr double kEdge = 0.08;
-  Noise noise;
-  Cloud cloud;
-  add_points(
-      [&](double, double) {
-        const double height = noise.next(0.001), x = noise.next(0.1), y = noise.next(0.1);
-        return Height{height, {x, y, 1}};
-      },
-      cloud);
-  const PreparedCloud prepared(cloud);
+  const PreparedCloud prepared(noisy_wall(0.001, 0.1));
   const ToolModel tool = testing::lattice_cube(kEdge, 24, 2);
   Query query(tool, {});
   for (const double depth : {0.01, 0.02, 0.04}) {

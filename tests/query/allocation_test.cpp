@@ -1,0 +1,53 @@
+// What a control loop relies on: after the first query no memory is taken.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "libvpm/core/parallel.h"
+#include "libvpm/query/query.h"
+#include "tests/query/counted_allocation.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+struct Case {
+  const char* name;
+  Measure measure;
+  bool camera, coherent;
+};
+
+class Allocation : public ::testing::TestWithParam<Case> {
+ protected:
+  void SetUp() override { set_thread_count(1); }
+  void TearDown() override { set_thread_count(0); }
+};
+
+TEST_P(Allocation, NoneAfterTheFirstQuery) {
+  const Case& tested = GetParam();
+  const Cloud seen = testing::see(synthetic::make_scene("inverted-ball"));
+  const PreparedCloud cloud(tested.camera ? seen : testing::without_camera(seen));
+  const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
+  Query query(tool, {.measure = tested.measure, .coherent = tested.coherent});
+  const auto pose = [](int k) {
+    return Pose{testing::generic_rotation(), {0.01, -0.02, 1.0 - 0.015 * k}};
+  };
+  query.run(cloud, pose(0));
+  const int before = testing::allocations();
+  double most = 0;
+  for (int k = 1; k < 12; ++k) most = std::max(most, query.run(cloud, pose(k)).volume);
+  EXPECT_EQ(testing::allocations() - before, 0);
+  EXPECT_GT(most, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Measures, Allocation,
+                         ::testing::Values(Case{"RefinedCamera", Measure::refined, true, false},
+                                           Case{"RefinedPoints", Measure::refined, false, false},
+                                           Case{"Coherent", Measure::refined, true, true},
+                                           Case{"PaperCamera", Measure::paper, true, false}),
+                         [](const ::testing::TestParamInfo<Case>& tested) {
+                           return tested.param.name;
+                         });
+
+}  // namespace
+}  // namespace vpm
