@@ -44,8 +44,8 @@ class ParallelRegion {
   bool take_range(std::uint64_t& range);
   void run(std::uint64_t range);
 
-  // Which loop it is and how many of its ranges nobody has taken, in one word: who takes a range of
-  // a loop can be sure that the loop lasts until the range is done.
+  // How many ranges of the loop nobody has taken. Who takes one may read the loop's data, which
+  // stay until it is done; who takes none must not.
   std::atomic<std::uint64_t> open_ranges_{0};
   std::atomic<std::uint64_t> done_{0};
   std::atomic<bool> is_over_{false};

@@ -100,9 +100,10 @@ struct DiskSurface {
     return {true, dot(normal, x - foot), normal, foot, i};
   }
 
-  // Calls visit(point) for the points in a ball until it says false, and returns what it said last.
+  // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
+  // false, and returns what it said last.
   template <class Visit>
-  VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
+  VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
     std::uint32_t stack[kMaxDepth];
     int size = 0;
     stack[size++] = 1;
@@ -115,11 +116,19 @@ struct DiskSurface {
         continue;
       }
       const std::uint32_t begin = (node - leaves) * kLeafSize;
-      for (std::uint32_t i = begin; i < begin + kLeafSize && i < count; ++i) {
-        if (squared_norm(widen(positions[i]) - center) <= squared_radius && !visit(i)) return false;
-      }
+      if (!visit(begin, begin + kLeafSize < count ? begin + kLeafSize : count)) return false;
     }
     return true;
+  }
+  // The same for the points in a ball.
+  template <class Visit>
+  VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
+    return for_leaves_in_ball(center, squared_radius, [&](std::uint32_t begin, std::uint32_t end) {
+      for (std::uint32_t i = begin; i < end; ++i) {
+        if (squared_norm(widen(positions[i]) - center) <= squared_radius && !visit(i)) return false;
+      }
+      return true;
+    });
   }
 
   // The surface for places in a ball: the few points that may be nearest to one of them, if they

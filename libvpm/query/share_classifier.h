@@ -42,10 +42,6 @@ class ShareClassifier {
  private:
   using Look = typename Surface::Look;
 
-  const ShareCluster& cluster(std::uint32_t root) const {
-    return level_.nodes()[level_.roots()[root]].cluster;
-  }
-
   std::uint32_t classify(const ShareGroup& group) {
     const Vec3 center = to_surface_ * group.ball.center;
     const bool tells =
@@ -58,7 +54,7 @@ class ShareClassifier {
     }
     std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
-      const ShareCluster& part = cluster(root);
+      const ShareCluster& part = level_.cluster(root);
       if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach))
         states_.set(part, Cell::free, Passage::closed);
       else
@@ -68,7 +64,7 @@ class ShareClassifier {
   }
 
   std::uint32_t classify(std::uint32_t root) {
-    const ShareCluster& whole = cluster(root);
+    const ShareCluster& whole = level_.cluster(root);
     const Vec3 center = to_surface_ * whole.center;
     const Look look = surface_.look_at_ball(center, whole.reach);
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
@@ -85,11 +81,8 @@ class ShareClassifier {
       return 0;
     }
     decide(look, whole, center);
-    if (may_be_patch && states_.passages[whole.begin] == Passage::near) {
-      states_.set(whole, Cell::pushed, Passage::near);
-      states_.planes[root].normal =
-          transpose(to_surface_.rotation) * surface_.closest_normal(center, surface_.read(center));
-    }
+    if (may_be_patch && states_.passages[whole.begin] == Passage::near)
+      push_patch(surface_, to_surface_, whole, root, surface_.read(center), states_);
     return 0;
   }
 

@@ -114,7 +114,7 @@ class ShareFlood {
   std::span<FloodPart> parts() const { return {states_.parts.data(), states_.part_count}; }
 
   std::uint32_t first_of_patch(std::uint32_t row) const {
-    return level_.nodes()[level_.roots()[level_.root(row)]].cluster.begin;
+    return level_.cluster(level_.root(row)).begin;
   }
 
   // From the cut shares.
@@ -188,7 +188,7 @@ class ShareFlood {
 
   // Of an open patch, which one part owns.
   void decide_patch(std::uint32_t root) {
-    const ShareCluster& patch = level_.nodes()[level_.roots()[root]].cluster;
+    const ShareCluster& patch = level_.cluster(root);
     const Vec3 at = to_surface_ * patch.center;
     const Reading middle = surface_.read(at);
     const OpenPatch open = open_patch(middle, at, patch.reach, reach_.length);
@@ -197,9 +197,7 @@ class ShareFlood {
     } else if (open == OpenPatch::behind) {
       states_.set(patch, Cell::whole, Passage::unknown);
     } else {
-      states_.set(patch, Cell::pushed, Passage::near);
-      states_.planes[root].normal =
-          transpose(to_surface_.rotation) * surface_.closest_normal(at, middle);
+      push_patch(surface_, to_surface_, patch, root, middle, states_);
     }
   }
 

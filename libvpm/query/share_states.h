@@ -93,4 +93,14 @@ struct ShareStates {
   std::size_t part_count = 1;
 };
 
+// Of a patch wholly behind the surface, near it: all its shares are pushed along one normal.
+// `middle`: the reading at its centre.
+template <class Surface>
+void push_patch(const Surface& surface, const Pose& to_surface, const ShareCluster& patch,
+                std::uint32_t root, const Reading& middle, ShareStates& states) {
+  states.set(patch, Cell::pushed, Passage::near);
+  states.planes[root].normal =
+      transpose(to_surface.rotation) * surface.closest_normal(to_surface * patch.center, middle);
+}
+
 }  // namespace vpm

@@ -42,6 +42,7 @@ class SpatialLevel {
   const std::vector<ShareTreeNode>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& roots() const { return roots_; }         // nodes in no other
   std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
+  const ShareCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
   const std::vector<ShareGroup>& groups() const { return groups_; }
 
  private:
