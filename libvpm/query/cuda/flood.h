@@ -57,17 +57,18 @@ class Flood {
 
   // This thread's part of the result. All threads of the team.
   __device__ RawResult run() {
-    const bool hidden = read(counters_.hidden) > 0, unsure = read(counters_.unsure) > 0;
-    if (hidden || unsure) {
+    const RefinedCounters found = read_for_block(counters_);
+    const bool unsure = found.unsure > 0;
+    if (found.hidden > 0 || unsure) {
       list_cut();
       team_.sync();
     }
-    if (hidden) {
+    if (found.hidden > 0) {
       decide_hidden();
       team_.sync();
     }
-    const unsigned pieces = read(counters_.hidden_pieces);
-    for (std::uint32_t k = team_.threads() - 1 - team_.thread(); k < pieces; k += team_.threads())
+    for (std::uint32_t k = team_.threads() - 1 - team_.thread(); k < found.hidden_pieces;
+         k += team_.threads())
       add_hidden_piece(space_.hidden[k]);
     if (in_shared_)
       flood_in_shared();
@@ -81,7 +82,7 @@ class Flood {
 
  private:
   using Measure = CellMeasure<Surface>;
-  static constexpr std::uint32_t kEdgesOfThread = 4;  // at which all are looked at
+  static constexpr unsigned kEdges = 4;  // of a thread at once: their reads wait together
 
   __device__ void bring_to_shared() {
     if (threadIdx.x == 0) shared_.passages = shared_.entries = 0;
@@ -97,18 +98,21 @@ class Flood {
     return in_shared_ ? (word & kReached) != 0 : is_passable(word) && flood_.root(i + 1) == 0;
   }
 
-  // Calls join(i, j) for every edge between shares that the flood may pass, enter(cut, i) for those
-  // by which it may enter.
+  struct Edges {
+    Edge edges[kEdges];
+    std::uint32_t words[kEdges][2];  // of larger and smaller; 0 where there is no edge
+  };
+  // Calls visit(edges) for all of them.
+  template <class Visit>
+  __device__ void for_edges(const Visit& visit) const;
+  // Calls join(k, i, j) for those between shares that the flood may pass, enter(k, cut, i) for
+  // those by which it may enter.
   template <class Join, class Enter>
-  __device__ void for_edges(const Join& join, const Enter& enter) const;
-  // Does so for one edge.
-  template <class Join, class Enter>
-  __device__ void look_at_edge(std::uint32_t i, std::uint32_t word_of_i, std::uint32_t j,
-                               std::uint32_t word_of_j, const Join& join, const Enter& enter) const;
+  __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter);
   // Calls visit(i, word) for the shares that have a word, dealt out to the threads of the team.
   template <class Visit>
-  __device__ void for_noted_shares(const Visit& visit) const;
-  __device__ void join_shares() const;
+  __device__ void for_noted_shares(const Visit& visit);
+  __device__ void join_shares();
   __device__ void flood_in_shared();
   __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
   __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t sphere) const;
@@ -116,7 +120,7 @@ class Flood {
   __device__ __noinline__ void list_cut();
   __device__ __noinline__ void decide_hidden();
   __device__ std::uint32_t nearest_cut(const Tile& tile, std::uint32_t sphere) const;
-  __device__ RawResult add_up_shares() const;
+  __device__ RawResult add_up_shares();
   __device__ void add_share(std::uint32_t sphere, std::uint32_t word, ToolSum sum,
                             RawResult& result) const;
   __device__ __noinline__ void add_up_unsure(RawResult& result) const;
@@ -132,58 +136,69 @@ class Flood {
   FloodShared& shared_;
   NotedShares& noted_;
   bool in_shared_;
+  bool lists_all_ = false;  // noted_ lists all shares of this block that have a word
   std::uint32_t* words_;
   UnionFind flood_;  // node 0 is the entry, node i + 1 share i
 };
 
 template <class Surface, class Team>
-template <class Join, class Enter>
-__device__ void Flood<Surface, Team>::for_edges(const Join& join, const Enter& enter) const {
-  constexpr unsigned kTogether = 4;  // edges whose reads wait together
+template <class Visit>
+__device__ void Flood<Surface, Team>::for_edges(const Visit& visit) const {
   for (std::uint32_t first = team_.thread(); first < level_.edge_count;
-       first += kTogether * team_.threads()) {
-    Edge edges[kTogether];
-    std::uint32_t words[kTogether][2];
+       first += kEdges * team_.threads()) {
+    Edges together;
 #pragma unroll
-    for (unsigned k = 0; k < kTogether; ++k) {
+    for (unsigned k = 0; k < kEdges; ++k) {
       const std::uint32_t e = first + k * team_.threads();
-      edges[k] = level_.edges[e < level_.edge_count ? e : first];
+      together.edges[k] = level_.edges[e < level_.edge_count ? e : first];
     }
 #pragma unroll
-    for (unsigned k = 0; k < kTogether; ++k) {
-      words[k][0] = words_[edges[k].larger];
-      words[k][1] = words_[edges[k].smaller];
+    for (unsigned k = 0; k < kEdges; ++k) {
+      const bool is_one = first + k * team_.threads() < level_.edge_count;
+      together.words[k][0] = is_one ? words_[together.edges[k].larger] : 0;
+      together.words[k][1] = is_one ? words_[together.edges[k].smaller] : 0;
     }
-#pragma unroll
-    for (unsigned k = 0; k < kTogether; ++k) {
-      if (first + k * team_.threads() >= level_.edge_count) break;
-      look_at_edge(edges[k].larger, words[k][0], edges[k].smaller, words[k][1], join, enter);
-    }
+    visit(together);
   }
 }
 
 template <class Surface, class Team>
 template <class Join, class Enter>
-__device__ void Flood<Surface, Team>::look_at_edge(std::uint32_t i, std::uint32_t word_of_i,
-                                                   std::uint32_t j, std::uint32_t word_of_j,
-                                                   const Join& join, const Enter& enter) const {
-  if (is_passable(word_of_i) && is_passable(word_of_j))
-    join(i, j);
-  else if ((word_of_i & kCut) != 0 && is_passable(word_of_j))
-    enter(i, j);
-  else if ((word_of_j & kCut) != 0 && is_passable(word_of_i))
-    enter(j, i);
+__device__ void Flood<Surface, Team>::look_at(const Edges& together, const Join& join,
+                                              const Enter& enter) {
+#pragma unroll
+  for (unsigned k = 0; k < kEdges; ++k) {
+    const std::uint32_t i = together.edges[k].larger, j = together.edges[k].smaller;
+    const std::uint32_t word_of_i = together.words[k][0], word_of_j = together.words[k][1];
+    if (is_passable(word_of_i) && is_passable(word_of_j))
+      join(k, i, j);
+    else if ((word_of_i & kCut) != 0 && is_passable(word_of_j))
+      enter(k, i, j);
+    else if ((word_of_j & kCut) != 0 && is_passable(word_of_i))
+      enter(k, j, i);
+  }
 }
 
-// Blocks take shares side by side in turns, and list those that have a word.
+// Blocks take shares side by side in turns, and list those that have a word. Where one list holds
+// all, it serves again.
 template <class Surface, class Team>
 template <class Visit>
-__device__ void Flood<Surface, Team>::for_noted_shares(const Visit& visit) const {
+__device__ void Flood<Surface, Team>::for_noted_shares(const Visit& visit) {
   constexpr unsigned kTogether = 8;  // words whose reads wait together
   const Part part = team_.block();
-  const unsigned step = part.parts * blockDim.x;
+  const unsigned step = part.parts * blockDim.x, begin = part.part * blockDim.x;
   const Tile warp(32);
-  for (std::uint32_t first = part.part * blockDim.x; first < level_.count;) {
+  const auto visit_all = [&] {
+    for (unsigned k = threadIdx.x; k < noted_.count; k += blockDim.x)
+      visit(noted_.shares[k], noted_.words[k]);
+  };
+  if (lists_all_) {
+    visit_all();
+    return;
+  }
+  lists_all_ = true;
+  for (std::uint32_t first = begin; first < level_.count;) {
+    lists_all_ &= first == begin;
     __syncthreads();
     if (threadIdx.x == 0) noted_.count = 0;
     __syncthreads();
@@ -209,37 +224,42 @@ __device__ void Flood<Surface, Team>::for_noted_shares(const Visit& visit) const
       has_room = noted_.count + kTogether * blockDim.x <= NotedShares::kRoom;
       __syncthreads();
     }
-    for (unsigned k = threadIdx.x; k < noted_.count; k += blockDim.x)
-      visit(noted_.shares[k], noted_.words[k]);
+    visit_all();
   }
 }
 
 // Of a large level, edges are looked at from the shares that have a word: each from its larger
 // index, of which a share has few.
 template <class Surface, class Team>
-__device__ void Flood<Surface, Team>::join_shares() const {
-  const auto join = [&](std::uint32_t i, std::uint32_t j) { flood_.join(i + 1, j + 1); };
-  const auto enter = [&](std::uint32_t cut, std::uint32_t i) {
-    if (enters(cut, i)) flood_.join(0, i + 1);
+__device__ void Flood<Surface, Team>::join_shares() {
+  const auto join_ends = [&](const Edges& together) {
+    std::uint32_t one[kEdges] = {}, other[kEdges] = {};
+    look_at(
+        together,
+        [&](unsigned k, std::uint32_t i, std::uint32_t j) { one[k] = i + 1, other[k] = j + 1; },
+        [&](unsigned k, std::uint32_t cut, std::uint32_t i) {
+          if (enters(cut, i)) one[k] = i + 1;
+        });
+    flood_.join(one, other);
   };
-  if (level_.edge_count <= kEdgesOfThread * team_.threads()) {
-    for_edges(join, enter);
+  if (level_.edge_count <= kEdges * team_.threads()) {
+    for_edges(join_ends);
     return;
   }
   for_noted_shares([&](std::uint32_t i, std::uint32_t word) {
     if (!is_passable(word) && (word & kCut) == 0) return;
-    constexpr unsigned kTogether = 4;  // edges whose reads wait together
     const std::uint32_t end = level_.edge_begin[i + 1];
-    for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kTogether) {
-      std::uint32_t others[kTogether], words[kTogether];
+    for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kEdges) {
+      Edges together;
 #pragma unroll
-      for (unsigned k = 0; k < kTogether; ++k)
-        others[k] = level_.edges[e + k < end ? e + k : e].smaller;
+      for (unsigned k = 0; k < kEdges; ++k)
+        together.edges[k] = {i, level_.edges[e + k < end ? e + k : e].smaller};
 #pragma unroll
-      for (unsigned k = 0; k < kTogether; ++k) words[k] = words_[others[k]];
-#pragma unroll
-      for (unsigned k = 0; k < kTogether; ++k)
-        if (e + k < end) look_at_edge(i, word, others[k], words[k], join, enter);
+      for (unsigned k = 0; k < kEdges; ++k) {
+        together.words[k][0] = word;
+        together.words[k][1] = e + k < end ? words_[together.edges[k].smaller] : 0;
+      }
+      join_ends(together);
     }
   });
 }
@@ -247,13 +267,16 @@ __device__ void Flood<Surface, Team>::join_shares() const {
 // Edges that matter are listed first; in each round the flood passes all of them.
 template <class Surface, class Team>
 __device__ void Flood<Surface, Team>::flood_in_shared() {
-  for_edges(
-      [&](std::uint32_t i, std::uint32_t j) {
-        shared_.edges[atomicAdd(&shared_.passages, 1U)] = {i, j};
-      },
-      [&](std::uint32_t cut, std::uint32_t i) {
-        shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
-      });
+  for_edges([&](const Edges& together) {
+    look_at(
+        together,
+        [&](unsigned, std::uint32_t i, std::uint32_t j) {
+          shared_.edges[atomicAdd(&shared_.passages, 1U)] = {i, j};
+        },
+        [&](unsigned, std::uint32_t cut, std::uint32_t i) {
+          shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
+        });
+  });
   __syncthreads();
   const unsigned entries = shared_.entries, passages = shared_.passages;
   for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
@@ -350,7 +373,7 @@ __device__ void Flood<Surface, Team>::decide_hidden() {
 }
 
 template <class Surface, class Team>
-__device__ RawResult Flood<Surface, Team>::add_up_shares() const {
+__device__ RawResult Flood<Surface, Team>::add_up_shares() {
   RawResult result;
   const auto add = [&](std::uint32_t i, std::uint32_t word) {
     if ((word & kCountsPoints) != 0) result.points += notes_.points[i];

@@ -49,20 +49,23 @@ union BlockShared {
 };
 
 // The first step of one query by all blocks of a launch: `sphere_blocks` deal with spheres, the
-// others with points.
+// others with points. These are done sooner: they clear what the next query begins with.
 template <class Surface>
 __device__ void measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                                unsigned sphere_blocks, unsigned turn, RefinedCounters& counters,
                                BlockShared& shared) {
+  const ShareNotes& next = launch.space.notes[(turn + 1) % 2];
+  const Part of_spheres{blockIdx.x, sphere_blocks};
+  const Part of_points{blockIdx.x - sphere_blocks, gridDim.x - sphere_blocks};
   if (blockIdx.x < sphere_blocks) {
     ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                          counters, {blockIdx.x, sphere_blocks}, launch.counts_points,
-                          shared.measure)
+                          counters, of_spheres, launch.counts_points, shared.measure)
         .run();
+    if (sphere_blocks == gridDim.x) next.clear(launch.level, of_spheres);
   } else {
-    count_points(launch.level, launch.points, frame,
-                 {blockIdx.x - sphere_blocks, gridDim.x - sphere_blocks},
+    count_points(launch.level, launch.points, frame, of_points,
                  launch.space.notes[turn % 2].points);
+    next.clear(launch.level, of_points);
   }
 }
 
@@ -148,6 +151,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
                           launch.counts_points, shared.measure)
         .run();
+    space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
     const RawResult part =
         Flood<Surface, BlockTeam>(level, launch.surface, frame.to_surface, space, turn, counters,
@@ -158,7 +162,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     if (threadIdx.x == 0) results[p] = total;
   }
   // The next launch begins with turn 0 again.
-  for (const ShareNotes& notes : space.notes) notes.clear(level, threadIdx.x, blockDim.x);
+  for (const ShareNotes& notes : space.notes) notes.clear(level, {});
 }
 
 // Memory of a number of teams, of one or more blocks each.

@@ -115,7 +115,6 @@ class ShareMeasure {
         to_surface_(to_surface),
         space_(space),
         notes_(space.notes[turn % 2]),
-        next_(space.notes[(turn + 1) % 2]),
         counters_(counters),
         part_(part),
         counts_points_(counts_points),
@@ -125,7 +124,6 @@ class ShareMeasure {
   // By all threads of the block, for its part of the chunks.
   __device__ void run() {
     if (part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
-    next_.clear(level_, part_.part * blockDim.x + threadIdx.x, part_.parts * blockDim.x);
     clear_lists();
     const bool are_few =
         level_.chunk_count <= kFewRounds * (blockDim.x / ReadByLanes::kLanes) * part_.parts;
@@ -291,7 +289,7 @@ class ShareMeasure {
   const Surface& surface_;
   const Pose& to_surface_;
   const RefinedSpace& space_;
-  const ShareNotes &notes_, &next_;
+  const ShareNotes& notes_;
   RefinedCounters& counters_;
   Part part_;
   bool counts_points_;
@@ -458,7 +456,10 @@ __device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const Cros
   if (distance > -ball.radius && distance < ball.radius) {
     const unsigned list =
         task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    flat(list, lists_.add(list, task)) = {plane, unit.block, is_far};
+    FlatBlock& block = flat(list, lists_.add(list, task));
+    block.plane = plane;
+    block.block = unit.block;
+    block.is_far = is_far;
     return;
   }
   CellResult result;
@@ -528,8 +529,11 @@ __device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const T
   ToolSum sum;
   measure.add(piece, look, sum);
   if (look.is_hidden && !task.is_whole()) {
-    space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)] = {look.x, look.reading.foot, sum,
-                                                              task.share};
+    HiddenPiece& hidden = space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)];
+    hidden.at = look.x;
+    hidden.foot = look.reading.foot;
+    hidden.sum = sum;
+    hidden.share = task.share;
     return sum.volume.value > 0;
   }
   if (!task.is_whole() && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);

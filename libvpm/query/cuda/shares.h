@@ -34,14 +34,25 @@ struct ShareNotes {
   ToolSum* sums = nullptr;
   ContactPlane* planes = nullptr;  // of cut shares
 
-  // By a part of the threads: shares `first`, `first` + `step`, ...
-  __device__ void clear(const LevelView& level, std::uint32_t first, std::uint32_t step) const {
-    for (std::uint32_t i = first; i < level.count; i += step) {
-      points[i] = 0;
-      if (words[i] == 0) continue;
-      words[i] = 0;
-      sums[i] = ToolSum{};
-      planes[i] = ContactPlane{};
+  // By a part of the threads.
+  __device__ void clear(const LevelView& level, Part part) const {
+    constexpr unsigned kTogether = 4;  // words whose reads wait together
+    const std::uint32_t step = part.parts * blockDim.x;
+    for (std::uint32_t first = part.part * blockDim.x + threadIdx.x; first < level.count;
+         first += kTogether * step) {
+      std::uint32_t noted[kTogether];
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k)
+        noted[k] = first + k * step < level.count ? words[first + k * step] : 0;
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k) {
+        const std::uint32_t i = first + k * step;
+        if (i < level.count) points[i] = 0;
+        if (noted[k] == 0) continue;
+        words[i] = 0;
+        sums[i] = ToolSum{};
+        planes[i] = ContactPlane{};
+      }
     }
   }
 };
@@ -81,6 +92,14 @@ struct RefinedCounters {
 
 __device__ inline unsigned read(const unsigned& counter) {
   return *const_cast<const volatile unsigned*>(&counter);
+}
+// By one thread for all of its block: so many at one place would wait for each other.
+__device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
+  __shared__ RefinedCounters found;
+  if (threadIdx.x == 0)
+    found = {read(counters.hidden), read(counters.unsure), read(counters.hidden_pieces), 0};
+  __syncthreads();
+  return found;
 }
 
 }  // namespace vpm::cuda

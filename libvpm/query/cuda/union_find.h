@@ -25,20 +25,52 @@ class UnionFind {
     return at;
   }
 
-  __device__ void join(std::uint32_t a, std::uint32_t b) const {
-    for (;;) {
-      a = root(a), b = root(b);
-      if (a == b) return;
-      if (a < b) {
-        const std::uint32_t swap = a;
-        a = b;
-        b = swap;
+  // Joins a[k] with b[k] for all k; pairs that are equal need nothing. All walk to their roots at
+  // once, since each step waits for memory.
+  template <unsigned kPairs>
+  __device__ void join(const std::uint32_t (&a)[kPairs], const std::uint32_t (&b)[kPairs]) const {
+    Walk walks[kPairs][2];
+#pragma unroll
+    for (unsigned k = 0; k < kPairs; ++k) {
+      walks[k][0] = {a[k], a[k]};
+      walks[k][1] = {b[k], b[k]};
+    }
+    bool changes = true;
+    while (changes) {
+      std::uint32_t parents[kPairs][2];
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        if (walks[k][0].at == walks[k][1].at) continue;
+        parents[k][0] = load(walks[k][0].at);
+        parents[k][1] = load(walks[k][1].at);
       }
-      if (atomicCAS(parents_ + a, a, b) == a) return;
+      changes = false;
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        Walk &one = walks[k][0], &other = walks[k][1];
+        if (one.at == other.at) continue;
+        if (parents[k][0] == one.at && parents[k][1] == other.at) {
+          const std::uint32_t low = min(one.at, other.at), high = max(one.at, other.at);
+          if (atomicCAS(parents_ + high, high, low) == high) one.at = other.at;
+        } else {
+          go(one, parents[k][0]);
+          go(other, parents[k][1]);
+        }
+        changes |= one.at != other.at;
+      }
     }
   }
 
  private:
+  struct Walk {
+    std::uint32_t last, at;
+  };
+  __device__ void go(Walk& walk, std::uint32_t parent) const {
+    if (parent == walk.at) return;
+    if (walk.last != walk.at) store(walk.last, parent);  // as root() does
+    walk = {walk.at, parent};
+  }
+
   // Other threads write meanwhile.
   using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
   __device__ std::uint32_t load(std::uint32_t node) const {
