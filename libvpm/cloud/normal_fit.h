@@ -146,40 +146,49 @@ inline constexpr int kEigenSteps = 8;
 // its direction is rounding noise: the two small eigenvalues coincide (points on a line).
 inline constexpr double kEigenNoise = 1e-24;
 
-// Newton's iteration for the smallest root of x^3 - x^2 + minors x - determinant, from `root` below
-// it. The polynomial is concave and increasing up to there, so no step passes the root. Written
-// without a loop so that compilers can put several pixels into one vector.
-template <int Steps>
-[[gnu::always_inline]] VPM_HD inline double smallest_root(double root, double minors,
-                                                          double determinant) {
-  if constexpr (Steps == 0) {
-    return root;
-  } else {
-    const double value = ((root - 1) * root + minors) * root - determinant;
-#ifdef __CUDA_ARCH__
-    if (!(value < 0)) return root;  // no later step would change it
-#endif
-    const double slope = (3 * root - 2) * root + minors;
-    const double step = value / (slope > 0 ? slope : 1.0);
-    return smallest_root<Steps - 1>(root - (value < 0 ? step : 0.0), minors, determinant);
-  }
-}
+// x^3 - x^2 + minors x - determinant, whose smallest root is sought from below. It is concave and
+// increasing up to there, so no step of Newton's passes the root; once one would, all are done.
+struct Characteristic {
+  double minors, determinant;
 
-// Eigenvector of the smallest eigenvalue of a positive semidefinite matrix, of any length; zero
-// where there is no single one.
-[[gnu::always_inline]] VPM_HD inline Vec3 smallest_eigenvector(const Symmetric3& m) {
+  [[gnu::always_inline]] VPM_HD inline double at(double x) const {
+    return ((x - 1) * x + minors) * x - determinant;
+  }
+  // `value`: at(x).
+  [[gnu::always_inline]] VPM_HD inline double next(double x, double value) const {
+    const double slope = (3 * x - 2) * x + minors;
+    const double step = value / (slope > 0 ? slope : 1.0);
+    return x - (value < 0 ? step : 0.0);
+  }
+};
+
+// A positive semidefinite matrix over its trace.
+[[gnu::always_inline]] VPM_HD inline Symmetric3 over_trace(const Symmetric3& m) {
   const double trace = m.xx + m.yy + m.zz;
   const double unit = trace > 0 ? 1 / trace : 0;
-  const double xx = m.xx * unit, xy = m.xy * unit, xz = m.xz * unit;
-  const double yy = m.yy * unit, yz = m.yz * unit, zz = m.zz * unit;
-  const double minors = (xx * yy - xy * xy) + (xx * zz - xz * xz) + (yy * zz - yz * yz);
-  const double determinant =
-      xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  const double root = smallest_root<kEigenSteps>(0, minors, determinant);
-  const double dx = xx - root, dy = yy - root, dz = zz - root;
-  const Vec3 ab = cross({dx, xy, xz}, {xy, dy, yz});
-  const Vec3 ac = cross({dx, xy, xz}, {xz, yz, dz});
-  const Vec3 bc = cross({xy, dy, yz}, {xz, yz, dz});
+  return {m.xx * unit, m.xy * unit, m.xz * unit, m.yy * unit, m.yz * unit, m.zz * unit};
+}
+[[gnu::always_inline]] VPM_HD inline Characteristic characteristic_of(const Symmetric3& m) {
+  return {(m.xx * m.yy - m.xy * m.xy) + (m.xx * m.zz - m.xz * m.xz) + (m.yy * m.zz - m.yz * m.yz),
+          m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
+              m.xz * (m.xy * m.yz - m.yy * m.xz)};
+}
+[[gnu::always_inline]] VPM_HD inline double smallest_root(const Characteristic& polynomial) {
+  double root = 0;
+  for (int step = 0; step < kEigenSteps; ++step) {
+    const double value = polynomial.at(root);
+    if (!(value < 0)) break;
+    root = polynomial.next(root, value);
+  }
+  return root;
+}
+
+// Eigenvector of an eigenvalue, of any length; zero where there is no single one.
+[[gnu::always_inline]] VPM_HD inline Vec3 eigenvector(const Symmetric3& m, double root) {
+  const double dx = m.xx - root, dy = m.yy - root, dz = m.zz - root;
+  const Vec3 ab = cross({dx, m.xy, m.xz}, {m.xy, dy, m.yz});
+  const Vec3 ac = cross({dx, m.xy, m.xz}, {m.xz, m.yz, dz});
+  const Vec3 bc = cross({m.xy, dy, m.yz}, {m.xz, m.yz, dz});
   const double ab2 = squared_norm(ab), ac2 = squared_norm(ac), bc2 = squared_norm(bc);
   const bool use_ac = ac2 > ab2;
   Vec3 best{use_ac ? ac.x : ab.x, use_ac ? ac.y : ab.y, use_ac ? ac.z : ab.z};
@@ -211,47 +220,50 @@ template <class Real>
 
 // Of whole windows, in opposite pairs as above. Sums of z and v z, of z^2, v z^2 and v^2 z^2 in a
 // column; the moments in a window.
-[[gnu::always_inline]] VPM_HD inline void add_depth_rows(double below, double above,
-                                                         double distance, double& z, double& vz) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_depth_rows(Real below, Real above, double distance,
+                                                         Real& z, Real& vz) {
   z += below + above;
   vz += distance * (below - above);
 }
-[[gnu::always_inline]] VPM_HD inline void add_square_rows(double below, double above,
-                                                          double distance, double& z2, double& vz2,
-                                                          double& vvz2) {
-  const double b = below * below, a = above * above;
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_square_rows(Real below, Real above, double distance,
+                                                          Real& z2, Real& vz2, Real& vvz2) {
+  const Real b = below * below, a = above * above;
   z2 += b + a;
   vz2 += distance * (b - a);
   vvz2 += distance * distance * (b + a);
 }
-[[gnu::always_inline]] VPM_HD inline void add_depth_columns(double right, double left,
-                                                            double right_v, double left_v,
-                                                            double distance, double& x, double& y,
-                                                            double& z) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_depth_columns(Real right, Real left, Real right_v,
+                                                            Real left_v, double distance, Real& x,
+                                                            Real& y, Real& z) {
   x += distance * (right - left);
   z += right + left;
   y += right_v + left_v;
 }
-[[gnu::always_inline]] VPM_HD inline void add_square_columns(double right, double left,
-                                                             double distance, double& xx,
-                                                             double& xz, double& zz) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_square_columns(Real right, Real left, double distance,
+                                                             Real& xx, Real& xz, Real& zz) {
   xx += distance * distance * (right + left);
   xz += distance * (right - left);
   zz += right + left;
 }
 // `right` and `left`: of v z^2; the others of v^2 z^2.
-[[gnu::always_inline]] VPM_HD inline void add_tilted_columns(double right, double left,
-                                                             double right_vv, double left_vv,
-                                                             double distance, double& xy,
-                                                             double& yz, double& yy) {
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_tilted_columns(Real right, Real left, Real right_vv,
+                                                             Real left_vv, double distance,
+                                                             Real& xy, Real& yz, Real& yy) {
   xy += distance * (right - left);
   yz += right + left;
   yy += right_vv + left_vv;
 }
 
-// The unit normal towards the sensor, seen from the pixel whose ray is (rx, ry, 1).
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_moments(const Moments& m, double per_fx,
-                                                             double per_fy, double rx, double ry) {
+// Covariance in the camera's frame, over its trace, of what is seen about the pixel whose ray is
+// (rx, ry, 1).
+[[gnu::always_inline]] VPM_HD inline Symmetric3 covariance_of_moments(const Moments& m,
+                                                                      double per_fx, double per_fy,
+                                                                      double rx, double ry) {
   const double per_n = 1 / m.n;
   // Covariance (times n) in the centre's frame ...
   const double xx = m.xx - m.x * m.x * per_n, xy = m.xy - m.x * m.y * per_n,
@@ -259,17 +271,24 @@ template <class Real>
                yz = m.yz - m.y * m.z * per_n, zz = m.zz - m.z * m.z * per_n;
   // ... and in the camera's: (x/fx + rx z, y/fy + ry z, z).
   const double ax = per_fx * xz, ay = per_fy * yz;
-  const Symmetric3 covariance{per_fx * per_fx * xx + 2 * rx * ax + rx * rx * zz,
-                              per_fx * per_fy * xy + ry * ax + rx * ay + rx * ry * zz,
-                              ax + rx * zz,
-                              per_fy * per_fy * yy + 2 * ry * ay + ry * ry * zz,
-                              ay + ry * zz,
-                              zz};
-  const Vec3 direction = smallest_eigenvector(covariance);
+  return over_trace({per_fx * per_fx * xx + 2 * rx * ax + rx * rx * zz,
+                     per_fx * per_fy * xy + ry * ax + rx * ay + rx * ry * zz, ax + rx * zz,
+                     per_fy * per_fy * yy + 2 * ry * ay + ry * ry * zz, ay + ry * zz, zz});
+}
+
+// The unit normal towards the sensor; `root`: the smallest of the covariance's characteristic.
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3& covariance,
+                                                                double root, double rx, double ry) {
+  const Vec3 direction = eigenvector(covariance, root);
   const double away = direction.x * rx + direction.y * ry + direction.z;
   const double length = std::sqrt(squared_norm(direction));
   const double scale = (away > 0 ? -1.0 : 1.0) / (length > 0 ? length : 1.0);
   return narrow(scale * direction);
+}
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_moments(const Moments& m, double per_fx,
+                                                             double per_fy, double rx, double ry) {
+  const Symmetric3 covariance = covariance_of_moments(m, per_fx, per_fy, rx, ry);
+  return normal_of_covariance(covariance, smallest_root(characteristic_of(covariance)), rx, ry);
 }
 
 }  // namespace vpm

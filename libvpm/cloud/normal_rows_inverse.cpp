@@ -17,30 +17,29 @@ class WindowSums {
     float sum[kTile], sum_u[kTile], sum_v[kTile];
   };
 
-  WindowSums(const PaddedImage& inverse, int radius)
-      : inverse_(inverse),
-        radius_(radius),
-        column_(inverse.stride + kTile),
-        column_v_(inverse.stride + kTile) {}
+  explicit WindowSums(const PaddedImage& inverse)
+      : inverse_(inverse), column_(inverse.stride + kTile), column_v_(inverse.stride + kTile) {}
 
-  void sum_columns(int v);
-  void sum_across(int first, Tile& tile) const;
+  template <class Radius>
+  void sum_columns(int v, Radius radius);
+  template <class Radius>
+  void sum_across(int first, Radius radius, Tile& tile) const;
 
  private:
   const PaddedImage& inverse_;
-  int radius_;
   std::vector<float> column_, column_v_;
 };
 
-void WindowSums::sum_columns(int v) {
-  const int columns = inverse_.width + 2 * radius_;
+template <class Radius>
+[[gnu::always_inline]] inline void WindowSums::sum_columns(int v, Radius radius) {
+  const int columns = inverse_.width + 2 * radius;
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  for (int i = 0; i < columns; i += kLanes) {
-    const float* middle = inverse_.at(i - radius_, v);
-    Floats sum = load<Floats>(middle), sum_v{};
-    for (int d = 1; d <= radius_; ++d) {
-      const Floats below = load<Floats>(middle + d * stride),
-                   above = load<Floats>(middle - d * stride);
+  for (int i = 0; i < columns; i += kWideLanes) {
+    const float* middle = inverse_.at(i - radius, v);
+    WideFloats sum = load<WideFloats>(middle), sum_v{};
+    for (int d = 1; d <= radius; ++d) {
+      const WideFloats below = load<WideFloats>(middle + d * stride),
+                       above = load<WideFloats>(middle - d * stride);
       add_rows(below, above, static_cast<float>(d), sum, sum_v);
     }
     store(sum, column_.data() + i);
@@ -48,14 +47,16 @@ void WindowSums::sum_columns(int v) {
   }
 }
 
-void WindowSums::sum_across(int first, Tile& tile) const {
-  for (int i = 0; i < kTile; i += kLanes) {
-    const float *column = column_.data() + radius_ + first + i,
-                *column_v = column_v_.data() + radius_ + first + i;
-    Floats sum = load<Floats>(column), sum_u{}, sum_v = load<Floats>(column_v);
-    for (int d = 1; d <= radius_; ++d) {
-      const Floats right = load<Floats>(column + d), left = load<Floats>(column - d);
-      add_columns(right, left, load<Floats>(column_v + d), load<Floats>(column_v - d),
+template <class Radius>
+[[gnu::always_inline]] inline void WindowSums::sum_across(int first, Radius radius,
+                                                          Tile& tile) const {
+  for (int i = 0; i < kTile; i += kWideLanes) {
+    const float *column = column_.data() + radius + first + i,
+                *column_v = column_v_.data() + radius + first + i;
+    WideFloats sum = load<WideFloats>(column), sum_u{}, sum_v = load<WideFloats>(column_v);
+    for (int d = 1; d <= radius; ++d) {
+      const WideFloats right = load<WideFloats>(column + d), left = load<WideFloats>(column - d);
+      add_columns(right, left, load<WideFloats>(column_v + d), load<WideFloats>(column_v - d),
                   static_cast<float>(d), sum, sum_u, sum_v);
     }
     store(sum, tile.sum + i);
@@ -74,7 +75,8 @@ class InverseDepthRows final : public NormalRows {
         whole_(options.window),
         windows_(inverse, options, EdgeGate(options, k)),
         gated_(inverse, options, EdgeGate(options, k)),
-        sums_(inverse, options.window / 2) {
+        sums_(inverse),
+        radius_(options.window / 2) {
     to_axis_.resize(inverse.stride + kTile);
     for (int u = 0; u < inverse.width; ++u)
       to_axis_[static_cast<std::size_t>(u)] = static_cast<float>(k.cx - u);
@@ -87,6 +89,8 @@ class InverseDepthRows final : public NormalRows {
   }
 
  private:
+  template <class Radius>
+  void fit_whole_windows(int v, Radius radius, NormalRow& row);
   void fit_whole_windows(int v, NormalRow& row);
   void fit_gated_windows(int v, NormalRow& row);
 
@@ -97,17 +101,19 @@ class InverseDepthRows final : public NormalRows {
   SmoothWindows windows_;
   GatedWindows gated_;
   WindowSums sums_;
+  int radius_;
   std::vector<float> to_axis_;
 };
 
-VPM_VECTOR_CLONES
-void InverseDepthRows::fit_whole_windows(int v, NormalRow& row) {
+template <class Radius>
+[[gnu::always_inline]] inline void InverseDepthRows::fit_whole_windows(int v, Radius radius,
+                                                                       NormalRow& row) {
   const float dv_axis = static_cast<float>(cy_ - v), fx = fx_, fy = fy_;
   const WholeWindow whole = whole_;
-  sums_.sum_columns(v);
+  sums_.sum_columns(v, radius);
   for (int first = 0; first < inverse_.width; first += kTile) {
     WindowSums::Tile t;
-    sums_.sum_across(first, t);
+    sums_.sum_across(first, radius, t);
     const float *centre = inverse_.at(first, v), *du = to_axis_.data() + first;
     float x[kTile], y[kTile], z[kTile];
     for (int i = 0; i < kTile; ++i) {
@@ -117,6 +123,13 @@ void InverseDepthRows::fit_whole_windows(int v, NormalRow& row) {
     }
     row.take(first, x, y, z, std::min(kTile, inverse_.width - first));
   }
+}
+
+VPM_VECTOR_CLONES
+void InverseDepthRows::fit_whole_windows(int v, NormalRow& row) {
+  with_radius(
+      radius_, [&](auto radius)
+                   __attribute__((always_inline)) { fit_whole_windows(v, radius, row); });
 }
 
 VPM_VECTOR_CLONES

@@ -1,8 +1,8 @@
 #include "libvpm/cloud/normal_window.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "libvpm/core/vector_clones.h"
@@ -42,15 +42,15 @@ SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& op
 
 // Floats that are not negative are in the order of their bits, and integers have a minimum that is
 // one instruction.
-VPM_VECTOR_CLONES
-void SmoothWindows::scan(int v) {
-  const int columns = inverse_.width + 2 * radius_, rows = 2 * radius_;
+template <class Radius>
+[[gnu::always_inline]] inline void SmoothWindows::scan(int v, Radius radius) {
+  const int columns = inverse_.width + 2 * radius, rows = 2 * radius;
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  for (int i = 0; i < columns; i += kLanes) {
-    const float* row = inverse_.at(i - radius_, v - radius_);
-    Ints low = std::bit_cast<Ints>(load<Floats>(row)), high = low;
+  for (int i = 0; i < columns; i += kWideLanes) {
+    const float* row = inverse_.at(i - radius, v - radius);
+    WideInts low = load<WideInts>(row), high = low;
     for (int k = 1; k <= rows; ++k) {
-      const Ints value = std::bit_cast<Ints>(load<Floats>(row + k * stride));
+      const WideInts value = load<WideInts>(row + k * stride);
       low = value < low ? value : low;
       high = value > high ? value : high;
     }
@@ -60,17 +60,17 @@ void SmoothWindows::scan(int v) {
   const float* centre = inverse_.at(0, v);
   for (int first = 0; first < inverse_.width; first += kTile) {
     float window_min[kTile], window_max[kTile];
-    for (int i = 0; i < kTile; i += kLanes) {
+    for (int i = 0; i < kTile; i += kWideLanes) {
       const std::int32_t *mins = column_min_.data() + first + i,
                          *maxs = column_max_.data() + first + i;
-      Ints low = load<Ints>(mins), high = load<Ints>(maxs);
+      WideInts low = load<WideInts>(mins), high = load<WideInts>(maxs);
       for (int k = 1; k <= rows; ++k) {
-        const Ints least = load<Ints>(mins + k), most = load<Ints>(maxs + k);
+        const WideInts least = load<WideInts>(mins + k), most = load<WideInts>(maxs + k);
         low = least < low ? least : low;
         high = most > high ? most : high;
       }
-      store(std::bit_cast<Floats>(low), window_min + i);
-      store(std::bit_cast<Floats>(high), window_max + i);
+      store(low, window_min + i);
+      store(high, window_max + i);
     }
     std::uint8_t* smooth = smooth_.data() + first;
     for (int i = 0; i < kTile; ++i) {
@@ -81,9 +81,18 @@ void SmoothWindows::scan(int v) {
   }
 }
 
+VPM_VECTOR_CLONES
+void SmoothWindows::scan(int v) {
+  with_radius(
+      radius_, [&](auto radius) __attribute__((always_inline)) { scan(v, radius); });
+}
+
 int SmoothWindows::next_rough(int u) const {
-  const auto end = smooth_.begin() + inverse_.width;
-  return static_cast<int>(std::find(smooth_.begin() + u, end, 0) - smooth_.begin());
+  const void* const found =
+      std::memchr(smooth_.data() + u, 0, static_cast<std::size_t>(inverse_.width - u));
+  return found == nullptr
+             ? inverse_.width
+             : static_cast<int>(static_cast<const std::uint8_t*>(found) - smooth_.data());
 }
 
 GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& options,
@@ -100,12 +109,12 @@ GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& opti
 }
 
 // What lies off the planes by no more than the gates, summed. The first time there are no planes.
-template <bool kFirst>
-[[gnu::always_inline]] inline GatedWindows::Sums GatedWindows::sum_admitted(const float* centre) {
+template <bool kFirst, class Radius>
+[[gnu::always_inline]] inline GatedWindows::Sums GatedWindows::sum_admitted(const float* centre,
+                                                                            Radius radius) {
   const float* gates = kFirst ? wide_gates_.data() : gates_.data();
   float* weights = weights_.data();
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  const int radius = radius_;
   const Floats middle = load<Floats>(centre), unit = 1.0F / middle;
   const Floats near_a = load<Floats>(planes_.a), near_b = load<Floats>(planes_.b),
                near_c = load<Floats>(planes_.c);
@@ -137,12 +146,12 @@ template <bool kFirst>
   return sums;
 }
 
-template <bool kFirst>
-[[gnu::always_inline]] inline void GatedWindows::fit_admitted(const float* centre) {
-  const Sums s = sum_admitted<kFirst>(centre);
+template <bool kFirst, class Radius>
+[[gnu::always_inline]] inline void GatedWindows::fit_admitted(const float* centre, Radius radius) {
+  const Sums s = sum_admitted<kFirst>(centre, radius);
   for (int first = 0; first < kLanes; first += kLanes / 2) {
     Doubles e{}, ue{}, ve{};
-    for (int k = 0; k <= 2 * radius_; k += kColumns) {
+    for (int k = 0; k <= 2 * radius; k += kColumns) {
       e += doubles(fold(s.column_e + k), first);
       ue += doubles(fold(s.column_ue + k), first);
       ve += doubles(fold(s.column_ve + k), first);
@@ -159,12 +168,16 @@ template <bool kFirst>
 
 VPM_VECTOR_CLONES
 void GatedWindows::fit_first(const float* centre) {
-  fit_admitted<true>(centre);
+  with_radius(
+      radius_, [&](auto radius)
+                   __attribute__((always_inline)) { fit_admitted<true>(centre, radius); });
 }
 
 VPM_VECTOR_CLONES
 void GatedWindows::fit_second(const float* centre) {
-  fit_admitted<false>(centre);
+  with_radius(
+      radius_, [&](auto radius)
+                   __attribute__((always_inline)) { fit_admitted<false>(centre, radius); });
 }
 
 const GatedWindows::Planes& GatedWindows::fit(int u, int v) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "libvpm/cloud/normal_fit.h"
@@ -13,6 +14,16 @@
 #include "libvpm/core/lanes.h"
 
 namespace vpm {
+
+// Calls body(radius), with a constant for windows as wide as they are by default: its loops unroll.
+template <class Body>
+[[gnu::always_inline]] inline void with_radius(int radius, const Body& body) {
+  constexpr int kUsual = NormalOptions{}.window / 2;
+  if (radius == kUsual)
+    body(std::integral_constant<int, kUsual>{});
+  else
+    body(radius);
+}
 
 // Bounds of inverse depth by the options' edge gate.
 struct EdgeGate {
@@ -33,6 +44,9 @@ class SmoothWindows {
   bool smooth(int u) const { return smooth_[static_cast<std::size_t>(u)] != 0; }
 
  private:
+  template <class Radius>
+  void scan(int v, Radius radius);
+
   const PaddedImage& inverse_;
   int radius_;
   EdgeGate edges_;
@@ -79,10 +93,10 @@ class GatedWindows {
     Floats n{}, u{}, v{}, uu{}, uv{}, vv{};
     Floats column_e[kMostColumns], column_ue[kMostColumns], column_ve[kMostColumns];
   };
-  template <bool kFirst>
-  Sums sum_admitted(const float* centre);
-  template <bool kFirst>
-  void fit_admitted(const float* centre);
+  template <bool kFirst, class Radius>
+  Sums sum_admitted(const float* centre, Radius radius);
+  template <bool kFirst, class Radius>
+  void fit_admitted(const float* centre, Radius radius);
   void fit_first(const float* centre);
   void fit_second(const float* centre);
 

@@ -1,6 +1,9 @@
 // Vectors of numbers by the extension that GCC and Clang share: each operation is that of IEEE 754
 // in each lane, on whatever vectors the CPU has, so no value depends on them. For loops whose sums
 // compilers do not keep in registers by themselves. Not for device code.
+//
+// Vectors go from function to function only where one is inlined into the other (always_inline:
+// without optimisation too), since functions that are compiled for other CPUs pass them otherwise.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +11,15 @@
 
 namespace vpm {
 
-// Lanes of a vector of floats; a vector of doubles has half as many.
-inline constexpr int kLanes = 8;
+// Lanes of a vector of floats; a vector of doubles has half as many. Wide ones are for long rows.
+inline constexpr int kLanes = 8, kWideLanes = 16;
 
 using Floats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(32)));
+using WideFloats = float __attribute__((vector_size(64)));
+using WideDoubles = double __attribute__((vector_size(64)));
+using WideInts = std::int32_t __attribute__((vector_size(64)));
 using HalfFloats = float __attribute__((vector_size(16)));
 using HalfInts = std::int32_t __attribute__((vector_size(16)));
 
@@ -36,6 +42,10 @@ template <class Vector, class Number>
   HalfFloats half;
   std::memcpy(&half, reinterpret_cast<const float*>(&from) + first, sizeof half);
   return __builtin_convertvector(half, Doubles);
+}
+// Floats in memory as doubles.
+[[gnu::always_inline]] inline WideDoubles wide_doubles(const float* from) {
+  return __builtin_convertvector(load<Floats>(from), WideDoubles);
 }
 [[gnu::always_inline]] inline HalfFloats floats(const Doubles& from) {
   return __builtin_convertvector(from, HalfFloats);
