@@ -211,6 +211,14 @@ def packing_cost(report):
         for r in meshes) + ", checks of the mesh and certificate included."
 
 
+def single_precision(report):
+    rows = [[thousands(r["spheres"]), f"{r['double']['median_us']:.0f}", f"{r['single']['median_us']:.0f}",
+             f"{r['single']['median_us'] / r['double']['median_us']:.2f}", f"{r['volume_difference']:.0e}",
+             f"{r['force_difference']:.0e}", f"{r['torque_difference']:.0e}"] for r in report["results"]]
+    return table(["spheres", "double, µs", "single, µs", "ratio", "volume differs by, of the tool's", "force, of itself",
+                  "torque, of V times reach"], rows)
+
+
 def cuda(report):
     rates = {(r["measure"], r["spheres"]): r["poses_per_second"] for r in report["batch"]}
     copies = max(r["copies"] for r in report["control_loop"])
@@ -275,7 +283,8 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
-         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
+         "libvpm/query/README.md": {"single precision": (single_precision, "single_precision"),
+                                    "cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
                                      "cuda devices": (cuda_devices, "cuda_devices")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
