@@ -28,7 +28,7 @@ def table(head, rows):
 def source(report):
     devices = report.get("devices")
     device = (f"{len(devices)} x {devices[0]}" if devices else
-              report.get("device") or report["settings"].get("device"))
+              report.get("device") or report.get("settings", {}).get("device"))
     if device:
         return f"`{report['command']}`, commit {report['commit'][:7]}, {device}."
     machine = report["machine"]
