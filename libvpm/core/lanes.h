@@ -43,12 +43,12 @@ template <class Vector, class Number>
   std::memcpy(&half, reinterpret_cast<const float*>(&from) + first, sizeof half);
   return __builtin_convertvector(half, Doubles);
 }
+[[gnu::always_inline]] inline HalfFloats floats(const Doubles& from) {
+  return __builtin_convertvector(from, HalfFloats);
+}
 // Floats in memory as doubles.
 [[gnu::always_inline]] inline WideDoubles wide_doubles(const float* from) {
   return __builtin_convertvector(load<Floats>(from), WideDoubles);
-}
-[[gnu::always_inline]] inline HalfFloats floats(const Doubles& from) {
-  return __builtin_convertvector(from, HalfFloats);
 }
 
 }  // namespace vpm
