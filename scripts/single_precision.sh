@@ -17,9 +17,10 @@ for source in "$from"/query/*.cpp; do
   case $(basename "$source") in depth_frames.cpp | frame_preparation.cpp | frame_slot_unavailable.cpp) ;; *) sources+=("$source") ;; esac
 done
 c++ -std=c++20 -O3 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -w -DVPM_VERSION='"single"' \
-  -I"$work" -I"$repository" "$repository/scripts/single_precision/compare.cpp" "${sources[@]}" \
+  -I"$work" -I"$repository" "$repository"/{scripts/single_precision/compare,tools/bench/statistics}.cpp "${sources[@]}" \
   -L"$build/lib" -Wl,-rpath,"$build/lib" -lvpm -ltbb -o "$work/compare"
-"$work/compare" "$tool" "$cloud" "$levels" >"$work/results.json"
+"$build/bin/control-loop" "$tool" "$cloud" device=cpu queries=1 poses="$work/poses.jsonl" path=400 >"$work/log"
+"$work/compare" "$tool" "$cloud" "$work/poses.jsonl" "$levels" >"$work/results.json"
 
 python3 - "$work/results.json" "$out" "$(git -C "$repository" rev-parse --short=12 HEAD)" <<'PYTHON'
 import json, os, re, sys

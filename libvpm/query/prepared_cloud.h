@@ -100,21 +100,10 @@ void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& 
   }
   const DiskSurface disks = disk_surface();
   if (disks.count == 0) return;
-  std::uint32_t stack[DiskSurface::kMaxDepth];
-  int size = 0;
-  stack[size++] = 1;
-  while (size > 0) {
-    const std::uint32_t node = stack[--size];
-    if (DiskSurface::squared_distance(disks.nodes[node], center) > radius * radius) continue;
-    if (node >= disks.leaves) {
-      const std::uint32_t begin = (node - disks.leaves) * DiskSurface::kLeafSize;
-      visit(begin, begin + DiskSurface::kLeafSize < disks.count ? begin + DiskSurface::kLeafSize
-                                                                : disks.count);
-    } else {
-      stack[size++] = 2 * node + 1;
-      stack[size++] = 2 * node;
-    }
-  }
+  disks.for_leaves_in_ball(center, radius * radius, [&](std::uint32_t begin, std::uint32_t end) {
+    visit(begin, end);
+    return true;
+  });
 }
 
 }  // namespace vpm

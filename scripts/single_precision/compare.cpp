@@ -1,9 +1,11 @@
-// The same queries in double and in single precision by turns, along a circle where a twentieth of
-// the tool is inside: times and differences, as JSON. compare TOOL.vpmg CLOUD.vpmc LEVELS
+// The same queries in double and in single precision by turns: times and differences, as JSON.
+// compare TOOL.vpmg CLOUD.vpmc POSES.jsonl LEVELS
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -13,6 +15,7 @@
 #include "libvpm/query/query.h"
 #include "libvpm_single/core/parallel.h"
 #include "libvpm_single/query/query.h"
+#include "tools/bench/statistics.h"
 
 namespace single = vpm_single;
 using nlohmann::json;
@@ -106,29 +109,16 @@ single::Cloud to_single(const vpm::Cloud& from) {
   return to;
 }
 
-// Poses about the place that the middle of an image shows.
-class Circle {
- public:
-  Circle(const vpm::ToolModel& tool, const vpm::PreparedCloud& cloud) : tool_(tool) {
-    const std::size_t middle = cloud.positions().size() / 2 + cloud.positions().size() / 960;
-    place_ = cloud.origin() + widen(cloud.positions()[middle]);
-    towards_ = normalized_or_zero(cloud.camera_to_world().translation - place_);
-    side_ = normalized_or_zero(cross(towards_, {1, 0, 0}));
+// As control-loop writes them: lines of [tx,ty,tz,qx,qy,qz,qw].
+std::vector<vpm::Pose> read_poses(const char* path) {
+  std::vector<vpm::Pose> poses;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    const auto p = json::parse(line).get<std::array<double, 7>>();
+    poses.push_back({vpm::rotation_from_quaternion({p[3], p[4], p[5], p[6]}), {p[0], p[1], p[2]}});
   }
-  vpm::Pose pose(double height, int step) const {
-    constexpr double kRadius = 0.1;  // of the tool's reach
-    const double phase = 0.025 * step, half = 0.15 * std::sin(0.005 * step), s = std::sin(half);
-    const vpm::Rotation rotation = vpm::rotation_from_quaternion(
-        {s * towards_.x, s * towards_.y, s * towards_.z, std::cos(half)});
-    const vpm::Vec3 aside = kRadius * tool_.reach *
-                            (std::sin(phase) * side_ + std::cos(phase) * cross(towards_, side_));
-    return {rotation, place_ + height * towards_ + aside - rotation * tool_.center_of_mass};
-  }
-
- private:
-  const vpm::ToolModel& tool_;
-  vpm::Vec3 place_, towards_, side_;
-};
+  return poses;
+}
 
 template <class Query, class Cloud, class Pose>
 auto timed(Query& query, const Cloud& cloud, const Pose& pose, std::vector<double>& microseconds) {
@@ -139,12 +129,9 @@ auto timed(Query& query, const Cloud& cloud, const Pose& pose, std::vector<doubl
   return result;
 }
 
-json spread(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double part) {
-    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-  };
-  return {{"median_us", at(0.5)}, {"quartile1_us", at(0.25)}, {"quartile3_us", at(0.75)}};
+json to_json(const std::vector<double>& microseconds) {
+  const vpm::bench::Spread s = vpm::bench::spread_of(microseconds);
+  return {{"median_us", s.median}, {"quartile1_us", s.quartile1}, {"quartile3_us", s.quartile3}};
 }
 
 vpm::Vec3 widened(single::Vec3 v) {
@@ -152,23 +139,16 @@ vpm::Vec3 widened(single::Vec3 v) {
 }
 
 json compare(const vpm::ToolModel& tool, const single::ToolModel& tool_single,
-             const vpm::Cloud& cloud, std::uint32_t level) {
+             const vpm::Cloud& cloud, const std::vector<vpm::Pose>& poses, std::uint32_t level) {
   const vpm::PreparedCloud prepared(cloud);
   const single::PreparedCloud prepared_single(to_single(cloud));
   vpm::Query query(tool, {.level = level, .counts_points = false});
   single::Query query_single(tool_single, {.level = level, .counts_points = false});
-  const Circle circle(tool, prepared);
-  double low = -tool.reach, high = tool.reach;
-  for (int k = 0; k < 24; ++k) {
-    const double middle = 0.5 * (low + high);
-    (query.run(prepared, circle.pose(middle, 0)).volume_fraction > 0.05 ? low : high) = middle;
-  }
-  constexpr int kWarmUp = 50, kSteps = 600;
+  query.run(prepared, poses[0]);
+  query_single.run(prepared_single, to_single(poses[0]));
   std::vector<double> times, times_single;
   double volume = 0, force = 0, torque = 0;
-  for (int step = 0; step < kWarmUp + kSteps; ++step) {
-    if (step == kWarmUp) times.clear(), times_single.clear();
-    const vpm::Pose pose = circle.pose(low, step);
+  for (const vpm::Pose& pose : poses) {
     const vpm::Result a = timed(query, prepared, pose, times);
     const single::Result b = timed(query_single, prepared_single, to_single(pose), times_single);
     const vpm::Wrench& w = a.wrench;
@@ -177,9 +157,9 @@ json compare(const vpm::ToolModel& tool, const single::ToolModel& tool_single,
     torque = std::max(torque, norm(w.torque - widened(b.wrench.torque)) / (a.volume * tool.reach));
   }
   return {{"spheres", query.level().sphere_count},
-          {"queries", kSteps},
-          {"double", spread(times)},
-          {"single", spread(times_single)},
+          {"queries", poses.size()},
+          {"double", to_json(times)},
+          {"single", to_json(times_single)},
           {"volume_difference", volume},
           {"force_difference", force},
           {"torque_difference", torque}};
@@ -194,9 +174,10 @@ int main(int, char** arguments) {
   vpm::set_thread_count(1);
   single::set_thread_count(1);
   json results = json::array();
-  std::istringstream levels(arguments[3]);
+  const std::vector<vpm::Pose> poses = read_poses(arguments[3]);
+  std::istringstream levels(arguments[4]);
   for (std::string level; std::getline(levels, level, ',');)
     results.push_back(
-        compare(tool, tool_single, cloud, static_cast<std::uint32_t>(std::stoul(level))));
+        compare(tool, tool_single, cloud, poses, static_cast<std::uint32_t>(std::stoul(level))));
   std::puts(results.dump(2).c_str());
 }

@@ -456,6 +456,7 @@ __device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const Cros
   if (distance > -ball.radius && distance < ball.radius) {
     const unsigned list =
         task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
+    // Member by member: the whole would be stored byte by byte.
     FlatBlock& block = flat(list, lists_.add(list, task));
     block.plane = plane;
     block.block = unit.block;
@@ -529,6 +530,7 @@ __device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const T
   ToolSum sum;
   measure.add(piece, look, sum);
   if (look.is_hidden && !task.is_whole()) {
+    // Member by member, as above.
     HiddenPiece& hidden = space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)];
     hidden.at = look.x;
     hidden.foot = look.reading.foot;
