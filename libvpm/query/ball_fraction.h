@@ -10,13 +10,20 @@ VPM_HD constexpr double unit_cap_volume(double height) {
   return kPi * height * height * (3 - height) / 3;
 }
 
+// The formula of ball_fraction_inside for distances within [-1, 1]. Real: double, or a vector of
+// such.
+template <class Real>
+[[gnu::always_inline]] VPM_HD constexpr Real fraction_of_cut_ball(const Real& distance) {
+  const Real away = 1 - distance;
+  return away * away * (2 + distance) / 4;
+}
+
 // Fraction of a ball on the inner side of a plane at signed distance `distance` (in radii;
 // negative: the centre is inside). Exact, monotone, 0 and 1 outside of [-1, 1].
 VPM_HD constexpr double ball_fraction_inside(double distance) {
   if (distance >= 1) return 0;
   if (distance <= -1) return 1;
-  const double away = 1 - distance;
-  return away * away * (2 + distance) / 4;
+  return fraction_of_cut_ball(distance);
 }
 
 }  // namespace vpm

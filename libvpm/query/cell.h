@@ -103,6 +103,22 @@ struct CrossingPlane {
   }
 };
 
+// Of samples behind a plane, added in their order.
+struct CrossedSums {
+  double weight = 0;
+  Vec3 moment;  // of each weight times its sample's centre
+  bool is_cut = false;
+};
+// The weight of a sample that lies behind a plane.
+VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane& plane,
+                                   bool& is_cut) {
+  const double distance = plane.distance(widen(sample.center));
+  if (distance >= sample.radius) return 0;
+  if (distance <= -sample.radius) return sample.weight;
+  is_cut = true;
+  return sample.weight * ball_fraction_inside(distance / sample.radius);
+}
+
 // A compact piece of a share: a sample, or a block that is not cut taken whole (radius 0).
 struct SharePiece {
   Vec3 at;  // centroid, about the tool's centre of mass
@@ -140,14 +156,18 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  VPM_HD CellResult run() const {
+  // `samples`: SamplesInTurn, or what adds the same sooner.
+  template <class Samples>
+  VPM_HD CellResult run(Samples samples) const {
     CellResult result;
     bool any_hidden = false;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-      any_hidden |= add_block(b, Pass::seen, result);
+      any_hidden |= add_block(b, Pass::seen, samples, result);
     if (any_hidden) {
-      for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, Pass::hidden, result);
+      for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
+        add_block(b, Pass::hidden, samples, result);
     }
+    samples.finish(*this, result);
     return result;
   }
 
@@ -205,23 +225,23 @@ class CellMeasure {
 
   // Adds what one block contributes to run(): first of all that is seen, then, knowing the plane,
   // of what is hidden. Returns whether something was left for the second pass.
-  VPM_HD bool add_block(std::uint32_t b, Pass pass, CellResult& result) const {
+  template <class Samples>
+  VPM_HD bool add_block(std::uint32_t b, Pass pass, Samples& samples, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const BlockLook look = look_at(block);
     if (look.side == Side::free) return false;
     result.point = look.point;
-    if (look.side != Side::mixed) return add_piece(piece_of(cell_.masses[b]), pass, result);
+    if (look.side != Side::mixed)
+      return add_piece(piece_of(cell_.masses[b]), pass, result, surface_);
     if (look.is_flat) {
       if (pass == Pass::hidden) return false;
       result.is_far |= is_far(look.tangent.distance(look.center));
-      add_block(b, {look.tangent, to_surface_}, result);
+      add_block<Samples>(b, {look.tangent, to_surface_}, result);
       return false;
     }
-    bool any_hidden = false;
     const auto& near = surface_.around_ball(look.center, block.radius, look.point);
-    for (std::uint32_t s = block.begin; s < block.end; ++s)
-      any_hidden |= add_piece(piece_of(cell_.samples[s]), pass, result, near);
-    return any_hidden;
+    return samples.add(*this, cell_.samples + block.begin, block.end - block.begin, pass, near,
+                       result);
   }
 
   // Whether a place of the surface may be another one's than that which cuts the cell.
@@ -248,13 +268,16 @@ class CellMeasure {
   // `near`: the surface as far as it concerns the piece.
   template <class Near>
   VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point, const Near& near) const {
-    PieceLook look;
-    look.x = to_surface_ * piece.at;
-    look.reading = near.read(look.x, point);
-    look.is_inside = look.reading.known && look.reading.distance < piece.radius;
+    const Vec3 x = to_surface_ * piece.at;
+    return look_of(piece, x, near.read(x, point));
+  }
+  // The same of a piece at x of the surface's frame, where that was read.
+  VPM_HD PieceLook look_of(const SharePiece& piece, Vec3 x, const Reading& reading) const {
+    PieceLook look{x, reading};
+    look.is_inside = reading.known && reading.distance < piece.radius;
     if (!look.is_inside) return look;
-    look.is_far = is_far(look.reading.distance);
-    look.is_hidden = is_hidden(look.reading.foot);
+    look.is_far = is_far(reading.distance);
+    look.is_hidden = is_hidden(reading.foot);
     return look;
   }
   // Whether the cell's own plane vouches for a hidden piece.
@@ -275,27 +298,35 @@ class CellMeasure {
         is_cut(piece, look) ? look.reading.normal : surface_.closest_normal(look.x, look.reading);
     sum.add(weight_inside(piece, look), in_tool(normal), arm(piece.at));
   }
+  // The same of one that is not cut, with its direction.
+  VPM_HD void add_pushed(const SharePiece& piece, Vec3 normal, ToolSum& sum) const {
+    sum.add(piece.weight, in_tool(normal), arm(piece.at));
+  }
   VPM_HD void add_to_plane(const PieceLook& look, ContactPlane& plane) const {
     plane.add(look.reading.normal, relative(look.reading.foot));
   }
 
-  // Adds what one piece contributes to run(): first of all pieces that are seen, then, knowing the
-  // plane, of those that are hidden. Returns whether the piece was left for the second pass.
-  VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result) const {
-    return add_piece(piece, pass, result, surface_);
+  // What a pass of run() does with a piece: first come all that are seen, then, knowing the plane,
+  // those that are hidden. Notes what is said of its share; the sum is left to the caller.
+  enum class Take { leave, wait, add };  // wait: for the second pass
+  VPM_HD Take take(const SharePiece& piece, const PieceLook& look, Pass pass,
+                   CellResult& result) const {
+    if (!look.is_inside) return Take::leave;
+    result.is_far |= look.is_far;
+    if (look.is_hidden != (pass == Pass::hidden)) return look.is_hidden ? Take::wait : Take::leave;
+    if (look.is_hidden && !is_vouched_for(look, result.plane)) return Take::leave;
+    if (is_cut(piece, look) && !look.is_hidden) add_to_plane(look, result.plane);
+    return Take::add;
   }
+  // Adds what one piece contributes to a pass. Returns whether it waits.
   template <class Near>
   VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result,
                         const Near& near) const {
     const PieceLook look = look_at(piece, result.point, near);
     result.point = look.reading.point;
-    if (!look.is_inside) return false;
-    result.is_far |= look.is_far;
-    if (look.is_hidden != (pass == Pass::hidden)) return look.is_hidden;
-    if (look.is_hidden && !is_vouched_for(look, result.plane)) return false;
-    if (is_cut(piece, look) && !look.is_hidden) add_to_plane(look, result.plane);
-    add(piece, look, result.sum);
-    return false;
+    const Take taken = take(piece, look, pass, result);
+    if (taken == Take::add) add(piece, look, result.sum);
+    return taken == Take::wait;
   }
 
   // Adds what one piece contributes to reached().
@@ -312,27 +343,18 @@ class CellMeasure {
     add(piece, look, sum);
   }
 
-  // The weight of a sample that lies behind a plane.
-  VPM_HD double weight_inside(const CellSample& sample, const CrossingPlane& plane,
-                              bool& is_cut) const {
-    const double distance = plane.distance(widen(sample.center));
-    if (distance >= sample.radius) return 0;
-    if (distance <= -sample.radius) return sample.weight;
-    is_cut = true;
-    return sample.weight * ball_fraction_inside(distance / sample.radius);
-  }
-  // Adds a block that a plane crosses: the sums, sample by sample in their order, of those weights
-  // and of each times its sample's centre.
-  VPM_HD void add_crossed(const CellBlock& block, const CrossingPlane& plane, double weight,
-                          Vec3 moment, bool is_cut, CellResult& result) const {
-    if (is_cut) {
+  // Adds a block that a plane crosses.
+  VPM_HD void add_crossed(const CellBlock& block, const CrossingPlane& plane,
+                          const CrossedSums& sums, CellResult& result) const {
+    if (sums.is_cut) {
       const Vec3 x = widen(block.center);
       result.plane.add(plane.seen.normal,
                        relative(to_surface_ * x - plane.distance(x) * plane.seen.normal));
     }
-    result.sum.add_moment(weight, arm(moment), plane.normal);
+    result.sum.add_moment(sums.weight, arm(sums.moment), plane.normal);
   }
   // Adds one block of a share that lies where the surface is one plane.
+  template <class Samples>
   VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const double distance = plane.distance(widen(block.center));
@@ -341,17 +363,12 @@ class CellMeasure {
       add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
       return;
     }
-    double weight = 0;
-    Vec3 moment;
-    bool is_cut = false;
-    for (std::uint32_t s = block.begin; s < block.end; ++s) {
-      const double inside = weight_inside(cell_.samples[s], plane, is_cut);
-      if (inside == 0) continue;
-      weight += inside;
-      moment += inside * widen(cell_.samples[s].center);
-    }
-    add_crossed(block, plane, weight, moment, is_cut, result);
+    const CrossedSums sums =
+        Samples::crossed(plane, cell_.samples + block.begin, block.end - block.begin);
+    add_crossed(block, plane, sums, result);
   }
+  const Surface& surface() const { return surface_; }
+  const Pose& to_surface() const { return to_surface_; }
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:
@@ -365,6 +382,34 @@ class CellMeasure {
   ToolReach tool_reach_;
   CellView cell_;
   Vec3 center_;  // in the surface's frame
+};
+
+// The samples of a block that the surface may cut, one after another.
+struct SamplesInTurn {
+  // Returns whether some wait for the second pass.
+  template <class Measure, class Near>
+  VPM_HD bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+                  typename Measure::Pass pass, const Near& near, CellResult& result) const {
+    bool any_waits = false;
+    for (std::uint32_t k = 0; k < count; ++k)
+      any_waits |= measure.add_piece(piece_of(samples[k]), pass, result, near);
+    return any_waits;
+  }
+  template <class Measure>
+  VPM_HD void finish(const Measure&, CellResult&) const {}
+
+  // Where a plane crosses the block.
+  static VPM_HD CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                                    std::uint32_t count) {
+    CrossedSums sums;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const double inside = weight_behind(samples[k], plane, sums.is_cut);
+      if (inside == 0) continue;
+      sums.weight += inside;
+      sums.moment += inside * widen(samples[k].center);
+    }
+    return sums;
+  }
 };
 
 }  // namespace vpm

@@ -68,6 +68,26 @@ struct DepthSurface {
     return tiles[0][v * width + u].high;
   }
 
+  // Whether four pixels, of which none may be unknown, show one surface. Real: double, or a vector
+  // of such.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD auto is_one_surface(const Real& a, const Real& b,
+                                                           const Real& c, const Real& d) {
+    const Real low_ab = a < b ? a : b, low_cd = c < d ? c : d,
+               low = low_ab < low_cd ? low_ab : low_cd;
+    const Real high_ab = a > b ? a : b, high_cd = c > d ? c : d,
+               high = high_ab > high_cd ? high_ab : high_cd;
+    return (low > 0) & (high - low <= kJump * high);
+  }
+  // Of four pixels, at these fractions of the way from a to b, and from a to c.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD Real bilinear(const Real& a, const Real& b, const Real& c,
+                                                     const Real& d, const Real& along_u,
+                                                     const Real& along_v) {
+    const Real top = a + along_u * (b - a), bottom = c + along_u * (d - c);
+    return top + along_v * (bottom - top);
+  }
+
   // Inverse depth of the surface in the direction of x (x.z > 0).
   VPM_HD Pixel look_up(Vec3 x) const {
     const double per_depth = 1 / x.z;
@@ -82,15 +102,10 @@ struct DepthSurface {
     const double c = inverse_depth(u0, v1), d = inverse_depth(u1, v1);
     const std::int32_t nearest = vn * width + un;
     const Vec3f normal = normals[nearest];  // all reads at once: a device waits for them together
-    const double low_ab = a < b ? a : b, low_cd = c < d ? c : d,
-                 low = low_ab < low_cd ? low_ab : low_cd;
-    const double high_ab = a > b ? a : b, high_cd = c > d ? c : d,
-                 high = high_ab > high_cd ? high_ab : high_cd;
-    if (!(low > 0) || high - low > kJump * high)
+    if (!is_one_surface(a, b, c, d))
       return {vn == v0 ? (un == u0 ? a : b) : (un == u0 ? c : d), nearest, normal};
     const double fu = u < 0 ? 0 : u - u0, fv = v < 0 ? 0 : v - v0;
-    const double top = a + fu * (b - a), bottom = c + fu * (d - c);
-    return {top + fv * (bottom - top), nearest, normal};
+    return {bilinear(a, b, c, d, fu, fv), nearest, normal};
   }
 
   VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "libvpm/core/parallel_region.h"
+#include "libvpm/query/cell_samples.h"
 #include "libvpm/query/patch.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/share_states.h"
@@ -70,7 +71,7 @@ class ShareClassifier {
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
     if (look.side == Side::mixed) {
       TangentPlane plane;
-      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, ReadInTurn{}, plane))
+      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, ReadTogether{}, plane))
         return classify_nodes(root);
       states_.planes[root] = {plane, to_surface_};
       classify_crossed(root, look);
@@ -132,7 +133,7 @@ class ShareClassifier {
     } else if (side == Side::uncut) {
       states_.set(i, Cell::open, Passage::unknown);
     } else {
-      states_.results[i] = measure(view).run();
+      states_.results[i] = measure(view).run(Samples<Surface>{});
       take_result(i, Passage::unknown);
       return points_ != nullptr ? count_points(i, center) : 0;
     }
@@ -181,7 +182,8 @@ class ShareClassifier {
       CellResult& result = states_.results[i];
       result = {};
       const CellMeasure measure = this->measure(view);
-      for (std::uint32_t b = view.begin; b < view.end; ++b) measure.add_block(b, plane, result);
+      for (std::uint32_t b = view.begin; b < view.end; ++b)
+        measure.template add_block<Samples<Surface>>(b, plane, result);
       take_result(i, Passage::patch);
     }
   }

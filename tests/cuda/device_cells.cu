@@ -58,7 +58,7 @@ VPM_HD CellAnswer answer(const Surface& surface, const Pose& to_surface, const L
                          std::uint32_t i) {
   const CellView view = level.cell(i);
   CellMeasure<Surface> measure(surface, to_surface, level.tool_reach, view);
-  const CellResult result = measure.run();
+  const CellResult result = measure.run(SamplesInTurn{});
   const auto nearest = [&] { return CutShare{result.plane, to_surface * view.center, view.reach}; };
   return {surface.side_of_ball(to_surface * view.center, view.reach), result,
           measure.reached(true, nearest)};

@@ -556,7 +556,7 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   for (std::uint32_t begin = 0; begin < task.count; begin += tile.width) {
     const std::uint32_t k = begin + tile.lane;
     const CellSample sample = level_.samples[task.begin + (k < task.count ? k : 0)];
-    const double inside = k < task.count ? measure.weight_inside(sample, flat.plane, is_cut) : 0;
+    const double inside = k < task.count ? weight_behind(sample, flat.plane, is_cut) : 0;
     const Vec3 moment = inside != 0 ? inside * widen(sample.center) : Vec3{};
     shared_.terms[0][slot + tile.lane] = inside;
     shared_.terms[1][slot + tile.lane] = moment.x;
@@ -574,8 +574,8 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   const double sums[4] = {tile.from(sum, 0), tile.from(sum, 1), tile.from(sum, 2),
                           tile.from(sum, 3)};
   if (!tile.leads()) return;
-  measure.add_crossed(level_.blocks[flat.block], flat.plane, sums[0], {sums[1], sums[2], sums[3]},
-                      is_cut, result);
+  measure.add_crossed(level_.blocks[flat.block], flat.plane,
+                      {sums[0], {sums[1], sums[2], sums[3]}, is_cut}, result);
   result.is_far = flat.is_far;
 }
 

@@ -1,0 +1,98 @@
+// The samples of a block that the surface may cut, many at once: what SamplesInTurn adds, by
+// vectors where the surface is a camera's. On the host.
+#pragma once
+
+#include <type_traits>
+
+#include "libvpm/query/cell.h"
+#include "libvpm/query/depth_readings.h"
+
+namespace vpm {
+
+// What SamplesInTurn::crossed adds.
+CrossedSums crossed_sums(const CrossingPlane& plane, const CellSample* samples,
+                         std::uint32_t count);
+
+// Reads the surface of a camera at four places by vectors, others one after the other.
+struct ReadTogether {
+  template <class Surface>
+  void operator()(const Surface& surface, const Vec3 (&places)[4], Reading (&readings)[4]) const {
+    if constexpr (std::is_same_v<Surface, DepthSurface>)
+      read_four(surface, places, readings);
+    else
+      ReadInTurn{}(surface, places, readings);
+  }
+};
+
+// For one cell.
+class SamplesTogether {
+ public:
+  template <class Measure>
+  bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+           typename Measure::Pass pass, const DepthSurface& surface, CellResult& result) {
+    bool any_waits = false;
+    for (std::uint32_t first = 0; first < count; first += kAtOnce) {
+      SampleReading readings[kAtOnce];
+      const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
+      const std::uint32_t found =
+          read_samples(surface, measure.to_surface(), {samples + first, some}, readings);
+      for (std::uint32_t k = 0; k < found; ++k)
+        any_waits |=
+            add(measure, samples[first + readings[k].sample], readings[k].at, pass, result);
+    }
+    return any_waits;
+  }
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, samples, count);
+  }
+  // Adds those whose direction was left to be found together.
+  template <class Measure>
+  void finish(const Measure& measure, CellResult& result) {
+    if (pushed_count_ == 0) return;
+    Vec3 normals[kAtOnce];
+    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
+    for (std::uint32_t k = 0; k < pushed_count_; ++k)
+      measure.add_pushed(pushed_[k], normals[k], result.sum);
+    pushed_count_ = 0;
+  }
+
+ private:
+  static constexpr std::uint32_t kAtOnce = 16;
+
+  template <class Measure>
+  bool add(const Measure& measure, const CellSample& sample, const PlaceReading& at,
+           typename Measure::Pass pass, CellResult& result) {
+    const SharePiece piece = piece_of(sample);
+    const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
+    const auto taken = measure.take(piece, look, pass, result);
+    if (taken != Measure::Take::add) return taken == Measure::Take::wait;
+    if (Measure::is_cut(piece, look)) {
+      measure.add(piece, look, result.sum);
+      return false;
+    }
+    pushed_[pushed_count_] = piece;
+    pushed_at_[pushed_count_] = at;
+    if (++pushed_count_ == kAtOnce) finish(measure, result);
+    return false;
+  }
+
+  SharePiece pushed_[kAtOnce];
+  PlaceReading pushed_at_[kAtOnce];
+  std::uint32_t pushed_count_ = 0;
+};
+
+// Disks are searched for one place after another.
+struct SamplesAmongDisks : SamplesInTurn {
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, samples, count);
+  }
+};
+
+// What a cell's samples are added by on the host.
+template <class Surface>
+using Samples =
+    std::conditional_t<std::is_same_v<Surface, DepthSurface>, SamplesTogether, SamplesAmongDisks>;
+
+}  // namespace vpm
