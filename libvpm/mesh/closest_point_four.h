@@ -1,49 +1,15 @@
 // closest_point_on_triangle for four triangles at once: the same operations, so the same bits.
 #pragma once
 
+#include "libvpm/core/vec3x4.h"
 #include "libvpm/mesh/closest_point.h"
 
 namespace vpm {
 
-// Four lanes; GCC and clang make vector code of it on every architecture. How they are passed
-// depends on the processor (-Wpsabi), so that all below is inlined.
-using Double4 = double __attribute__((vector_size(32)));
-#define VPM_ALWAYS_INLINE [[gnu::always_inline]] inline
-
-struct Vec3x4 {
-  Double4 x, y, z;
-  Vec3x4() = default;
-  VPM_ALWAYS_INLINE Vec3x4(const Double4& xs, const Double4& ys, const Double4& zs)
-      : x(xs), y(ys), z(zs) {}
-  VPM_ALWAYS_INLINE Vec3x4(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
-      : x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y}, z{a.z, b.z, c.z, d.z} {}
-};
-
-VPM_ALWAYS_INLINE Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-VPM_ALWAYS_INLINE Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-VPM_ALWAYS_INLINE Vec3x4 operator*(const Double4& s, const Vec3x4& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-VPM_ALWAYS_INLINE Double4 dot(const Vec3x4& a, const Vec3x4& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-VPM_ALWAYS_INLINE Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-template <class Mask>
-VPM_ALWAYS_INLINE bool any(const Mask& mask) {
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
-}
-
 // Where `take`, the point of the segment closest to x, if that is nearer than `best2`.
 template <class Mask>
-VPM_ALWAYS_INLINE void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
-                                    const Mask& take, Vec3x4& best, Double4& best2) {
+[[gnu::always_inline]] inline void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
+                                                const Mask& take, Vec3x4& best, Double4& best2) {
   const Double4 zero{}, one = zero + 1.0;
   const Vec3x4 along = b - a;
   const Double4 length2 = dot(along, along);
@@ -62,9 +28,10 @@ VPM_ALWAYS_INLINE void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3
 
 // The closest points and their squared distances from x, infinite or exact where they are not below
 // `within2`.
-VPM_ALWAYS_INLINE void closest_points_on_triangles(const Vec3x4& x, const Vec3x4& a,
-                                                   const Vec3x4& b, const Vec3x4& c, double within2,
-                                                   Vec3x4& best, Double4& best2) {
+[[gnu::always_inline]] inline void closest_points_on_triangles(const Vec3x4& x, const Vec3x4& a,
+                                                               const Vec3x4& b, const Vec3x4& c,
+                                                               double within2, Vec3x4& best,
+                                                               Double4& best2) {
   const Double4 zero{}, infinite = zero + HUGE_VAL;
   const Vec3x4 ab = b - a, bc = c - b, ca = a - c, normal = cross(bc, ca), from_a = x - a;
   const Double4 normal2 = dot(normal, normal), height = dot(normal, from_a);

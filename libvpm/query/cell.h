@@ -70,7 +70,7 @@ struct CellResult {
   ToolSum sum;                     // tool axes, arms about the centre of mass
   ContactPlane plane;              // plane.count > 0: the surface cuts the cell
   bool is_far = false;             // a piece is further behind the surface than the tool's reach
-  std::uint32_t point = kNoPoint;  // where the surface was read last
+  std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
 };
 
 // A surface further than this many reaches from the cell's centre, or than the tool's reach from
@@ -306,8 +306,8 @@ class CellMeasure {
     plane.add(look.reading.normal, relative(look.reading.foot));
   }
 
-  // What a pass of run() does with a piece: first come all that are seen, then, knowing the plane,
-  // those that are hidden. Notes what is said of its share; the sum is left to the caller.
+  // What a pass of run() does with a piece. Notes what it says of its share; the sum is left to the
+  // caller.
   enum class Take { leave, wait, add };  // wait: for the second pass
   VPM_HD Take take(const SharePiece& piece, const PieceLook& look, Pass pass,
                    CellResult& result) const {
@@ -367,8 +367,8 @@ class CellMeasure {
         Samples::crossed(plane, cell_.samples + block.begin, block.end - block.begin);
     add_crossed(block, plane, sums, result);
   }
-  const Surface& surface() const { return surface_; }
-  const Pose& to_surface() const { return to_surface_; }
+  VPM_HD const Surface& surface() const { return surface_; }
+  VPM_HD const Pose& to_surface() const { return to_surface_; }
   VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
 
  private:

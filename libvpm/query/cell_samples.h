@@ -1,7 +1,7 @@
-// The samples of a block that the surface may cut, many at once: what SamplesInTurn adds, by
-// vectors where the surface is a camera's. On the host.
+// The samples of a cell's blocks, many at once: what SamplesInTurn adds, by vectors. On the host.
 #pragma once
 
+#include <span>
 #include <type_traits>
 
 #include "libvpm/query/cell.h"
@@ -9,9 +9,8 @@
 
 namespace vpm {
 
-// What SamplesInTurn::crossed adds.
-CrossedSums crossed_sums(const CrossingPlane& plane, const CellSample* samples,
-                         std::uint32_t count);
+// SamplesInTurn::crossed.
+CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
 
 // Reads the surface of a camera at four places by vectors, others one after the other.
 struct ReadTogether {
@@ -24,7 +23,15 @@ struct ReadTogether {
   }
 };
 
-// For one cell.
+// Disks are searched for one place after another.
+struct SamplesAmongDisks : SamplesInTurn {
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, {samples, count});
+  }
+};
+
+// Seen by a camera. For one cell.
 class SamplesTogether {
  public:
   template <class Measure>
@@ -32,37 +39,31 @@ class SamplesTogether {
            typename Measure::Pass pass, const DepthSurface& surface, CellResult& result) {
     bool any_waits = false;
     for (std::uint32_t first = 0; first < count; first += kAtOnce) {
-      SampleReading readings[kAtOnce];
       const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
       const std::uint32_t found =
-          read_samples(surface, measure.to_surface(), {samples + first, some}, readings);
+          read_samples(surface, measure.to_surface(), {samples + first, some}, readings_);
       for (std::uint32_t k = 0; k < found; ++k)
         any_waits |=
-            add(measure, samples[first + readings[k].sample], readings[k].at, pass, result);
+            add_one(measure, samples[first + readings_[k].sample], readings_[k].at, pass, result);
     }
     return any_waits;
   }
-  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
-                             std::uint32_t count) {
-    return crossed_sums(plane, samples, count);
-  }
-  // Adds those whose direction was left to be found together.
   template <class Measure>
   void finish(const Measure& measure, CellResult& result) {
-    if (pushed_count_ == 0) return;
-    Vec3 normals[kAtOnce];
-    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
-    for (std::uint32_t k = 0; k < pushed_count_; ++k)
-      measure.add_pushed(pushed_[k], normals[k], result.sum);
-    pushed_count_ = 0;
+    add_pushed(measure, result);
+  }
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, {samples, count});
   }
 
  private:
   static constexpr std::uint32_t kAtOnce = 16;
 
+  // Those wholly behind the surface wait until their directions are found together.
   template <class Measure>
-  bool add(const Measure& measure, const CellSample& sample, const PlaceReading& at,
-           typename Measure::Pass pass, CellResult& result) {
+  bool add_one(const Measure& measure, const CellSample& sample, const PlaceReading& at,
+               typename Measure::Pass pass, CellResult& result) {
     const SharePiece piece = piece_of(sample);
     const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
     const auto taken = measure.take(piece, look, pass, result);
@@ -73,26 +74,27 @@ class SamplesTogether {
     }
     pushed_[pushed_count_] = piece;
     pushed_at_[pushed_count_] = at;
-    if (++pushed_count_ == kAtOnce) finish(measure, result);
+    if (++pushed_count_ == kAtOnce) add_pushed(measure, result);
     return false;
   }
+  template <class Measure>
+  void add_pushed(const Measure& measure, CellResult& result) {
+    if (pushed_count_ == 0) return;
+    Vec3 normals[kAtOnce];
+    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
+    for (std::uint32_t k = 0; k < pushed_count_; ++k)
+      measure.add_pushed(pushed_[k], normals[k], result.sum);
+    pushed_count_ = 0;
+  }
 
+  SampleReading readings_[kAtOnce];
   SharePiece pushed_[kAtOnce];
   PlaceReading pushed_at_[kAtOnce];
   std::uint32_t pushed_count_ = 0;
 };
 
-// Disks are searched for one place after another.
-struct SamplesAmongDisks : SamplesInTurn {
-  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
-                             std::uint32_t count) {
-    return crossed_sums(plane, samples, count);
-  }
-};
-
-// What a cell's samples are added by on the host.
 template <class Surface>
-using Samples =
+using SamplesOnHost =
     std::conditional_t<std::is_same_v<Surface, DepthSurface>, SamplesTogether, SamplesAmongDisks>;
 
 }  // namespace vpm

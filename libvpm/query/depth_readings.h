@@ -28,7 +28,7 @@ void read_four(const DepthSurface& surface, const Vec3 (&places)[4], Reading (&r
 std::uint32_t read_samples(const DepthSurface& surface, const Pose& to_surface,
                            std::span<const CellSample> samples, SampleReading* readings);
 
-// DepthSurface::closest_normal of each.
+// DepthSurface::closest_normal of each; their readings are known.
 void closest_normals(const DepthSurface& surface, std::span<const PlaceReading> places,
                      Vec3* normals);
 

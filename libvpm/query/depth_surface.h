@@ -68,8 +68,7 @@ struct DepthSurface {
     return tiles[0][v * width + u].high;
   }
 
-  // Whether four pixels, of which none may be unknown, show one surface. Real: double, or a vector
-  // of such.
+  // Whether four pixels are all known and show one surface. Real: double, or a vector of such.
   template <class Real>
   [[gnu::always_inline]] static VPM_HD auto is_one_surface(const Real& a, const Real& b,
                                                            const Real& c, const Real& d) {
@@ -92,8 +91,9 @@ struct DepthSurface {
   VPM_HD Pixel look_up(Vec3 x) const {
     const double per_depth = 1 / x.z;
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
-    if (!(u >= -0.5 && v >= -0.5 && u < width - 0.5 && v < height - 0.5)) return {};
-    const double up = u + 0.5, vp = v + 0.5;  // not negative: what is cut off rounds to the nearest
+    const double up = u + 0.5, vp = v + 0.5;
+    if (!(u >= -0.5 && v >= -0.5 && up < width && vp < height)) return {};
+    // Not negative: what is cut off rounds to the nearest.
     const std::int32_t un = static_cast<std::int32_t>(up), vn = static_cast<std::int32_t>(vp);
     const std::int32_t u0 = u < 0 ? 0 : static_cast<std::int32_t>(u),
                        v0 = v < 0 ? 0 : static_cast<std::int32_t>(v);

@@ -133,7 +133,7 @@ class ShareClassifier {
     } else if (side == Side::uncut) {
       states_.set(i, Cell::open, Passage::unknown);
     } else {
-      states_.results[i] = measure(view).run(Samples<Surface>{});
+      states_.results[i] = measure(view).run(SamplesOnHost<Surface>{});
       take_result(i, Passage::unknown);
       return points_ != nullptr ? count_points(i, center) : 0;
     }
@@ -183,7 +183,7 @@ class ShareClassifier {
       result = {};
       const CellMeasure measure = this->measure(view);
       for (std::uint32_t b = view.begin; b < view.end; ++b)
-        measure.template add_block<Samples<Surface>>(b, plane, result);
+        measure.template add_block<SamplesOnHost<Surface>>(b, plane, result);
       take_result(i, Passage::patch);
     }
   }

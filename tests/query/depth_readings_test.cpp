@@ -1,12 +1,13 @@
-// Readings of a camera's surface together, against one after the other: the same bits.
+// What is read of a camera's surface together, against one after the other: the same bits.
 #include "libvpm/query/depth_readings.h"
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <limits>
 #include <random>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/cell.h"
 #include "libvpm/query/cell_samples.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/share_clusters.h"
@@ -45,22 +46,67 @@ Cloud rough_cloud(const char* scene) {
   return make_cloud(image, camera, {.window = 3});
 }
 
-// About the surface, beside the image, behind the camera, and without end.
+// About the surface, beside the image, behind the camera, and where nothing can be read.
 Vec3 any_place(Numbers& numbers) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  static const Vec3 odd[] = {{0, 0, 0},      {0.1, HUGE_VAL, 1}, {0, 0, 1e-40}, {0, 0, 0x1p-100},
+                             {0, 0, 1e-300}, {kNaN, 0, 1},       {0, 0, kNaN},  {0, 0, HUGE_VAL}};
   const double kind = numbers.between(0, 1);
-  if (kind < 0.01) return {0, 0, 0};
-  if (kind < 0.02) return {0.1, HUGE_VAL, 1};
-  if (kind < 0.03) return {0.1, 0.1, 1e-40};
+  if (kind < 0.03) return odd[static_cast<std::size_t>(numbers.between(0, std::size(odd)))];
   const double depth = kind < 0.1 ? numbers.between(-1, 1) : numbers.between(0.6, 1.6);
   return {depth * numbers.between(-0.7, 0.7), depth * numbers.between(-0.55, 0.55), depth};
 }
 
-void expect_equal(const Reading& a, const Reading& b) {
+std::uint64_t bits(double number) {
+  return std::bit_cast<std::uint64_t>(number);
+}
+void expect_same(double a, double b) {
+  EXPECT_TRUE(bits(a) == bits(b) || (std::isnan(a) && std::isnan(b))) << a << " and " << b;
+}
+void expect_same(Vec3 a, Vec3 b) {
+  expect_same(a.x, b.x);
+  expect_same(a.y, b.y);
+  expect_same(a.z, b.z);
+}
+void expect_same(const Reading& a, const Reading& b) {
   EXPECT_EQ(a.known, b.known);
-  EXPECT_EQ(a.distance, b.distance);
-  EXPECT_EQ(a.normal, b.normal);
-  EXPECT_EQ(a.foot, b.foot);
+  expect_same(a.distance, b.distance);
+  expect_same(a.normal, b.normal);
+  expect_same(a.foot, b.foot);
   EXPECT_EQ(a.point, b.point);
+}
+
+int known_of_four(const DepthSurface& surface, Numbers& numbers) {
+  Vec3 places[4];
+  Reading together[4], one[4];
+  for (Vec3& place : places) place = any_place(numbers);
+  read_four(surface, places, together);
+  ReadInTurn{}(surface, places, one);
+  int known = 0;
+  for (int k = 0; k < 4; ++k) {
+    expect_same(together[k], one[k]);
+    known += one[k].known ? 1 : 0;
+  }
+  return known;
+}
+
+// Of `count` places behind the surface.
+void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers& numbers,
+                         int& turned) {
+  std::vector<PlaceReading> places(count);
+  for (PlaceReading& place : places) {
+    do {
+      place.x = any_place(numbers);
+      place.reading = surface.read(place.x);
+    } while (!(place.reading.known && place.reading.distance < 0));
+  }
+  std::vector<Vec3> normals(count);
+  closest_normals(surface, places, normals.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 one = surface.closest_normal(places[k].x, places[k].reading);
+    expect_same(normals[k], one);
+    turned += one != places[k].reading.normal ? 1 : 0;
+  }
 }
 
 class DepthReadings : public ::testing::TestWithParam<const char*> {
@@ -76,33 +122,26 @@ class DepthReadings : public ::testing::TestWithParam<const char*> {
 
   PreparedCloud cloud_{rough_cloud(GetParam())};
   DepthSurface surface_ = cloud_.depth_surface();
-  std::vector<Vec3f> normals_{surface_.normals, surface_.normals + surface_.width* surface_.height};
+  std::vector<Vec3f> normals_ = std::vector<Vec3f>(
+      surface_.normals, surface_.normals + std::ptrdiff_t{surface_.width} * surface_.height);
   Numbers numbers_;
 };
 
 TEST_P(DepthReadings, OfFourPlacesAreThoseOfEach) {
   int known = 0;
-  for (int k = 0; k < 20000; ++k) {
-    Vec3 places[4];
-    Reading together[4], one[4];
-    for (Vec3& place : places) place = any_place(numbers_);
-    read_four(surface_, places, together);
-    ReadInTurn{}(surface_, places, one);
-    for (int i = 0; i < 4; ++i) {
-      expect_equal(together[i], one[i]);
-      known += one[i].known ? 1 : 0;
-    }
-  }
+  for (int k = 0; k < 20000; ++k) known += known_of_four(surface_, numbers_);
   EXPECT_GT(known, 5000);
 }
 
 TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceReaches) {
-  int reached = 0;
+  int reached = 0, of_no_size = 0;
   for (int k = 0; k < 2000; ++k) {
     const Pose to_surface{testing::generic_rotation(), any_place(numbers_)};
     std::vector<CellSample> samples(static_cast<std::size_t>(numbers_.between(0, 40)));
-    for (CellSample& sample : samples)
-      sample = {narrow(numbers_.place(0.05)), static_cast<float>(numbers_.between(0, 0.02)), 1};
+    for (CellSample& sample : samples) {
+      const double radius = std::max(0.0, numbers_.between(-0.005, 0.02));
+      sample = {narrow(numbers_.place(0.05)), static_cast<float>(radius), 1};
+    }
     std::vector<SampleReading> together(samples.size());
     together.resize(read_samples(surface_, to_surface, samples, together.data()));
     std::size_t found = 0;
@@ -112,93 +151,153 @@ TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceReaches) {
       if (!(reading.known && reading.distance < samples[s].radius)) continue;
       ASSERT_LT(found, together.size());
       EXPECT_EQ(together[found].sample, s);
-      EXPECT_EQ(together[found].at.x, x);
-      expect_equal(together[found].at.reading, reading);
+      expect_same(together[found].at.x, x);
+      expect_same(together[found].at.reading, reading);
       ++found;
+      of_no_size += samples[s].radius == 0 ? 1 : 0;
     }
     EXPECT_EQ(found, together.size());
     reached += static_cast<int>(found);
   }
   EXPECT_GT(reached, 1000);
+  EXPECT_GT(of_no_size, 100);
 }
 
 TEST_P(DepthReadings, FindTheNormalsThatEachFinds) {
   int turned = 0;
-  for (int k = 0; k < 5000; ++k) {
-    PlaceReading places[7];
-    for (PlaceReading& place : places) {
-      do {
-        place.x = any_place(numbers_);
-        place.reading = surface_.read(place.x);
-      } while (!(place.reading.known && place.reading.distance < 0));
-    }
-    Vec3 normals[7];
-    closest_normals(surface_, places, normals);
-    for (int i = 0; i < 7; ++i) {
-      const Vec3 one = surface_.closest_normal(places[i].x, places[i].reading);
-      EXPECT_EQ(normals[i], one);
-      turned += one != places[i].reading.normal ? 1 : 0;
-    }
+  for (std::size_t k = 0; k < 5000; ++k) expect_same_normals(surface_, k % 10, numbers_, turned);
+  EXPECT_GT(turned, 3000);
+}
+
+void expect_same(const CellResult& a, const CellResult& b) {
+  EXPECT_EQ(a.sum.volume.value, b.sum.volume.value);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(a.sum.force[axis].value, b.sum.force[axis].value);
+    EXPECT_EQ(a.sum.torque[axis].value, b.sum.torque[axis].value);
+    EXPECT_EQ(a.plane.normal[axis].value, b.plane.normal[axis].value);
+    EXPECT_EQ(a.plane.foot[axis].value, b.plane.foot[axis].value);
   }
-  EXPECT_GT(turned, 5000);
+  EXPECT_EQ(a.plane.count, b.plane.count);
+  EXPECT_EQ(a.is_far, b.is_far);
 }
 
 TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 5);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
-  int cut = 0, pushed = 0;
+  int cut = 0, pushed = 0, hidden = 0;  // samples of blocks that are neither flat nor on one side
   for (int k = 0; k < 300; ++k) {
-    const Pose to_surface{testing::generic_rotation(), {0, 0, numbers_.between(0.8, 1.2)}};
-    for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+    const Pose to_surface{testing::generic_rotation(),
+                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+    // Shares of two blocks.
+    for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, tool.reach,
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
-                   level.block_begin[i + 1], tool.spheres[i].center, level.share_reach[i]});
-      const CellResult a = measure.run(SamplesInTurn{}), b = measure.run(SamplesTogether{});
-      EXPECT_EQ(a.sum.volume.value, b.sum.volume.value);
-      for (int axis = 0; axis < 3; ++axis) {
-        EXPECT_EQ(a.sum.force[axis].value, b.sum.force[axis].value);
-        EXPECT_EQ(a.sum.torque[axis].value, b.sum.torque[axis].value);
-        EXPECT_EQ(a.plane.normal[axis].value, b.plane.normal[axis].value);
-        EXPECT_EQ(a.plane.foot[axis].value, b.plane.foot[axis].value);
+                   level.block_begin[i + 2], tool.spheres[i].center, 2 * level.share_reach[i]});
+      expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
+      const CellBlock& block = level.blocks[level.block_begin[i]];
+      const auto block_look = measure.look_at(block);
+      if (block_look.side != Side::mixed || block_look.is_flat) continue;
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const SharePiece piece = piece_of(level.samples[s]);
+        const auto look = measure.look_at(piece);
+        if (!look.is_inside) continue;
+        ++(look.is_hidden ? hidden : measure.is_cut(piece, look) ? cut : pushed);
       }
-      EXPECT_EQ(a.plane.count, b.plane.count);
-      EXPECT_EQ(a.is_far, b.is_far);
-      cut += a.plane.count > 0 ? 1 : 0;
-      pushed += a.plane.count == 0 && a.sum.volume.value > 0 ? 1 : 0;
     }
   }
   EXPECT_GT(cut, 500);
   EXPECT_GT(pushed, 500);
+  if (std::string(GetParam()) == "block") {
+    EXPECT_GT(hidden, 500);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DepthReadings,
-                         ::testing::Values("tilted-wall", "ball", "groove", "step", "plate"),
+                         ::testing::Values("tilted-wall", "ball", "groove", "step", "plate",
+                                           "block"),
                          [](const auto& variant) { return test::test_name(variant.param); });
+
+// An image that shows a rough wall at about 1 m.
+struct SmallImage {
+  SmallImage(std::int32_t width, std::int32_t height) {
+    Numbers numbers;
+    for (std::int32_t k = 0; k < width * height; ++k) {
+      const auto inverse_depth = static_cast<float>(numbers.between(0.98, 1.02));
+      pixels.push_back({inverse_depth, inverse_depth});
+      normals.push_back(narrow(normalized_or_zero(numbers.place(0.6) - Vec3{0, 0, 1})));
+    }
+    surface.k = {8, 8, (width - 1) / 2.0, (height - 1) / 2.0};
+    surface.width = width, surface.height = height;
+    surface.levels = 1;
+    surface.tiles[0] = pixels.data();
+    surface.normals = normals.data();
+  }
+
+  std::vector<InverseDepthRange> pixels;
+  std::vector<Vec3f> normals;
+  DepthSurface surface;
+};
+
+TEST(SmallImages, AreReadTogetherAsInTurn) {
+  for (const std::int32_t width : {1, 2, 8, 9, 10}) {
+    for (const std::int32_t height : {1, 8, 9}) {
+      const SmallImage image(width, height);
+      Numbers numbers;
+      int known = 0, turned = 0;
+      for (std::size_t k = 0; k < 2000; ++k) {
+        known += known_of_four(image.surface, numbers);
+        expect_same_normals(image.surface, k % 5, numbers, turned);
+      }
+      EXPECT_GT(known, 100) << width << " x " << height;
+    }
+  }
+}
+
+// There 0.5 less than an ulp and another 0.5 round to 1, which is no pixel.
+TEST(SmallImages, HaveNoPixelBeyondTheirRim) {
+  const SmallImage image(1, 1);
+  const double rim = 0.5 - 0x1p-54;
+  for (const Vec3 x : {Vec3{rim / 8, 0, 1}, Vec3{0, rim / 8, 1}}) {
+    const Reading reading = image.surface.read(x);
+    EXPECT_TRUE(!reading.known || reading.point == 0) << reading.point;
+    Reading together[4];
+    read_four(image.surface, {x, x, x, x}, together);
+    for (const Reading& one : together) expect_same(one, reading);
+  }
+}
 
 TEST(CrossedSamples, AddUpTogetherAsInTurn) {
   Numbers numbers;
-  int cut = 0, whole = 0;
+  int cut = 0, whole = 0, touched = 0;
   for (int k = 0; k < 20000; ++k) {
     CrossingPlane plane;
     plane.normal = normalized_or_zero(numbers.place(1));
     plane.height = numbers.between(-0.12, 0.12);
     std::vector<CellSample> samples(static_cast<std::size_t>(numbers.between(0, 40)));
-    for (CellSample& sample : samples)
-      sample = {narrow(numbers.place(0.1)), static_cast<float>(numbers.between(0, 0.03)),
-                numbers.between(0, 1)};
-    const auto count = static_cast<std::uint32_t>(samples.size());
-    const CrossedSums together = crossed_sums(plane, samples.data(), count),
-                      in_turn = SamplesInTurn::crossed(plane, samples.data(), count);
-    EXPECT_EQ(together.weight, in_turn.weight);
-    EXPECT_EQ(together.moment, in_turn.moment);
+    for (CellSample& sample : samples) {
+      const double radius = std::max(0.0, numbers.between(-0.01, 0.03));
+      sample = {narrow(numbers.place(0.1)), static_cast<float>(radius), numbers.between(0, 1)};
+    }
+    if (k % 4 == 0 && !samples.empty()) {  // through a centre, or touching, exactly
+      const CellSample& sample = samples.front();
+      plane.normal = {1, 0, 0};
+      plane.height = (k % 12 / 4 - 1) * double{sample.radius} - double{sample.center.x};
+      touched += std::abs(plane.distance(widen(sample.center))) == sample.radius ? 1 : 0;
+    }
+    const CrossedSums together = crossed_sums(plane, samples),
+                      in_turn = SamplesInTurn::crossed(plane, samples.data(),
+                                                       static_cast<std::uint32_t>(samples.size()));
+    expect_same(together.weight, in_turn.weight);
+    expect_same(together.moment, in_turn.moment);
     EXPECT_EQ(together.is_cut, in_turn.is_cut);
     cut += in_turn.is_cut ? 1 : 0;
     whole += !in_turn.is_cut && in_turn.weight > 0 ? 1 : 0;
   }
   EXPECT_GT(cut, 5000);
   EXPECT_GT(whole, 100);
+  EXPECT_GT(touched, 500);
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+// Numbers and three-vectors by fours, in the vectors that GCC and Clang share: each operation is
+// that of IEEE 754 in each lane, in the order of core/vec3.h and core/pose.h, so with their bits.
+// Passed between inlined functions only (core/lanes.h has the reason). Not for device code.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "libvpm/core/pose.h"
+
+namespace vpm {
+
+inline constexpr int kFour = 4;
+using Double4 = double __attribute__((vector_size(4 * sizeof(double))));
+using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
+using Int4 = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
+using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else none
+
+template <class Mask>
+[[gnu::always_inline]] inline bool any(const Mask& mask) {
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+[[gnu::always_inline]] inline Double4 square_root(const Double4& a) {
+  return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
+}
+[[gnu::always_inline]] inline Double4 absolute(const Double4& a) {
+  return Double4{std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2]), std::fabs(a[3])};
+}
+[[gnu::always_inline]] inline Int4 truncated(const Double4& a) {
+  return __builtin_convertvector(a, Int4);
+}
+[[gnu::always_inline]] inline Double4 widen(const Int4& a) {
+  return __builtin_convertvector(a, Double4);
+}
+[[gnu::always_inline]] inline Double4 widen(const Float4& a) {
+  return __builtin_convertvector(a, Double4);
+}
+[[gnu::always_inline]] inline Mask4 widen_mask(const Int4& mask) {
+  return __builtin_convertvector(mask, Mask4);
+}
+
+struct Vec3x4 {
+  Double4 x, y, z;
+
+  Vec3x4() = default;
+  [[gnu::always_inline]] Vec3x4(const Double4& xs, const Double4& ys, const Double4& zs)
+      : x(xs), y(ys), z(zs) {}
+  [[gnu::always_inline]] Vec3x4(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
+      : x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y}, z{a.z, b.z, c.z, d.z} {}
+  [[gnu::always_inline]] Vec3x4(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d)
+      : x(widen(Float4{a.x, b.x, c.x, d.x})),
+        y(widen(Float4{a.y, b.y, c.y, d.y})),
+        z(widen(Float4{a.z, b.z, c.z, d.z})) {}
+
+  [[gnu::always_inline]] Vec3 of(int lane) const { return {x[lane], y[lane], z[lane]}; }
+};
+
+[[gnu::always_inline]] inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+[[gnu::always_inline]] inline Vec3x4 operator-(const Vec3x4& a, const Vec3x4& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[gnu::always_inline]] inline Vec3x4 operator*(const Double4& s, const Vec3x4& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+[[gnu::always_inline]] inline Double4 dot(const Vec3x4& a, const Vec3x4& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[gnu::always_inline]] inline Double4 dot(const Vec3& a, const Vec3x4& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[gnu::always_inline]] inline Double4 squared_norm(const Vec3x4& a) {
+  return dot(a, a);
+}
+[[gnu::always_inline]] inline Vec3x4 cross(const Vec3x4& a, const Vec3x4& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[gnu::always_inline]] inline Vec3x4 operator*(const Pose& p, const Vec3x4& a) {
+  return {dot(p.rotation.row0, a) + p.translation.x, dot(p.rotation.row1, a) + p.translation.y,
+          dot(p.rotation.row2, a) + p.translation.z};
+}
+[[gnu::always_inline]] inline Vec3x4 choose(const Mask4& mask, const Vec3x4& a, const Vec3x4& b) {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+[[gnu::always_inline]] inline Vec3x4 normalized_or_zero(const Vec3x4& a) {
+  const Double4 length = square_root(squared_norm(a)), zero{};
+  const Mask4 has_direction = (length > 0) & (length < HUGE_VAL);
+  return choose(has_direction, {a.x / length, a.y / length, a.z / length}, {zero, zero, zero});
+}
+
+}  // namespace vpm
