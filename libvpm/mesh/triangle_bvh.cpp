@@ -24,8 +24,9 @@ double component(Vec3 v, int axis) {
 }
 
 // The closest point on up to four triangles, if it is nearer than `best2`.
-VPM_ALWAYS_INLINE void take_closest(const TriangleBvh::Corners* first, std::uint32_t count, Vec3 x,
-                                    SurfacePoint& best, double& best2) {
+[[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
+                                                std::uint32_t count, Vec3 x, SurfacePoint& best,
+                                                double& best2) {
   const TriangleBvh::Corners& s = first[0];
   const TriangleBvh::Corners& t = first[std::min(1u, count - 1)];
   const TriangleBvh::Corners& u = first[std::min(2u, count - 1)];
@@ -37,7 +38,7 @@ VPM_ALWAYS_INLINE void take_closest(const TriangleBvh::Corners* first, std::uint
   for (std::uint32_t k = 0; k < count; ++k) {
     if (!(d2[k] < best2)) continue;
     best2 = d2[k];
-    best.point = {p.x[k], p.y[k], p.z[k]};
+    best.point = p.of(static_cast<int>(k));
     best.triangle = first[k].triangle;
   }
 }
