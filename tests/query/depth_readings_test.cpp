@@ -283,7 +283,8 @@ TEST(CrossedSamples, AddUpTogetherAsInTurn) {
     if (k % 4 == 0 && !samples.empty()) {  // through a centre, or touching, exactly
       const CellSample& sample = samples.front();
       plane.normal = {1, 0, 0};
-      plane.height = (k % 12 / 4 - 1) * double{sample.radius} - double{sample.center.x};
+      const int side = k % 12 / 4 - 1;
+      plane.height = side * double{sample.radius} - double{sample.center.x};
       touched += std::abs(plane.distance(widen(sample.center))) == sample.radius ? 1 : 0;
     }
     const CrossedSums together = crossed_sums(plane, samples),
