@@ -48,10 +48,11 @@ class DepthLanes {
   [[gnu::always_inline]] Depth look_up(const Vec3x4& x) const {
     const Intrinsics& k = surface_.k;
     const std::int32_t width = surface_.width, height = surface_.height;
+    const double u_end = width, v_end = height;
     const Double4 zero{}, per_depth = 1 / x.z;
     const Double4 at_u = k.fx * (x.x * per_depth) + k.cx, at_v = k.fy * (x.y * per_depth) + k.cy;
     const Mask4 seen = (x.z >= kSmallestLength) & (at_u >= -0.5) & (at_v >= -0.5) &
-                       (at_u + 0.5 < width) & (at_v + 0.5 < height);
+                       (at_u + 0.5 < u_end) & (at_v + 0.5 < v_end);
     const Double4 u = seen ? at_u : zero, v = seen ? at_v : zero;
     const Int4 un = truncated(u + 0.5), vn = truncated(v + 0.5);
     const Double4 from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
