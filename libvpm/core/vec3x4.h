@@ -3,8 +3,9 @@
 // Passed between inlined functions only (core/lanes.h has the reason). Not for device code.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
+#include <span>
 
 #include "libvpm/core/pose.h"
 
@@ -87,6 +88,18 @@ struct Vec3x4 {
   const Double4 length = square_root(squared_norm(a)), zero{};
   const Mask4 has_direction = (length > 0) & (length < HUGE_VAL);
   return choose(has_direction, {a.x / length, a.y / length, a.z / length}, {zero, zero, zero});
+}
+
+// Four of a row, from `first` on; the last one stands for those beyond the end.
+template <class T>
+struct FourOf {
+  const T &a, &b, &c, &d;
+};
+template <class T>
+[[gnu::always_inline]] inline FourOf<T> four_of(std::span<const T> row, std::size_t first) {
+  const std::size_t last = row.size() - 1;
+  return {row[first], row[std::min(first + 1, last)], row[std::min(first + 2, last)],
+          row[std::min(first + 3, last)]};
 }
 
 }  // namespace vpm

@@ -27,10 +27,7 @@ double component(Vec3 v, int axis) {
 [[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
                                                 std::uint32_t count, Vec3 x, SurfacePoint& best,
                                                 double& best2) {
-  const TriangleBvh::Corners& s = first[0];
-  const TriangleBvh::Corners& t = first[std::min(1u, count - 1)];
-  const TriangleBvh::Corners& u = first[std::min(2u, count - 1)];
-  const TriangleBvh::Corners& v = first[count - 1];
+  const auto [s, t, u, v] = four_of(std::span(first, count), 0);
   Vec3x4 p;
   Double4 d2;
   closest_points_on_triangles({x, x, x, x}, {s.a, t.a, u.a, v.a}, {s.b, t.b, u.b, v.b},

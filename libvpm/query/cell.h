@@ -167,7 +167,7 @@ class CellMeasure {
       for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
         add_block(b, Pass::hidden, samples, result);
     }
-    samples.finish(*this, result);
+    samples.flush(*this, result);
     return result;
   }
 
@@ -396,7 +396,7 @@ struct SamplesInTurn {
     return any_waits;
   }
   template <class Measure>
-  VPM_HD void finish(const Measure&, CellResult&) const {}
+  VPM_HD void flush(const Measure&, CellResult&) const {}  // nothing is put off
 
   // Where a plane crosses the block.
   static VPM_HD CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,

@@ -1,6 +1,5 @@
 #include "libvpm/query/cell_samples.h"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -27,10 +26,7 @@ CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample>
   Mask4 any_cut{};
   const std::size_t count = samples.size();
   for (std::size_t first = 0; first < count; first += kFour) {
-    const auto sample = [&](std::size_t k) -> const CellSample& {
-      return samples[std::min(first + k, count - 1)];
-    };
-    const CellSample &a = sample(0), &b = sample(1), &c = sample(2), &d = sample(3);
+    const auto [a, b, c, d] = four_of(samples, first);
     const Vec3x4 center(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const Double4 weight{a.weight, b.weight, c.weight, d.weight};

@@ -48,9 +48,15 @@ class SamplesTogether {
     }
     return any_waits;
   }
+  // Adds those whose directions were put off, to be found together.
   template <class Measure>
-  void finish(const Measure& measure, CellResult& result) {
-    add_pushed(measure, result);
+  void flush(const Measure& measure, CellResult& result) {
+    if (pushed_count_ == 0) return;
+    Vec3 normals[kAtOnce];
+    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
+    for (std::uint32_t k = 0; k < pushed_count_; ++k)
+      measure.add_pushed(pushed_[k], normals[k], result.sum);
+    pushed_count_ = 0;
   }
   static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
                              std::uint32_t count) {
@@ -60,7 +66,6 @@ class SamplesTogether {
  private:
   static constexpr std::uint32_t kAtOnce = 16;
 
-  // Those wholly behind the surface wait until their directions are found together.
   template <class Measure>
   bool add_one(const Measure& measure, const CellSample& sample, const PlaceReading& at,
                typename Measure::Pass pass, CellResult& result) {
@@ -74,17 +79,8 @@ class SamplesTogether {
     }
     pushed_[pushed_count_] = piece;
     pushed_at_[pushed_count_] = at;
-    if (++pushed_count_ == kAtOnce) add_pushed(measure, result);
+    if (++pushed_count_ == kAtOnce) flush(measure, result);
     return false;
-  }
-  template <class Measure>
-  void add_pushed(const Measure& measure, CellResult& result) {
-    if (pushed_count_ == 0) return;
-    Vec3 normals[kAtOnce];
-    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
-    for (std::uint32_t k = 0; k < pushed_count_; ++k)
-      measure.add_pushed(pushed_[k], normals[k], result.sum);
-    pushed_count_ = 0;
   }
 
   SampleReading readings_[kAtOnce];

@@ -39,36 +39,6 @@ class DepthLanes {
  public:
   [[gnu::always_inline]] explicit DepthLanes(const DepthSurface& surface) : surface_(surface) {}
 
-  // What DepthSurface::look_up finds, but for the normal.
-  struct Depth {
-    Mask4 known;
-    Double4 inverse_depth;
-    Int4 u, v;  // nearest pixel
-  };
-  [[gnu::always_inline]] Depth look_up(const Vec3x4& x) const {
-    const Intrinsics& k = surface_.k;
-    const std::int32_t width = surface_.width, height = surface_.height;
-    const double u_end = width, v_end = height;
-    const Double4 zero{}, per_depth = 1 / x.z;
-    const Double4 at_u = k.fx * (x.x * per_depth) + k.cx, at_v = k.fy * (x.y * per_depth) + k.cy;
-    const Mask4 seen = (x.z >= kSmallestLength) & (at_u >= -0.5) & (at_v >= -0.5) &
-                       (at_u + 0.5 < u_end) & (at_v + 0.5 < v_end);
-    const Double4 u = seen ? at_u : zero, v = seen ? at_v : zero;
-    const Int4 un = truncated(u + 0.5), vn = truncated(v + 0.5);
-    const Double4 from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
-    const Int4 u0 = truncated(from_u), v0 = truncated(from_v);
-    const Int4 u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
-    const Double4 a = inverse_depths(pixels(u0, v0)), b = inverse_depths(pixels(u1, v0));
-    const Double4 c = inverse_depths(pixels(u0, v1)), d = inverse_depths(pixels(u1, v1));
-    const Mask4 left = widen_mask(un == u0), upper = widen_mask(vn == v0);
-    const Double4 nearest = upper ? (left ? a : b) : (left ? c : d);
-    const Double4 inverse_depth =
-        DepthSurface::is_one_surface(a, b, c, d)
-            ? DepthSurface::bilinear(a, b, c, d, from_u - widen(u0), from_v - widen(v0))
-            : nearest;
-    return {seen & (inverse_depth > 0), inverse_depth, un, vn};
-  }
-
   [[gnu::always_inline]] LaneReading read(const Vec3x4& x) const {
     const Depth depth = look_up(x);
     LaneReading reading;
@@ -128,6 +98,36 @@ class DepthLanes {
 
  private:
   static constexpr std::int32_t kAcross = DepthSurface::kAcross;
+
+  // What DepthSurface::look_up finds, but for the normal.
+  struct Depth {
+    Mask4 known;
+    Double4 inverse_depth;
+    Int4 u, v;  // nearest pixel
+  };
+  [[gnu::always_inline]] Depth look_up(const Vec3x4& x) const {
+    const Intrinsics& k = surface_.k;
+    const std::int32_t width = surface_.width, height = surface_.height;
+    const double u_end = width, v_end = height;
+    const Double4 zero{}, per_depth = 1 / x.z;
+    const Double4 at_u = k.fx * (x.x * per_depth) + k.cx, at_v = k.fy * (x.y * per_depth) + k.cy;
+    const Mask4 seen = (x.z >= kSmallestLength) & (at_u >= -0.5) & (at_v >= -0.5) &
+                       (at_u + 0.5 < u_end) & (at_v + 0.5 < v_end);
+    const Double4 u = seen ? at_u : zero, v = seen ? at_v : zero;
+    const Int4 un = truncated(u + 0.5), vn = truncated(v + 0.5);
+    const Double4 from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
+    const Int4 u0 = truncated(from_u), v0 = truncated(from_v);
+    const Int4 u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
+    const Double4 a = inverse_depths(pixels(u0, v0)), b = inverse_depths(pixels(u1, v0));
+    const Double4 c = inverse_depths(pixels(u0, v1)), d = inverse_depths(pixels(u1, v1));
+    const Mask4 left = widen_mask(un == u0), upper = widen_mask(vn == v0);
+    const Double4 nearest = upper ? (left ? a : b) : (left ? c : d);
+    const Double4 inverse_depth =
+        DepthSurface::is_one_surface(a, b, c, d)
+            ? DepthSurface::bilinear(a, b, c, d, from_u - widen(u0), from_v - widen(v0))
+            : nearest;
+    return {seen & (inverse_depth > 0), inverse_depth, un, vn};
+  }
 
   [[gnu::always_inline]] Int4 pixels(const Int4& u, const Int4& v) const {
     return v * surface_.width + u;

@@ -1,7 +1,5 @@
 #include "libvpm/query/depth_readings.h"
 
-#include <algorithm>
-
 #include "libvpm/core/vector_clones.h"
 #include "libvpm/query/depth_lanes.h"
 
@@ -21,10 +19,7 @@ std::uint32_t read_samples(const DepthSurface& surface, const Pose& to_surface,
   const auto count = static_cast<std::uint32_t>(samples.size());
   std::uint32_t found = 0;
   for (std::uint32_t first = 0; first < count; first += kFour) {
-    const auto sample = [&](std::uint32_t k) -> const CellSample& {
-      return samples[std::min(first + k, count - 1)];
-    };
-    const CellSample &a = sample(0), &b = sample(1), &c = sample(2), &d = sample(3);
+    const auto [a, b, c, d] = four_of(samples, first);
     const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const LaneReading reading = depths.read(x);
@@ -43,10 +38,7 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceReading> 
   const DepthLanes depths(surface);
   const std::size_t count = places.size();
   for (std::size_t first = 0; first < count; first += kFour) {
-    const auto place = [&](std::size_t k) -> const PlaceReading& {
-      return places[std::min(first + k, count - 1)];
-    };
-    const PlaceReading &a = place(0), &b = place(1), &c = place(2), &d = place(3);
+    const auto [a, b, c, d] = four_of(places, first);
     const LaneReading reading(a.reading, b.reading, c.reading, d.reading, surface.width);
     const Vec3x4 normal = depths.closest_normal({a.x, b.x, c.x, d.x}, reading);
     for (int k = 0; k < kFour && first + k < count; ++k) normals[first + k] = normal.of(k);
