@@ -26,4 +26,14 @@ VPM_HD constexpr double ball_fraction_inside(double distance) {
   return fraction_of_cut_ball(distance);
 }
 
+// Fraction of a ball behind two planes of which each leaves the given fractions; `cosine` of the
+// angle between their normals. Exact for opposite and for equal planes, and for normal ones through
+// the centre; between these, interpolated.
+VPM_HD constexpr double fraction_of_both(double first, double second, double cosine) {
+  const double across = first * second;
+  const double apart = first + second - 1 > 0 ? first + second - 1 : 0;
+  const double least = first < second ? first : second;
+  return cosine < 0 ? across - cosine * (apart - across) : across + cosine * (least - across);
+}
+
 }  // namespace vpm

@@ -288,9 +288,9 @@ class CellMeasure {
   VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
     return look.reading.distance > -piece.radius;
   }
-  VPM_HD static double weight_inside(const SharePiece& piece, const PieceLook& look) {
+  VPM_HD double weight_inside(const SharePiece& piece, const PieceLook& look) const {
     return piece.weight *
-           (is_cut(piece, look) ? ball_fraction_inside(look.reading.distance / piece.radius) : 1);
+           (is_cut(piece, look) ? surface_.fraction_inside(look.reading, look.x, piece.radius) : 1);
   }
   // Adds a piece that is inside.
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {

@@ -7,6 +7,7 @@
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/ball_fraction.h"
 #include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/surface.h"
 
@@ -341,6 +342,10 @@ struct DepthSurface {
     const double nearest = center.z - radius, farthest = center.z + radius;
     if (!(nearest > 0 && look.range.high > 0)) return HUGE_VAL;
     return (farthest - 1 / double{look.range.high}) * ((norm(center) + radius) / nearest);
+  }
+
+  static VPM_HD double fraction_inside(const Reading& reading, Vec3, double radius) {
+    return ball_fraction_inside(reading.distance / radius);
   }
 
  private:

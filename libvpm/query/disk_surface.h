@@ -1,18 +1,27 @@
 // A surface as an unorganised cloud holds it: disks (point, normal, sampling radius) in a bounding
 // volume hierarchy.
 //
-// The nearest point decides on which side a place lies. Points are in the cloud's frame about its
+// The nearest disk decides on which side a place lies. Places are in the cloud's frame about its
 // origin.
 #pragma once
 
+#include "libvpm/query/ball_fraction.h"
 #include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/surface.h"
 
 namespace vpm {
 
-// Axis-aligned box of the points below a node; empty boxes (padding) have low > high.
+// Axis-aligned box of the feet below a node, and of the points that they were measured at; empty
+// boxes (padding) have low > high.
 struct PointBox {
   Vec3f low, high;
+};
+
+// A second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or behind
+// either of them (a concave one, a slot).
+struct SecondPlane {
+  Vec3f normal, foot;
+  bool is_convex = false;
 };
 
 // A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
@@ -22,8 +31,10 @@ struct DiskSurface {
   static constexpr std::uint32_t kLeafSize = 8;
   static constexpr int kMaxDepth = 32;
 
-  const Vec3f* positions = nullptr;
+  const Vec3f* feet = nullptr;
   const Vec3f* normals = nullptr;
+  const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
+  const SecondPlane* seconds = nullptr;
   const PointBox* nodes = nullptr;
   std::uint32_t count = 0;
   std::uint32_t leaves = 0;   // a power of two
@@ -48,7 +59,7 @@ struct DiskSurface {
     std::uint32_t best = kNoPoint;
     double best_squared = bound * bound;
     if (near != kNoPoint) {
-      const double squared = squared_norm(widen(positions[near]) - x);
+      const double squared = squared_norm(widen(feet[near]) - x);
       if (squared < best_squared) {
         best_squared = squared;
         best = near;
@@ -77,7 +88,7 @@ struct DiskSurface {
         const std::uint32_t begin = (node - leaves) * kLeafSize;
         const std::uint32_t end = begin + kLeafSize < count ? begin + kLeafSize : count;
         for (std::uint32_t i = begin; i < end; ++i) {
-          const double squared = squared_norm(widen(positions[i]) - x);
+          const double squared = squared_norm(widen(feet[i]) - x);
           if (squared < best_squared || (squared == best_squared && best != kNoPoint && i < best)) {
             best_squared = squared;
             best = i;
@@ -96,8 +107,29 @@ struct DiskSurface {
   }
   VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
-    const Vec3 normal = widen(normals[i]), foot = widen(positions[i]);
-    return {true, dot(normal, x - foot), normal, foot, i};
+    const Vec3 normal = widen(normals[i]), foot = widen(feet[i]);
+    const double distance = dot(normal, x - foot);
+    if (second_of[i] != kNoPoint) {
+      const SecondPlane& second = seconds[second_of[i]];
+      const Vec3 n = widen(second.normal), at = widen(second.foot);
+      const double other = dot(n, x - at);
+      if (second.is_convex ? other > distance : other < distance) return {true, other, n, at, i};
+    }
+    return {true, distance, normal, foot, i};
+  }
+
+  // The part of a ball about x that is behind the surface that was read there.
+  VPM_HD double fraction_inside(const Reading& reading, Vec3 x, double radius) const {
+    if (second_of[reading.point] == kNoPoint)
+      return ball_fraction_inside(reading.distance / radius);
+    const SecondPlane& second = seconds[second_of[reading.point]];
+    const Vec3 own = widen(normals[reading.point]), n = widen(second.normal);
+    const double first_inside =
+        ball_fraction_inside(dot(own, x - widen(feet[reading.point])) / radius);
+    const double second_inside = ball_fraction_inside(dot(n, x - widen(second.foot)) / radius);
+    const double cosine = dot(own, n);
+    return second.is_convex ? fraction_of_both(first_inside, second_inside, cosine)
+                            : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
   }
 
   // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
@@ -125,7 +157,7 @@ struct DiskSurface {
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
     return for_leaves_in_ball(center, squared_radius, [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {
-        if (squared_norm(widen(positions[i]) - center) <= squared_radius && !visit(i)) return false;
+        if (squared_norm(widen(feet[i]) - center) <= squared_radius && !visit(i)) return false;
       }
       return true;
     });
@@ -198,7 +230,7 @@ struct DiskSurface {
     std::uint32_t found = 0;
     const bool few = for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
       normal_sum += widen(normals[i]);
-      place_sum += widen(positions[i]);
+      place_sum += widen(feet[i]);
       return ++found <= kMostOfPatch;
     });
     if (!few || found == 0) return false;
@@ -226,7 +258,7 @@ struct DiskSurface {
     std::uint32_t counts[4] = {};
     std::uint32_t found = 0;
     const bool agree = for_points_in_ball(center, squared_radius, [&](std::uint32_t i) {
-      const Vec3 place = widen(positions[i]), away = place - middle, normal = widen(normals[i]);
+      const Vec3 place = widen(feet[i]), away = place - middle, normal = widen(normals[i]);
       const int aside = (dot(away, side) > 0 ? 1 : 0) + (dot(away, other) > 0 ? 2 : 0);
       sums[aside] += normal;
       ++counts[aside];
@@ -249,7 +281,7 @@ class DiskSurface::AroundBall {
       : surface_(surface), center_(center) {
     if (nearest == kNoPoint) return;
     const double covered = kSlack * radius;
-    const double distance = norm(widen(surface.positions[nearest]) - center);
+    const double distance = norm(widen(surface.feet[nearest]) - center);
     if (are_many(nearest, covered * (distance + covered))) return;
     squared_radius_ = covered * covered;
     const double reach = kSlack * (distance + 2 * covered);
@@ -260,9 +292,9 @@ class DiskSurface::AroundBall {
     if (count_ == 0 || !(squared_norm(x - center_) <= squared_radius_))
       return surface_.read(x, near);
     std::uint32_t best = points_[0];
-    double best_squared = squared_norm(widen(surface_.positions[best]) - x);
+    double best_squared = squared_norm(widen(surface_.feet[best]) - x);
     for (int k = 1; k < count_; ++k) {
-      const double squared = squared_norm(widen(surface_.positions[points_[k]]) - x);
+      const double squared = squared_norm(widen(surface_.feet[points_[k]]) - x);
       if (squared < best_squared || (squared == best_squared && points_[k] < best)) {
         best_squared = squared;
         best = points_[k];

@@ -84,7 +84,8 @@ std::uint64_t PreparedCloud::next_serial() {
   return ++last;
 }
 
-PreparedCloud::PreparedCloud(const Cloud& cloud) : serial_(next_serial()), origin_(cloud.origin) {
+PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
+    : serial_(next_serial()), origin_(cloud.origin) {
   if (cloud.size() > kMaxPoints) {
     refuse("the cloud has " + std::to_string(cloud.size()) + " points; at most " +
            std::to_string(kMaxPoints) + " can be counted exactly: thin it out, or split it");
@@ -102,7 +103,12 @@ PreparedCloud::PreparedCloud(const Cloud& cloud) : serial_(next_serial()), origi
     take_inverse_depth(depth, 0, inverse.height, inverse);
     tiles_.build(inverse);
   } else {
-    order_in_space(cloud);
+    const std::vector<float> radii = order_in_space(cloud);
+    build_boxes();
+    DiskSurface measured = disk_surface();
+    measured.feet = positions_.data();
+    measured.normals = normals_.data();
+    disks_ = points == PointReading::settled ? settle(measured, radii) : as_measured(measured);
     build_boxes();
   }
 }
@@ -149,7 +155,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
   std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
 }
 
-void PreparedCloud::order_in_space(const Cloud& cloud) {
+std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
   const MortonCurve curve(cloud.positions);
   std::vector<std::uint64_t> code(cloud.size());
   for (std::size_t i = 0; i < code.size(); ++i) code[i] = curve(cloud.positions[i]);
@@ -164,6 +170,10 @@ void PreparedCloud::order_in_space(const Cloud& cloud) {
                           }),
               order.end());
   take_in_order(cloud, order);
+  std::vector<float> radii;
+  radii.reserve(order.size());
+  for (const std::uint32_t i : order) radii.push_back(cloud.radii[i]);
+  return radii;
 }
 
 void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order) {
@@ -187,7 +197,9 @@ void PreparedCloud::build_boxes() {
                 std::max(box.high.z, high.z)};
   };
   for (std::uint32_t i = 0; i < count; ++i) {
-    grow(boxes_[leaves_ + i / DiskSurface::kLeafSize], positions_[i], positions_[i]);
+    PointBox& leaf = boxes_[leaves_ + i / DiskSurface::kLeafSize];
+    grow(leaf, positions_[i], positions_[i]);
+    if (!disks_.feet.empty()) grow(leaf, disks_.feet[i], disks_.feet[i]);
   }
   for (std::uint32_t node = leaves_; node-- > 1;) {
     for (const std::uint32_t child : {2 * node, 2 * node + 1})
@@ -209,9 +221,14 @@ DepthSurface PreparedCloud::depth_surface() const {
 }
 
 DiskSurface PreparedCloud::disk_surface() const {
-  return {positions_.data(), normals_.data(),
-          boxes_.data(),     static_cast<std::uint32_t>(positions_.size()),
-          leaves_,           largest_radius_};
+  return {disks_.feet.data(),
+          disks_.normals.data(),
+          disks_.second_of.data(),
+          disks_.seconds.data(),
+          boxes_.data(),
+          static_cast<std::uint32_t>(positions_.size()),
+          leaves_,
+          largest_radius_};
 }
 
 PixelRectangle PreparedCloud::pixels_of_ball(Vec3 center, double radius) const {

@@ -47,7 +47,7 @@ DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& n
 
 std::unique_ptr<PreparedCloud> FrameReader::prepared(const ImportedScan& scan,
                                                      const std::string& name) {
-  if (!scan.image) return std::make_unique<PreparedCloud>(scan.points);
+  if (!scan.image) return std::make_unique<PreparedCloud>(scan.points, points_);
   std::unique_ptr<PreparedCloud> cloud =
       spare_ ? std::move(spare_) : std::make_unique<PreparedCloud>(Cloud{});
   preparation_.prepare(scan.image->depth, scan.image->camera, *cloud);
@@ -87,11 +87,11 @@ PreparedChange FrameReader::prepare(FrameChange change) {
 }
 
 FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
-                     const ImportOptions& options)
+                     const ImportOptions& options, PointReading points)
     : recording_(recording),
       schedule_(recording, schedule),
       cloud_(std::make_unique<PreparedCloud>(Cloud{})),
-      thread_([this, copy = schedule_, options] { prepare_all(copy, options); }) {
+      thread_([this, copy = schedule_, options, points] { prepare_all(copy, options, points); }) {
   next_ = schedule_.next();
 }
 
@@ -104,9 +104,10 @@ FrameFeed::~FrameFeed() {
   thread_.join();
 }
 
-void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options) {
+void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options,
+                            PointReading points) {
   try {
-    FrameReader reader(recording_, options);
+    FrameReader reader(recording_, options, points);
     while (std::optional<FrameChange> change = schedule.next()) {
       PreparedChange result = reader.prepare(std::move(*change));
       std::unique_lock lock(mutex_);

@@ -45,9 +45,10 @@ struct PreparedChange {
 class FrameReader {
  public:
   // `options`: how images become clouds, and where: those for a device are prepared there. The
-  // cameras' poses are the recording's.
-  FrameReader(const Recording& recording, const ImportOptions& options)
-      : recording_(recording), options_(options), preparation_(options.normals) {}
+  // cameras' poses are the recording's. `points`: how frames without a camera are read.
+  FrameReader(const Recording& recording, const ImportOptions& options,
+              PointReading points = PointReading::settled)
+      : recording_(recording), options_(options), points_(points), preparation_(options.normals) {}
 
   PreparedChange prepare(FrameChange change);
   // A cloud that is not needed any more: the next frame takes its memory.
@@ -60,6 +61,7 @@ class FrameReader {
 
   const Recording& recording_;
   ImportOptions options_;
+  PointReading points_;
   FramePreparation preparation_;
   std::unique_ptr<PreparedCloud> spare_;
   std::optional<DepthFrames> frames_;
@@ -79,7 +81,7 @@ class FrameFeed {
  public:
   // The recording must outlive the feed. Preparation begins at once.
   FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
-            const ImportOptions& options);
+            const ImportOptions& options, PointReading points = PointReading::settled);
   ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
@@ -102,7 +104,7 @@ class FrameFeed {
   // Prepared changes that wait for their step. Each holds some 20 MB.
   static constexpr std::size_t kAhead = 2;
 
-  void prepare_all(FrameSchedule schedule, const ImportOptions& options);
+  void prepare_all(FrameSchedule schedule, const ImportOptions& options, PointReading points);
   PreparedChange take();
   void count(const PreparedChange& taken);
 

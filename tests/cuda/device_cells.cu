@@ -119,11 +119,15 @@ std::vector<CellAnswer> cells_on_device(const PreparedCloud& cloud, const ToolMo
                                         const Level& level, const Pose& to_surface) {
   if (!cloud.is_organised()) {
     DiskSurface surface = cloud.disk_surface();
-    const DeviceArray<Vec3f> positions(surface.positions, surface.count),
-        normals(surface.normals, surface.count);
+    const SettledDisks& disks = cloud.disks();
+    const DeviceArray<Vec3f> feet(disks.feet), normals(disks.normals);
+    const DeviceArray<std::uint32_t> second_of(disks.second_of);
+    const DeviceArray<SecondPlane> seconds(disks.seconds);
     const DeviceArray<PointBox> nodes(surface.nodes, 2 * std::size_t{surface.leaves});
-    surface.positions = positions.get();
+    surface.feet = feet.get();
     surface.normals = normals.get();
+    surface.second_of = second_of.get();
+    surface.seconds = seconds.get();
     surface.nodes = nodes.get();
     return launch(surface, to_surface, tool, level);
   }

@@ -74,10 +74,10 @@ TEST(PreparedCloud, NearestIsTheNearest) {
   for (int k = 0; k < 200; ++k) {
     const Vec3 x{std::sin(12.9 * k), std::sin(78.2 * k), 1 + std::sin(37.7 * k)};
     double best = HUGE_VAL;
-    for (const Vec3f& p : prepared.positions()) best = std::min(best, squared_norm(widen(p) - x));
+    for (const Vec3f& p : prepared.disks().feet) best = std::min(best, squared_norm(widen(p) - x));
     const std::uint32_t found = disks.nearest(x, HUGE_VAL);
     ASSERT_NE(found, kNoPoint);
-    EXPECT_EQ(squared_norm(widen(prepared.positions()[found]) - x), best);
+    EXPECT_EQ(squared_norm(widen(prepared.disks().feet[found]) - x), best);
     const std::uint32_t begin_at = static_cast<std::uint32_t>(k) * 15;
     EXPECT_EQ(disks.nearest(x, HUGE_VAL, begin_at), found);
   }

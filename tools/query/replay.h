@@ -32,8 +32,10 @@ class Replay {
  public:
   // Reads the recording and the path, which outlive nothing else. Throws what they throw, and
   // Error(refused) where they share no time or no frame can be used.
-  // Depth images are prepared on the device of the queries.
-  Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device);
+  // Depth images are prepared on the device of the queries, frames without a camera read as
+  // `points` says.
+  Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
+         PointReading points);
 
   const SampledPath& path() const { return path_; }
   // The first frame that can be used: what levels are chosen by.
@@ -65,6 +67,7 @@ class Replay {
   Recording recording_;
   SampledPath path_;
   ImportOptions import_;
+  PointReading points_;
   ScheduleOptions schedule_;
   std::unique_ptr<const PreparedCloud> first_cloud_;
   std::unique_ptr<FrameFeed> feed_;

@@ -219,8 +219,15 @@ void DeviceCloud::copy_points(const PreparedCloud& cloud) {
   positions_ = DeviceArray<Vec3f>(cloud.positions());
   normals_ = DeviceArray<Vec3f>(cloud.normals());
   boxes_ = DeviceArray<PointBox>(disks_.nodes, 2 * std::size_t{disks_.leaves});
-  disks_.positions = positions_.get();
-  disks_.normals = normals_.get();
+  const SettledDisks& settled = cloud.disks();
+  feet_ = DeviceArray<Vec3f>(settled.feet);
+  disk_normals_ = DeviceArray<Vec3f>(settled.normals);
+  second_of_ = DeviceArray<std::uint32_t>(settled.second_of);
+  seconds_ = DeviceArray<SecondPlane>(settled.seconds);
+  disks_.feet = feet_.get();
+  disks_.normals = disk_normals_.get();
+  disks_.second_of = second_of_.get();
+  disks_.seconds = seconds_.get();
   disks_.nodes = boxes_.get();
   points_ = {positions_.get(), normals_.get(), disks_.count, 0, boxes_.get() + disks_.leaves};
 }

@@ -74,6 +74,9 @@ class DeviceCloud {
   DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
   std::size_t tile_begin_[DepthSurface::kMaxLevels] = {};
   DeviceArray<PointBox> boxes_;
+  DeviceArray<Vec3f> feet_, disk_normals_;
+  DeviceArray<std::uint32_t> second_of_;
+  DeviceArray<SecondPlane> seconds_;
   CloudFrame frame_;
   PointsView points_;
   DepthSurface depth_;
