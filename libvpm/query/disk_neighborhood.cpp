@@ -36,12 +36,15 @@ void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
     const Mask4 is_near = squared_norm(away) <= squared_reach;
     if (!any(is_near)) continue;
     const Double4 cosine = dot(normal, other_normal);
-    const Mask4 is_alike = is_near & (cosine >= kAlike), is_back = is_near & (cosine <= kOpposite);
     // Where it meets the circle, or line, that is normal to both.
-    add_where(is_alike, dot(normal + other_normal, away) / (1 + cosine), height);
+    const Double4 its_height = dot(normal + other_normal, away) / (1 + cosine);
+    const Mask4 is_back = is_near & (cosine <= kOpposite),
+                faces_alike = is_near & (cosine >= kAlike),
+                is_alike = faces_alike & (absolute(its_height) <= kOneSurface * reach);
+    add_where(is_alike, its_height, height);
     add_where(is_alike, other_normal, normals);
     alike += is_alike;
-    unlike += is_near & ~is_alike & ~is_back;
+    unlike += is_near & ~faces_alike & ~is_back;
     if (!any(is_back)) continue;
     add_where(is_back, other_normal, back_normal);
     add_where(is_back, all_four(other.place), back_place);

@@ -16,6 +16,10 @@ struct Disk {
 inline constexpr double kAlike = 0.9;  // are of one surface: its cosine; 25 degrees, as in an image
 inline constexpr double kOpposite = -0.8;  // bound a plate or a slot; 143 degrees
 
+// What one disk gives for the height of the surface at another one is of the same surface up to
+// this part of their ball's radius.
+inline constexpr double kOneSurface = 0.7;
+
 // Planes to be averaged: each tells how high a place lies above it.
 struct PlaneSum {
   Vec3 normal, place;
@@ -32,7 +36,7 @@ struct PlaneSum {
 
 // Sums over the disks in a ball about one of them.
 struct Neighborhood {
-  Vec3 normals;       // of those alike
+  Vec3 normals;       // of those alike, on the same surface
   double height = 0;  // of the surface at the disk, along its normal, as each of them has it
   std::uint32_t alike = 0, unlike = 0;
   PlaneSum opposite;

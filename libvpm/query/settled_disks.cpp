@@ -19,7 +19,7 @@ constexpr double kWindow = 5.6, kWide = 14;
 constexpr double kLeavesInWindow = 2.5, kLeavesInWide = 5;
 constexpr std::uint32_t kMostInWindow = 256, kMostInWide = 2048;
 constexpr int kHalvings = 10;
-constexpr std::uint32_t kFewAlike = 10;  // less is an outlier, or a rim: look further
+constexpr std::uint32_t kFewAlike = 10;  // fewer, twice as far too, are an outlier's
 constexpr std::uint32_t kFewOpposite = 5;
 constexpr double kUnlikeOfSmooth = 0.1;  // of those alike
 constexpr double kOnePlane = 2;          // radii: disks of one plane are no further from it
@@ -47,7 +47,7 @@ class Settling {
   Settling(const DiskSurface& measured, std::span<const float> radii)
       : measured_(measured),
         radii_(radii),
-        is_smooth_(measured.count),
+        kinds_(measured.count),
         result_(as_measured(measured)) {}
 
   SettledDisks run() {
@@ -63,6 +63,11 @@ class Settling {
   struct Found {
     std::uint32_t disk;
     SecondPlane second;
+  };
+  enum class Kind : std::uint8_t {
+    outlier,
+    bent,  // others about it face elsewhere: at a crease, or on what is as small as the window
+    smooth,
   };
 
   void run(void (Settling::*pass)(std::uint32_t, std::uint32_t, std::vector<Found>&)) {
@@ -165,8 +170,12 @@ class Settling {
     const Disk own = disk(i);
     set(i, own.place + around.height / around.alike * own.normal,
         normalized_or_zero(around.normals));
-    is_smooth_[i] = around.unlike <= kUnlikeOfSmooth * around.alike;
-    if (is_smooth_[i] == 0 || around.opposite.count < kFewOpposite) return;
+    if (around.unlike > kUnlikeOfSmooth * around.alike) {
+      kinds_[i] = around.alike < kFewAlike ? Kind::outlier : Kind::bent;
+      return;
+    }
+    kinds_[i] = Kind::smooth;
+    if (around.opposite.count < kFewOpposite) return;
     if (const auto second = second_plane(own, MeanPlane(around.opposite, own.place)))
       out.push_back({i, *second});
   }
@@ -182,7 +191,7 @@ class Settling {
                      std::vector<SmoothDisk>& disks) const {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) {
-      if (is_smooth_[j] == 0) return;
+      if (kinds_[j] != Kind::smooth) return;
       const Disk settled{widen(result_.feet[j]), widen(result_.normals[j])};
       disks.push_back({j, settled, dot(settled.normal, center - settled.place)});
     });
@@ -218,7 +227,7 @@ class Settling {
   void settle_at_creases(std::uint32_t begin, std::uint32_t end, std::vector<Found>& out) {
     std::vector<SmoothDisk> disks;
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (is_smooth_[i] != 0) continue;
+      if (kinds_[i] == Kind::smooth) continue;
       const Vec3 place = disk(i).place;
       double reach = std::min(kWide * radii_[i], kLeavesInWide * leaf_of(i).diagonal);
       bool all = gather_smooth(place, reach, kMostInWide, disks);
@@ -229,16 +238,20 @@ class Settling {
     }
   }
 
-  // The normal of a disk that is not smooth was estimated across a crease, and is that of no side.
+  // At a crease the normal was estimated across both its sides, and is that of neither. What is on
+  // no plane of two that smooth disks show is left as it is: it may be small, and no crease.
   void settle_at_crease(std::uint32_t i, const std::vector<SmoothDisk>& disks,
                         std::vector<Found>& out) {
     const SmoothDisk* const own = best_of(disks, nullptr);
     if (own == nullptr) return;
+    const SmoothDisk* const other = best_of(disks, own);
+    if (kinds_[i] != Kind::outlier &&
+        (other == nullptr || std::fabs(own->height) > kWindow * radii_[i]))
+      return;
     const Vec3 place = disk(i).place;
     const double tolerance = kOnePlane * radii_[i];
     const MeanPlane first = mean_about(own->disk, disks, place, tolerance);
     set(i, first.foot, first.normal);
-    const SmoothDisk* const other = best_of(disks, own);
     if (other == nullptr) return;
     if (const auto second = second_plane({first.place, first.normal},
                                          mean_about(other->disk, disks, place, tolerance)))
@@ -247,7 +260,7 @@ class Settling {
 
   const DiskSurface& measured_;
   std::span<const float> radii_;
-  std::vector<std::uint8_t> is_smooth_;
+  std::vector<Kind> kinds_;
   SettledDisks result_;
 };
 

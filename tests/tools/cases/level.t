@@ -25,6 +25,15 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5% -
 $ grep -c points e.jsonl; sed 's/,"points":[0-9]*//' e.jsonl | cmp - n.jsonl
 3
 
+# Points without a camera are freed of noise unless they are asked for as they are, frames of them too.
+$ python3 -c "n = range(-40, 41); print('ply', 'format ascii 1.0', f'element vertex {len(n) ** 2}', *('property float ' + p for p in 'x y z nx ny nz'.split()), 'end_header', *(f'{i / 100} {k / 100} {1 + (i + k) % 2 / 200} 0 0 -1' for i in n for k in n), sep='\n')" > wall.ply && vpm-normals wall.ply -o points.vpmc --quiet
+$ for raw in '' --raw-points; do vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt $raw -o points$raw.jsonl && $VALIDATE query-result points$raw.jsonl; done
+$ cmp -s points.jsonl points--raw-points.jsonl || python3 -c "import json; a, b = ([json.loads(l)['volume_fraction'] for l in open(f)] for f in ('points.jsonl', 'points--raw-points.jsonl')); print(max(abs(x - y) for x, y in zip(a, b)) < 0.01, max(a) > 0.1)"
+True True
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --raw-points | cmp - <(vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt)
+$ vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt --measure paper --raw-points | cmp - <(vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt --measure paper)
+$ mkdir points && cp wall.ply points/0.ply && for raw in '' --raw-points; do vpm-query --tool cube.vpmg --frames points --trajectory path.txt --rate 1 $raw --quiet | python3 -c "import json, sys; print([json.loads(l)['volume'] for l in sys.stdin])" | cmp - <(python3 -c "import json; print([json.loads(l)['volume'] for l in open('points$raw.jsonl')])"); done
+
 # A generous deadline changes nothing but the reason; an impossible one takes the coarsest level and says so.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 1e7 -o d.jsonl --stats stats.json && $VALIDATE query-result d.jsonl && $VALIDATE query-stats stats.json
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt | cmp - <(sed 's/,"level_reason":"deadline"//' d.jsonl)
