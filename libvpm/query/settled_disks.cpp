@@ -23,6 +23,8 @@ constexpr std::uint32_t kFewAlike = 10;  // fewer, twice as far too, are an outl
 constexpr std::uint32_t kFewOpposite = 5;
 constexpr double kUnlikeOfSmooth = 0.1;  // of those alike
 constexpr double kOnePlane = 2;          // radii: disks of one plane are no further from it
+constexpr double kApart = 2;             // radii: from either side's plane to the other's middle
+constexpr double kExplained = 0.9;       // share of the points about a crease that lie on it
 
 // A plane through `foot`, the mean of several; `place` is in their middle.
 struct MeanPlane {
@@ -34,11 +36,12 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
-// What two planes enclose, if each lies behind the other, or in front of it.
-std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlane& second) {
+// What two planes enclose, if each lies behind the other, or in front of it, by this much at least.
+std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlane& second, double apart) {
   const Vec3 across = second.place - first.place;
   const double ahead = dot(first.normal, across), back = -dot(second.normal, across);
-  if (!(ahead * back > 0)) return std::nullopt;
+  if (!(ahead * back > 0 && std::min(std::fabs(ahead), std::fabs(back)) >= apart))
+    return std::nullopt;
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
 }
 
@@ -176,7 +179,7 @@ class Settling {
     }
     kinds_[i] = Kind::smooth;
     if (around.opposite.count < kFewOpposite) return;
-    if (const auto second = second_plane(own, MeanPlane(around.opposite, own.place)))
+    if (const auto second = second_plane(own, MeanPlane(around.opposite, own.place), 0))
       out.push_back({i, *second});
   }
 
@@ -251,11 +254,31 @@ class Settling {
     const Vec3 place = disk(i).place;
     const double tolerance = kOnePlane * radii_[i];
     const MeanPlane first = mean_about(own->disk, disks, place, tolerance);
-    set(i, first.foot, first.normal);
-    if (other == nullptr) return;
-    if (const auto second = second_plane({first.place, first.normal},
-                                         mean_about(other->disk, disks, place, tolerance)))
-      out.push_back({i, *second});
+    if (other == nullptr) {  // an outlier
+      set(i, first.foot, first.normal);
+      return;
+    }
+    const auto second =
+        second_plane({first.place, first.normal}, mean_about(other->disk, disks, place, tolerance),
+                     kApart * radii_[i]);
+    const bool shows = second && explains(first, *second, i);
+    if (shows || kinds_[i] == Kind::outlier) set(i, first.foot, first.normal);
+    if (shows) out.push_back({i, *second});
+  }
+
+  // Whether most points about a disk lie on what two planes enclose.
+  bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i) const {
+    const Vec3 normal = widen(second.normal), foot = widen(second.foot);
+    const double near = kOnePlane * radii_[i];
+    std::uint32_t on = 0, all = 0;
+    for_disks_near(disk(i).place, window(i, leaf_of(i)), kMostInWide, [&](std::uint32_t j) {
+      const Disk other = disk(j);
+      const double a = dot(first.normal, other.place - first.foot),
+                   b = dot(normal, other.place - foot);
+      ++all;
+      on += std::fabs(second.is_convex ? std::max(a, b) : std::min(a, b)) <= near;
+    });
+    return on >= kExplained * all;
   }
 
   const DiskSurface& measured_;
