@@ -108,8 +108,12 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
     DiskSurface measured = disk_surface();
     measured.feet = positions_.data();
     measured.normals = normals_.data();
-    disks_ = points == PointReading::settled ? settle(measured, radii) : as_measured(measured);
-    build_boxes();
+    if (points == PointReading::settled) {
+      disks_ = settle(measured, radii);
+      build_boxes();
+    } else {
+      disks_ = as_measured(measured);
+    }
   }
 }
 

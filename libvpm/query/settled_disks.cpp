@@ -119,6 +119,13 @@ class Settling {
       return ++count <= most;
     });
   }
+  // Calls gathers(reach) for a ball that is halved until it says that its disks are not too many.
+  template <class Gathers>
+  static bool halve_until(double& reach, const Gathers& gathers) {
+    bool all = gathers(reach);
+    for (int k = 0; !all && k < kHalvings; ++k) all = gathers(reach *= 0.5);
+    return all;
+  }
   bool gather(Vec3 center, double reach, std::uint32_t most, std::vector<Disk>& disks) const {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
@@ -157,10 +164,10 @@ class Settling {
     std::vector<Disk> near;
     Neighborhood found[4];
     DiskInBall four[4] = {one, one, one, one};
-    bool all = gather(one.disk.place, one.reach, kMostInWindow, near);
-    for (int k = 0; !all && k < kHalvings; ++k)
-      all = gather(one.disk.place, four[0].reach *= 0.5, kMostInWindow, near);
-    if (!all) return {};
+    const auto gathers = [&](double reach) {
+      return gather(one.disk.place, reach, kMostInWindow, near);
+    };
+    if (!halve_until(four[0].reach, gathers)) return {};
     look_around(near, four, found);
     if (found[0].alike >= kFewAlike) return found[0];
     if (gather(one.disk.place, four[0].reach *= 2, kMostInWide, near))
@@ -233,9 +240,7 @@ class Settling {
       if (kinds_[i] == Kind::smooth) continue;
       const Vec3 place = disk(i).place;
       double reach = std::min(kWide * radii_[i], kLeavesInWide * leaf_of(i).diagonal);
-      bool all = gather_smooth(place, reach, kMostInWide, disks);
-      for (int k = 0; !all && k < kHalvings; ++k)
-        all = gather_smooth(place, reach *= 0.5, kMostInWide, disks);
+      halve_until(reach, [&](double r) { return gather_smooth(place, r, kMostInWide, disks); });
       if (disks.empty()) gather_smooth(place, 2 * reach, 4 * kMostInWide, disks);
       settle_at_crease(i, disks, out);
     }

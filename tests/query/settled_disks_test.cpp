@@ -56,8 +56,8 @@ Cloud noisy_wall(double height, double slope) {
   });
 }
 
-// A roof over y (edge at x = z = 0), its normals estimated across windows of seven pixels: `up`
-// the obstacle lies below the roof, else it is a groove.
+// A roof over y (edge at x = z = 0), or the groove that it leaves, the normals estimated across
+// windows of seven pixels.
 struct Roof {
   bool is_convex;
 
