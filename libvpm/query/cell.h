@@ -118,17 +118,39 @@ VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane
   is_cut = true;
   return sample.weight * ball_fraction_inside(distance / sample.radius);
 }
+VPM_HD inline CrossedSums crossed_in_turn(const CrossingPlane& plane, const CellSample* samples,
+                                          std::uint32_t count) {
+  CrossedSums sums;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const double inside = weight_behind(samples[k], plane, sums.is_cut);
+    if (inside == 0) continue;
+    sums.weight += inside;
+    sums.moment += inside * widen(samples[k].center);
+  }
+  return sums;
+}
 
-// A compact piece of a share: a sample, or a block that is not cut taken whole (radius 0).
+// A compact piece of a share: a sample, or what is not cut taken whole (radius 0): a block, or the
+// share.
 struct SharePiece {
   Vec3 at;  // centroid, about the tool's centre of mass
   double radius = 0, weight = 0;
+  double extent = 0;                 // no part is further from the centroid, nearly
+  std::uint32_t begin = 0, end = 0;  // its samples, of what is taken whole
 };
-VPM_HD inline SharePiece piece_of(const BlockMass& block) {
-  return {block.centroid, 0, block.weight};
-}
 VPM_HD inline SharePiece piece_of(const CellSample& sample) {
-  return {widen(sample.center), sample.radius, sample.weight};
+  return {widen(sample.center), sample.radius, sample.weight, sample.radius, 0, 0};
+}
+VPM_HD inline SharePiece piece_of(const BlockMass& mass, const CellBlock& block) {
+  return {mass.centroid, 0, mass.weight, block.radius, block.begin, block.end};
+}
+VPM_HD inline SharePiece piece_of(const BlockMass& mass, const CellView& share) {
+  SharePiece piece{mass.centroid, 0, mass.weight, share.reach, 0, 0};
+  if (share.begin < share.end) {
+    piece.begin = share.blocks[share.begin].begin;
+    piece.end = share.blocks[share.end - 1].end;
+  }
+  return piece;
 }
 
 // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
@@ -182,7 +204,7 @@ class CellMeasure {
       const Side side = whole ? Side::behind : side_of(block);
       if (side == Side::free) continue;
       if (side != Side::mixed) {
-        add_reached(nearest, piece_of(cell_.masses[b]), sum);
+        add_reached(nearest, piece_of(cell_.masses[b], block), sum);
         continue;
       }
       for (std::uint32_t s = block.begin; s < block.end; ++s)
@@ -219,8 +241,17 @@ class CellMeasure {
     result.is_flat =
         look.side == Side::mixed &&
         surface_.is_flat(look, result.center, flat_tolerance(block.radius), result.tangent) &&
-        !is_hidden(result.tangent.foot);
+        is_of_one_wall(result.center, block.radius, result.tangent, look.point);
     return result;
+  }
+  // Whether a block where the surface is one plane is pushed along its normal: it may be a part of
+  // another surface than that which cuts the cell, or another wall may be nearer.
+  VPM_HD bool is_of_one_wall(Vec3 center, double radius, const TangentPlane& tangent,
+                             std::uint32_t point) const {
+    OtherWall other;
+    return !is_hidden(tangent.foot) &&
+           !(is_divisible(radius) &&
+             surface_.find_other_wall(center, tangent, point, radius, kOneDirection, other));
   }
 
   // Adds what one block contributes to run(): first of all that is seen, then, knowing the plane,
@@ -232,7 +263,7 @@ class CellMeasure {
     if (look.side == Side::free) return false;
     result.point = look.point;
     if (look.side != Side::mixed)
-      return add_piece(piece_of(cell_.masses[b]), pass, result, surface_);
+      return add_piece(piece_of(cell_.masses[b], block), pass, result, surface_);
     if (look.is_flat) {
       if (pass == Pass::hidden) return false;
       result.is_far |= is_far(look.tangent.distance(look.center));
@@ -294,9 +325,37 @@ class CellMeasure {
   }
   // Adds a piece that is inside.
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
-    const Vec3 normal =
-        is_cut(piece, look) ? look.reading.normal : surface_.closest_normal(look.x, look.reading);
-    sum.add(weight_inside(piece, look), in_tool(normal), arm(piece.at));
+    if (is_cut(piece, look)) {
+      sum.add(weight_inside(piece, look), in_tool(look.reading.normal), arm(piece.at));
+      return;
+    }
+    const Vec3 normal = surface_.closest_normal(look.x, look.reading);
+    OtherWall other;
+    if (is_divisible(piece.extent) &&
+        surface_.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point,
+                                 piece.extent, kTwoWalls, other))
+      add_divided(piece, look.x, normal, other, sum);
+    else
+      add_pushed(piece, normal, sum);
+  }
+  VPM_HD bool is_divisible(double extent) const {
+    return extent >= kLeastDivided * tool_reach_.length;
+  }
+  // Adds a piece at x that is shared out between two walls; its middle is nearer to the one with
+  // this normal.
+  VPM_HD void add_divided(const SharePiece& piece, Vec3 x, Vec3 normal, const OtherWall& other,
+                          ToolSum& sum) const {
+    CrossedSums part;
+    if (piece.begin < piece.end) {
+      const CrossingPlane border(other.border, to_surface_);
+      part = crossed_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin);
+    } else {
+      part.weight = piece.weight * ball_fraction_inside(other.border.distance(x) / piece.extent);
+      part.moment = part.weight * piece.at;
+    }
+    sum.add_moment(part.weight, arm(part.moment), in_tool(other.normal));
+    sum.add_moment(piece.weight - part.weight, arm(piece.weight * piece.at - part.moment),
+                   in_tool(normal));
   }
   // The same of one that is not cut, with its direction.
   VPM_HD void add_pushed(const SharePiece& piece, Vec3 normal, ToolSum& sum) const {
@@ -397,18 +456,9 @@ struct SamplesInTurn {
   }
   template <class Measure>
   VPM_HD void flush(const Measure&, CellResult&) const {}  // nothing is put off
-
-  // Where a plane crosses the block.
   static VPM_HD CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
                                     std::uint32_t count) {
-    CrossedSums sums;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const double inside = weight_behind(samples[k], plane, sums.is_cut);
-      if (inside == 0) continue;
-      sums.weight += inside;
-      sums.moment += inside * widen(samples[k].center);
-    }
-    return sums;
+    return crossed_in_turn(plane, samples, count);
   }
 };
 

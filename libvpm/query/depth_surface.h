@@ -133,6 +133,12 @@ struct DepthSurface {
   // The surface for places in a ball: this one, which needs no search.
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
+  // A camera sees few obstacles from two sides, and what is behind it is pushed towards it.
+  static VPM_HD bool find_other_wall(Vec3, const TangentPlane&, std::uint32_t, double, double,
+                                     OtherWall&) {
+    return false;
+  }
+
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
   // point. Starts from the point on x's ray (`reading` is that of x), steps to the foot on its
   // tangent plane and, where that overshoots a crease, back by halves. A step that leads away

@@ -169,14 +169,46 @@ struct DiskSurface {
   VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t nearest) const;
 
   // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
-  // towards the rim beside it (at a crease, where the gradient fans out).
+  // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
+  // sides of a groove, towards these, or their crease.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
+    if (second_of[reading.point] != kNoPoint) {
+      const SecondPlane& second = seconds[second_of[reading.point]];
+      if (!second.is_convex) return normal_below_groove(x, reading, second);
+    }
     const Vec3 towards = reading.foot - x;
     const double height = dot(reading.normal, towards);
     const Vec3 aside = towards - height * reading.normal;
     const double aside_squared = squared_norm(aside);
     if (height > 0 && aside_squared <= largest_radius * largest_radius) return reading.normal;
     return normalized_or_zero(towards - (largest_radius / std::sqrt(aside_squared)) * aside);
+  }
+
+  // A body of this radius about x is nearest to `own`, by a point of it. Looks for another wall at
+  // four places that are further behind, on each side: of those that face elsewhere (cosine less
+  // than `unlike`) that which takes the most of the body.
+  VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
+                              double unlike, OtherWall& other) const {
+    const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
+               across = cross(own.normal, side);
+    const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
+    double least = radius;
+    for (const Vec3 aside : asides) {
+      const Vec3 place = x + kFurther * radius * (aside - own.normal);
+      if (own.distance(place) >= 0) continue;
+      const Reading there = read(place, point);
+      if (!(there.distance < 0)) continue;
+      const Vec3 normal = closest_normal(place, there);
+      if (dot(normal, own.normal) > unlike) continue;
+      const Vec3 between = own.normal - normal;
+      const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
+      if (!(away < least)) continue;
+      least = away > 0 ? away : 0;
+      other.normal = normal;
+      other.border.normal = normalized_or_zero(between);
+      other.border.foot = x - away * other.border.normal;
+    }
+    return least < radius;
   }
 
   // What a ball is to the disks. No bound of the gap is known.
@@ -247,13 +279,33 @@ struct DiskSurface {
   // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
   static constexpr double kMiddle = 0.65;
   static constexpr double kOffPlane = 0.5;  // of the tolerance
+  // Other walls are looked for so many radii aside, and as many further behind: at a body's end.
+  static constexpr double kFurther = 0.85;
+  static constexpr double kSlot = -0.8;  // cosine between the sides of a slot, at most
+
+  // Of the solid behind either of two planes, for a place behind both: the normal of that which is
+  // nearest where the other does not hide its foot, or the direction to where they meet.
+  VPM_HD Vec3 normal_below_groove(Vec3 x, const Reading& reading, const SecondPlane& second) const {
+    const Vec3 n = widen(normals[reading.point]), m = widen(second.normal);
+    const double a = dot(n, x - widen(feet[reading.point])), b = dot(m, x - widen(second.foot));
+    const double cosine = dot(n, m);
+    if (!(a < 0 && b < 0 && cosine > kSlot)) return reading.normal;
+    const double along_n = b * cosine - a, along_m = a * cosine - b;
+    if (along_n <= 0) return m;
+    if (along_m <= 0) return n;
+    return normalized_or_zero(along_n * n + along_m * m);
+  }
+
+  // A coordinate axis that is far from a direction.
+  static VPM_HD Vec3 axis_aside(Vec3 n) {
+    return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  }
 
   // Whether the points in a ball show this plane, on all sides of a place of it.
   VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
                     double tolerance) const {
     const Vec3 n = plane.normal;
-    const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 side = cross(n, axis), other = cross(n, side);
+    const Vec3 side = cross(n, axis_aside(n)), other = cross(n, side);
     Vec3 sums[4];
     std::uint32_t counts[4] = {};
     std::uint32_t found = 0;

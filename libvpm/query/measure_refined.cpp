@@ -84,12 +84,13 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
   }
   const CellResult& result = shares_.results[row];
   if (shares_.cells[row] == Cell::partial && !result.is_far) return result.sum;
-  const CellMeasure measure(surface, to_surface, reach_, level_.cell(row));
+  const CellView view = level_.cell(row);
+  const CellMeasure measure(surface, to_surface, reach_, view);
   const auto nearest = [&] { return flood.nearest_cut_share(row); };
   const bool whole = shares_.cells[row] == Cell::whole;
   if (!whole || !is_compact(level_.reach(row), reach_.length))
     return measure.reached(whole, nearest);
-  measure.add_reached(nearest, piece_of(level_.mass(row)), sum);
+  measure.add_reached(nearest, piece_of(level_.mass(row), view), sum);
   return sum;
 }
 

@@ -20,20 +20,29 @@ VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& loo
                        double reach, const ReadAll& read_all, TangentPlane& plane) {
   if (!surface.mean_plane(look, center, reach, reach, read_all, plane)) return false;
   const double near = kSheetReach * reach;
-  return squared_norm(plane.foot - center) <= near * near;
+  OtherWall other;
+  return squared_norm(plane.foot - center) <= near * near &&
+         !surface.find_other_wall(center, plane, look.point, reach, kOneDirection, other);
 }
 
 // Of a patch in which there is no surface: whether it is behind one, as its middle is.
 enum class OpenPatch {
   free,
   behind,
-  near
-};  // near: no place is further behind than the tool's reach
+  near,    // and no place is further behind than the tool's reach
+  pushed,  // and all are nearest to one wall
+};
 
-VPM_HD inline OpenPatch open_patch(const Reading& middle, Vec3 center, double reach,
-                                   double tool_reach) {
+template <class Surface>
+VPM_HD OpenPatch open_patch(const Surface& surface, const Reading& middle, Vec3 center,
+                            double reach, double tool_reach) {
   if (!(middle.known && middle.distance < 0)) return OpenPatch::free;
-  return norm(middle.foot - center) + reach < tool_reach ? OpenPatch::near : OpenPatch::behind;
+  if (!(norm(middle.foot - center) + reach < tool_reach)) return OpenPatch::behind;
+  const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
+  OtherWall other;
+  return surface.find_other_wall(center, wall, middle.point, reach, kOneDirection, other)
+             ? OpenPatch::near
+             : OpenPatch::pushed;
 }
 
 }  // namespace vpm

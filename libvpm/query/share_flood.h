@@ -191,11 +191,13 @@ class ShareFlood {
     const ShareCluster& patch = level_.cluster(root);
     const Vec3 at = to_surface_ * patch.center;
     const Reading middle = surface_.read(at);
-    const OpenPatch open = open_patch(middle, at, patch.reach, reach_.length);
+    const OpenPatch open = open_patch(surface_, middle, at, patch.reach, reach_.length);
     if (open == OpenPatch::free) {
       states_.set(patch, Cell::free, Passage::closed);
     } else if (open == OpenPatch::behind) {
       states_.set(patch, Cell::whole, Passage::unknown);
+    } else if (open == OpenPatch::near) {
+      states_.set(patch, Cell::whole, Passage::near);
     } else {
       push_patch(surface_, to_surface_, patch, root, middle, states_);
     }

@@ -47,4 +47,20 @@ struct TangentPlane {
   VPM_HD double distance(Vec3 x) const { return dot(normal, x - foot); }
 };
 
+// A wall to which a part of a body is nearer than to the wall that its middle is nearest to. That
+// part is behind the border, which is as far from both.
+struct OtherWall {
+  Vec3 normal;
+  TangentPlane border;
+};
+
+// Bodies smaller than this part of the tool's reach are pushed to one wall only.
+inline constexpr double kLeastDivided = 0.02;
+// Two walls, by the cosine between them: what turns less is taken for the turning of one surface,
+// whose direction in the middle is that of the mean.
+inline constexpr double kTwoWalls = 0.9;
+// Where the surface is one plane, all that is behind it is pushed along its normal. So nothing in
+// the ball may be nearest to a place that faces elsewhere by more than this.
+inline constexpr double kOneDirection = 0.95;
+
 }  // namespace vpm

@@ -423,7 +423,8 @@ __device__ ToolSum Flood<Surface, Team>::sum_of_share(const Tile& warp, std::uin
   const bool whole = (word & kWhole) != 0;
   const bool compact = whole && is_compact(view.reach, level_.tool_reach.length);
   ToolSum sum;
-  if (compact && warp.leads()) measure.add_reached(nearest, piece_of(level_.share_masses[i]), sum);
+  if (compact && warp.leads())
+    measure.add_reached(nearest, piece_of(level_.share_masses[i], view), sum);
   for (std::uint32_t b = view.begin; b < view.end && !compact; ++b) {
     const CellBlock block = view.blocks[b];
     const Side side = whole ? Side::behind : measure.side_of(block);
@@ -432,8 +433,8 @@ __device__ ToolSum Flood<Surface, Team>::sum_of_share(const Tile& warp, std::uin
     const std::uint32_t count = sampled ? block.end - block.begin : 1;
     for (std::uint32_t s = warp.lane; s < count; s += warp.width) {
       measure.add_reached(
-          nearest, sampled ? piece_of(view.samples[block.begin + s]) : piece_of(view.masses[b]),
-          sum);
+          nearest,
+          sampled ? piece_of(view.samples[block.begin + s]) : piece_of(view.masses[b], block), sum);
     }
   }
   __syncwarp();

@@ -194,12 +194,14 @@ class ShareMeasure {
     const bool patch = is_patch(ball.radius, level_.tool_reach.length);
     if (look.side == Side::uncut) {
       if (!patch) return Seen::uncut;
-      switch (open_patch(surface_.read(at), at, ball.radius, level_.tool_reach.length)) {
+      switch (open_patch(surface_, surface_.read(at), at, ball.radius, level_.tool_reach.length)) {
         case OpenPatch::free:
           return Seen::free;
         case OpenPatch::behind:
           return Seen::behind;
         case OpenPatch::near:
+          return Seen::behind_near;
+        case OpenPatch::pushed:
           return Seen::pushed;
       }
     }
@@ -279,6 +281,16 @@ class ShareMeasure {
   __device__ void list_crossed(const Unit& unit, const CrossingPlane& plane, bool is_far);
   __device__ void measure_tasks();
   __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
+  __device__ SharePiece piece(Task::Form form, std::uint32_t k) const {
+    switch (form) {
+      case Task::samples:
+        return piece_of(level_.samples[k]);
+      case Task::whole_share:
+        return piece_of(level_.share_masses[k], level_.cell(k));
+      default:
+        return piece_of(level_.block_masses[k], level_.blocks[k]);
+    }
+  }
   __device__ bool add_piece(const Measure& measure, const Task& task, std::uint32_t k,
                             CellResult& result);
   __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatBlock& flat,
@@ -350,7 +362,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
     const bool is_flat =
         reads_block &&
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
-        !measure.is_hidden(tangent.foot);
+        measure.is_of_one_wall(at, ball.radius, tangent, look.point);
     if (is_flat)
       list_crossed(unit, {tangent, to_surface_}, measure.is_far(tangent.distance(at)));
     else
@@ -497,7 +509,8 @@ template <class Surface>
 __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, unsigned slot,
                                                const Task& task) {
   const std::uint32_t i = task.share;
-  const Measure measure = measure_of({.center = level_.centers[i], .reach = level_.reach[i]});
+  const Measure measure = measure_of(
+      {.samples = level_.samples, .center = level_.centers[i], .reach = level_.reach[i]});
   CellResult result;
   bool hidden_counts = false;  // a hidden piece has some volume
   if (TaskLists::is_flat(list)) {
@@ -519,11 +532,7 @@ __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, 
 template <class Surface>
 __device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const Task& task,
                                                  std::uint32_t k, CellResult& result) {
-  const SharePiece piece =
-      task.form == Task::samples
-          ? piece_of(level_.samples[k])
-          : piece_of(
-                (task.form == Task::whole_share ? level_.share_masses : level_.block_masses)[k]);
+  const SharePiece piece = this->piece(task.form, k);
   const typename Measure::PieceLook look = measure.look_at(piece);
   if (!look.is_inside) return false;
   result.is_far |= look.is_far;
