@@ -5,66 +5,12 @@
 // pass, each sample gives the fraction of a ball of its size. One definition for host and device.
 #pragma once
 
-#include "libvpm/model/tool_model.h"
-#include "libvpm/query/ball_fraction.h"
-#include "libvpm/query/surface.h"
+#include "libvpm/query/contact_plane.h"
+#include "libvpm/query/crossing_plane.h"
+#include "libvpm/query/share_piece.h"
 #include "libvpm/query/tool_sum.h"
 
 namespace vpm {
-
-// What a level knows of its blocks beyond the file: volume and centroid of the samples together.
-struct BlockMass {
-  Vec3 centroid;      // about the tool's centre of mass
-  double weight = 0;  // sum of the samples' weights
-};
-
-struct CellView {
-  const CellBlock* blocks = nullptr;
-  const BlockMass* masses = nullptr;
-  const CellSample* samples = nullptr;
-  std::uint32_t begin = 0, end = 0;  // blocks of the cell
-  Vec3 center;                       // of the sphere, about the tool's centre of mass
-  double reach = 0;                  // of the share, from the sphere's centre
-};
-
-// The surface inside a cell, averaged: used for what lies out of the direct view.
-struct ContactPlane {
-  // Unit normals, and feet relative to the cell's reach: |terms| <= kSheetReach < 8; 2^20 samples
-  // fit.
-  using Sum = FixedSum<40>;
-  Sum normal[3], foot[3];
-  std::int64_t count = 0;
-
-  VPM_HD void add(Vec3 n, Vec3 relative_foot) {
-    normal[0].add(n.x), normal[1].add(n.y), normal[2].add(n.z);
-    foot[0].add(relative_foot.x), foot[1].add(relative_foot.y), foot[2].add(relative_foot.z);
-    ++count;
-  }
-  // Height of a place above the plane, both relative to the cell's centre and reach; negative
-  // behind it.
-  VPM_HD double height(Vec3 relative) const {
-    const double per = 1 / static_cast<double>(count);
-    const Vec3 n{normal[0].real(), normal[1].real(), normal[2].real()};
-    const Vec3 p{per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
-    return dot(normalized_or_zero(n), relative - p);
-  }
-  // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
-  // object more than `near` in front of it. Where there is no plane nothing speaks against.
-  VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
-    return count == 0 || (height(relative) < 0 && height(hiding) <= near);
-  }
-};
-
-// A cut share, in the surface's frame: its plane speaks for what is too far behind the surface, or
-// out of sight.
-struct CutShare {
-  ContactPlane plane;
-  Vec3 center;
-  double reach = 0;
-
-  VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
-  VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
-};
 
 struct CellResult {
   ToolSum sum;                     // tool axes, arms about the centre of mass
@@ -73,11 +19,6 @@ struct CellResult {
   std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
 };
 
-// A surface further than this many reaches from the cell's centre, or than the tool's reach from
-// the cell, may be another one than that which cuts the cell: a place behind it is merely hidden by
-// it (a silhouette before a background), unless the cell's own plane vouches for both.
-inline constexpr double kSheetReach = 3;
-
 // The tool's reach, and its inverse, which scales arms.
 struct ToolReach {
   double length = 0, inverse = 0;  // m, 1/m
@@ -85,73 +26,6 @@ struct ToolReach {
   ToolReach() = default;
   VPM_HD ToolReach(double reach) : length(reach), inverse(1 / reach) {}
 };
-
-// A plane that crosses the tool: as the surface shows it, and in the tool's axes about its centre
-// of mass.
-struct CrossingPlane {
-  TangentPlane seen;
-  Vec3 normal;
-  double height = 0;  // of the centre of mass
-
-  CrossingPlane() = default;
-  VPM_HD CrossingPlane(const TangentPlane& plane, const Pose& to_surface)
-      : seen(plane),
-        normal(transpose(to_surface.rotation) * plane.normal),
-        height(plane.distance(to_surface.translation)) {}
-  VPM_HD double distance(Vec3 about_center_of_mass) const {
-    return dot(normal, about_center_of_mass) + height;
-  }
-};
-
-// Of samples behind a plane, added in their order.
-struct CrossedSums {
-  double weight = 0;
-  Vec3 moment;  // of each weight times its sample's centre
-  bool is_cut = false;
-};
-// The weight of a sample that lies behind a plane.
-VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane& plane,
-                                   bool& is_cut) {
-  const double distance = plane.distance(widen(sample.center));
-  if (distance >= sample.radius) return 0;
-  if (distance <= -sample.radius) return sample.weight;
-  is_cut = true;
-  return sample.weight * ball_fraction_inside(distance / sample.radius);
-}
-VPM_HD inline CrossedSums crossed_in_turn(const CrossingPlane& plane, const CellSample* samples,
-                                          std::uint32_t count) {
-  CrossedSums sums;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const double inside = weight_behind(samples[k], plane, sums.is_cut);
-    if (inside == 0) continue;
-    sums.weight += inside;
-    sums.moment += inside * widen(samples[k].center);
-  }
-  return sums;
-}
-
-// A compact piece of a share: a sample, or what is not cut taken whole (radius 0): a block, or the
-// share.
-struct SharePiece {
-  Vec3 at;  // centroid, about the tool's centre of mass
-  double radius = 0, weight = 0;
-  double extent = 0;                 // no part is further from the centroid, nearly
-  std::uint32_t begin = 0, end = 0;  // its samples, of what is taken whole
-};
-VPM_HD inline SharePiece piece_of(const CellSample& sample) {
-  return {widen(sample.center), sample.radius, sample.weight, sample.radius, 0, 0};
-}
-VPM_HD inline SharePiece piece_of(const BlockMass& mass, const CellBlock& block) {
-  return {mass.centroid, 0, mass.weight, block.radius, block.begin, block.end};
-}
-VPM_HD inline SharePiece piece_of(const BlockMass& mass, const CellView& share) {
-  SharePiece piece{mass.centroid, 0, mass.weight, share.reach, 0, 0};
-  if (share.begin < share.end) {
-    piece.begin = share.blocks[share.begin].begin;
-    piece.end = share.blocks[share.end - 1].end;
-  }
-  return piece;
-}
 
 // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
 VPM_HD inline void add_whole(ToolReach tool, const BlockMass& mass, Vec3 normal, ToolSum& sum) {

@@ -2,7 +2,8 @@
 // definition for host and device; measure_refined.h says in which order they are asked.
 #pragma once
 
-#include "libvpm/query/cell.h"
+#include "libvpm/query/contact_plane.h"
+#include "libvpm/query/surface.h"
 
 namespace vpm {
 

@@ -3,7 +3,9 @@
 // for host and device.
 #pragma once
 
+#include "libvpm/query/contact_plane.h"
 #include "libvpm/query/share_clusters.h"
+#include "libvpm/query/surface.h"
 
 namespace vpm {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "libvpm/query/cell.h"
+#include "libvpm/query/share_piece.h"
 
 namespace vpm {
 

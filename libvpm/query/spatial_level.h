@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/query/cell.h"
 #include "libvpm/query/share_clusters.h"
+#include "libvpm/query/share_piece.h"
 
 namespace vpm {
 

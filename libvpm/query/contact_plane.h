@@ -1,0 +1,53 @@
+// The mean plane of the surface in a share that it cuts, which speaks for places out of sight.
+#pragma once
+
+#include "libvpm/core/fixed_sum.h"
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+// A surface further than this many reaches from the cell's centre, or than the tool's reach from
+// the cell, may be another one than that which cuts the cell: a place behind it is merely hidden by
+// it (a silhouette before a background), unless the cell's own plane vouches for both.
+inline constexpr double kSheetReach = 3;
+
+// The surface inside a cell, averaged: used for what lies out of the direct view.
+struct ContactPlane {
+  // Unit normals, and feet relative to the cell's reach: |terms| <= kSheetReach < 8; 2^20 samples
+  // fit.
+  using Sum = FixedSum<40>;
+  Sum normal[3], foot[3];
+  std::int64_t count = 0;
+
+  VPM_HD void add(Vec3 n, Vec3 relative_foot) {
+    normal[0].add(n.x), normal[1].add(n.y), normal[2].add(n.z);
+    foot[0].add(relative_foot.x), foot[1].add(relative_foot.y), foot[2].add(relative_foot.z);
+    ++count;
+  }
+  // Height of a place above the plane, both relative to the cell's centre and reach; negative
+  // behind it.
+  VPM_HD double height(Vec3 relative) const {
+    const double per = 1 / static_cast<double>(count);
+    const Vec3 n{normal[0].real(), normal[1].real(), normal[2].real()};
+    const Vec3 p{per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
+    return dot(normalized_or_zero(n), relative - p);
+  }
+  // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
+  // object more than `near` in front of it. Where there is no plane nothing speaks against.
+  VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
+    return count == 0 || (height(relative) < 0 && height(hiding) <= near);
+  }
+};
+
+// A cut share, in the surface's frame: its plane speaks for what is too far behind the surface, or
+// out of sight.
+struct CutShare {
+  ContactPlane plane;
+  Vec3 center;
+  double reach = 0;
+
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
+  VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
+};
+
+}  // namespace vpm
