@@ -193,14 +193,11 @@ class CellMeasure {
   VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
     return look.reading.distance > -piece.radius;
   }
-  VPM_HD double weight_inside(const SharePiece& piece, const PieceLook& look) const {
-    return piece.weight *
-           (is_cut(piece, look) ? surface_.fraction_inside(look.reading, look.x, piece.radius) : 1);
-  }
   // Adds a piece that is inside.
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
     if (is_cut(piece, look)) {
-      sum.add(weight_inside(piece, look), in_tool(look.reading.normal), arm(piece.at));
+      const double inside = surface_.fraction_inside(look.reading, look.x, piece.radius);
+      sum.add(piece.weight * inside, in_tool(look.reading.normal), arm(piece.at));
       return;
     }
     const Vec3 normal = surface_.closest_normal(look.x, look.reading);

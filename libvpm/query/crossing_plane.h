@@ -40,6 +40,7 @@ VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane
   is_cut = true;
   return sample.weight * ball_fraction_inside(distance / sample.radius);
 }
+// Of samples one after another.
 VPM_HD inline CrossedSums crossed_in_turn(const CrossingPlane& plane, const CellSample* samples,
                                           std::uint32_t count) {
   CrossedSums sums;

@@ -22,6 +22,8 @@ struct PointBox {
 struct SecondPlane {
   Vec3f normal, foot;
   bool is_convex = false;
+
+  VPM_HD TangentPlane plane() const { return {widen(normal), widen(foot)}; }
 };
 
 // A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
@@ -107,29 +109,27 @@ struct DiskSurface {
   }
   VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
-    const Vec3 normal = widen(normals[i]), foot = widen(feet[i]);
-    const double distance = dot(normal, x - foot);
-    if (second_of[i] != kNoPoint) {
-      const SecondPlane& second = seconds[second_of[i]];
-      const Vec3 n = widen(second.normal), at = widen(second.foot);
-      const double other = dot(n, x - at);
-      if (second.is_convex ? other > distance : other < distance) return {true, other, n, at, i};
+    const TangentPlane own = plane_of(i);
+    const double distance = own.distance(x);
+    if (const SecondPlane* const second = second_at(i)) {
+      const TangentPlane beyond = second->plane();
+      const double other = beyond.distance(x);
+      if (second->is_convex ? other > distance : other < distance)
+        return {true, other, beyond.normal, beyond.foot, i};
     }
-    return {true, distance, normal, foot, i};
+    return {true, distance, own.normal, own.foot, i};
   }
 
   // The part of a ball about x that is behind the surface that was read there.
   VPM_HD double fraction_inside(const Reading& reading, Vec3 x, double radius) const {
-    if (second_of[reading.point] == kNoPoint)
-      return ball_fraction_inside(reading.distance / radius);
-    const SecondPlane& second = seconds[second_of[reading.point]];
-    const Vec3 own = widen(normals[reading.point]), n = widen(second.normal);
-    const double first_inside =
-        ball_fraction_inside(dot(own, x - widen(feet[reading.point])) / radius);
-    const double second_inside = ball_fraction_inside(dot(n, x - widen(second.foot)) / radius);
-    const double cosine = dot(own, n);
-    return second.is_convex ? fraction_of_both(first_inside, second_inside, cosine)
-                            : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
+    const SecondPlane* const second = second_at(reading.point);
+    if (second == nullptr) return ball_fraction_inside(reading.distance / radius);
+    const TangentPlane own = plane_of(reading.point), beyond = second->plane();
+    const double first_inside = ball_fraction_inside(own.distance(x) / radius);
+    const double second_inside = ball_fraction_inside(beyond.distance(x) / radius);
+    const double cosine = dot(own.normal, beyond.normal);
+    return second->is_convex ? fraction_of_both(first_inside, second_inside, cosine)
+                             : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
   }
 
   // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
@@ -172,10 +172,9 @@ struct DiskSurface {
   // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
   // sides of a groove, towards these, or their crease.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    if (second_of[reading.point] != kNoPoint) {
-      const SecondPlane& second = seconds[second_of[reading.point]];
-      if (!second.is_convex) return normal_below_groove(x, reading, second);
-    }
+    const SecondPlane* const second = second_at(reading.point);
+    if (second != nullptr && !second->is_convex)
+      return normal_below_groove(x, reading, second->plane());
     const Vec3 towards = reading.foot - x;
     const double height = dot(reading.normal, towards);
     const Vec3 aside = towards - height * reading.normal;
@@ -285,15 +284,23 @@ struct DiskSurface {
 
   // Of the solid behind either of two planes, for a place behind both: the normal of that which is
   // nearest where the other does not hide its foot, or the direction to where they meet.
-  VPM_HD Vec3 normal_below_groove(Vec3 x, const Reading& reading, const SecondPlane& second) const {
-    const Vec3 n = widen(normals[reading.point]), m = widen(second.normal);
-    const double a = dot(n, x - widen(feet[reading.point])), b = dot(m, x - widen(second.foot));
-    const double cosine = dot(n, m);
+  VPM_HD Vec3 normal_below_groove(Vec3 x, const Reading& reading, const TangentPlane& other) const {
+    const TangentPlane own = plane_of(reading.point);
+    const double a = own.distance(x), b = other.distance(x);
+    const double cosine = dot(own.normal, other.normal);
     if (!(a < 0 && b < 0 && cosine > kSlot)) return reading.normal;
-    const double along_n = b * cosine - a, along_m = a * cosine - b;
-    if (along_n <= 0) return m;
-    if (along_m <= 0) return n;
-    return normalized_or_zero(along_n * n + along_m * m);
+    const double along_own = b * cosine - a, along_other = a * cosine - b;
+    if (along_own <= 0) return other.normal;
+    if (along_other <= 0) return own.normal;
+    return normalized_or_zero(along_own * own.normal + along_other * other.normal);
+  }
+
+  VPM_HD TangentPlane plane_of(std::uint32_t i) const {
+    return {widen(normals[i]), widen(feet[i])};
+  }
+  // Null: the disk knows one plane only.
+  VPM_HD const SecondPlane* second_at(std::uint32_t i) const {
+    return second_of[i] == kNoPoint ? nullptr : seconds + second_of[i];
   }
 
   // A coordinate axis that is far from a direction.

@@ -1,7 +1,6 @@
 // Points alone that show two walls: where tools behind both are pushed.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "libvpm/query/prepared_cloud.h"
@@ -73,10 +72,9 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
     Cloud seen = TwoWalls{true}.seen();
     for (std::size_t i = 0; i < seen.size(); ++i) {
       Vec3f& p = seen.positions[i];
-      p.z = static_cast<float>(bulge * (widen(p).x * widen(p).x + widen(p).y * widen(p).y));
-      const Vec3 p_double = widen(p);
-      seen.normals[i] =
-          narrow(normalized_or_zero(Vec3{-2 * bulge * p_double.x, -2 * bulge * p_double.y, 1}));
+      const double x = widen(p).x, y = widen(p).y;
+      p.z = static_cast<float>(bulge * (x * x + y * y));
+      seen.normals[i] = narrow(normalized_or_zero(Vec3{-2 * bulge * x, -2 * bulge * y, 1}));
     }
     const PreparedCloud cloud(seen);
     const DiskSurface disks = cloud.disk_surface();
@@ -106,7 +104,7 @@ TEST(TwoWallsOfPoints, BelowAGrooveTheCreaseIsNearest) {
   }
 }
 
-// Force, relative to the tool's volume, and volume of a cube at an offset. By midpoints.
+// Force and torque on a cube, in parts of its volume, by midpoints.
 Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
   constexpr int kPlaces = 90;
   Wrench sum;

@@ -8,69 +8,11 @@
 // taken whole.
 #pragma once
 
+#include "libvpm/query/cuda/share_tasks.h"
 #include "libvpm/query/cuda/shares.h"
 #include "libvpm/query/patch.h"
 
 namespace vpm::cuda {
-
-// Pieces of a share to be measured together.
-struct Task {
-  enum Form : std::uint32_t { samples, block, whole_block, whole_share };
-
-  std::uint32_t share;
-  Form form;
-  std::uint32_t begin, count;  // samples; otherwise `begin` is the block or share
-
-  __device__ bool is_whole() const { return form == whole_block || form == whole_share; }
-};
-
-// Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
-struct TaskLists {
-  enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
-  static constexpr unsigned kTasks = 352;  // room in a list
-  static constexpr unsigned kNarrow = 8, kWide = 32;
-
-  Task tasks[kLists][kTasks];
-  unsigned counts[kLists];
-  unsigned next_bundle;
-
-  __device__ static unsigned width(unsigned list) {
-    return list == pieces ? 1 : list == samples_narrow || list == flat_narrow ? kNarrow : kWide;
-  }
-  __device__ static bool is_flat(unsigned list) { return list == flat_wide || list == flat_narrow; }
-  __device__ unsigned add(unsigned list, const Task& task) {
-    const unsigned slot = atomicAdd(&counts[list], 1U);
-    tasks[list][slot] = task;
-    return slot;
-  }
-};
-
-// What the surface shows of a cluster.
-enum class Seen : std::uint32_t {
-  free,
-  mixed,
-  uncut,
-  behind,
-  behind_near,  // no place of it is further behind the surface than the tool's reach
-  crossed,      // a patch: the surface passes through it as one plane
-  pushed,       // a patch, behind near the surface: in one direction
-};
-
-// A unit of such a cluster: the chunk by the slot of those who have looked at it.
-struct SeenUnit {
-  std::uint16_t bits;
-
-  __device__ static SeenUnit of(unsigned slot, unsigned unit, Seen seen) {
-    return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | slot << 3 | unit)};
-  }
-  __device__ Seen seen() const { return static_cast<Seen>(bits >> 11); }
-  __device__ unsigned slot() const { return bits >> 3 & 255U; }
-  __device__ unsigned unit() const { return bits & 7U; }
-  __device__ Side side() const {
-    return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
-  }
-};
-static_assert(kThreads <= 256 && Chunk::kUnits <= 8);
 
 // Reads a surface at four places by four lanes.
 struct ReadByLanes {
@@ -90,18 +32,6 @@ struct ReadByLanes {
       readings[from].foot = lanes.from(mine.foot, from);
     }
   }
-};
-
-// Memory that the threads of a block share.
-struct MeasureShared {
-  static constexpr unsigned kSeen = kThreads * Chunk::kUnits;
-  SeenUnit seen[kSeen];  // in no patch from the front, in crossed patches from the end
-  unsigned seen_count, crossed_count;
-  std::uint32_t pushed[kThreads];  // chunks
-  unsigned pushed_count;
-  std::uint32_t first_units[kThreads];  // of the chunk at which a slot's threads have looked
-  TaskLists lists;
-  double terms[4][kThreads];  // of sums in the samples' order
 };
 
 template <class Surface>
