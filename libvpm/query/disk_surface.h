@@ -7,15 +7,10 @@
 
 #include "libvpm/query/ball_fraction.h"
 #include "libvpm/query/pixel_rectangle.h"
+#include "libvpm/query/point_tree.h"
 #include "libvpm/query/surface.h"
 
 namespace vpm {
-
-// Axis-aligned box of the feet below a node, and of the points that they were measured at; empty
-// boxes (padding) have low > high.
-struct PointBox {
-  Vec3f low, high;
-};
 
 // A second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or behind
 // either of them (a concave one, a slot).
@@ -26,86 +21,17 @@ struct SecondPlane {
   VPM_HD TangentPlane plane() const { return {widen(normal), widen(foot)}; }
 };
 
-// A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
-// 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize) in
-// canonical order.
+// A view: plain pointers, for host or device.
 struct DiskSurface {
-  static constexpr std::uint32_t kLeafSize = 8;
-  static constexpr int kMaxDepth = 32;
-
-  const Vec3f* feet = nullptr;
+  PointTree feet;  // in canonical order
   const Vec3f* normals = nullptr;
   const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
   const SecondPlane* seconds = nullptr;
-  const PointBox* nodes = nullptr;
-  std::uint32_t count = 0;
-  std::uint32_t leaves = 0;   // a power of two
   double largest_radius = 0;  // of any disk
-
-  VPM_HD static double axis_gap(double x, double low, double high) {
-    return x < low ? low - x : (x > high ? x - high : 0);
-  }
-  VPM_HD static double squared_distance(const PointBox& box, Vec3 x) {
-    if (box.low.x > box.high.x) return HUGE_VAL;
-    const double dx = axis_gap(x.x, box.low.x, box.high.x),
-                 dy = axis_gap(x.y, box.low.y, box.high.y),
-                 dz = axis_gap(x.z, box.low.z, box.high.z);
-    return dx * dx + dy * dy + dz * dz;
-  }
-
-  // The point nearest to x among those closer than `bound`; equal distances go to the smaller
-  // index. kNoPoint if none. A point that is thought to be near makes the search short and does not
-  // change its result.
-  VPM_HD std::uint32_t nearest(Vec3 x, double bound, std::uint32_t near = kNoPoint) const {
-    if (count == 0) return kNoPoint;
-    std::uint32_t best = kNoPoint;
-    double best_squared = bound * bound;
-    if (near != kNoPoint) {
-      const double squared = squared_norm(widen(feet[near]) - x);
-      if (squared < best_squared) {
-        best_squared = squared;
-        best = near;
-      }
-    }
-    std::uint32_t stack[kMaxDepth];
-    double stack_squared[kMaxDepth];
-    int size = 0;
-    std::uint32_t node = 1;
-    double node_squared = squared_distance(nodes[1], x);
-    for (;;) {
-      // A node at exactly the best distance may hold an equal point of smaller index: it is
-      // entered.
-      if (node_squared <= best_squared) {
-        if (node < leaves) {
-          const std::uint32_t left = 2 * node;
-          const double dl = squared_distance(nodes[left], x),
-                       dr = squared_distance(nodes[left + 1], x);
-          const bool left_first = dl <= dr;
-          stack[size] = left_first ? left + 1 : left;
-          stack_squared[size++] = left_first ? dr : dl;
-          node = left_first ? left : left + 1;
-          node_squared = left_first ? dl : dr;
-          continue;
-        }
-        const std::uint32_t begin = (node - leaves) * kLeafSize;
-        const std::uint32_t end = begin + kLeafSize < count ? begin + kLeafSize : count;
-        for (std::uint32_t i = begin; i < end; ++i) {
-          const double squared = squared_norm(widen(feet[i]) - x);
-          if (squared < best_squared || (squared == best_squared && best != kNoPoint && i < best)) {
-            best_squared = squared;
-            best = i;
-          }
-        }
-      }
-      if (size == 0) return best;
-      node = stack[--size];
-      node_squared = stack_squared[size];
-    }
-  }
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
   VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
-    return read_point(x, nearest(x, HUGE_VAL, near));
+    return read_point(x, feet.nearest(x, HUGE_VAL, near));
   }
   VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
@@ -130,37 +56,6 @@ struct DiskSurface {
     const double cosine = dot(own.normal, beyond.normal);
     return second->is_convex ? fraction_of_both(first_inside, second_inside, cosine)
                              : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
-  }
-
-  // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
-  // false, and returns what it said last.
-  template <class Visit>
-  VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
-    std::uint32_t stack[kMaxDepth];
-    int size = 0;
-    stack[size++] = 1;
-    while (size > 0) {
-      const std::uint32_t node = stack[--size];
-      if (squared_distance(nodes[node], center) > squared_radius) continue;
-      if (node < leaves) {
-        stack[size++] = 2 * node + 1;
-        stack[size++] = 2 * node;
-        continue;
-      }
-      const std::uint32_t begin = (node - leaves) * kLeafSize;
-      if (!visit(begin, begin + kLeafSize < count ? begin + kLeafSize : count)) return false;
-    }
-    return true;
-  }
-  // The same for the points in a ball.
-  template <class Visit>
-  VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
-    return for_leaves_in_ball(center, squared_radius, [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t i = begin; i < end; ++i) {
-        if (squared_norm(widen(feet[i]) - center) <= squared_radius && !visit(i)) return false;
-      }
-      return true;
-    });
   }
 
   // The surface for places in a ball: the few points that may be nearest to one of them, if they
@@ -218,7 +113,7 @@ struct DiskSurface {
     double radius = 0;
   };
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
-    const std::uint32_t point = nearest(center, radius + largest_radius);
+    const std::uint32_t point = feet.nearest(center, radius + largest_radius);
     return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
   }
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
@@ -250,7 +145,7 @@ struct DiskSurface {
     return mean_plane(look, tolerance, plane);
   }
   // The mean plane of the disks below a ball that was looked at; false where they do not show one
-  // smooth surface: one faces away from it or lies off it by more than a part of `tolerance`, or
+  // smooth surface: one is of another wall or lies off it by more than a part of `tolerance`, or
   // those to one side of the middle are too few or face elsewhere.
   VPM_HD bool mean_plane(const Look& look, double tolerance, TangentPlane& plane) const {
     if (look.point == kNoPoint) return false;
@@ -259,9 +154,9 @@ struct DiskSurface {
     const Vec3 middle = look.center - height * nearest.normal;
     Vec3 normal_sum, place_sum;
     std::uint32_t found = 0;
-    const bool few = for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
+    const bool few = feet.for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
       normal_sum += widen(normals[i]);
-      place_sum += widen(feet[i]);
+      place_sum += widen(feet.points[i]);
       return ++found <= kMostOfPatch;
     });
     if (!few || found == 0) return false;
@@ -275,6 +170,9 @@ struct DiskSurface {
   static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more would take longer than shares
   static constexpr std::uint32_t kFewestAside = 3;     // points of a patch to one side
   static constexpr double kSmoothCosine = 0.9;         // as in an image
+  // Disks that face elsewhere by more than 60 degrees are of another wall. (90 would leave it to
+  // noise which disks of a wall at right angles are.)
+  static constexpr double kOtherWall = 0.5;
   // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
   static constexpr double kMiddle = 0.65;
   static constexpr double kOffPlane = 0.5;  // of the tolerance
@@ -296,7 +194,7 @@ struct DiskSurface {
   }
 
   VPM_HD TangentPlane plane_of(std::uint32_t i) const {
-    return {widen(normals[i]), widen(feet[i])};
+    return {widen(normals[i]), widen(feet.points[i])};
   }
   // Null: the disk knows one plane only.
   VPM_HD const SecondPlane* second_at(std::uint32_t i) const {
@@ -316,12 +214,12 @@ struct DiskSurface {
     Vec3 sums[4];
     std::uint32_t counts[4] = {};
     std::uint32_t found = 0;
-    const bool agree = for_points_in_ball(center, squared_radius, [&](std::uint32_t i) {
-      const Vec3 place = widen(feet[i]), away = place - middle, normal = widen(normals[i]);
+    const bool agree = feet.for_points_in_ball(center, squared_radius, [&](std::uint32_t i) {
+      const Vec3 place = widen(feet.points[i]), away = place - middle, normal = widen(normals[i]);
       const int aside = (dot(away, side) > 0 ? 1 : 0) + (dot(away, other) > 0 ? 2 : 0);
       sums[aside] += normal;
       ++counts[aside];
-      return ++found <= kMostOfPatch && dot(normal, n) > 0 &&
+      return ++found <= kMostOfPatch && dot(normal, n) > kOtherWall &&
              std::fabs(plane.distance(place)) <= tolerance;
     });
     for (int k = 0; agree && k < 4; ++k) {
@@ -340,7 +238,7 @@ class DiskSurface::AroundBall {
       : surface_(surface), center_(center) {
     if (nearest == kNoPoint) return;
     const double covered = kSlack * radius;
-    const double distance = norm(widen(surface.feet[nearest]) - center);
+    const double distance = norm(widen(surface.feet.points[nearest]) - center);
     if (are_many(nearest, covered * (distance + covered))) return;
     squared_radius_ = covered * covered;
     const double reach = kSlack * (distance + 2 * covered);
@@ -351,9 +249,9 @@ class DiskSurface::AroundBall {
     if (count_ == 0 || !(squared_norm(x - center_) <= squared_radius_))
       return surface_.read(x, near);
     std::uint32_t best = points_[0];
-    double best_squared = squared_norm(widen(surface_.feet[best]) - x);
+    double best_squared = squared_norm(widen(surface_.feet.points[best]) - x);
     for (int k = 1; k < count_; ++k) {
-      const double squared = squared_norm(widen(surface_.feet[points_[k]]) - x);
+      const double squared = squared_norm(widen(surface_.feet.points[points_[k]]) - x);
       if (squared < best_squared || (squared == best_squared && points_[k] < best)) {
         best_squared = squared;
         best = points_[k];
@@ -369,15 +267,15 @@ class DiskSurface::AroundBall {
   // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
   // radius is 4 `quarter`. The nearest point's leaf tells how densely.
   VPM_HD bool are_many(std::uint32_t nearest, double quarter) const {
-    const PointBox& leaf = surface_.nodes[surface_.leaves + nearest / kLeafSize];
+    const PointBox leaf = surface_.feet.leaf_of(nearest);
     const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
     const double area = 12 * quarter, area_of_leaf = 0.5 * squared_diagonal;  // roughly
-    return area * kLeafSize > 2 * kMostPoints * area_of_leaf;
+    return area * PointTree::kLeafSize > 2 * kMostPoints * area_of_leaf;
   }
 
   // The points that may be nearest; none if they are more than kMostPoints.
   VPM_HD void gather(double squared_reach) {
-    const bool few = surface_.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
+    const bool few = surface_.feet.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
       if (count_ == kMostPoints) return false;
       points_[count_++] = i;
       return true;

@@ -142,7 +142,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   cloud.origin_ = camera.to_world.translation;
   cloud.camera_ = camera;
   cloud.boxes_.clear();
-  cloud.leaves_ = 0;
+  cloud.foot_boxes_.clear();
   cloud.positions_.resize(pixels);
   cloud.normals_.resize(pixels);
   cloud.pixel_normals_.resize(pixels);

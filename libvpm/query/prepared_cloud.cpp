@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/leaf_order.h"
 
 namespace vpm {
 namespace {
@@ -27,44 +27,6 @@ auto order_key(const Cloud& cloud, std::uint32_t i) {
                          positive_zero(n.x), positive_zero(n.y), positive_zero(n.z),
                          cloud.radii[i]);
 }
-
-std::uint64_t spread_bits(std::uint64_t x) {  // 21 bits to every third of 63
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffffULL;
-  x = (x | x << 16) & 0x1f0000ff0000ffULL;
-  x = (x | x << 8) & 0x100f00f00f00f00fULL;
-  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
-  return (x | x << 2) & 0x1249249249249249ULL;
-}
-
-// Places along a Morton curve over the cloud's box, in cells of a power of two so that scaling by
-// one keeps them.
-class MortonCurve {
- public:
-  explicit MortonCurve(const std::vector<Vec3f>& points) {
-    Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    low_ = -high;
-    for (const Vec3f& p : points) {
-      low_ = {std::min<double>(low_.x, p.x), std::min<double>(low_.y, p.y),
-              std::min<double>(low_.z, p.z)};
-      high = {std::max<double>(high.x, p.x), std::max<double>(high.y, p.y),
-              std::max<double>(high.z, p.z)};
-    }
-    const double extent = std::max({high.x - low_.x, high.y - low_.y, high.z - low_.z});
-    constexpr int kBits = 21;
-    cells_per_metre_ = extent > 0 ? std::ldexp(1.0, kBits - 1 - std::ilogb(extent)) : 0;
-  }
-  std::uint64_t operator()(Vec3f p) const {
-    const Vec3 cell = cells_per_metre_ * (widen(p) - low_);
-    return spread_bits(static_cast<std::uint64_t>(cell.x)) |
-           spread_bits(static_cast<std::uint64_t>(cell.y)) << 1 |
-           spread_bits(static_cast<std::uint64_t>(cell.z)) << 2;
-  }
-
- private:
-  Vec3 low_;
-  double cells_per_metre_ = 0;
-};
 
 // What validate() leaves to those who compute with a cloud.
 void check_extent(const Cloud& cloud) {
@@ -104,13 +66,11 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
     tiles_.build(inverse);
   } else {
     const std::vector<float> radii = order_in_space(cloud);
-    build_boxes();
-    DiskSurface measured = disk_surface();
-    measured.feet = positions_.data();
-    measured.normals = normals_.data();
+    boxes_ = boxes_of(positions_);
+    const DiskSurface measured{point_tree(), normals_.data()};
     if (points == PointReading::settled) {
       disks_ = settle(measured, radii);
-      build_boxes();
+      foot_boxes_ = boxes_of(disks_.feet);
     } else {
       disks_ = as_measured(measured);
     }
@@ -160,19 +120,17 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
 }
 
 std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
-  const MortonCurve curve(cloud.positions);
-  std::vector<std::uint64_t> code(cloud.size());
-  for (std::size_t i = 0; i < code.size(); ++i) code[i] = curve(cloud.positions[i]);
   std::vector<std::uint32_t> order(cloud.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return code[a] != code[b] ? code[a] < code[b] : order_key(cloud, a) < order_key(cloud, b);
+    return order_key(cloud, a) < order_key(cloud, b);
   });
   order.erase(std::unique(order.begin(), order.end(),
                           [&](std::uint32_t a, std::uint32_t b) {
                             return order_key(cloud, a) == order_key(cloud, b);
                           }),
               order.end());
+  order_by_leaves(cloud.positions, order);
   take_in_order(cloud, order);
   std::vector<float> radii;
   radii.reserve(order.size());
@@ -189,28 +147,6 @@ void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uin
   }
 }
 
-void PreparedCloud::build_boxes() {
-  const std::uint32_t count = static_cast<std::uint32_t>(positions_.size());
-  leaves_ =
-      std::bit_ceil((count + DiskSurface::kLeafSize - 1) / DiskSurface::kLeafSize + (count == 0));
-  constexpr float kInf = HUGE_VALF;
-  boxes_.assign(2 * std::size_t{leaves_}, {{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}});
-  const auto grow = [](PointBox& box, Vec3f low, Vec3f high) {
-    box.low = {std::min(box.low.x, low.x), std::min(box.low.y, low.y), std::min(box.low.z, low.z)};
-    box.high = {std::max(box.high.x, high.x), std::max(box.high.y, high.y),
-                std::max(box.high.z, high.z)};
-  };
-  for (std::uint32_t i = 0; i < count; ++i) {
-    PointBox& leaf = boxes_[leaves_ + i / DiskSurface::kLeafSize];
-    grow(leaf, positions_[i], positions_[i]);
-    if (!disks_.feet.empty()) grow(leaf, disks_.feet[i], disks_.feet[i]);
-  }
-  for (std::uint32_t node = leaves_; node-- > 1;) {
-    for (const std::uint32_t child : {2 * node, 2 * node + 1})
-      grow(boxes_[node], boxes_[child].low, boxes_[child].high);
-  }
-}
-
 DepthSurface PreparedCloud::depth_surface() const {
   DepthSurface surface;
   surface.k = camera_->intrinsics;
@@ -224,14 +160,16 @@ DepthSurface PreparedCloud::depth_surface() const {
   return surface;
 }
 
+PointTree PreparedCloud::point_tree() const {
+  return {positions_.data(), boxes_.data(), static_cast<std::uint32_t>(positions_.size()),
+          leaves_for(positions_.size())};
+}
+
 DiskSurface PreparedCloud::disk_surface() const {
-  return {disks_.feet.data(),
-          disks_.normals.data(),
-          disks_.second_of.data(),
-          disks_.seconds.data(),
-          boxes_.data(),
-          static_cast<std::uint32_t>(positions_.size()),
-          leaves_,
+  PointTree feet = point_tree();
+  feet.points = disks_.feet.data();
+  if (!foot_boxes_.empty()) feet.boxes = foot_boxes_.data();
+  return {feet, disks_.normals.data(), disks_.second_of.data(), disks_.seconds.data(),
           largest_radius_};
 }
 

@@ -47,6 +47,7 @@ class PreparedCloud {
   DepthSurface depth_surface() const;
   // Of organised clouds: the first point at or after each pixel; pixels + 1.
   const std::vector<std::uint32_t>& pixel_begin() const { return pixel_begin_; }
+  PointTree point_tree() const;                         // of the positions; and
   DiskSurface disk_surface() const;                     // of clouds that are not organised
   const SettledDisks& disks() const { return disks_; }  // the same; in the order of positions()
 
@@ -58,7 +59,9 @@ class PreparedCloud {
   template <class Visit>
   void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
   // Bound of their number.
-  std::size_t most_ranges() const { return is_organised() ? camera_->height : leaves_; }
+  std::size_t most_ranges() const {
+    return is_organised() ? camera_->height : leaves_for(positions_.size());
+  }
 
  private:
   friend class FramePreparation;
@@ -67,7 +70,6 @@ class PreparedCloud {
   // Returns the radii in that order.
   std::vector<float> order_in_space(const Cloud& cloud);
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
-  void build_boxes();  // of the positions, and of the disks' feet where they are known
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
 
@@ -83,8 +85,8 @@ class PreparedCloud {
   std::vector<Vec3f> pixel_normals_;  // camera axes
   InverseDepthPyramid tiles_;
 
-  std::vector<PointBox> boxes_;
-  std::uint32_t leaves_ = 0;
+  std::vector<BoxQuad> boxes_;       // of the positions
+  std::vector<BoxQuad> foot_boxes_;  // of the disks' feet; none where those are the positions
   SettledDisks disks_;
 };
 
@@ -104,12 +106,11 @@ void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& 
     for_ranges_in_pixels(pixels_of_ball(center, radius), visit);
     return;
   }
-  const DiskSurface disks = disk_surface();
-  if (disks.count == 0) return;
-  disks.for_leaves_in_ball(center, radius * radius, [&](std::uint32_t begin, std::uint32_t end) {
-    visit(begin, end);
-    return true;
-  });
+  point_tree().for_leaves_in_ball(center, radius * radius,
+                                  [&](std::uint32_t begin, std::uint32_t end) {
+                                    visit(begin, end);
+                                    return true;
+                                  });
 }
 
 }  // namespace vpm

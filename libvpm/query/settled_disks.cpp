@@ -50,7 +50,7 @@ class Settling {
   Settling(const DiskSurface& measured, std::span<const float> radii)
       : measured_(measured),
         radii_(radii),
-        kinds_(measured.count),
+        kinds_(measured.feet.count),
         result_(as_measured(measured)) {}
 
   SettledDisks run() {
@@ -62,7 +62,7 @@ class Settling {
 
  private:
   static constexpr std::uint32_t kGrain = 1024;
-  static_assert(kGrain % DiskSurface::kLeafSize == 0);
+  static_assert(kGrain % PointTree::kLeafSize == 0);
   struct Found {
     std::uint32_t disk;
     SecondPlane second;
@@ -74,11 +74,11 @@ class Settling {
   };
 
   void run(void (Settling::*pass)(std::uint32_t, std::uint32_t, std::vector<Found>&)) {
-    std::vector<std::vector<Found>> found((measured_.count + kGrain - 1) / kGrain);
+    std::vector<std::vector<Found>> found((measured_.feet.count + kGrain - 1) / kGrain);
     parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t chunk = begin; chunk < end; ++chunk) {
         const auto first = static_cast<std::uint32_t>(chunk) * kGrain;
-        (this->*pass)(first, std::min(first + kGrain, measured_.count), found[chunk]);
+        (this->*pass)(first, std::min(first + kGrain, measured_.feet.count), found[chunk]);
       }
     });
     for (const std::vector<Found>& of_chunk : found) {
@@ -90,7 +90,7 @@ class Settling {
   }
 
   Disk disk(std::uint32_t i) const {
-    return {widen(measured_.feet[i]), widen(measured_.normals[i])};
+    return {widen(measured_.feet.points[i]), widen(measured_.normals[i])};
   }
   void set(std::uint32_t i, Vec3 foot, Vec3 normal) {
     result_.feet[i] = narrow(foot);
@@ -102,7 +102,7 @@ class Settling {
     double diagonal;
   };
   Leaf leaf_of(std::uint32_t i) const {
-    const PointBox& box = measured_.nodes[measured_.leaves + i / DiskSurface::kLeafSize];
+    const PointBox box = measured_.feet.leaf_of(i);
     const Vec3 low = widen(box.low), high = widen(box.high);
     return {0.5 * (low + high), norm(high - low)};
   }
@@ -114,7 +114,7 @@ class Settling {
   template <class Visit>
   bool for_disks_near(Vec3 center, double reach, std::uint32_t most, const Visit& visit) const {
     std::uint32_t count = 0;
-    return measured_.for_points_in_ball(center, reach * reach, [&](std::uint32_t j) {
+    return measured_.feet.for_points_in_ball(center, reach * reach, [&](std::uint32_t j) {
       visit(j);
       return ++count <= most;
     });
@@ -133,8 +133,8 @@ class Settling {
 
   void settle_among_alike(std::uint32_t begin, std::uint32_t end, std::vector<Found>& out) {
     std::vector<Disk> near;
-    for (std::uint32_t first = begin; first < end; first += DiskSurface::kLeafSize)
-      settle_leaf(first, std::min(first + DiskSurface::kLeafSize, end), near, out);
+    for (std::uint32_t first = begin; first < end; first += PointTree::kLeafSize)
+      settle_leaf(first, std::min(first + PointTree::kLeafSize, end), near, out);
   }
 
   // The disks of a leaf have most neighbours in common.
@@ -295,9 +295,10 @@ class Settling {
 }  // namespace
 
 SettledDisks as_measured(const DiskSurface& measured) {
-  return {{measured.feet, measured.feet + measured.count},
-          {measured.normals, measured.normals + measured.count},
-          std::vector<std::uint32_t>(measured.count, kNoPoint),
+  const std::uint32_t count = measured.feet.count;
+  return {{measured.feet.points, measured.feet.points + count},
+          {measured.normals, measured.normals + count},
+          std::vector<std::uint32_t>(count, kNoPoint),
           {}};
 }
 

@@ -55,7 +55,7 @@ struct OtherWall {
 };
 
 // Bodies smaller than this part of the tool's reach are pushed to one wall only.
-inline constexpr double kLeastDivided = 0.02;
+inline constexpr double kLeastDivided = 0.012;
 // Two walls, by the cosine between them: what turns less is taken for the turning of one surface,
 // whose direction in the middle is that of the mean.
 inline constexpr double kTwoWalls = 0.9;

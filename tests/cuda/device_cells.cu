@@ -123,12 +123,12 @@ std::vector<CellAnswer> cells_on_device(const PreparedCloud& cloud, const ToolMo
     const DeviceArray<Vec3f> feet(disks.feet), normals(disks.normals);
     const DeviceArray<std::uint32_t> second_of(disks.second_of);
     const DeviceArray<SecondPlane> seconds(disks.seconds);
-    const DeviceArray<PointBox> nodes(surface.nodes, 2 * std::size_t{surface.leaves});
-    surface.feet = feet.get();
+    const DeviceArray<BoxQuad> boxes(surface.feet.boxes, surface.feet.quads());
+    surface.feet.points = feet.get();
+    surface.feet.boxes = boxes.get();
     surface.normals = normals.get();
     surface.second_of = second_of.get();
     surface.seconds = seconds.get();
-    surface.nodes = nodes.get();
     return launch(surface, to_surface, tool, level);
   }
   DepthSurface surface = cloud.depth_surface();

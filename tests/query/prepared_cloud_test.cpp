@@ -75,11 +75,11 @@ TEST(PreparedCloud, NearestIsTheNearest) {
     const Vec3 x{std::sin(12.9 * k), std::sin(78.2 * k), 1 + std::sin(37.7 * k)};
     double best = HUGE_VAL;
     for (const Vec3f& p : prepared.disks().feet) best = std::min(best, squared_norm(widen(p) - x));
-    const std::uint32_t found = disks.nearest(x, HUGE_VAL);
+    const std::uint32_t found = disks.feet.nearest(x, HUGE_VAL);
     ASSERT_NE(found, kNoPoint);
     EXPECT_EQ(squared_norm(widen(prepared.disks().feet[found]) - x), best);
     const std::uint32_t begin_at = static_cast<std::uint32_t>(k) * 15;
-    EXPECT_EQ(disks.nearest(x, HUGE_VAL, begin_at), found);
+    EXPECT_EQ(disks.feet.nearest(x, HUGE_VAL, begin_at), found);
   }
 }
 
@@ -128,12 +128,12 @@ TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
     for (const double height : {0.0, 0.02, -0.3}) {
       for (const double radius : {0.004, 0.02}) {
         const Vec3 center{0.5 * spacing, 0, height};
-        const auto around = disks.around_ball(center, radius, disks.nearest(center, HUGE_VAL));
+        const auto around = disks.around_ball(center, radius, disks.feet.nearest(center, HUGE_VAL));
         for (int k = 0; k < 200; ++k) {
           const Vec3 x = center + radius * Vec3{std::sin(k), std::cos(1.7 * k), std::sin(2.3 * k)};
-          ASSERT_EQ(around.read(x, kNoPoint).point, disks.nearest(x, HUGE_VAL)) << spacing;
+          ASSERT_EQ(around.read(x, kNoPoint).point, disks.feet.nearest(x, HUGE_VAL)) << spacing;
         }
-        ASSERT_EQ(around.read(center, kNoPoint).point, disks.nearest(center, HUGE_VAL));
+        ASSERT_EQ(around.read(center, kNoPoint).point, disks.feet.nearest(center, HUGE_VAL));
       }
     }
   }
@@ -153,7 +153,7 @@ TEST(PreparedCloud, RefusesTwoPointsAtOnePixel) {
 
 TEST(PreparedCloud, EmptyCloudsAnswerNothing) {
   const PreparedCloud cloud{Cloud{}};
-  EXPECT_EQ(cloud.disk_surface().nearest({}, HUGE_VAL), kNoPoint);
+  EXPECT_EQ(cloud.disk_surface().feet.nearest({}, HUGE_VAL), kNoPoint);
 }
 
 }  // namespace

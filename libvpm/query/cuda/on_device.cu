@@ -215,21 +215,27 @@ void DeviceCloud::copy_image(const PreparedCloud& cloud) {
 }
 
 void DeviceCloud::copy_points(const PreparedCloud& cloud) {
-  disks_ = cloud.disk_surface();
+  const auto copy_tree = [](PointTree tree, const DeviceArray<Vec3f>& points,
+                            DeviceArray<BoxQuad>& boxes) {
+    boxes = DeviceArray<BoxQuad>(tree.boxes, tree.quads());
+    tree.points = points.get();
+    tree.boxes = boxes.get();
+    return tree;
+  };
   positions_ = DeviceArray<Vec3f>(cloud.positions());
   normals_ = DeviceArray<Vec3f>(cloud.normals());
-  boxes_ = DeviceArray<PointBox>(disks_.nodes, 2 * std::size_t{disks_.leaves});
+  const PointTree tree = copy_tree(cloud.point_tree(), positions_, boxes_);
+  points_ = {positions_.get(), normals_.get(), tree.count, 0, tree};
+  disks_ = cloud.disk_surface();
   const SettledDisks& settled = cloud.disks();
   feet_ = DeviceArray<Vec3f>(settled.feet);
   disk_normals_ = DeviceArray<Vec3f>(settled.normals);
   second_of_ = DeviceArray<std::uint32_t>(settled.second_of);
   seconds_ = DeviceArray<SecondPlane>(settled.seconds);
-  disks_.feet = feet_.get();
+  disks_.feet = copy_tree(disks_.feet, feet_, foot_boxes_);
   disks_.normals = disk_normals_.get();
   disks_.second_of = second_of_.get();
   disks_.seconds = seconds_.get();
-  disks_.nodes = boxes_.get();
-  points_ = {positions_.get(), normals_.get(), disks_.count, 0, boxes_.get() + disks_.leaves};
 }
 
 std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {

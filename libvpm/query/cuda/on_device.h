@@ -73,7 +73,7 @@ class DeviceCloud {
   DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
   DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
   std::size_t tile_begin_[DepthSurface::kMaxLevels] = {};
-  DeviceArray<PointBox> boxes_;
+  DeviceArray<BoxQuad> boxes_, foot_boxes_;
   DeviceArray<Vec3f> feet_, disk_normals_;
   DeviceArray<std::uint32_t> second_of_;
   DeviceArray<SecondPlane> seconds_;

@@ -72,12 +72,10 @@ __device__ void for_points(const PointsView& points, const PoseFrame& frame, dou
     return;
   }
   const double reach_squared = reach * reach;
-  constexpr std::uint32_t kLeaf = DiskSurface::kLeafSize;
   for (std::uint32_t first = 32 * warp; first < points.count; first += 32 * warps) {
     const std::uint32_t k = first + threadIdx.x % 32;
     const bool active =
-        k < points.count &&
-        DiskSurface::squared_distance(points.leaves[k / kLeaf], frame.center) <= reach_squared;
+        k < points.count && points.tree.leaf_of(k).squared_distance(frame.center) <= reach_squared;
     visit(k, active ? widen(points.positions[k]) : Vec3{}, active);
   }
 }

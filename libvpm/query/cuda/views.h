@@ -76,8 +76,8 @@ struct PointsView {
   const Vec3f* positions = nullptr;
   const Vec3f* normals = nullptr;
   std::uint32_t count = 0;
-  std::int32_t width = 0;            // > 0: of the image
-  const PointBox* leaves = nullptr;  // otherwise: boxes of kLeafSize points each
+  std::int32_t width = 0;  // > 0: of the image
+  PointTree tree;          // otherwise
 };
 
 // Everything of a cloud that poses are combined with.
