@@ -39,6 +39,13 @@ PointBox around(const PointBox& a, const PointBox& b) {
   return squared;
 }
 
+// The same of points; the last one stands for those beyond the end.
+[[gnu::always_inline]] inline Double4 squared_distances(std::span<const Vec3f> points,
+                                                        const Vec3& x) {
+  const auto [a, b, c, d] = four_of(points, 0);
+  return squared_norm(Vec3x4(a, b, c, d) - Vec3x4(x, x, x, x));
+}
+
 // Squared distances as integers that order like them, rounded down; the last two bits say which of
 // four.
 constexpr std::uint64_t kWhich = 3;
@@ -92,7 +99,7 @@ void BoxQuad::set(std::uint32_t k, const PointBox& box) {
 VPM_VECTOR_CLONES
 void PointTree::search_by_vectors(Vec3 x, Nearest& best) const {
   Waiting waiting;
-  // A step goes down two levels: from the root or from its children, so that it ends at the leaves.
+  // A step goes down two levels: from the root or from its children, so that it ends at a leaf.
   if (std::countr_zero(leaves) % 2 == 0) {
     waiting.push_root();
   } else {
@@ -110,13 +117,48 @@ void PointTree::search_by_vectors(Vec3 x, Nearest& best) const {
     }
     const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
     for (std::uint32_t first = begin; first < end; first += kFour) {
-      const auto [a, b, c, d] = four_of(std::span(points + first, end - first), 0);
-      const Double4 squared = squared_norm(Vec3x4(a, b, c, d) - Vec3x4(x, x, x, x));
+      const Double4 squared = squared_distances({points + first, end - first}, x);
       if (!any(squared <= best.squared)) continue;
       for (std::uint32_t k = 0; k < kFour && first + k < end; ++k)
         best.consider(squared[k], first + k);
     }
   }
+}
+
+VPM_VECTOR_CLONES
+std::uint32_t PointTree::list_by_vectors(Vec3 center, double squared_radius,
+                                         std::uint32_t (&listed)[kMostListed]) const {
+  if (count == 0) return 0;
+  std::uint32_t stack[2 * kMaxDepth], size = 0, waiting = 0;
+  const auto enter_quad = [&](std::uint32_t quad, std::uint32_t first) {
+    const Mask4 touched = squared_distances(boxes[quad], center) <= squared_radius;
+    for (std::uint32_t k = 4; k-- > first;) {
+      stack[waiting] = 4 * quad + k;
+      waiting += touched[k] != 0 ? 1 : 0;
+    }
+  };
+  if (std::countr_zero(leaves) % 2 == 0)
+    stack[waiting++] = 1;
+  else
+    enter_quad(0, 2);
+  while (waiting > 0) {
+    const std::uint32_t node = stack[--waiting];
+    if (node < leaves) {
+      enter_quad(node, 0);
+      continue;
+    }
+    const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
+    if (size + kLeafSize > kMostListed) return kMostListed + 1;
+    for (std::uint32_t first = begin; first < end; first += kFour) {
+      const Mask4 inside =
+          squared_distances({points + first, end - first}, center) <= squared_radius;
+      for (std::uint32_t k = 0; k < kFour && first + k < end; ++k) {
+        listed[size] = first + k;
+        size += inside[k] != 0 ? 1 : 0;
+      }
+    }
+  }
+  return size;
 }
 
 std::uint32_t leaves_for(std::size_t points) {

@@ -96,6 +96,16 @@ struct PointTree {
   // The same for the points in a ball.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
+#ifndef __CUDA_ARCH__
+    std::uint32_t listed[kMostListed];
+    const std::uint32_t size = list_by_vectors(center, squared_radius, listed);
+    if (size <= kMostListed) {
+      for (std::uint32_t k = 0; k < size; ++k) {
+        if (!visit(listed[k])) return false;
+      }
+      return true;
+    }
+#endif
     return for_leaves_in_ball(center, squared_radius, [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t i = begin; i < end; ++i) {
         if (squared_norm(widen(points[i]) - center) <= squared_radius && !visit(i)) return false;
@@ -146,6 +156,11 @@ struct PointTree {
   }
   // The same on the host.
   void search_by_vectors(Vec3 x, Nearest& best) const;
+
+  // The points in a ball, in their order; returns how many, or more than kMostListed.
+  static constexpr std::uint32_t kMostListed = 512;
+  std::uint32_t list_by_vectors(Vec3 center, double squared_radius,
+                                std::uint32_t (&listed)[kMostListed]) const;
 };
 
 // How many leaves a tree of so many points has.
