@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -19,15 +20,15 @@ struct PointBox {
     return x < low ? low - x : (x > high ? x - high : 0);
   }
   VPM_HD double squared_distance(Vec3 x) const {
-    if (low.x > high.x) return HUGE_VAL;
     const double dx = axis_gap(x.x, low.x, high.x), dy = axis_gap(x.y, low.y, high.y),
                  dz = axis_gap(x.z, low.z, high.z);
     return dx * dx + dy * dy + dz * dz;
   }
 };
 
-// Four boxes by their coordinates, as vectors read them.
-struct BoxQuad {
+// Four boxes by their coordinates, as vectors read them. Empty ones are from infinity to -infinity,
+// and infinitely far.
+struct alignas(16) BoxQuad {
   float low[3][4], high[3][4];
 
   VPM_HD PointBox box(std::uint32_t k) const {
@@ -36,11 +37,65 @@ struct BoxQuad {
   void set(std::uint32_t k, const PointBox& box);
 };
 
+// Nodes that are left to search. Pushed without branches that depend on distances: nobody predicts
+// those.
+class NodeStack {
+ public:
+  // Of trees of up to 2^22 leaves: three of each quad on the way down, and one more.
+  static constexpr int kRoom = 3 * 11 + 1;
+
+  // Squared distances as integers that order like them, rounded down; the last two bits say which
+  // of four. A node whose key is above the last one of a distance holds no point that is as near.
+  VPM_HD static std::uint64_t key_of(double squared, std::uint64_t which) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &squared, sizeof bits);
+    return (bits & ~kWhich) | which;
+  }
+  VPM_HD static std::uint64_t last_key(double squared) {
+    return (squared < HUGE_VAL ? key_of(squared, 0) : key_of(HUGE_VAL, 0) - 1) | kWhich;
+  }
+
+  VPM_HD bool is_empty() const { return size_ == 0; }
+  VPM_HD std::uint64_t top_key() const { return keys_[size_ - 1]; }
+  VPM_HD std::uint32_t take() { return nodes_[--size_]; }
+  VPM_HD void push_root() {
+    keys_[0] = 0;
+    nodes_[size_++] = 1;
+  }
+  // Those of a quad that are near enough, the nearest last.
+  VPM_HD void push(std::uint32_t quad, const double (&squared)[4], std::uint64_t last) {
+    std::uint64_t key[4];
+    for (std::uint32_t k = 0; k < 4; ++k) key[k] = key_of(squared[k], k);
+    order(key[0], key[1]), order(key[2], key[3]);
+    order(key[0], key[2]), order(key[1], key[3]);
+    order(key[1], key[2]);
+    for (const std::uint64_t k : key) {
+      keys_[size_] = k;
+      nodes_[size_] = 4 * quad + static_cast<std::uint32_t>(k & kWhich);
+      size_ += k <= last ? 1 : 0;
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kWhich = 3;
+
+  VPM_HD static void order(std::uint64_t& greater, std::uint64_t& less) {
+    const std::uint64_t all = std::uint64_t{0} - static_cast<std::uint64_t>(greater < less);
+    const std::uint64_t swapped = (greater ^ less) & all;
+    greater ^= swapped, less ^= swapped;
+  }
+
+  std::uint64_t keys_[kRoom + 1];
+  std::uint32_t nodes_[kRoom + 1];
+  int size_ = 0;
+};
+
 // A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
-// 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize).
+// 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A
+// step goes down two levels, from the root or from its children, so that it ends at a leaf.
 struct PointTree {
   static constexpr std::uint32_t kLeafSize = 8;
-  static constexpr int kMaxDepth = 32;
+  static constexpr std::uint32_t kMostLeaves = std::uint32_t{1} << 22;
 
   const Vec3f* points = nullptr;
   const BoxQuad* boxes = nullptr;  // of node k: k % 4 of quad k / 4
@@ -48,8 +103,10 @@ struct PointTree {
   std::uint32_t leaves = 0;  // a power of two
 
   VPM_HD std::uint32_t quads() const { return leaves > 1 ? leaves / 2 : 1; }
-  VPM_HD PointBox box(std::uint32_t node) const { return boxes[node / 4].box(node % 4); }
-  VPM_HD PointBox leaf_of(std::uint32_t point) const { return box(leaves + point / kLeafSize); }
+  VPM_HD PointBox leaf_of(std::uint32_t point) const {
+    const std::uint32_t node = leaves + point / kLeafSize;
+    return boxes[node / 4].box(node % 4);
+  }
   VPM_HD std::uint32_t end_of_leaf(std::uint32_t begin) const {
     return begin + kLeafSize < count ? begin + kLeafSize : count;
   }
@@ -65,9 +122,9 @@ struct PointTree {
       if (squared < best.squared) best = {squared, near};
     }
 #ifdef __CUDA_ARCH__
-    search(x, best);
+    search<OneByOne>(x, best);
 #else
-    search_by_vectors(x, best);  // finds the same
+    search_by_vectors(x, best);
 #endif
     return best.point;
   }
@@ -76,22 +133,7 @@ struct PointTree {
   // false, and returns what it said last.
   template <class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
-    if (count == 0) return true;
-    std::uint32_t stack[kMaxDepth];
-    int size = 0;
-    stack[size++] = 1;
-    while (size > 0) {
-      const std::uint32_t node = stack[--size];
-      if (box(node).squared_distance(center) > squared_radius) continue;
-      if (node < leaves) {
-        stack[size++] = 2 * node + 1;
-        stack[size++] = 2 * node;
-        continue;
-      }
-      const std::uint32_t begin = (node - leaves) * kLeafSize;
-      if (!visit(begin, end_of_leaf(begin))) return false;
-    }
-    return true;
+    return for_leaves<OneByOne>(center, squared_radius, visit);
   }
   // The same for the points in a ball.
   template <class Visit>
@@ -126,36 +168,83 @@ struct PointTree {
       point = i;
     }
   };
-  // A node at exactly the best distance may hold an equal point of smaller index: it is entered.
+
+  // Squared distances of four boxes, and of the first of some points, up to four.
+  struct OneByOne {
+    VPM_HD static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
+      for (std::uint32_t k = 0; k < 4; ++k) squared[k] = quad.box(k).squared_distance(x);
+    }
+    VPM_HD static void to_points(const Vec3f* points, std::uint32_t count, Vec3 x,
+                                 double (&squared)[4]) {
+      for (std::uint32_t k = 0; k < 4 && k < count; ++k)
+        squared[k] = squared_norm(widen(points[k]) - x);
+    }
+  };
+  struct ByVectors;  // the same on the host
+
+  VPM_HD bool begins_at_root() const {
+    return (leaves & 0x55555555U) != 0;
+  }
+
+  template <class Distances>
   VPM_HD void search(Vec3 x, Nearest& best) const {
-    std::uint32_t stack[kMaxDepth];
-    double stack_squared[kMaxDepth];
-    int size = 0;
-    std::uint32_t node = 1;
-    double node_squared = box(1).squared_distance(x);
-    for (;;) {
-      if (node_squared <= best.squared) {
-        if (node < leaves) {
-          const std::uint32_t left = 2 * node;
-          const double dl = box(left).squared_distance(x), dr = box(left + 1).squared_distance(x);
-          const bool left_first = dl <= dr;
-          stack[size] = left_first ? left + 1 : left;
-          stack_squared[size++] = left_first ? dr : dl;
-          node = left_first ? left : left + 1;
-          node_squared = left_first ? dl : dr;
-          continue;
-        }
-        const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
-        for (std::uint32_t i = begin; i < end; ++i)
-          best.consider(squared_norm(widen(points[i]) - x), i);
+    NodeStack waiting;
+    double squared[4];
+    if (begins_at_root()) {
+      waiting.push_root();
+    } else {
+      Distances::to_boxes(boxes[0], x, squared);
+      squared[0] = squared[1] = HUGE_VAL;
+      waiting.push(0, squared, NodeStack::last_key(best.squared));
+    }
+    while (!waiting.is_empty()) {
+      const std::uint64_t key = waiting.top_key(), last = NodeStack::last_key(best.squared);
+      const std::uint32_t node = waiting.take();
+      // A node at exactly the best distance may hold an equal point of smaller index.
+      if (key > last) continue;
+      if (node < leaves) {
+        Distances::to_boxes(boxes[node], x, squared);
+        waiting.push(node, squared, last);
+        continue;
       }
-      if (size == 0) return;
-      node = stack[--size];
-      node_squared = stack_squared[size];
+      const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
+      for (std::uint32_t first = begin; first < end; first += 4) {
+        Distances::to_points(points + first, end - first, x, squared);
+        for (std::uint32_t k = 0; k < 4 && first + k < end; ++k)
+          best.consider(squared[k], first + k);
+      }
     }
   }
-  // The same on the host.
   void search_by_vectors(Vec3 x, Nearest& best) const;
+
+  template <class Distances, class Visit>
+  VPM_HD bool for_leaves(Vec3 center, double squared_radius, const Visit& visit) const {
+    if (count == 0) return true;
+    std::uint32_t stack[NodeStack::kRoom + 1];
+    int size = 0;
+    double squared[4];
+    const auto push = [&](std::uint32_t quad, std::uint32_t first) {
+      Distances::to_boxes(boxes[quad], center, squared);
+      for (std::uint32_t k = 4; k-- > first;) {
+        stack[size] = 4 * quad + k;
+        size += squared[k] <= squared_radius ? 1 : 0;
+      }
+    };
+    if (begins_at_root())
+      stack[size++] = 1;
+    else
+      push(0, 2);
+    while (size > 0) {
+      const std::uint32_t node = stack[--size];
+      if (node < leaves) {
+        push(node, 0);
+        continue;
+      }
+      const std::uint32_t begin = (node - leaves) * kLeafSize;
+      if (!visit(begin, end_of_leaf(begin))) return false;
+    }
+    return true;
+  }
 
   // The points in a ball, in their order; returns how many, or more than kMostListed.
   static constexpr std::uint32_t kMostListed = 512;
@@ -163,7 +252,7 @@ struct PointTree {
                                 std::uint32_t (&listed)[kMostListed]) const;
 };
 
-// How many leaves a tree of so many points has.
+// How many leaves a tree of so many points has; at most PointTree::kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
 // The boxes of a tree of points in the order of order_by_leaves (leaf_order.h).

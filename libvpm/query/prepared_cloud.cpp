@@ -170,6 +170,7 @@ DepthSurface PreparedCloud::depth_surface() const {
 }
 
 PointTree PreparedCloud::point_tree() const {
+  static_assert(kMaxPoints <= std::size_t{PointTree::kMostLeaves} * PointTree::kLeafSize);
   return {positions_.data(), boxes_.data(), static_cast<std::uint32_t>(positions_.size()),
           leaves_for(positions_.size())};
 }
