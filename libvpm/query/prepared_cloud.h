@@ -28,7 +28,7 @@ class PreparedCloud {
   // [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured.
   // From a depth image, FramePreparation (frame_preparation.h) is quicker.
   // `points`: how those of a cloud without a camera are read by the refined measure. To settle
-  // 300 000 of them takes one core .3 to .5 s, with noise at grazing angles more than one.
+  // 300 000 of them takes one core a quarter of a second, with noise at grazing angles one.
   explicit PreparedCloud(const Cloud& cloud, PointReading points = PointReading::settled);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud

@@ -9,7 +9,7 @@
 
 namespace vpm {
 
-// How a cloud without a camera is read. As it was measured it is ready in a third of the time.
+// How a cloud without a camera is read. As it was measured it is ready in less time.
 enum class PointReading { settled, as_measured };
 
 struct SettledDisks {

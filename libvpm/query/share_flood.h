@@ -191,7 +191,8 @@ class ShareFlood {
     const ShareCluster& patch = level_.cluster(root);
     const Vec3 at = to_surface_ * patch.center;
     const Reading middle = surface_.read(at);
-    const OpenPatch open = open_patch(surface_, middle, at, patch.reach, reach_.length);
+    const OpenPatch open =
+        open_patch(surface_, middle, at, patch.reach, reach_.length, ReadInTurn{});
     if (open == OpenPatch::free) {
       states_.set(patch, Cell::free, Passage::closed);
     } else if (open == OpenPatch::behind) {
