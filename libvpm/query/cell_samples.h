@@ -13,7 +13,7 @@ namespace vpm {
 CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
 
 // Reads the surface of a camera at four places by vectors, others one after the other.
-struct ReadTogether : ReadInTurn {
+struct ReadTogether {
   template <class Surface>
   void operator()(const Surface& surface, const Vec3 (&places)[4], Reading (&readings)[4]) const {
     if constexpr (std::is_same_v<Surface, DepthSurface>)

@@ -134,9 +134,8 @@ struct DepthSurface {
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
   // A camera sees few obstacles from two sides, and what is behind it is pushed towards it.
-  template <class InTurn = ReadInTurn>
   static VPM_HD bool find_other_wall(Vec3, const TangentPlane&, std::uint32_t, double, double,
-                                     OtherWall&, const InTurn& = {}) {
+                                     OtherWall&) {
     return false;
   }
 

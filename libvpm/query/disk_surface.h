@@ -80,27 +80,27 @@ struct DiskSurface {
 
   // A body of this radius about x is nearest to `own`, by a point of it. Looks for another wall at
   // four places that are further behind, on each side: of those that face elsewhere (cosine less
-  // than `unlike`) that which takes the most of the body. `in_turn`: ReadInTurn, or what finds the
-  // same sooner.
-  template <class InTurn = ReadInTurn>
+  // than `unlike`) that which takes the most of the body.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
-                              double unlike, OtherWall& other, const InTurn& in_turn = {}) const {
+                              double unlike, OtherWall& other) const {
     const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
                across = cross(own.normal, side);
-    WallAside seen[4];
-    in_turn.look_aside(
-        [&](int k) {
-          const Vec3 aside = (k % 2 == 0 ? 1.0 : -1.0) * (k < 2 ? side : across);
-          return look_aside(x, own, point, radius, unlike, aside);
-        },
-        seen);
+    const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
     double least = radius;
-    for (const WallAside& wall : seen) {
-      if (!(wall.away < least)) continue;
-      least = wall.away > 0 ? wall.away : 0;
-      other.normal = wall.normal;
-      other.border.normal = normalized_or_zero(own.normal - wall.normal);
-      other.border.foot = x - wall.away * other.border.normal;
+    for (const Vec3 aside : asides) {
+      const Vec3 place = x + kFurther * radius * (aside - own.normal);
+      if (own.distance(place) >= 0) continue;
+      const Reading there = read(place, point);
+      if (!(there.distance < 0)) continue;
+      const Vec3 normal = closest_normal(place, there);
+      if (dot(normal, own.normal) > unlike) continue;
+      const Vec3 between = own.normal - normal;
+      const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
+      if (!(away < least)) continue;
+      least = away > 0 ? away : 0;
+      other.normal = normal;
+      other.border.normal = normalized_or_zero(between);
+      other.border.foot = x - away * other.border.normal;
     }
     return least < radius;
   }
@@ -191,18 +191,6 @@ struct DiskSurface {
     if (along_own <= 0) return other.normal;
     if (along_other <= 0) return own.normal;
     return normalized_or_zero(along_own * own.normal + along_other * other.normal);
-  }
-
-  VPM_HD WallAside look_aside(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
-                              double unlike, Vec3 aside) const {
-    const Vec3 place = x + kFurther * radius * (aside - own.normal);
-    if (own.distance(place) >= 0) return {};
-    const Reading there = read(place, point);
-    if (!(there.distance < 0)) return {};
-    const Vec3 normal = closest_normal(place, there);
-    if (dot(normal, own.normal) > unlike) return {};
-    const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(own.normal - normal);
-    return {normal, away};
   }
 
   VPM_HD TangentPlane plane_of(std::uint32_t i) const {

@@ -24,7 +24,7 @@ VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& loo
   const double near = kSheetReach * reach;
   OtherWall other;
   return squared_norm(plane.foot - center) <= near * near &&
-         !surface.find_other_wall(center, plane, look.point, reach, kOneDirection, other, read_all);
+         !surface.find_other_wall(center, plane, look.point, reach, kOneDirection, other);
 }
 
 // Of a patch in which there is no surface: whether it is behind one, as its middle is.
@@ -35,14 +35,14 @@ enum class OpenPatch {
   pushed,  // and all are nearest to one wall
 };
 
-template <class Surface, class ReadAll>
+template <class Surface>
 VPM_HD OpenPatch open_patch(const Surface& surface, const Reading& middle, Vec3 center,
-                            double reach, double tool_reach, const ReadAll& read_all) {
+                            double reach, double tool_reach) {
   if (!(middle.known && middle.distance < 0)) return OpenPatch::free;
   if (!(norm(middle.foot - center) + reach < tool_reach)) return OpenPatch::behind;
   const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
   OtherWall other;
-  return surface.find_other_wall(center, wall, middle.point, reach, kOneDirection, other, read_all)
+  return surface.find_other_wall(center, wall, middle.point, reach, kOneDirection, other)
              ? OpenPatch::near
              : OpenPatch::pushed;
 }

@@ -191,8 +191,7 @@ class ShareFlood {
     const ShareCluster& patch = level_.cluster(root);
     const Vec3 at = to_surface_ * patch.center;
     const Reading middle = surface_.read(at);
-    const OpenPatch open =
-        open_patch(surface_, middle, at, patch.reach, reach_.length, ReadInTurn{});
+    const OpenPatch open = open_patch(surface_, middle, at, patch.reach, reach_.length);
     if (open == OpenPatch::free) {
       states_.set(patch, Cell::free, Passage::closed);
     } else if (open == OpenPatch::behind) {

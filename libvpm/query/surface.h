@@ -30,23 +30,12 @@ struct Reading {
   std::uint32_t point = kNoPoint;  // the same, by index: a good place to begin the next search
 };
 
-// What a look to one side of a body finds: the direction in which a wall pushes there, and how far
-// from the body's middle that begins.
-struct WallAside {
-  Vec3 normal;
-  double away = HUGE_VAL;  // none
-};
-
-// Reads a surface at several places, or looks to four sides, one after the other.
+// Reads a surface at several places, one after the other.
 struct ReadInTurn {
   template <class Surface, int kPlaces>
   VPM_HD void operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
                          Reading (&readings)[kPlaces]) const {
     for (int k = 0; k < kPlaces; ++k) readings[k] = surface.read(places[k]);
-  }
-  template <class Look>
-  VPM_HD void look_aside(const Look& look, WallAside (&seen)[4]) const {
-    for (int k = 0; k < 4; ++k) seen[k] = look(k);
   }
 };
 

@@ -14,18 +14,10 @@
 
 namespace vpm::cuda {
 
-// Reads a surface at four places, or looks to four sides, by four lanes.
+// Reads a surface at four places by four lanes.
 struct ReadByLanes {
   static constexpr unsigned kLanes = 4;
   Tile lanes;
-
-  template <class Look>
-  __device__ void look_aside(const Look& look, WallAside (&seen)[kLanes]) const {
-    const WallAside mine = look(static_cast<int>(lanes.lane));
-#pragma unroll
-    for (unsigned from = 0; from < kLanes; ++from)
-      seen[from] = {lanes.from(mine.normal, from), lanes.from(mine.away, from)};
-  }
 
   template <class Surface>
   __device__ void operator()(const Surface& surface, const Vec3 (&places)[kLanes],
@@ -132,8 +124,7 @@ class ShareMeasure {
     const bool patch = is_patch(ball.radius, level_.tool_reach.length);
     if (look.side == Side::uncut) {
       if (!patch) return Seen::uncut;
-      switch (open_patch(surface_, surface_.read(at), at, ball.radius, level_.tool_reach.length,
-                         read_all)) {
+      switch (open_patch(surface_, surface_.read(at), at, ball.radius, level_.tool_reach.length)) {
         case OpenPatch::free:
           return Seen::free;
         case OpenPatch::behind:
