@@ -106,7 +106,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
              std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
     }
     const Vec3 at = to_camera * widen(positions_[i]);
-    const double u = pixel % camera_->width, v = pixel / camera_->width;
+    const std::uint32_t u = pixel % camera_->width, v = pixel / camera_->width;
     if (!(at.z > 0 && std::abs(k.fx * at.x / at.z + k.cx - u) <= kPixelTolerance &&
           std::abs(k.fy * at.y / at.z + k.cy - v) <= kPixelTolerance)) {
       refuse("point " + std::to_string(order[i]) +

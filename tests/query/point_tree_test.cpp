@@ -18,6 +18,7 @@ std::vector<Vec3f> in_leaf_order(const std::vector<Vec3f>& points) {
   std::iota(order.begin(), order.end(), 0u);
   order_by_leaves(points, order);
   std::vector<Vec3f> ordered;
+  ordered.reserve(order.size());
   for (const std::uint32_t i : order) ordered.push_back(points[i]);
   return ordered;
 }
@@ -129,6 +130,7 @@ TEST(LeafOrder, KeepsEachPointOnce) {
 TEST(LeafOrder, MakesCompactLeaves) {
   constexpr int kSide = 64;
   std::vector<Vec3f> lattice;
+  lattice.reserve(std::size_t{kSide} * kSide);
   for (int i = 0; i < kSide; ++i) {
     for (int k = 0; k < kSide; ++k)
       lattice.push_back(
