@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Draws what `vpm-bench packing` measured: what is left uncovered, what growing adds, cost per sphere.
 
-usage: plot_packing.py FOLDER    (reads packing.csv, writes packing.png)
+usage: plot_packing.py FOLDER    (reads packing.json, writes packing.png)
 """
-import csv
+import json
 import pathlib
 import sys
 
@@ -22,9 +22,9 @@ def draw_coverage(axis, rows):
     for k, shape in enumerate(shapes):
         for method, style in STYLES.items():
             line = [r for r in rows if r["shape"] == shape and r["method"] == method]
-            axis.loglog([float(r["spheres"]) for r in line], [1 - float(r["coverage"]) for r in line],
+            axis.loglog([r["spheres"] for r in line], [1 - r["coverage"] for r in line],
                         f"C{k}{style}", lw=1.2, label=shape if style == "-" else None)
-    most = max(float(r["spheres"]) for r in rows)
+    most = max(r["spheres"] for r in rows)
     slope = np.array([most / 100, most])
     axis.loglog(slope, 0.35 * (slope / slope[0]) ** APOLLONIAN, "k-", lw=3, alpha=0.3,
                 label=f"N^{APOLLONIAN}")
@@ -40,10 +40,10 @@ def draw_growth(axis, rows):
     shapes = list(dict.fromkeys(r["shape"] for r in rows))
     counts = list(dict.fromkeys(r["spheres"] for r in rows))
     for k, count in enumerate(counts):
-        of = {(r["shape"], r["method"]): float(r["coverage"]) for r in rows if r["spheres"] == count}
+        of = {(r["shape"], r["method"]): r["coverage"] for r in rows if r["spheres"] == count}
         gain = [100 * (of[s, "grown"] - of[s, "greedy"]) for s in shapes]
         axis.bar(np.arange(len(shapes)) + 0.25 * (k - (len(counts) - 1) / 2), gain, 0.23,
-                 label=f"{float(count):.0f} spheres")
+                 label=f"{count:.0f} spheres")
     axis.set_xticks(range(len(shapes)))
     axis.set_xticklabels(shapes, rotation=30, ha="right", fontsize=8)
     axis.set_ylabel("coverage that --grow adds, points")
@@ -52,10 +52,10 @@ def draw_growth(axis, rows):
 
 
 def draw_cost(axis, rows):
-    count = np.array([float(r["spheres"]) for r in rows])
-    axis.loglog(count, 1e6 * np.array([float(r["cpu_seconds"]) for r in rows]) / count, "C0o-",
+    count = np.array([r["spheres"] for r in rows])
+    axis.loglog(count, 1e6 * np.array([r["cpu_seconds"] for r in rows]) / count, "C0o-",
                 label="CPU µs per sphere")
-    axis.loglog(count, [float(r["memory_mb"]) for r in rows], "C1s-", label="peak memory, MB")
+    axis.loglog(count, [r["memory_mb"] for r in rows], "C1s-", label="peak memory, MB")
     axis.set_xlabel(f"spheres ({rows[0]['shape']})")
     axis.grid(alpha=0.3, which="both")
     axis.legend(fontsize=8)
@@ -63,8 +63,7 @@ def draw_cost(axis, rows):
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    with (folder / "packing.csv").open() as file:
-        rows = list(csv.DictReader(file))
+    rows = json.loads((folder / "packing.json").read_text())["results"]
     figure, (coverage, growth, cost) = plt.subplots(1, 3, figsize=(17, 5))
     draw_coverage(coverage, [r for r in rows if r["part"] == "coverage"])
     draw_growth(growth, [r for r in rows if r["part"] == "growth"])

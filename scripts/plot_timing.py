@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Draws what `vpm-bench timing` measured: median and quartiles of every stage, 1 and 2 threads.
 
-usage: plot_timing.py FOLDER    (reads timing.csv, writes timing.png)
+usage: plot_timing.py FOLDER    (reads timing.json, writes timing.png)
 """
-import csv
+import json
 import pathlib
 import sys
 
@@ -16,15 +16,14 @@ import numpy as np
 
 def main():
     folder = pathlib.Path(sys.argv[1])
-    with (folder / "timing.csv").open() as file:
-        rows = list(csv.DictReader(file))
-    stages = list(dict.fromkeys((r["stage"], int(r["spheres"])) for r in rows))
+    rows = json.loads((folder / "timing.json").read_text())["results"]
+    stages = list(dict.fromkeys((r["stage"], r["spheres"]) for r in rows))
     figure, axis = plt.subplots(figsize=(10, 0.5 * len(stages) + 1.5))
     for threads, shift in ((1, -0.2), (2, 0.2)):
-        of = {(r["stage"], int(r["spheres"])): r for r in rows if int(r["threads"]) == threads}
-        median = np.array([float(of[s]["median_ms"]) for s in stages])
-        low = median - np.array([float(of[s]["quartile1_ms"]) for s in stages])
-        high = np.array([float(of[s]["quartile3_ms"]) for s in stages]) - median
+        of = {(r["stage"], r["spheres"]): r for r in rows if r["threads"] == threads}
+        median = np.array([of[s]["median_ms"] for s in stages])
+        low = median - np.array([of[s]["quartile1_ms"] for s in stages])
+        high = np.array([of[s]["quartile3_ms"] for s in stages]) - median
         at = np.arange(len(stages)) + shift
         axis.barh(at, median, 0.36, xerr=[low, high], label=f"{threads} thread" + "s" * (threads > 1))
         for y, value in zip(at, median):

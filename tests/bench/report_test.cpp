@@ -16,6 +16,13 @@ TEST(Report, CsvHasAHeaderAndNineDigits) {
   EXPECT_EQ(to_csv(table), "name,value\na,0.333333333\nb,2\n");
 }
 
+TEST(Report, CsvQuotesWhatHoldsCommasAndQuotes) {
+  Table table;
+  table.columns = {"stage", "ms"};
+  table.rows = {{std::string("frame, all at once"), 2.0}, {std::string("a \"quick\" one"), 1.0}};
+  EXPECT_EQ(to_csv(table), "stage,ms\n\"frame, all at once\",2\n\"a \"\"quick\"\" one\",1\n");
+}
+
 TEST(Report, JsonSaysWhatWasRunAndWhere) {
   Report report;
   report.suite = "timing";

@@ -11,8 +11,16 @@
 namespace vpm::bench {
 namespace {
 
+// As RFC 4180 has it: what holds commas, quotes or ends of lines is quoted.
+std::string quoted_if_needed(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
 std::string text_of(const Table::Value& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* text = std::get_if<std::string>(&value)) return quoted_if_needed(*text);
   char number[32];
   std::snprintf(number, sizeof number, "%.9g", std::get<double>(value));
   return number;

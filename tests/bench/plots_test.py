@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""Every result that lies in tests/results can be drawn.
+
+usage: plots_test.py SOURCE    (the repository's root)
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# accuracy.png needs every pose too, which only a run of the suite has (accuracy.csv).
+PICTURES = {"packing": ["packing.png"], "replay": ["replay_profile.png", "replay_frames.png"],
+            "scaling": ["scaling.png"], "timing": ["timing.png"], "tradeoff": ["tradeoff.png"]}
+
+
+def main():
+    source = pathlib.Path(sys.argv[1])
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for suite, pictures in PICTURES.items():
+            shutil.copy(source / f"tests/results/{suite}.json", folder)
+            subprocess.run([sys.executable, source / f"scripts/plot_{suite}.py", folder], check=True)
+            for picture in pictures:
+                assert (folder / picture).read_bytes().startswith(b"\x89PNG"), picture
+
+
+if __name__ == "__main__":
+    main()
