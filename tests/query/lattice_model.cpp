@@ -56,7 +56,8 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
   level.grid = {{-edge / 2, -edge / 2, -edge / 2}, share, n, n, n, {}, {}};
   level.block_begin = {0};
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
-    const Vec3 cell{double(i % n), double(i / n % n), double(i / (n * n))};
+    const std::uint32_t row = i / n % n, layer = i / (n * n);
+    const Vec3 cell{double(i % n), double(row), double(layer)};
     const Vec3 center = share * (cell + Vec3{0.5, 0.5, 0.5}) - Vec3{edge / 2, edge / 2, edge / 2};
     model.spheres.push_back({center, share / 2});
     level.grid.begin.push_back(i);
@@ -66,7 +67,8 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
     level.share_reach.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
     const std::uint32_t begin = static_cast<std::uint32_t>(level.samples.size());
     for (std::uint32_t s = 0; s < m * m * m; ++s) {
-      const Vec3 at{double(s % m), double(s / m % m), double(s / (m * m))};
+      const std::uint32_t part_row = s / m % m, part_layer = s / (m * m);
+      const Vec3 at{double(s % m), double(part_row), double(part_layer)};
       const Vec3 sample =
           center + piece * (at + Vec3{0.5, 0.5, 0.5}) - Vec3{share / 2, share / 2, share / 2};
       const double mean_squared_distance = piece * piece / 4;

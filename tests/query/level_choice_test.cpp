@@ -10,7 +10,7 @@
 namespace vpm {
 namespace {
 
-ToolModel calibrated(std::vector<double> worst) {
+ToolModel calibrated(const std::vector<double>& worst) {
   ToolModel tool = testing::lattice_cube(0.2, 2, 2);
   const Level level = tool.levels.front();
   tool.levels.assign(worst.size(), level);

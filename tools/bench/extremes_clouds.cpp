@@ -198,7 +198,8 @@ Packing lattice_packing(int n) {
   packing.solid = synthetic::make_cube(2);
   const double radius = 1.0 / n;
   for (int i = 0; i < n * n * n; ++i) {
-    const Vec3 cell{double(i % n), double(i / n % n), double(i / (n * n))};
+    const int row = i / n % n, layer = i / (n * n);
+    const Vec3 cell{double(i % n), double(row), double(layer)};
     packing.spheres.push_back({2 * radius * (cell + Vec3{0.5, 0.5, 0.5}) - Vec3{1, 1, 1}, radius});
   }
   return packing;

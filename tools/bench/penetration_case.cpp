@@ -109,6 +109,7 @@ std::vector<synthetic::Penetration> truth_along(const synthetic::TrueSolid& tool
                                                 const std::vector<Pose>& path,
                                                 const synthetic::Surface& surface) {
   std::vector<synthetic::Penetration> truth;
+  truth.reserve(path.size());
   for (const Pose& pose : path) truth.push_back(tool.penetration(pose, surface));
   return truth;
 }

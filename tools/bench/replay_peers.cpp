@@ -116,7 +116,7 @@ Wrench Peers::penalty(const PixelCloud& cloud, const Pose& tool_to_camera) const
   const Pose back = inverse(tool_to_camera);
   const Rectangle r = pixels_of(grid.box, tool_to_camera, cloud.camera);
   if (r.v1 < r.v0) return {};
-  const auto rows = static_cast<std::size_t>(r.v1 - r.v0 + 1);
+  const auto rows = static_cast<std::size_t>(r.v1 - r.v0) + 1;
   std::vector<Wrench> sums(rows);
   const auto scale = static_cast<float>(1 / grid.size);
   const Rotation& m = back.rotation;

@@ -87,6 +87,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
   const std::vector<Sight> sights{
       Sight(*path.scene.surface, path.scene.camera, path.hole.empty() ? nullptr : &path.hole)};
   std::vector<Unseen> unseen;
+  unseen.reserve(along.size());
   for (const Pose& pose : along)
     unseen.push_back(unseen_parts(tool.places, pose, *path.scene.surface, sights));
   const auto truth = truth_along(tool.solid, along, *path.scene.surface);

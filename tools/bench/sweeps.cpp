@@ -64,6 +64,7 @@ std::vector<Unseen> Sweeps::unseen_along(const PackedSolid& tool, const std::vec
   for (const Camera& camera : view(scene, kind, Noise::none).cameras)
     sights.emplace_back(*scene.surface, camera);
   std::vector<Unseen> unseen;
+  unseen.reserve(poses.size());
   for (const Pose& pose : poses)
     unseen.push_back(unseen_parts(tool.places, pose, *scene.surface, sights));
   return unseen;

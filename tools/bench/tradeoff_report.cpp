@@ -32,6 +32,7 @@ std::vector<Row> rows_of(const std::vector<Measured>& measured) {
     row.microseconds.add(m.median_us);
   }
   std::vector<Row> rows;
+  rows.reserve(by_setting.size());
   for (auto& [setting, row] : by_setting) rows.push_back(row);
   return rows;
 }

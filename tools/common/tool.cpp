@@ -48,7 +48,7 @@ void flush_output() {
 
 std::string message_of(const CLI::ParseError& fault) {
   constexpr std::string_view kUnknownKey = "INI was not able to parse ";
-  const std::string what = fault.what();
+  std::string what = fault.what();
   if (what.rfind(kUnknownKey, 0) != 0) return what;
   return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
 }

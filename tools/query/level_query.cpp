@@ -104,7 +104,7 @@ void LevelQuery::run(const PreparedCloud& cloud, std::span<const Pose> poses,
 }
 
 std::string LevelQuery::reason_now() const {
-  const std::string wanted = request_.max_error ? "max-error" : request_.for_scene ? "scene" : "";
+  std::string wanted = request_.max_error ? "max-error" : request_.for_scene ? "scene" : "";
   if (!deadline_) return wanted;
   if (!deadline_->keeps()) return "deadline missed";
   if (wanted.empty()) return "deadline";
