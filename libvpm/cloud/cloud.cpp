@@ -15,6 +15,12 @@ constexpr double kCameraRotationTolerance = 1e-9;
 
 }  // namespace
 
+Cloud without_camera(Cloud cloud) {
+  cloud.sensor.reset();
+  cloud.pixels.clear();
+  return cloud;
+}
+
 void validate(const Camera& camera, const std::string& name) {
   const Intrinsics& k = camera.intrinsics;
   if (!(k.fx > 0 && k.fy > 0) || !std::isfinite(k.fx) || !std::isfinite(k.fy) ||

@@ -32,6 +32,9 @@ struct Cloud {
   std::size_t size() const { return positions.size(); }
 };
 
+// The same points, of which nobody knows any more what saw them.
+Cloud without_camera(Cloud cloud);
+
 // Refuses what no query could use, naming the first offending point: sizes that differ, positions
 // or radii that are not finite, radii < 0, normals that are not of unit length (tolerance 1e-3),
 // pixels outside of the image.

@@ -3,26 +3,13 @@
 #include <algorithm>
 #include <tuple>
 
+#include "libvpm/core/box.h"
+
 namespace vpm {
 namespace {
 
 // Ranges of so few points are searched one by one.
 constexpr std::size_t kLeaf = 12;
-
-float coordinate(Vec3f p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-
-int longest_axis(const Vec3f* begin, const Vec3f* end) {
-  Vec3f low = *begin, high = *begin;
-  for (const Vec3f* p = begin; p != end; ++p) {
-    low = {std::min(low.x, p->x), std::min(low.y, p->y), std::min(low.z, p->z)};
-    high = {std::max(high.x, p->x), std::max(high.y, p->y), std::max(high.z, p->z)};
-  }
-  const Vec3 size = widen(high) - widen(low);
-  if (size.x >= size.y && size.x >= size.z) return 0;
-  return size.y >= size.z ? 1 : 2;
-}
 
 }  // namespace
 
@@ -46,13 +33,15 @@ KdTree::KdTree(std::vector<Vec3f> points) : points_(std::move(points)), axis_(po
 void KdTree::build(std::size_t begin, std::size_t end) {
   if (end - begin <= kLeaf) return;
   const std::size_t middle = begin + (end - begin) / 2;
-  const int axis = longest_axis(points_.data() + begin, points_.data() + end);
+  Box box;
+  for (std::size_t i = begin; i < end; ++i) box.add(widen(points_[i]));
+  const int axis = box.longest_axis();
   const auto at = [this](std::size_t i) {
     return points_.begin() + static_cast<std::ptrdiff_t>(i);
   };
   std::nth_element(at(begin), at(middle), at(end), [axis](Vec3f a, Vec3f b) {
-    return std::tuple(coordinate(a, axis), a.x, a.y, a.z) <
-           std::tuple(coordinate(b, axis), b.x, b.y, b.z);
+    return std::tuple(coordinate(widen(a), axis), a.x, a.y, a.z) <
+           std::tuple(coordinate(widen(b), axis), b.x, b.y, b.z);
   });
   axis_[middle] = static_cast<std::uint8_t>(axis);
   build(begin, middle);
@@ -73,10 +62,7 @@ void KdTree::search(std::size_t begin, std::size_t end, Vec3 from, Nearest& near
   }
   const std::size_t middle = begin + (end - begin) / 2;
   const int axis = axis_[middle];
-  const double offset = (axis == 0   ? from.x
-                         : axis == 1 ? from.y
-                                     : from.z) -
-                        static_cast<double>(coordinate(points_[middle], axis));
+  const double offset = coordinate(from, axis) - coordinate(widen(points_[middle]), axis);
   nearest.offer(squared_norm(widen(points_[middle]) - from));
   if (offset < 0) {
     search(begin, middle, from, nearest);

@@ -7,6 +7,11 @@
 
 namespace vpm {
 
+// By the number of its axis: 0, 1, 2 for x, y, z.
+inline double coordinate(Vec3 v, int axis) {
+  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
+}
+
 // The smallest box along the axes that holds what has been added; empty (low > high) before.
 struct Box {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -15,6 +20,12 @@ struct Box {
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   Vec3 size() const { return high - low; }
+  // The first of equal ones.
+  int longest_axis() const {
+    const Vec3 side = size();
+    if (side.x >= side.y && side.x >= side.z) return 0;
+    return side.y >= side.z ? 1 : 2;
+  }
 };
 
 }  // namespace vpm

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/enclosing_sphere.h"
 
@@ -13,23 +14,6 @@ namespace {
 
 constexpr std::size_t kBlockSamples = 64;
 
-double coordinate(Vec3 v, int axis) {
-  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
-}
-
-int longest_axis(std::span<const CellPiece> pieces) {
-  Vec3 low = pieces.front().centroid, high = low;
-  for (const CellPiece& p : pieces) {
-    low = {std::min(low.x, p.centroid.x), std::min(low.y, p.centroid.y),
-           std::min(low.z, p.centroid.z)};
-    high = {std::max(high.x, p.centroid.x), std::max(high.y, p.centroid.y),
-            std::max(high.z, p.centroid.z)};
-  }
-  const Vec3 extent = high - low;
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
-}
-
 // Sorts pieces into runs that are compact in space; `ends` receives the ends of the runs. All runs
 // but one of a split are filled.
 void group(std::span<CellPiece> pieces, std::size_t offset, std::vector<std::size_t>& ends) {
@@ -37,7 +21,9 @@ void group(std::span<CellPiece> pieces, std::size_t offset, std::vector<std::siz
     ends.push_back(offset + pieces.size());
     return;
   }
-  const int axis = longest_axis(pieces);
+  Box box;
+  for (const CellPiece& p : pieces) box.add(p.centroid);
+  const int axis = box.longest_axis();
   std::stable_sort(pieces.begin(), pieces.end(), [&](const CellPiece& a, const CellPiece& b) {
     return coordinate(a.centroid, axis) < coordinate(b.centroid, axis);
   });

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libvpm/core/box.h"
 #include "libvpm/graph/cells.h"
 
 namespace vpm {
@@ -10,10 +11,6 @@ namespace {
 // lines the solid's surface, where errors of neighbouring pieces add up instead of cancelling, so
 // its pieces are smaller.
 constexpr double kMomentRadius = 0.5;
-
-double coordinate(Vec3 v, int axis) {
-  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
-}
 
 class GapCutter {
  public:

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/batch_neural_gas.h"
 #include "libvpm/graph/enclosing_sphere.h"
@@ -26,18 +27,10 @@ std::vector<Sphere> gather(std::span<const Sphere> spheres, const Members& membe
 
 // Quarters along the longest axis of the centres.
 std::vector<std::uint8_t> median_clusters(std::span<const Sphere> spheres) {
-  Vec3 low = spheres.front().center, high = low;
-  for (const Sphere& s : spheres) {
-    low = {std::min(low.x, s.center.x), std::min(low.y, s.center.y), std::min(low.z, s.center.z)};
-    high = {std::max(high.x, s.center.x), std::max(high.y, s.center.y),
-            std::max(high.z, s.center.z)};
-  }
-  const Vec3 extent = high - low;
-  const auto key = [&](std::uint32_t i) {
-    const Vec3 c = spheres[i].center;
-    if (extent.x >= extent.y && extent.x >= extent.z) return c.x;
-    return extent.y >= extent.z ? c.y : c.z;
-  };
+  Box box;
+  for (const Sphere& s : spheres) box.add(s.center);
+  const int axis = box.longest_axis();
+  const auto key = [&](std::uint32_t i) { return coordinate(spheres[i].center, axis); };
   std::vector<std::uint32_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

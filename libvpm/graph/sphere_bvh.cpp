@@ -3,19 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "libvpm/core/box.h"
+
 namespace vpm {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
-
-double coordinate(Vec3 v, int axis) {
-  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
-}
-
-int longest_axis(Vec3 extent) {
-  if (extent.x >= extent.y && extent.x >= extent.z) return 0;
-  return extent.y >= extent.z ? 1 : 2;
-}
 
 }  // namespace
 
@@ -28,12 +21,10 @@ SphereBvh::SphereBvh(std::span<const Sphere> spheres) : spheres_(spheres), order
 std::uint32_t SphereBvh::build(std::uint32_t begin, std::uint32_t end) {
   const std::uint32_t self = static_cast<std::uint32_t>(nodes_.size());
   Node node{spheres_[order_[begin]].center, spheres_[order_[begin]].center, begin, end, 0};
-  Vec3 low = node.low, high = node.high;  // of the centres
+  Box centers;
   for (std::uint32_t k = begin; k < end; ++k) {
     const Sphere& s = spheres_[order_[k]];
-    low = {std::min(low.x, s.center.x), std::min(low.y, s.center.y), std::min(low.z, s.center.z)};
-    high = {std::max(high.x, s.center.x), std::max(high.y, s.center.y),
-            std::max(high.z, s.center.z)};
+    centers.add(s.center);
     node.low = {std::min(node.low.x, s.center.x - s.radius),
                 std::min(node.low.y, s.center.y - s.radius),
                 std::min(node.low.z, s.center.z - s.radius)};
@@ -44,7 +35,7 @@ std::uint32_t SphereBvh::build(std::uint32_t begin, std::uint32_t end) {
   nodes_.push_back(node);
   if (end - begin <= kLeafSize) return self;
 
-  const int axis = longest_axis(high - low);
+  const int axis = centers.longest_axis();
   const std::uint32_t middle = begin + (end - begin) / 2;
   const auto at = [&](std::uint32_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
   std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {

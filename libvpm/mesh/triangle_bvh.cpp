@@ -19,10 +19,6 @@ constexpr std::size_t kLeafTriangles = 4;
 constexpr double kBoxPadding = 0x1p-21;
 constexpr float kBoundSlack = 1.0f + 0x1p-20f;
 
-double component(Vec3 v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 // The closest point on up to four triangles, if it is nearer than `best2`.
 [[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
                                                 std::uint32_t count, Vec3 x, SurfacePoint& best,
@@ -60,15 +56,14 @@ struct TriangleBvh::Build {
   void halve(std::size_t begin, std::size_t end) {
     Box box;
     for (std::size_t i = begin; i < end; ++i) box.add(items[i].centroid);
-    const Vec3 side = box.high - box.low;
-    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    const int axis = box.longest_axis();
     const auto first = items.begin();
     std::nth_element(first + static_cast<std::ptrdiff_t>(begin),
                      first + static_cast<std::ptrdiff_t>(middle_of(begin, end)),
                      first + static_cast<std::ptrdiff_t>(end),
                      [axis](const Item& s, const Item& t) {
-                       const double p = component(s.centroid, axis);
-                       const double q = component(t.centroid, axis);
+                       const double p = coordinate(s.centroid, axis);
+                       const double q = coordinate(t.centroid, axis);
                        return p != q ? p < q : s.triangle < t.triangle;
                      });
   }
@@ -93,9 +88,9 @@ struct TriangleBvh::Build {
 
   void set_box(Node& node, int slot, const Box& box) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const double origin = component(bvh.origin_, axis);
-      node.low[axis][slot] = static_cast<float>(component(box.low, axis) - origin - padding);
-      node.high[axis][slot] = static_cast<float>(component(box.high, axis) - origin + padding);
+      const double origin = coordinate(bvh.origin_, axis);
+      node.low[axis][slot] = static_cast<float>(coordinate(box.low, axis) - origin - padding);
+      node.high[axis][slot] = static_cast<float>(coordinate(box.high, axis) - origin + padding);
     }
   }
 

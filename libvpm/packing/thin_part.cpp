@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "libvpm/core/box.h"
+
 namespace vpm {
 namespace {
 
@@ -19,17 +21,13 @@ constexpr double kRounding = 1e-13;  // of coordinates in the unit cube
 
 using Polygon = std::vector<Vec3>;
 
-double component(Vec3 v, int axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
-
 // What of a convex polygon about the origin has sign * coordinate <= limit.
 Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec3 p = polygon[k], q = polygon[(k + 1) % polygon.size()];
-    const double beyond_p = sign * component(p, axis) - limit,
-                 beyond_q = sign * component(q, axis) - limit;
+    const double beyond_p = sign * coordinate(p, axis) - limit,
+                 beyond_q = sign * coordinate(q, axis) - limit;
     if (beyond_p <= 0) kept.push_back(p);
     if ((beyond_p <= 0) != (beyond_q <= 0))
       kept.push_back(p + beyond_p / (beyond_p - beyond_q) * (q - p));

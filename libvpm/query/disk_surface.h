@@ -248,16 +248,10 @@ class DiskSurface::AroundBall {
   VPM_HD Reading read(Vec3 x, std::uint32_t near) const {
     if (count_ == 0 || !(squared_norm(x - center_) <= squared_radius_))
       return surface_.read(x, near);
-    std::uint32_t best = points_[0];
-    double best_squared = squared_norm(widen(surface_.feet.points[best]) - x);
-    for (int k = 1; k < count_; ++k) {
-      const double squared = squared_norm(widen(surface_.feet.points[points_[k]]) - x);
-      if (squared < best_squared || (squared == best_squared && points_[k] < best)) {
-        best_squared = squared;
-        best = points_[k];
-      }
-    }
-    return surface_.read_point(x, best);
+    PointTree::Nearest best;
+    for (int k = 0; k < count_; ++k)
+      best.consider(squared_norm(widen(surface_.feet.points[points_[k]]) - x), points_[k]);
+    return surface_.read_point(x, best.point);
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/point_tree.h"
 
@@ -14,25 +15,11 @@ struct Ranked {
   std::uint32_t rank;
 };
 
-int longest_axis(std::span<const Ranked> points) {
-  Ranked low = points.front(), high = low;
-  for (const Ranked& p : points) {
-    for (int axis = 0; axis < 3; ++axis) {
-      low.at[axis] = std::min(low.at[axis], p.at[axis]);
-      high.at[axis] = std::max(high.at[axis], p.at[axis]);
-    }
-  }
-  const auto extent = [&](int axis) { return double{high.at[axis]} - low.at[axis]; };
-  int longest = 0;
-  for (const int axis : {1, 2}) {
-    if (extent(axis) > extent(longest)) longest = axis;
-  }
-  return longest;
-}
-
 // The first `count` then lie before the others along an axis.
 void part(std::span<Ranked> points, std::size_t count) {
-  const int axis = longest_axis(points);
+  Box box;
+  for (const Ranked& p : points) box.add({p.at[0], p.at[1], p.at[2]});
+  const int axis = box.longest_axis();
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count),
                    points.end(), [axis](const Ranked& a, const Ranked& b) {
                      return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.rank < b.rank;

@@ -44,13 +44,7 @@ class NodeStack {
   // Of trees of up to 2^22 leaves: three of each quad on the way down, and one more.
   static constexpr int kRoom = 3 * 11 + 1;
 
-  // Squared distances as integers that order like them, rounded down; the last two bits say which
-  // of four. A node whose key is above the last one of a distance holds no point that is as near.
-  VPM_HD static std::uint64_t key_of(double squared, std::uint64_t which) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &squared, sizeof bits);
-    return (bits & ~kWhich) | which;
-  }
+  // A node whose key is above this one holds no point that is as near.
   VPM_HD static std::uint64_t last_key(double squared) {
     return (squared < HUGE_VAL ? key_of(squared, 0) : key_of(HUGE_VAL, 0) - 1) | kWhich;
   }
@@ -79,6 +73,14 @@ class NodeStack {
  private:
   static constexpr std::uint64_t kWhich = 3;
 
+  // Squared distances as integers that order like them, rounded down; the last two bits say which
+  // of four.
+  VPM_HD static std::uint64_t key_of(double squared, std::uint64_t which) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &squared, sizeof bits);
+    return (bits & ~kWhich) | which;
+  }
+
   VPM_HD static void order(std::uint64_t& greater, std::uint64_t& less) {
     const std::uint64_t all = std::uint64_t{0} - static_cast<std::uint64_t>(greater < less);
     const std::uint64_t swapped = (greater ^ less) & all;
@@ -102,6 +104,18 @@ struct PointTree {
   std::uint32_t count = 0;
   std::uint32_t leaves = 0;  // a power of two
 
+  // The best of those that were considered; kNoPoint where none was as near as the bound.
+  struct Nearest {
+    double squared = HUGE_VAL;
+    std::uint32_t point = kNoPoint;
+
+    VPM_HD void consider(double distance, std::uint32_t i) {
+      if (!(distance < squared || (distance == squared && point != kNoPoint && i < point))) return;
+      squared = distance;
+      point = i;
+    }
+  };
+
   VPM_HD std::uint32_t quads() const { return leaves > 1 ? leaves / 2 : 1; }
   VPM_HD PointBox leaf_of(std::uint32_t point) const {
     const std::uint32_t node = leaves + point / kLeafSize;
@@ -116,11 +130,8 @@ struct PointTree {
   // change its result.
   VPM_HD std::uint32_t nearest(Vec3 x, double bound, std::uint32_t near = kNoPoint) const {
     if (count == 0) return kNoPoint;
-    Nearest best{bound * bound, kNoPoint};
-    if (near != kNoPoint) {
-      const double squared = squared_norm(widen(points[near]) - x);
-      if (squared < best.squared) best = {squared, near};
-    }
+    Nearest best{bound * bound};
+    if (near != kNoPoint) best.consider(squared_norm(widen(points[near]) - x), near);
 #ifdef __CUDA_ARCH__
     search<OneByOne>(x, best);
 #else
@@ -157,18 +168,6 @@ struct PointTree {
   }
 
  private:
-  // The best of those that were searched; kNoPoint where none was as near as the bound.
-  struct Nearest {
-    double squared;
-    std::uint32_t point;
-
-    VPM_HD void consider(double distance, std::uint32_t i) {
-      if (!(distance < squared || (distance == squared && point != kNoPoint && i < point))) return;
-      squared = distance;
-      point = i;
-    }
-  };
-
   // Squared distances of four boxes, and of the first of some points, up to four.
   struct OneByOne {
     VPM_HD static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {

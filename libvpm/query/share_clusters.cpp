@@ -11,10 +11,6 @@ namespace {
 // Rounding must not let a share's ball leave its cluster's.
 constexpr double kRounding = 1 + 1e-12;
 
-double coordinate(Vec3 v, int axis) {
-  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
-}
-
 Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& shares,
                    std::uint32_t begin, std::uint32_t end) {
   Box box;
@@ -74,9 +70,7 @@ ShareCluster enclosing_cluster(const ToolModel& tool, const Level& level,
 
 std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& shares, std::uint32_t begin,
                     std::uint32_t end) {
-  const Box box = box_of_centers(tool, shares, begin, end);
-  const Vec3 side = box.size();
-  const int axis = side.x >= side.y ? (side.x >= side.z ? 0 : 2) : (side.y >= side.z ? 1 : 2);
+  const int axis = box_of_centers(tool, shares, begin, end).longest_axis();
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(shares.begin() + begin, shares.begin() + middle, shares.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {

@@ -33,7 +33,7 @@ TEST_P(SameMath, OnHostAndDevice) {
   if (!testing::has_device()) GTEST_SKIP() << "no CUDA device here";
   const auto& [scene, camera] = GetParam();
   const Cloud seen = testing::see(synthetic::make_scene(scene));
-  const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+  const PreparedCloud cloud(camera ? seen : without_camera(seen));
   const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
   const Level& level = tool.levels[0];
   int cut = 0;

@@ -47,7 +47,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
   const auto& [scene, camera, measure] = GetParam();
   constexpr int kPoses = 48;
   const Cloud seen = testing::see(synthetic::make_scene(scene));
-  const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+  const PreparedCloud cloud(camera ? seen : without_camera(seen));
   std::uint32_t boundary = 0, inside = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
                                 testing::lattice_cube(0.25, 20, 1)}) {
@@ -158,7 +158,7 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   for (const auto& [camera, measure] :
        {std::pair(true, Measure::refined), std::pair(false, Measure::refined),
         std::pair(true, Measure::paper), std::pair(false, Measure::paper)}) {
-    const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+    const PreparedCloud cloud(camera ? seen : without_camera(seen));
     QueryOptions options;
     options.measure = measure;
     Query on_cpu(tool, options);

@@ -141,7 +141,7 @@ TEST(CoherentPoses, AreRightInAMovingScene) {
 }
 
 TEST(CoherentPoses, AreRightInAMovingSceneOfPoints) {
-  expect_right_in_a_moving_scene([](double z) { return testing::without_camera(small_view(z)); });
+  expect_right_in_a_moving_scene([](double z) { return without_camera(small_view(z)); });
 }
 
 // The memory is of places in the world, not of pixels.

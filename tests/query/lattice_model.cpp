@@ -100,12 +100,6 @@ Cloud see(const synthetic::Scene& scene) {
   return assemble_cloud(depth, scene.camera, normals);
 }
 
-Cloud without_camera(Cloud cloud) {
-  cloud.sensor.reset();
-  cloud.pixels.clear();
-  return cloud;
-}
-
 Rotation generic_rotation() {
   Quaternion q{0.31, -0.57, 0.21, 0.73};
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);

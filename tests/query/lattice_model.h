@@ -13,8 +13,6 @@ ToolModel lattice_cube(double edge, std::uint32_t spheres, std::uint32_t samples
 
 // What the camera of a scene sees, with the surface's own normals.
 Cloud see(const synthetic::Scene& scene);
-// The same points without their camera.
-Cloud without_camera(Cloud cloud);
 
 // A generic rotation, so that nothing is aligned by chance.
 Rotation generic_rotation();

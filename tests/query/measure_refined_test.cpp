@@ -20,7 +20,6 @@ namespace {
 using testing::generic_rotation;
 using testing::lattice_cube;
 using testing::see;
-using testing::without_camera;
 
 constexpr double kEdge = 0.2;
 constexpr double kDegrees = 1;         // of the force, where it is not near zero:

@@ -11,7 +11,6 @@ namespace vpm {
 namespace {
 
 using testing::see;
-using testing::without_camera;
 
 TEST(PreparedCloud, MergesEqualPointsAndForgetsTheirOrder) {
   const Cloud seen = see(synthetic::make_scene("ball"));

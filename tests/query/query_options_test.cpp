@@ -14,7 +14,7 @@ TEST(QueryOptions, WithoutPointsEverythingElseStays) {
   const Cloud seen = see(synthetic::make_scene("step"));
   const ToolModel tool = testing::lattice_cube(0.2, 6, 4);
   for (const bool camera : {true, false}) {
-    const PreparedCloud cloud(camera ? seen : testing::without_camera(seen));
+    const PreparedCloud cloud(camera ? seen : without_camera(seen));
     for (const Measure measure : {Measure::refined, Measure::paper}) {
       Query with(tool, {.measure = measure}),
           without(tool, {.measure = measure, .counts_points = false});

@@ -50,11 +50,9 @@ class Pipeline {
     for (const NormalMethod method : {NormalMethod::inverse_depth, NormalMethod::pca}) {
       NormalOptions normals;
       normals.method = method;
-      Cloud cloud = make_cloud(scaled(image_, scale), camera_, normals);
+      const Cloud cloud = make_cloud(scaled(image_, scale), camera_, normals);
       query_all(tool, PreparedCloud(cloud), scale, results);
-      cloud.sensor.reset();
-      cloud.pixels.clear();
-      query_all(tool, PreparedCloud(cloud), scale, results);
+      query_all(tool, PreparedCloud(without_camera(cloud)), scale, results);
     }
     return results;
   }

@@ -20,7 +20,6 @@ namespace {
 using testing::generic_rotation;
 using testing::lattice_cube;
 using testing::see;
-using testing::without_camera;
 
 struct Variant {
   const char* name;

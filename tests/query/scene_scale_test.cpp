@@ -42,12 +42,10 @@ TEST(SceneScale, TellsTheRadiusOfABall) {
 
 TEST(SceneScale, TellsTheNoiseOfTheSensor) {
   const synthetic::Scene scene = synthetic::make_scene("wall");
-  Cloud cloud = testing::see(scene);
+  Cloud cloud = without_camera(testing::see(scene));
   // Uniform noise in [-a, a] along the ray has the standard deviation a / sqrt(3).
   const double amplitude = 0.004;
   std::uint64_t state = 1;
-  cloud.sensor.reset();
-  cloud.pixels.clear();
   for (Vec3f& p : cloud.positions) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
     const double u = static_cast<double>(state >> 11) * 0x1p-53;
@@ -122,7 +120,7 @@ std::size_t looked_at(const Cloud& cloud) {
 TEST(PointsOutOfReach, AreNotLookedAt) {
   const synthetic::Scene scene = synthetic::make_scene("wall");
   const Cloud all = testing::see(scene);
-  Cloud near = all, far = testing::without_camera(all);
+  Cloud near = all, far = without_camera(all);
   near.positions.clear();
   near.normals.clear();
   near.radii.clear();
@@ -136,7 +134,7 @@ TEST(PointsOutOfReach, AreNotLookedAt) {
   }
   ASSERT_GT(all.size(), 2 * near.size());
   EXPECT_EQ(looked_at(all), looked_at(near)) << "seen by a camera";
-  near = testing::without_camera(near);
+  near = without_camera(near);
   const std::size_t of_near = looked_at(near);
   EXPECT_LE(static_cast<double>(looked_at(far)), 1.1 * static_cast<double>(of_near))
       << "points alone: leaves at the rim may hold others";

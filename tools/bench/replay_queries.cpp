@@ -92,11 +92,7 @@ Cloud wide_view(std::uint32_t width, bool keeps_camera) {
   scene.camera.width = width;
   Cloud cloud =
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{});
-  if (!keeps_camera) {
-    cloud.sensor.reset();
-    cloud.pixels.clear();
-  }
-  return cloud;
+  return keeps_camera ? cloud : without_camera(cloud);
 }
 
 // A wall 80 degrees off the optical axis by every eighth pixel: points far apart with disks larger

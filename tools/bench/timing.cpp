@@ -113,9 +113,7 @@ class Timing {
     time("cloud assembly", 0, runs_.fast,
          [&] { cloud_ = assemble_cloud(depth, scene_.camera, normals); });
     time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
-    points_ = cloud_;
-    points_.sensor.reset();
-    points_.pixels.clear();
+    points_ = without_camera(cloud_);
     time("cloud preparation, points", 0, runs_.slow, [&] { PreparedCloud prepared(points_); });
     FramePreparation preparation{NormalOptions{}};
     PreparedCloud frame{Cloud{}};
