@@ -54,8 +54,9 @@ class CellMeasure {
 
   // `samples`: SamplesInTurn, or what adds the same sooner.
   template <class Samples>
-  VPM_HD CellResult run(Samples samples) const {
+  VPM_HD CellResult run(Samples samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
+    result.point = point;
     bool any_hidden = false;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
       any_hidden |= add_block(b, Pass::seen, samples, result);
@@ -135,7 +136,7 @@ class CellMeasure {
     const CellBlock& block = cell_.blocks[b];
     const BlockLook look = look_at(block);
     if (look.side == Side::free) return false;
-    result.point = look.point;
+    if (look.point != kNoPoint) result.point = look.point;
     if (look.side != Side::mixed)
       return add_piece(piece_of(cell_.masses[b], block), pass, result, surface_);
     if (look.is_flat) {
@@ -195,6 +196,11 @@ class CellMeasure {
   }
   // Adds a piece that is inside.
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
+    add(piece, look, surface_, sum);
+  }
+  template <class Near>
+  VPM_HD void add(const SharePiece& piece, const PieceLook& look, const Near& near,
+                  ToolSum& sum) const {
     if (is_cut(piece, look)) {
       const double inside = surface_.fraction_inside(look.reading, look.x, piece.radius);
       sum.add(piece.weight * inside, in_tool(look.reading.normal), arm(piece.at));
@@ -203,8 +209,8 @@ class CellMeasure {
     const Vec3 normal = surface_.closest_normal(look.x, look.reading);
     OtherWall other;
     if (is_divisible(piece.extent) &&
-        surface_.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point,
-                                 piece.extent, kTwoWalls, other))
+        near.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point, piece.extent,
+                             kTwoWalls, other))
       add_divided(piece, look.x, normal, other, sum);
     else
       add_pushed(piece, normal, sum);
@@ -255,7 +261,7 @@ class CellMeasure {
     const PieceLook look = look_at(piece, result.point, near);
     result.point = look.reading.point;
     const Take taken = take(piece, look, pass, result);
-    if (taken == Take::add) add(piece, look, result.sum);
+    if (taken == Take::add) add(piece, look, near, result.sum);
     return taken == Take::wait;
   }
 

@@ -6,7 +6,9 @@
 #pragma once
 
 #include "libvpm/query/ball_fraction.h"
+#include "libvpm/query/normal_cones.h"
 #include "libvpm/query/pixel_rectangle.h"
+#include "libvpm/query/point_list.h"
 #include "libvpm/query/point_tree.h"
 #include "libvpm/query/surface.h"
 
@@ -27,7 +29,8 @@ struct DiskSurface {
   const Vec3f* normals = nullptr;
   const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
   const SecondPlane* seconds = nullptr;
-  double largest_radius = 0;  // of any disk
+  PointRadii radii{};
+  NormalCones cones{};
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
   VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
@@ -73,37 +76,32 @@ struct DiskSurface {
     const Vec3 towards = reading.foot - x;
     const double height = dot(reading.normal, towards);
     const Vec3 aside = towards - height * reading.normal;
-    const double aside_squared = squared_norm(aside);
-    if (height > 0 && aside_squared <= largest_radius * largest_radius) return reading.normal;
-    return normalized_or_zero(towards - (largest_radius / std::sqrt(aside_squared)) * aside);
+    const double aside_squared = squared_norm(aside), rim = rim_of(reading.point);
+    if (height > 0 && aside_squared <= rim * rim) return reading.normal;
+    return normalized_or_zero(towards - (rim / std::sqrt(aside_squared)) * aside);
+  }
+
+  // Calls visit(normal) for each plane that a disk knows.
+  template <class Visit>
+  VPM_HD void for_normals_of(std::uint32_t i, const Visit& visit) const {
+    visit(widen(normals[i]));
+    if (const SecondPlane* const second = second_at(i)) visit(widen(second->normal));
+  }
+  // Whether all that disks in a ball know faces the way of n: the cosine is above `least`.
+  VPM_HD bool face_one_way(Vec3 center, double radius, Vec3 n, double least) const {
+#ifdef __CUDA_ARCH__
+    return face_one_way_by<PointTree::OneByOne>(center, radius, n, least);
+#else
+    return face_one_way_by_vectors(center, radius, n, least);
+#endif
   }
 
   // A body of this radius about x is nearest to `own`, by a point of it. Looks for another wall at
   // four places that are further behind, on each side: of those that face elsewhere (cosine less
-  // than `unlike`) that which takes the most of the body.
+  // than `unlike`) that which takes the most of the body. Only where a disk may be nearest to one
+  // of the places and faces elsewhere: what is beyond the last point of a cloud is no wall.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
-                              double unlike, OtherWall& other) const {
-    const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
-               across = cross(own.normal, side);
-    const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
-    double least = radius;
-    for (const Vec3 aside : asides) {
-      const Vec3 place = x + kFurther * radius * (aside - own.normal);
-      if (own.distance(place) >= 0) continue;
-      const Reading there = read(place, point);
-      if (!(there.distance < 0)) continue;
-      const Vec3 normal = closest_normal(place, there);
-      if (dot(normal, own.normal) > unlike) continue;
-      const Vec3 between = own.normal - normal;
-      const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
-      if (!(away < least)) continue;
-      least = away > 0 ? away : 0;
-      other.normal = normal;
-      other.border.normal = normalized_or_zero(between);
-      other.border.foot = x - away * other.border.normal;
-    }
-    return least < radius;
-  }
+                              double unlike, OtherWall& other) const;
 
   // What a ball is to the disks. No bound of the gap is known.
   struct Look {
@@ -113,18 +111,24 @@ struct DiskSurface {
     double radius = 0;
   };
   VPM_HD Look look_at_ball(Vec3 center, double radius) const {
-    const std::uint32_t point = feet.nearest(center, radius + largest_radius);
+    const std::uint32_t point = feet.nearest_touching(center, radius, radii);
     return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
   }
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return look_at_ball(center, radius).side;
   }
-  VPM_HD Side side_of(const Look& look, Vec3, double) const { return look.side; }
-  static VPM_HD PixelRectangle pixels_of(const Look&) { return {}; }
+  VPM_HD Side side_of(const Look& look, Vec3, double) const {
+    return look.side;
+  }
+  static VPM_HD PixelRectangle pixels_of(const Look&) {
+    return {};
+  }
   VPM_HD bool is_seen_past(const PixelRectangle&, double, std::uint32_t, std::uint32_t) const {
     return false;
   }
-  VPM_HD bool may_be_flat(const Look& look) const { return look.point != kNoPoint; }
+  VPM_HD bool may_be_flat(const Look& look) const {
+    return look.point != kNoPoint;
+  }
   VPM_HD bool is_flat(const Look& look, Vec3, double tolerance, TangentPlane& plane) const {
     return mean_plane(look, tolerance, plane);
   }
@@ -133,12 +137,24 @@ struct DiskSurface {
     return mean_plane(look, tolerance, plane);
   }
   // Points do not tell what is free.
-  VPM_HD bool may_be_free(const Look&, Vec3, double) const { return false; }
-  VPM_HD bool may_be_free(Vec3, double) const { return false; }
-  VPM_HD bool may_hold_free(const Look&, Vec3, double) const { return false; }
-  VPM_HD bool tells_of_parts(Vec3, double) const { return false; }
-  VPM_HD bool is_free_part(const Look&, Vec3, double) const { return false; }
-  VPM_HD bool may_touch(const Look&, Vec3, double) const { return true; }
+  VPM_HD bool may_be_free(const Look&, Vec3, double) const {
+    return false;
+  }
+  VPM_HD bool may_be_free(Vec3, double) const {
+    return false;
+  }
+  VPM_HD bool may_hold_free(const Look&, Vec3, double) const {
+    return false;
+  }
+  VPM_HD bool tells_of_parts(Vec3, double) const {
+    return false;
+  }
+  VPM_HD bool is_free_part(const Look&, Vec3, double) const {
+    return false;
+  }
+  VPM_HD bool may_touch(const Look&, Vec3, double) const {
+    return true;
+  }
   template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3, double, double tolerance, const ReadAll&,
                          TangentPlane& plane) const {
@@ -164,7 +180,9 @@ struct DiskSurface {
     return shows(plane, middle, look.center, look.radius * look.radius + height * height,
                  kOffPlane * tolerance);
   }
-  VPM_HD double largest_gap(const Look&, Vec3, double) const { return HUGE_VAL; }
+  VPM_HD double largest_gap(const Look&, Vec3, double) const {
+    return HUGE_VAL;
+  }
 
  private:
   static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more would take longer than shares
@@ -178,6 +196,10 @@ struct DiskSurface {
   static constexpr double kOffPlane = 0.5;  // of the tolerance
   // Other walls are looked for so many radii aside, and as many further behind: at a body's end.
   static constexpr double kFurther = 0.85;
+  static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
+  // The rim of a disk is so many sampling radii from its middle: no gaps are left between disks
+  // that noise has moved.
+  static constexpr double kRim = 3;
   static constexpr double kSlot = -0.8;  // cosine between the sides of a slot, at most
 
   // Of the solid behind either of two planes, for a place behind both: the normal of that which is
@@ -193,12 +215,66 @@ struct DiskSurface {
     return normalized_or_zero(along_own * own.normal + along_other * other.normal);
   }
 
+  template <class Distances>
+  VPM_HD bool face_one_way_by(Vec3 center, double radius, Vec3 n, double least) const {
+    const double squared_radius = radius * radius;
+    return feet.for_leaves_in_ball<Distances>(
+        center, squared_radius,
+        [&](std::uint32_t node) { return !cones.are_within(node, n, least); },
+        [&](std::uint32_t begin, std::uint32_t end) {
+          bool all = true;
+          for (std::uint32_t i = begin; all && i < end; ++i) {
+            if (squared_norm(widen(feet.points[i]) - center) > squared_radius) continue;
+            for_normals_of(i, [&](Vec3 normal) { all &= dot(normal, n) > least; });
+          }
+          return all;
+        });
+  }
+  bool face_one_way_by_vectors(Vec3 center, double radius, Vec3 n, double least) const;
+
   VPM_HD TangentPlane plane_of(std::uint32_t i) const {
     return {widen(normals[i]), widen(feet.points[i])};
+  }
+  VPM_HD double rim_of(std::uint32_t i) const {
+    return kRim * radii.of_points[i];
   }
   // Null: the disk knows one plane only.
   VPM_HD const SecondPlane* second_at(std::uint32_t i) const {
     return second_of[i] == kNoPoint ? nullptr : seconds + second_of[i];
+  }
+
+  // Whether another wall than `own` may be the nearest to one of the places about a body at which
+  // it is looked for.
+  VPM_HD bool may_meet_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point,
+                                  double radius, double unlike) const {
+    const double away = kFurther * radius, depth = away - own.distance(x);
+    return depth > 0 &&
+           !face_one_way(x - away * own.normal, depth + away + rim_of(point), own.normal, unlike);
+  }
+  // `near`: the surface, as far as it concerns these places.
+  template <class Near>
+  VPM_HD bool choose_other_wall(const Near& near, Vec3 x, const TangentPlane& own,
+                                std::uint32_t point, double radius, double unlike,
+                                OtherWall& other) const {
+    const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
+               across = cross(own.normal, side);
+    const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
+    double least = radius;
+    for (const Vec3 aside : asides) {
+      const Vec3 place = x + kFurther * radius * (aside - own.normal);
+      const Reading there = near.read(place, point);
+      if (!(there.distance < 0)) continue;
+      const Vec3 normal = closest_normal(place, there);
+      if (dot(normal, own.normal) > unlike) continue;
+      const Vec3 between = own.normal - normal;
+      const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
+      if (!(away < least)) continue;
+      least = away > 0 ? away : 0;
+      other.normal = normal;
+      other.border.normal = normalized_or_zero(between);
+      other.border.foot = x - away * other.border.normal;
+    }
+    return least < radius;
   }
 
   // A coordinate axis that is far from a direction.
@@ -240,23 +316,31 @@ class DiskSurface::AroundBall {
     const double covered = kSlack * radius;
     const double distance = norm(widen(surface.feet.points[nearest]) - center);
     if (are_many(nearest, covered * (distance + covered))) return;
-    squared_radius_ = covered * covered;
+    radius_ = covered;
     const double reach = kSlack * (distance + 2 * covered);
     gather(reach * reach);
   }
 
   VPM_HD Reading read(Vec3 x, std::uint32_t near) const {
-    if (count_ == 0 || !(squared_norm(x - center_) <= squared_radius_))
+    if (points_.is_empty() || !(squared_norm(x - center_) <= radius_ * radius_))
       return surface_.read(x, near);
-    PointTree::Nearest best;
-    for (int k = 0; k < count_; ++k)
-      best.consider(squared_norm(widen(surface_.feet.points[points_[k]]) - x), points_[k]);
-    return surface_.read_point(x, best.point);
+    return surface_.read_point(x, points_.nearest(x));
+  }
+  // DiskSurface::find_other_wall.
+  VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
+                              double unlike, OtherWall& other) const {
+    if (!covers(x, kFarthestPlace * radius))
+      return surface_.find_other_wall(x, own, point, radius, unlike, other);
+    return surface_.may_meet_other_wall(x, own, point, radius, unlike) &&
+           surface_.choose_other_wall(*this, x, own, point, radius, unlike, other);
   }
 
  private:
-  static constexpr int kMostPoints = 48;
   static constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+
+  VPM_HD bool covers(Vec3 x, double radius) const {
+    return !points_.is_empty() && norm(x - center_) + radius <= radius_;
+  }
 
   // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
   // radius is 4 `quarter`. The nearest point's leaf tells how densely.
@@ -264,29 +348,38 @@ class DiskSurface::AroundBall {
     const PointBox leaf = surface_.feet.leaf_of(nearest);
     const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
     const double area = 12 * quarter, area_of_leaf = 0.5 * squared_diagonal;  // roughly
-    return area * PointTree::kLeafSize > 2 * kMostPoints * area_of_leaf;
+    return area * PointTree::kLeafSize > 2 * PointList::kMost * area_of_leaf;
   }
 
-  // The points that may be nearest; none if they are more than kMostPoints.
+  // The points that may be nearest; none if they are more than PointList::kMost.
   VPM_HD void gather(double squared_reach) {
     const bool few = surface_.feet.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
-      if (count_ == kMostPoints) return false;
-      points_[count_++] = i;
-      return true;
+      return points_.add(i, surface_.feet.points[i]);
     });
-    if (!few) count_ = 0;
+    if (!few) points_.clear();
   }
 
   const DiskSurface& surface_;
   Vec3 center_;
-  double squared_radius_ = 0;
-  int count_ = 0;
-  std::uint32_t points_[kMostPoints];
+  double radius_ = 0;
+  PointList points_;
 };
 
 VPM_HD inline DiskSurface::AroundBall DiskSurface::around_ball(Vec3 center, double radius,
                                                                std::uint32_t nearest) const {
   return {*this, center, radius, nearest};
+}
+
+VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
+                                                std::uint32_t point, double radius, double unlike,
+                                                OtherWall& other) const {
+  if (!may_meet_other_wall(x, own, point, radius, unlike)) return false;
+#ifdef __CUDA_ARCH__
+  const DiskSurface& near = *this;  // lists would take the memory of many threads
+#else
+  const AroundBall near(*this, x, kFarthestPlace * radius, point);
+#endif
+  return choose_other_wall(near, x, own, point, radius, unlike, other);
 }
 
 }  // namespace vpm

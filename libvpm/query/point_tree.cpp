@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
-#include "libvpm/core/vec3x4.h"
 #include "libvpm/core/vector_clones.h"
+#include "libvpm/query/point_tree_vectors.h"
 
 namespace vpm {
 namespace {
@@ -19,12 +18,6 @@ PointBox around(const PointBox& a, const PointBox& b) {
       {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-[[gnu::always_inline]] inline Double4 load_four(const float* from) {
-  Float4 four;
-  std::memcpy(&four, from, sizeof four);
-  return widen(four);
-}
-
 }  // namespace
 
 void BoxQuad::set(std::uint32_t k, const PointBox& box) {
@@ -32,37 +25,22 @@ void BoxQuad::set(std::uint32_t k, const PointBox& box) {
   high[0][k] = box.high.x, high[1][k] = box.high.y, high[2][k] = box.high.z;
 }
 
-struct PointTree::ByVectors {
-  [[gnu::always_inline]] static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
-    const double at[3] = {x.x, x.y, x.z};
-    Double4 sum{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const Double4 before = load_four(quad.low[axis]) - at[axis],
-                    after = at[axis] - load_four(quad.high[axis]), zero{};
-      const Double4 gap = before > after ? before : after;
-      sum += gap > 0 ? gap * gap : zero;
-    }
-    std::memcpy(squared, &sum, sizeof sum);
-  }
-  [[gnu::always_inline]] static void to_points(const Vec3f* points, std::uint32_t count, Vec3 x,
-                                               double (&squared)[4]) {
-    const auto [a, b, c, d] = four_of(std::span(points, count), 0);
-    const Double4 all = squared_norm(Vec3x4(a, b, c, d) - Vec3x4(x, x, x, x));
-    std::memcpy(squared, &all, sizeof all);
-  }
-};
-
 VPM_VECTOR_CLONES
 void PointTree::search_by_vectors(Vec3 x, Nearest& best) const {
-  search<ByVectors>(x, best);
+  search<ByVectors>(x, EachPoint{}, best);
+}
+
+VPM_VECTOR_CLONES
+void PointTree::search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest& best) const {
+  search<ByVectors>(x, touching, best);
 }
 
 VPM_VECTOR_CLONES
 std::uint32_t PointTree::list_by_vectors(Vec3 center, double squared_radius,
                                          std::uint32_t (&listed)[kMostListed]) const {
   std::uint32_t size = 0;
-  const bool all =
-      for_leaves<ByVectors>(center, squared_radius, [&](std::uint32_t begin, std::uint32_t end) {
+  const bool all = for_leaves_in_ball<ByVectors>(
+      center, squared_radius, EachNode{}, [&](std::uint32_t begin, std::uint32_t end) {
         if (size + kLeafSize > kMostListed) return false;
         for (std::uint32_t first = begin; first < end; first += 4) {
           double squared[4];
@@ -97,6 +75,18 @@ std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points) {
   for (std::uint32_t node = 0; node < boxes.size(); ++node)
     quads[node / 4].set(node % 4, boxes[node]);
   return quads;
+}
+
+std::vector<float> largest_in_nodes(std::span<const float> radii) {
+  const std::uint32_t leaves = leaves_for(radii.size());
+  std::vector<float> largest(std::max<std::size_t>(2 * std::size_t{leaves}, 4));
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    float& of_leaf = largest[leaves + i / PointTree::kLeafSize];
+    of_leaf = std::max(of_leaf, radii[i]);
+  }
+  for (std::uint32_t node = leaves; node-- > 1;)
+    largest[node] = std::max(largest[2 * node], largest[2 * node + 1]);
+  return largest;
 }
 
 }  // namespace vpm

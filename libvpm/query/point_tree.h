@@ -92,6 +92,12 @@ class NodeStack {
   int size_ = 0;
 };
 
+// Radii of points, each the middle of a ball, and the largest in each node of their tree. A view.
+struct PointRadii {
+  const float* of_points = nullptr;
+  const float* of_nodes = nullptr;
+};
+
 // A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
 // 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A
 // step goes down two levels, from the root or from its children, so that it ends at a leaf.
@@ -116,6 +122,20 @@ struct PointTree {
     }
   };
 
+  // Squared distances of four boxes, and of the first of some points, up to four.
+  struct OneByOne {
+    VPM_HD static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
+      for (std::uint32_t k = 0; k < 4; ++k) squared[k] = quad.box(k).squared_distance(x);
+    }
+    VPM_HD static void to_points(const Vec3f* points, std::uint32_t count, Vec3 x,
+                                 double (&squared)[4]) {
+      for (std::uint32_t k = 0; k < 4 && k < count; ++k)
+        squared[k] = squared_norm(widen(points[k]) - x);
+    }
+  };
+  struct ByVectors;  // the same on the host
+
+  VPM_HD std::uint32_t nodes() const { return 4 * quads(); }  // those of which arrays tell
   VPM_HD std::uint32_t quads() const { return leaves > 1 ? leaves / 2 : 1; }
   VPM_HD PointBox leaf_of(std::uint32_t point) const {
     const std::uint32_t node = leaves + point / kLeafSize;
@@ -133,9 +153,22 @@ struct PointTree {
     Nearest best{bound * bound};
     if (near != kNoPoint) best.consider(squared_norm(widen(points[near]) - x), near);
 #ifdef __CUDA_ARCH__
-    search<OneByOne>(x, best);
+    search<OneByOne>(x, EachPoint{}, best);
 #else
     search_by_vectors(x, best);
+#endif
+    return best.point;
+  }
+
+  // The point nearest to x among those whose balls touch a ball about x; kNoPoint if none does.
+  VPM_HD std::uint32_t nearest_touching(Vec3 x, double radius, const PointRadii& radii) const {
+    if (count == 0) return kNoPoint;
+    Nearest best;
+    const TouchingBall touching{radius, radii};
+#ifdef __CUDA_ARCH__
+    search<OneByOne>(x, touching, best);
+#else
+    search_by_vectors(x, touching, best);
 #endif
     return best.point;
   }
@@ -144,8 +177,13 @@ struct PointTree {
   // false, and returns what it said last.
   template <class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
-    return for_leaves<OneByOne>(center, squared_radius, visit);
+    return for_leaves_in_ball<OneByOne>(center, squared_radius, EachNode{}, visit);
   }
+  // The same for leaves in nodes of which enters(node) says so, as far as it is asked. `Distances`:
+  // OneByOne, or ByVectors (point_tree_vectors.h).
+  template <class Distances, class Enters, class Visit>
+  VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
+                                 const Visit& visit) const;
   // The same for the points in a ball.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
@@ -168,25 +206,37 @@ struct PointTree {
   }
 
  private:
-  // Squared distances of four boxes, and of the first of some points, up to four.
-  struct OneByOne {
-    VPM_HD static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
-      for (std::uint32_t k = 0; k < 4; ++k) squared[k] = quad.box(k).squared_distance(x);
+  struct EachNode {
+    VPM_HD bool operator()(std::uint32_t) const { return true; }
+  };
+
+  // Which points a search considers: by node and by point, with squared distances.
+  struct EachPoint {
+    VPM_HD bool takes_node(std::uint32_t, double) const { return true; }
+    VPM_HD bool takes_point(std::uint32_t, double) const { return true; }
+  };
+  struct TouchingBall {
+    double radius;
+    PointRadii radii;
+
+    VPM_HD bool takes_node(std::uint32_t node, double squared) const {
+      return touches(radii.of_nodes[node], squared);
     }
-    VPM_HD static void to_points(const Vec3f* points, std::uint32_t count, Vec3 x,
-                                 double (&squared)[4]) {
-      for (std::uint32_t k = 0; k < 4 && k < count; ++k)
-        squared[k] = squared_norm(widen(points[k]) - x);
+    VPM_HD bool takes_point(std::uint32_t i, double squared) const {
+      return touches(radii.of_points[i], squared);
+    }
+    VPM_HD bool touches(float other, double squared) const {
+      const double reach = radius + other;
+      return squared <= reach * reach;
     }
   };
-  struct ByVectors;  // the same on the host
 
   VPM_HD bool begins_at_root() const {
     return (leaves & 0x55555555U) != 0;
   }
 
-  template <class Distances>
-  VPM_HD void search(Vec3 x, Nearest& best) const {
+  template <class Distances, class Takes>
+  VPM_HD void search(Vec3 x, const Takes& takes, Nearest& best) const {
     NodeStack waiting;
     double squared[4];
     if (begins_at_root()) {
@@ -203,47 +253,23 @@ struct PointTree {
       if (key > last) continue;
       if (node < leaves) {
         Distances::to_boxes(boxes[node], x, squared);
+        for (std::uint32_t k = 0; k < 4; ++k) {
+          if (!takes.takes_node(4 * node + k, squared[k])) squared[k] = HUGE_VAL;
+        }
         waiting.push(node, squared, last);
         continue;
       }
       const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
       for (std::uint32_t first = begin; first < end; first += 4) {
         Distances::to_points(points + first, end - first, x, squared);
-        for (std::uint32_t k = 0; k < 4 && first + k < end; ++k)
-          best.consider(squared[k], first + k);
+        for (std::uint32_t k = 0; k < 4 && first + k < end; ++k) {
+          if (takes.takes_point(first + k, squared[k])) best.consider(squared[k], first + k);
+        }
       }
     }
   }
   void search_by_vectors(Vec3 x, Nearest& best) const;
-
-  template <class Distances, class Visit>
-  VPM_HD bool for_leaves(Vec3 center, double squared_radius, const Visit& visit) const {
-    if (count == 0) return true;
-    std::uint32_t stack[NodeStack::kRoom + 1];
-    int size = 0;
-    double squared[4];
-    const auto push = [&](std::uint32_t quad, std::uint32_t first) {
-      Distances::to_boxes(boxes[quad], center, squared);
-      for (std::uint32_t k = 4; k-- > first;) {
-        stack[size] = 4 * quad + k;
-        size += squared[k] <= squared_radius ? 1 : 0;
-      }
-    };
-    if (begins_at_root())
-      stack[size++] = 1;
-    else
-      push(0, 2);
-    while (size > 0) {
-      const std::uint32_t node = stack[--size];
-      if (node < leaves) {
-        push(node, 0);
-        continue;
-      }
-      const std::uint32_t begin = (node - leaves) * kLeafSize;
-      if (!visit(begin, end_of_leaf(begin))) return false;
-    }
-    return true;
-  }
+  void search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest& best) const;
 
   // The points in a ball, in their order; returns how many, or more than kMostListed.
   static constexpr std::uint32_t kMostListed = 512;
@@ -251,10 +277,44 @@ struct PointTree {
                                 std::uint32_t (&listed)[kMostListed]) const;
 };
 
+template <class Distances, class Enters, class Visit>
+VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
+                                          const Visit& visit) const {
+  if (count == 0) return true;
+  std::uint32_t stack[NodeStack::kRoom + 1];
+  int size = 0;
+  double squared[4];
+  const auto push = [&](std::uint32_t quad, std::uint32_t first) {
+    Distances::to_boxes(boxes[quad], center, squared);
+    for (std::uint32_t k = 4; k-- > first;) {
+      const std::uint32_t node = 4 * quad + k;
+      stack[size] = node;
+      size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
+    }
+  };
+  if (begins_at_root())
+    stack[size++] = 1;
+  else
+    push(0, 2);
+  while (size > 0) {
+    const std::uint32_t node = stack[--size];
+    if (node < leaves) {
+      push(node, 0);
+      continue;
+    }
+    const std::uint32_t begin = (node - leaves) * kLeafSize;
+    if (!visit(begin, end_of_leaf(begin))) return false;
+  }
+  return true;
+}
+
 // How many leaves a tree of so many points has; at most PointTree::kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
 // The boxes of a tree of points in the order of order_by_leaves (leaf_order.h).
 std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points);
+
+// PointRadii::of_nodes.
+std::vector<float> largest_in_nodes(std::span<const float> radii);
 
 }  // namespace vpm

@@ -54,8 +54,6 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   }
   validate(cloud, "the cloud");
   check_extent(cloud);
-  for (const float radius : cloud.radii)
-    largest_radius_ = std::max(largest_radius_, double{radius});
   if (cloud.sensor) {
     camera_ = cloud.sensor->camera;
     order_by_pixel(cloud);
@@ -65,15 +63,17 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
     take_inverse_depth(depth, 0, inverse.height, inverse);
     tiles_.build(inverse);
   } else {
-    const std::vector<float> radii = order_in_space(cloud);
+    order_in_space(cloud);
+    largest_radii_ = largest_in_nodes(radii_);
     boxes_ = boxes_of(positions_);
     const DiskSurface measured{point_tree(), normals_.data()};
     if (points == PointReading::settled) {
-      disks_ = settle(measured, radii);
+      disks_ = settle(measured, radii_);
       foot_boxes_ = boxes_of(disks_.feet);
     } else {
       disks_ = as_measured(measured);
     }
+    cones_ = cones_of(disk_surface());
   }
 }
 
@@ -119,7 +119,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
   std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
 }
 
-std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
+void PreparedCloud::order_in_space(const Cloud& cloud) {
   struct Placed {  // side by side, so that the sort does not fetch places from all over the cloud
     Vec3f at;
     std::uint32_t index;
@@ -141,10 +141,8 @@ std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
   }
   order_by_leaves(cloud.positions, order);
   take_in_order(cloud, order);
-  std::vector<float> radii;
-  radii.reserve(order.size());
-  for (const std::uint32_t i : order) radii.push_back(cloud.radii[i]);
-  return radii;
+  radii_.reserve(order.size());
+  for (const std::uint32_t i : order) radii_.push_back(cloud.radii[i]);
 }
 
 void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order) {
@@ -179,8 +177,12 @@ DiskSurface PreparedCloud::disk_surface() const {
   PointTree feet = point_tree();
   feet.points = disks_.feet.data();
   if (!foot_boxes_.empty()) feet.boxes = foot_boxes_.data();
-  return {feet, disks_.normals.data(), disks_.second_of.data(), disks_.seconds.data(),
-          largest_radius_};
+  return {feet,
+          disks_.normals.data(),
+          disks_.second_of.data(),
+          disks_.seconds.data(),
+          {radii_.data(), largest_radii_.data()},
+          {cones_.data()}};
 }
 
 PixelRectangle PreparedCloud::pixels_of_ball(Vec3 center, double radius) const {

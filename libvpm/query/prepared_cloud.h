@@ -67,8 +67,7 @@ class PreparedCloud {
   friend class FramePreparation;
 
   void order_by_pixel(const Cloud& cloud);
-  // Returns the radii in that order.
-  std::vector<float> order_in_space(const Cloud& cloud);
+  void order_in_space(const Cloud& cloud);
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
@@ -78,16 +77,17 @@ class PreparedCloud {
   std::uint64_t serial_;
   Vec3 origin_;
   std::vector<Vec3f> positions_, normals_;
-  double largest_radius_ = 0;
 
   std::optional<Camera> camera_;
   std::vector<std::uint32_t> pixel_begin_;
   std::vector<Vec3f> pixel_normals_;  // camera axes
   InverseDepthPyramid tiles_;
 
-  std::vector<BoxQuad> boxes_;       // of the positions
+  std::vector<BoxQuad> boxes_;  // of the positions
+  std::vector<float> radii_, largest_radii_;
   std::vector<BoxQuad> foot_boxes_;  // of the disks' feet; none where those are the positions
   SettledDisks disks_;
+  std::vector<ConeQuad> cones_;  // of the disks
 };
 
 template <class Visit>

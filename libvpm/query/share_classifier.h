@@ -125,7 +125,8 @@ class ShareClassifier {
   std::uint32_t classify_share(std::uint32_t i) {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
-    const Side side = surface_.side_of_ball(center, view.reach);
+    const Look look = surface_.look_at_ball(center, view.reach);
+    const Side side = surface_.side_of(look, center, view.reach);
     if (side == Side::free) {
       states_.set(i, Cell::free, Passage::closed);
     } else if (side == Side::behind) {
@@ -133,7 +134,7 @@ class ShareClassifier {
     } else if (side == Side::uncut) {
       states_.set(i, Cell::open, Passage::unknown);
     } else {
-      states_.results[i] = measure(view).run(SamplesOnHost<Surface>{});
+      states_.results[i] = measure(view).run(SamplesOnHost<Surface>{}, look.point);
       take_result(i, Passage::unknown);
       return points_ != nullptr ? count_points(i, center) : 0;
     }

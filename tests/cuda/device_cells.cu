@@ -124,11 +124,16 @@ std::vector<CellAnswer> cells_on_device(const PreparedCloud& cloud, const ToolMo
     const DeviceArray<std::uint32_t> second_of(disks.second_of);
     const DeviceArray<SecondPlane> seconds(disks.seconds);
     const DeviceArray<BoxQuad> boxes(surface.feet.boxes, surface.feet.quads());
+    const DeviceArray<ConeQuad> cones(surface.cones.quads, surface.feet.quads());
+    const DeviceArray<float> radii(surface.radii.of_points, surface.feet.count);
+    const DeviceArray<float> largest(surface.radii.of_nodes, surface.feet.nodes());
     surface.feet.points = feet.get();
     surface.feet.boxes = boxes.get();
     surface.normals = normals.get();
     surface.second_of = second_of.get();
     surface.seconds = seconds.get();
+    surface.cones.quads = cones.get();
+    surface.radii = {radii.get(), largest.get()};
     return launch(surface, to_surface, tool, level);
   }
   DepthSurface surface = cloud.depth_surface();

@@ -1,7 +1,9 @@
 // Points alone that show two walls: where tools behind both are pushed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query.h"
@@ -85,6 +87,110 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
       EXPECT_FALSE(disks.find_other_wall(at, {reading.normal, reading.foot}, reading.point, 0.02,
                                          kTwoWalls, other));
     }
+  }
+}
+
+// Which disks face one way is told by cones of whole nodes, where these suffice.
+TEST(TwoWallsOfPoints, ConesSayWhatEachDiskSays) {
+  for (const bool is_roof : {true, false}) {
+    const PreparedCloud cloud(TwoWalls{is_roof}.seen());
+    const DiskSurface disks = cloud.disk_surface();
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> at(-1, 1);
+    int one_way = 0, several = 0;
+    for (int k = 0; k < 400; ++k) {
+      const Vec3 center = 0.12 * Vec3{at(random), at(random), 0.3 * at(random)} - cloud.origin();
+      const double radius = 0.03 * std::fabs(at(random));
+      const auto toward = static_cast<std::uint32_t>(random() % disks.feet.count);
+      const Vec3 n = widen(disks.normals[toward]);
+      bool all = true;
+      for (std::uint32_t i = 0; i < disks.feet.count; ++i) {
+        if (squared_norm(widen(disks.feet.points[i]) - center) > radius * radius) continue;
+        disks.for_normals_of(i, [&](Vec3 normal) { all &= dot(normal, n) > kTwoWalls; });
+      }
+      ASSERT_EQ(disks.face_one_way(center, radius, n, kTwoWalls), all);
+      (all ? one_way : several) += 1;
+    }
+    EXPECT_GT(std::min(one_way, several), 30);
+  }
+}
+
+// The nodes of a bowl: no cone leaves a normal out, and none is much wider than its normals.
+TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
+  Cloud seen = TwoWalls{true}.seen();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Vec3 p = widen(seen.positions[i]);
+    seen.positions[i].z = static_cast<float>(3 * (p.x * p.x + p.y * p.y));
+    seen.normals[i] = narrow(normalized_or_zero(Vec3{-6 * p.x, -6 * p.y, 1}));
+  }
+  const PreparedCloud cloud(seen);
+  const DiskSurface disks = cloud.disk_surface();
+  const PointTree& tree = disks.feet;
+  int held = 0, within = 0;
+  for (std::uint32_t nodes = tree.leaves, size = PointTree::kLeafSize; nodes > 0;
+       nodes /= 4, size *= 4) {
+    for (std::uint32_t k = 0; k * size < tree.count; ++k) {
+      for (const double degrees : {0.0, 5.0, 20.0, 40.0, 80.0}) {
+        const Vec3 n{std::sin(kDegree * degrees), 0, std::cos(kDegree * degrees)};
+        double least = 1;
+        for (std::uint32_t i = k * size; i < std::min((k + 1) * size, tree.count); ++i)
+          least = std::min(least, dot(widen(disks.normals[i]), n));
+        for (const double cosine : {kTwoWalls, kOneDirection}) {
+          const bool says = disks.cones.are_within(nodes + k, n, cosine);
+          ASSERT_TRUE(!says || least > cosine) << nodes << ' ' << k;
+          held += least > cosine ? 1 : 0;
+          within += says ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(within, 0.9 * held);
+  EXPECT_GT(held, 1000);
+}
+
+// What is read from a list of near disks is what all of them say.
+TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
+  const PreparedCloud cloud(TwoWalls{true}.seen());
+  const DiskSurface disks = cloud.disk_surface();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at(-1, 1);
+  int found = 0;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 middle = Vec3{0.01 * at(random), 0.1 * at(random), -0.02} - cloud.origin();
+    const DiskSurface::AroundBall near = disks.around_ball(middle, 0.008, disks.read(middle).point);
+    const Vec3 x = middle + 0.004 * Vec3{at(random), at(random), at(random)};
+    const Reading reading = near.read(x, kNoPoint), direct = disks.read(x);
+    ASSERT_EQ(reading.point, direct.point);
+    const TangentPlane own{disks.closest_normal(x, direct), direct.foot};
+    OtherWall one, other;
+    const bool is_met = near.find_other_wall(x, own, direct.point, 0.006, kTwoWalls, one);
+    ASSERT_EQ(is_met, disks.find_other_wall(x, own, direct.point, 0.006, kTwoWalls, other));
+    if (!is_met) continue;
+    ++found;
+    EXPECT_EQ(norm(one.normal - other.normal) + norm(one.border.foot - other.border.foot), 0);
+  }
+  EXPECT_GT(found, 50);
+}
+
+// Seen at a grazing angle, one disk of a room may be wide. Far from it that changes nothing.
+TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
+  Cloud seen = TwoWalls{false}.seen();
+  const PreparedCloud alone(seen);
+  seen.positions.push_back({3, 0, 0});
+  seen.normals.push_back({0, 0, 1});
+  seen.radii.push_back(0.2f);
+  const PreparedCloud with_wide(seen);
+  const ToolModel cube = testing::lattice_cube(0.06, 3, 4);
+  Query query(cube, {});
+  for (int k = 0; k < 40; ++k) {
+    const double half = 0.2 * k, sine = std::sin(half);
+    const Pose pose{rotation_from_quaternion({0.6 * sine, 0, 0.8 * sine, std::cos(half)}),
+                    {0.002 * (k - 20), 0.001, 0.01}};
+    const Result expected = query.run(alone, pose), result = query.run(with_wide, pose);
+    EXPECT_GT(expected.volume, 0);
+    EXPECT_EQ(result.volume, expected.volume);
+    EXPECT_EQ(norm(result.wrench.force - expected.wrench.force), 0);
+    EXPECT_EQ(norm(result.wrench.torque - expected.wrench.torque), 0);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "libvpm/query/leaf_order.h"
+#include "libvpm/query/point_list.h"
 
 namespace vpm {
 namespace {
@@ -105,6 +106,32 @@ TEST_P(TreeOf, VisitsThePointsOfABallInOrder) {
   }
 }
 
+TEST_P(TreeOf, FindsTheNearestOfTheBallsThatTouch) {
+  const OrderedPoints ordered(scattered(GetParam(), false));
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> at(-1.5, 1.5);
+  std::uniform_real_distribution<float> wide(0, 0.5);
+  std::vector<float> radii;
+  for (std::size_t i = 0; i < ordered.points.size(); ++i)
+    radii.push_back(random() % 5 == 0 ? wide(random) : 0.01f);
+  const std::vector<float> largest = largest_in_nodes(radii);
+  const PointTree tree = ordered.tree();
+  ASSERT_EQ(largest.size(), tree.nodes());
+  for (int k = 0; k < 300; ++k) {
+    const Vec3 x{at(random), at(random), 0.5 * at(random)};
+    const double radius = 0.3 * std::fabs(at(random));
+    std::uint32_t expected = kNoPoint;
+    double least = HUGE_VAL;
+    for (std::uint32_t i = 0; i < ordered.points.size(); ++i) {
+      const double squared = squared_norm(widen(ordered.points[i]) - x), reach = radius + radii[i];
+      if (!(squared <= reach * reach && squared < least)) continue;
+      least = squared;
+      expected = i;
+    }
+    ASSERT_EQ(tree.nearest_touching(x, radius, {radii.data(), largest.data()}), expected);
+  }
+}
+
 // One leaf, full and not; trees with an even and an odd number of levels.
 INSTANTIATE_TEST_SUITE_P(Points, TreeOf,
                          ::testing::Values(1, 2, 7, 8, 9, 16, 17, 31, 33, 64, 65, 100, 129, 1000,
@@ -116,6 +143,24 @@ TEST(PointTree, OfNoPointsFindsNone) {
   EXPECT_EQ(none.tree().nearest({}, HUGE_VAL), kNoPoint);
   EXPECT_TRUE(none.tree().for_points_in_ball({}, 1, [](std::uint32_t) { return false; }));
   EXPECT_EQ(PointTree{}.nearest({}, HUGE_VAL), kNoPoint);
+}
+
+TEST(PointList, FindsTheNearestAndTheFirstOfSeveral) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> at(-1.5, 1.5);
+  for (const int size : {1, 2, 3, 4, 5, 8, 11, 64, PointList::kMost}) {
+    const std::vector<Vec3f> points = scattered(static_cast<std::size_t>(size), true);
+    PointList list;
+    for (std::uint32_t i = 0; i < points.size(); ++i) ASSERT_TRUE(list.add(7 * i, points[i]));
+    ASSERT_EQ(list.add(0, {}), size < PointList::kMost);
+    list.clear();
+    ASSERT_TRUE(list.is_empty());
+    for (std::uint32_t i = 0; i < points.size(); ++i) list.add(7 * i, points[i]);
+    for (int k = 0; k < 200; ++k) {
+      const Vec3 x{quarter(at(random)), quarter(at(random)), quarter(at(random))};
+      ASSERT_EQ(list.nearest(x), 7 * nearest_of_all(points, x, HUGE_VAL)) << size;
+    }
+  }
 }
 
 TEST(LeafOrder, KeepsEachPointOnce) {

@@ -232,10 +232,15 @@ void DeviceCloud::copy_points(const PreparedCloud& cloud) {
   disk_normals_ = DeviceArray<Vec3f>(settled.normals);
   second_of_ = DeviceArray<std::uint32_t>(settled.second_of);
   seconds_ = DeviceArray<SecondPlane>(settled.seconds);
+  cones_ = DeviceArray<ConeQuad>(disks_.cones.quads, disks_.feet.quads());
+  radii_ = DeviceArray<float>(disks_.radii.of_points, disks_.feet.count);
+  largest_radii_ = DeviceArray<float>(disks_.radii.of_nodes, disks_.feet.nodes());
   disks_.feet = copy_tree(disks_.feet, feet_, foot_boxes_);
   disks_.normals = disk_normals_.get();
   disks_.second_of = second_of_.get();
   disks_.seconds = seconds_.get();
+  disks_.cones.quads = cones_.get();
+  disks_.radii = {radii_.get(), largest_radii_.get()};
 }
 
 std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {

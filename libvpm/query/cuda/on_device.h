@@ -77,6 +77,8 @@ class DeviceCloud {
   DeviceArray<Vec3f> feet_, disk_normals_;
   DeviceArray<std::uint32_t> second_of_;
   DeviceArray<SecondPlane> seconds_;
+  DeviceArray<ConeQuad> cones_;
+  DeviceArray<float> radii_, largest_radii_;
   CloudFrame frame_;
   PointsView points_;
   DepthSurface depth_;

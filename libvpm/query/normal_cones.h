@@ -1,0 +1,42 @@
+// Which ways disks face, by cones about the normals in each node of their PointTree. For host and
+// device.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/core/vec3.h"
+
+namespace vpm {
+
+struct DiskSurface;
+
+// Cones of four nodes: the cosine between the axis and any normal of the node is `cosine` at least.
+struct alignas(16) ConeQuad {
+  float axis[3][4] = {};
+  float cosine[4] = {};
+};
+
+// A view: plain pointers.
+struct NormalCones {
+  const ConeQuad* quads = nullptr;  // of node k: k % 4 of quad k / 4
+
+  // False unless the cosine between n, a unit vector, and each normal of a node is surely above
+  // `least`.
+  VPM_HD bool are_within(std::uint32_t node, Vec3 n, double least) const {
+    constexpr double kSlack = 1e-3;  // far more than axes of floats turn
+    const ConeQuad& quad = quads[node / 4];
+    const std::uint32_t k = node % 4;
+    const double cosine = quad.cosine[k],
+                 off = dot({quad.axis[0][k], quad.axis[1][k], quad.axis[2][k]}, n);
+    // cos(a + b) = cos a cos b - sin a sin b, of which the last is known by its square.
+    const double above = off * cosine - (least + kSlack);
+    return off > 0 && cosine > 0 && above > 0 &&
+           above * above > (1 - off * off) * (1 - cosine * cosine);
+  }
+};
+
+// Of all normals that the disks know. Only of nodes that searches step to.
+std::vector<ConeQuad> cones_of(const DiskSurface& disks);
+
+}  // namespace vpm
