@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
                         "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
   tool.app().add_option(
       "--data", data,
-      "accuracy --all, replay: folder whose depth/ holds recorded depth images; replay: or "
+      "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; replay: or "
       "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
   tool.app().add_flag("--baseline", baseline,
                       "scaling: beside the measure as printed, by the algorithm as printed");

@@ -15,8 +15,8 @@ struct SuiteOptions {
                        // scaling: a million spheres
   std::function<void(double fraction)> progress;
   std::string meshes = {};  // packing: folder of bunny.off, armadillo.obj, fandisk.obj, knot.ply
-  std::string data = {};    // accuracy --all: folder of recorded depth images; replay: likewise, or
-                            // a recording; empty: none
+  std::string data = {};    // accuracy --all, timing: folder of recorded depth images; replay:
+                            // likewise, or a recording; empty: none
   bool baseline = false;    // scaling: the measure as printed beside it
   Device device = {};       // a CUDA device where the suite takes one
 };

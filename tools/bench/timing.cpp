@@ -1,13 +1,15 @@
 // Each stage of the main job on a scene that is always at hand: a twisted torus of 0.25 m with 7200
 // triangles and a noisy depth image of a tilted wall, 307 200 points; and the same points without
-// their camera.
+// their camera. Where recorded images are given, queries of these, too.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <optional>
 
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
@@ -17,6 +19,7 @@
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/penetration_case.h"
+#include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
 
@@ -51,30 +54,35 @@ class Timing {
         sizes_(options.quick ? std::vector<std::size_t>{250}
                              : std::vector<std::size_t>{1000, 10000}) {
     report_.suite = "timing";
-    report_.settings = {{"quick", options.quick},   {"runs_slow", runs_.slow},
-                        {"runs_fast", runs_.fast},  {"spheres", sizes_},
-                        {"shape", "twisted torus"}, {"scene", "tilted-wall"}};
+    report_.settings = {{"quick", options.quick},           {"runs_slow", runs_.slow},
+                        {"runs_fast", runs_.fast},          {"spheres", sizes_},
+                        {"shape", "twisted torus"},         {"scene", "tilted-wall"},
+                        {"recorded", !options.data.empty()}};
     report_.table.columns = {"stage",        "spheres", "threads", "median_ms", "quartile1_ms",
                              "quartile3_ms", "min_ms",  "max_ms",  "runs"};
     report_.summary =
-        "stage                      spheres       1 thread: median [quartiles] ms      2 threads"
+        "stage                                      spheres       1 thread: median [quartiles] ms  "
+        "    2 threads"
         "   ratio\n";
   }
 
   Report run() {
     time_cloud();
+    if (!options_.data.empty()) prepare_recorded();
     for (const std::size_t spheres : sizes_) time_tool(spheres);
     return std::move(report_);
   }
 
  private:
-  // Times one stage with 1 and with 2 threads.
+  // Times one stage with 1 and with 2 threads; where it is done `times` times, each.
   void time(const std::string& stage, std::size_t spheres, int runs,
-            const std::function<void()>& body) {
+            const std::function<void()>& body, std::size_t times = 1) {
     Spread by_threads[2];
     for (const int threads : {1, 2}) {
       set_thread_count(threads);
-      const Spread s = by_threads[threads - 1] = spread_of(milliseconds_of(runs, body));
+      std::vector<double> took = milliseconds_of(runs, body);
+      for (double& of_run : took) of_run /= static_cast<double>(times);
+      const Spread s = by_threads[threads - 1] = spread_of(took);
       report_.table.rows.push_back({stage, static_cast<double>(spheres),
                                     static_cast<double>(threads), s.median, s.quartile1,
                                     s.quartile3, s.min, s.max, static_cast<double>(runs)});
@@ -90,12 +98,13 @@ class Timing {
     }
     set_thread_count(0);
     char line[160];
-    std::snprintf(line, sizeof line, "%-26s %7zu %12.3f [%.3f, %.3f] %15.3f %7.2f\n", stage.c_str(),
+    std::snprintf(line, sizeof line, "%-42s %7zu %12.3f [%.3f, %.3f] %15.3f %7.2f\n", stage.c_str(),
                   spheres, by_threads[0].median, by_threads[0].quartile1, by_threads[0].quartile3,
                   by_threads[1].median, by_threads[0].median / by_threads[1].median);
     report_.summary += line;
     if (options_.progress) {
-      const double stages = 6 + 6 * static_cast<double>(sizes_.size());
+      const double recorded = options_.data.empty() ? 0 : 1;
+      const double stages = 6 + recorded + (6 + 2 * recorded) * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -121,6 +130,32 @@ class Timing {
          [&] { preparation.prepare(depth, scene_.camera, frame); });
   }
 
+  // Rooms are walked through as random poses: what one costs depends on what is near.
+  void prepare_recorded() {
+    const std::vector<RecordedImage> images = recorded_images(options_.data);
+    if (images.empty())
+      throw Error(ErrorKind::usage, "no recorded image that vpm-bench knows lies in " +
+                                        options_.data + "/depth: leave --data away, or see --help");
+    const ToolModel tool = make_tool(solid_, {kScoutSpheres});
+    Query query(tool, {});
+    for (const RecordedImage& image : images) {
+      recorded_.push_back({PreparedCloud(image.cloud), without_camera(image.cloud), {}});
+      Recorded& room = recorded_.back();
+      for (std::uint64_t k = 0; room.poses.size() < kPosesInRoom && k < kMostTries; ++k) {
+        const Pose pose = random_pose_before(image.cloud, k, tool.reach);
+        const double inside = query.run(room.seen, pose).volume_fraction;
+        if (inside > kLeastInside && inside < kMostInside) room.poses.push_back(pose);
+      }
+      poses_in_rooms_ += room.poses.size();
+    }
+    time(
+        "cloud preparation, points, recorded rooms", 0, runs_.slow,
+        [&] {
+          for (Recorded& room : recorded_) room.points.emplace(room.cloud);
+        },
+        recorded_.size());
+  }
+
   void time_tool(std::size_t spheres) {
     Packing packing;
     packing.solid = solid_;
@@ -144,12 +179,40 @@ class Timing {
     };
     time_query("query refined", cloud, Measure::refined, PointLocation::grid);
     time_query("query refined, points", points, Measure::refined, PointLocation::grid);
+    const auto time_rooms = [&](const char* stage, const auto& cloud_of) {
+      Query query(model, {});
+      time(
+          stage, spheres, runs_.slow,
+          [&] {
+            for (const Recorded& room : recorded_) {
+              for (const Pose& p : room.poses) query.run(cloud_of(room), p);
+            }
+          },
+          poses_in_rooms_);
+    };
+    if (poses_in_rooms_ > 0) {
+      time_rooms("query refined, recorded rooms",
+                 [](const Recorded& room) -> const PreparedCloud& { return room.seen; });
+      time_rooms("query refined, points, recorded rooms",
+                 [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
+    }
     time_query("query paper", cloud, Measure::paper, PointLocation::grid);
     time_query("query paper (hierarchy)", cloud, Measure::paper, PointLocation::hierarchy);
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
   static constexpr int kPoses = 9;  // the middle one is 3/8 of the tool's height deep
+  static constexpr std::size_t kPosesInRoom = 32;
+  static constexpr std::uint64_t kMostTries = 10000;
+  static constexpr std::uint32_t kScoutSpheres = 250;
+  static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // of the tool, in rooms
+
+  struct Recorded {
+    PreparedCloud seen;
+    Cloud cloud;  // without camera
+    std::vector<Pose> poses;
+    std::optional<PreparedCloud> points = {};
+  };
 
   const SuiteOptions& options_;
   Runs runs_;
@@ -159,6 +222,8 @@ class Timing {
   const synthetic::Scene scene_ = synthetic::make_scene("tilted-wall");
   const Solid solid_ = synthetic::make_twisted_torus(0.09, 0.05, 3, 900);
   Cloud cloud_, points_;  // the same without camera
+  std::vector<Recorded> recorded_;
+  std::size_t poses_in_rooms_ = 0;
 };
 
 }  // namespace
