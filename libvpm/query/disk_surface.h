@@ -61,10 +61,10 @@ struct DiskSurface {
                              : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
   }
 
-  // The surface for places in a ball: the few points that may be nearest to one of them, if they
-  // are few. `nearest`: the point nearest to the centre.
+  // The surface for places in a ball: the points that may be nearest to one of them, if they are
+  // few. `near`: a point that is near the centre.
   class AroundBall;
-  VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t nearest) const;
+  VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t near) const;
 
   // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
   // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
@@ -306,16 +306,16 @@ struct DiskSurface {
   }
 };
 
-// Sparse points: a tool's piece is far from most of them, and a list of a dozen is quicker to
-// search than the tree. Answers have the same bits.
+// The points that may be nearest to places in a ball are quicker to search as a list than in the
+// tree. Answers have the same bits.
 class DiskSurface::AroundBall {
  public:
-  VPM_HD AroundBall(const DiskSurface& surface, Vec3 center, double radius, std::uint32_t nearest)
+  VPM_HD AroundBall(const DiskSurface& surface, Vec3 center, double radius, std::uint32_t near)
       : surface_(surface), center_(center) {
-    if (nearest == kNoPoint) return;
+    if (near == kNoPoint) return;
     const double covered = kSlack * radius;
-    const double distance = norm(widen(surface.feet.points[nearest]) - center);
-    if (are_many(nearest, covered * (distance + covered))) return;
+    const double distance = norm(widen(surface.feet.points[near]) - center);
+    if (are_many(near, covered * (distance + covered))) return;
     radius_ = covered;
     const double reach = kSlack * (distance + 2 * covered);
     gather(reach * reach);
@@ -343,9 +343,9 @@ class DiskSurface::AroundBall {
   }
 
   // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
-  // radius is 4 `quarter`. The nearest point's leaf tells how densely.
-  VPM_HD bool are_many(std::uint32_t nearest, double quarter) const {
-    const PointBox leaf = surface_.feet.leaf_of(nearest);
+  // radius is 4 `quarter`. The leaf of a near point tells how densely.
+  VPM_HD bool are_many(std::uint32_t near, double quarter) const {
+    const PointBox leaf = surface_.feet.leaf_of(near);
     const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
     const double area = 12 * quarter, area_of_leaf = 0.5 * squared_diagonal;  // roughly
     return area * PointTree::kLeafSize > 2 * PointList::kMost * area_of_leaf;
@@ -366,8 +366,8 @@ class DiskSurface::AroundBall {
 };
 
 VPM_HD inline DiskSurface::AroundBall DiskSurface::around_ball(Vec3 center, double radius,
-                                                               std::uint32_t nearest) const {
-  return {*this, center, radius, nearest};
+                                                               std::uint32_t near) const {
+  return {*this, center, radius, near};
 }
 
 VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
