@@ -31,6 +31,18 @@ TEST(Suite, RefusesADeviceWhereItComputesOnTheCpu) {
   }
 }
 
+// Before it measures for minutes.
+TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
+  for (const char* name : {"accuracy", "timing"}) {
+    SuiteOptions options;
+    options.data = "/nowhere";
+    const auto fault = test::fault_of([&] { run_suite(name, options); });
+    ASSERT_TRUE(fault) << name;
+    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(fault->what()).find("/nowhere"), std::string::npos);
+  }
+}
+
 // On a machine without devices it says so, whatever was asked for.
 TEST(Suite, ScalingTimesOneDevice) {
   EXPECT_TRUE(takes_device("scaling"));

@@ -6,6 +6,7 @@
 #include "libvpm/cloud/normals.h"
 #include "tools/bench/random_poses.h"
 #include "tools/bench/real_frames.h"
+#include "tools/bench/recorded_images.h"
 #include "tools/bench/silhouettes.h"
 #include "tools/bench/suite.h"
 #include "tools/bench/sweeps.h"
@@ -276,6 +277,7 @@ class Accuracy {
 }  // namespace
 
 Report run_accuracy(const SuiteOptions& options) {
+  if (!options.data.empty()) require_recorded_images(options.data);
   return Accuracy(options).run();
 }
 

@@ -28,12 +28,25 @@ constexpr Frame kFrames[] = {
     {"d435_000000080-opaque-depth-img.exr", {921, 921, 642, 359}, 1},
 };
 
+std::string path_of(const Frame& frame, const std::string& folder) {
+  return folder + "/depth/" + frame.file;
+}
+
 }  // namespace
+
+void require_recorded_images(const std::string& folder) {
+  for (const Frame& frame : kFrames) {
+    if (std::filesystem::exists(path_of(frame, folder))) return;
+  }
+  throw Error(ErrorKind::usage, "--data " + folder + ": its folder depth/ holds none of the " +
+                                    "recorded images that are known by name, like " +
+                                    kFrames[0].file + "; leave --data away to do without");
+}
 
 std::vector<RecordedImage> recorded_images(const std::string& folder) {
   std::vector<RecordedImage> images;
   for (const Frame& frame : kFrames) {
-    const std::string path = folder + "/depth/" + frame.file;
+    const std::string path = path_of(frame, folder);
     if (!std::filesystem::exists(path)) continue;
     ImportOptions options;
     options.intrinsics = frame.intrinsics;

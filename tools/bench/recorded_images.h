@@ -15,8 +15,12 @@ struct RecordedImage {
   Cloud cloud;
 };
 
-// Those of `folder`/depth that are known by name, are there and can be read by this build. Throws
-// what import_cloud throws for damaged ones.
+// Throws Error(usage) where `folder`/depth holds none of those that are known by name; for the
+// start of a suite, since what is found out later costs minutes.
+void require_recorded_images(const std::string& folder);
+
+// Those that are there and can be read by this build. Throws what import_cloud throws for damaged
+// ones.
 std::vector<RecordedImage> recorded_images(const std::string& folder);
 
 // The k-th: on the near side of a random point, about a tool's reach off.

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
@@ -132,13 +131,9 @@ class Timing {
 
   // Rooms are walked through as random poses: what one costs depends on what is near.
   void prepare_recorded() {
-    const std::vector<RecordedImage> images = recorded_images(options_.data);
-    if (images.empty())
-      throw Error(ErrorKind::usage, "no recorded image that vpm-bench knows lies in " +
-                                        options_.data + "/depth: leave --data away, or see --help");
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
     Query query(tool, {});
-    for (const RecordedImage& image : images) {
+    for (const RecordedImage& image : recorded_images(options_.data)) {
       recorded_.push_back({PreparedCloud(image.cloud), without_camera(image.cloud), {}});
       Recorded& room = recorded_.back();
       for (std::uint64_t k = 0; room.poses.size() < kPosesInRoom && k < kMostTries; ++k) {
@@ -229,6 +224,7 @@ class Timing {
 }  // namespace
 
 Report run_timing(const SuiteOptions& options) {
+  if (!options.data.empty()) require_recorded_images(options.data);
   return Timing(options).run();
 }
 
