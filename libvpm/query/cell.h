@@ -52,7 +52,7 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  // `samples`: SamplesInTurn, or what adds the same sooner.
+  // `samples`: SamplesInTurn, or what adds the same sooner. `point`: where to begin to read disks.
   template <class Samples>
   VPM_HD CellResult run(Samples samples, std::uint32_t point = kNoPoint) const {
     CellResult result;

@@ -10,13 +10,9 @@
 namespace vpm {
 namespace {
 
-struct Cone {
-  Vec3f axis;
-  float cosine;
-};
-
-// Of the disks from `begin` to `end`.
-Cone cone_of(const DiskSurface& disks, std::uint32_t begin, std::uint32_t end) {
+// The cone of the disks from `begin` to `end`.
+void set_cone(const DiskSurface& disks, std::uint32_t begin, std::uint32_t end, ConeQuad& quad,
+              std::uint32_t k) {
   Vec3 sum;
   for (std::uint32_t i = begin; i < end; ++i)
     disks.for_normals_of(i, [&](Vec3 normal) { sum += normal; });
@@ -25,7 +21,7 @@ Cone cone_of(const DiskSurface& disks, std::uint32_t begin, std::uint32_t end) {
   for (std::uint32_t i = begin; i < end; ++i)
     disks.for_normals_of(i,
                          [&](Vec3 normal) { cosine = std::min(cosine, dot(widen(axis), normal)); });
-  return {axis, static_cast<float>(cosine)};
+  quad.set(k, axis, static_cast<float>(cosine));
 }
 
 }  // namespace
@@ -42,18 +38,14 @@ std::vector<ConeQuad> cones_of(const DiskSurface& disks) {
        nodes /= 4, size *= 4) {
     constexpr std::size_t kGrain = 8192;  // disks
     const std::size_t used = (std::size_t{tree.count} + size - 1) / size;
-    parallel_for(
-        used, std::max<std::size_t>(kGrain / size, 4), [&](std::size_t first, std::size_t last) {
-          for (auto k = static_cast<std::uint32_t>(first); k < last; ++k) {
-            const Cone cone = cone_of(disks, k * size, std::min((k + 1) * size, tree.count));
-            const std::uint32_t node = nodes + k;
-            ConeQuad& quad = quads[node / 4];
-            quad.axis[0][node % 4] = cone.axis.x;
-            quad.axis[1][node % 4] = cone.axis.y;
-            quad.axis[2][node % 4] = cone.axis.z;
-            quad.cosine[node % 4] = cone.cosine;
-          }
-        });
+    parallel_for(used, std::max<std::size_t>(kGrain / size, 4),
+                 [&](std::size_t first, std::size_t last) {
+                   for (auto k = static_cast<std::uint32_t>(first); k < last; ++k) {
+                     const std::uint32_t node = nodes + k;
+                     set_cone(disks, k * size, std::min((k + 1) * size, tree.count),
+                              quads[node / 4], node % 4);
+                   }
+                 });
   }
   return quads;
 }

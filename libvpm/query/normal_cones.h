@@ -15,6 +15,11 @@ struct DiskSurface;
 struct alignas(16) ConeQuad {
   float axis[3][4] = {};
   float cosine[4] = {};
+
+  void set(std::uint32_t k, Vec3f axis_of_k, float cosine_of_k) {
+    axis[0][k] = axis_of_k.x, axis[1][k] = axis_of_k.y, axis[2][k] = axis_of_k.z;
+    cosine[k] = cosine_of_k;
+  }
 };
 
 // A view: plain pointers.

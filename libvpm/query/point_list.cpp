@@ -4,6 +4,7 @@
 #include "libvpm/query/point_tree_vectors.h"
 
 namespace vpm {
+
 VPM_VECTOR_CLONES
 int PointList::nearest_by_vectors(Vec3 x) const {
   static_assert(kMost % kFour == 0);

@@ -4,9 +4,9 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/query.h"
-#include "libvpm/synthetic/kinect_noise.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
+#include "tools/bench/random_rotation.h"
 #include "tools/bench/sight.h"
 
 namespace vpm::bench {
@@ -19,11 +19,10 @@ constexpr double kFieldOfView = 0.6;  // m at a depth of 1 m: room for every pos
 // A bell-shaped place around the scene's middle, any rotation.
 Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
   synthetic::NormalNumbers numbers(seed, k);
-  const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
-  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  const Rotation rotation = random_rotation(numbers);
   const double x = kAside * numbers.next(), y = kAside * numbers.next();
   const double z = 1 + 0.5 * reach * (numbers.next() - 0.5);
-  return {rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length}),
+  return {rotation,
           {std::clamp(x, -2 * kAside, 2 * kAside), std::clamp(y, -2 * kAside, 2 * kAside), z}};
 }
 

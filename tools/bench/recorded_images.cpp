@@ -1,13 +1,12 @@
 #include "tools/bench/recorded_images.h"
 
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "tools/bench/random_rotation.h"
 
 namespace vpm::bench {
 namespace {
@@ -62,13 +61,11 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
 
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach) {
   synthetic::NormalNumbers numbers(kPoseSeed, k);
-  const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
-  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  const Rotation rotation = random_rotation(numbers);
   constexpr std::uint64_t kStride = 7919;  // a prime: all over the image
   const std::size_t at = k * kStride % cloud.size();
   const double off = reach * (0.7 + 0.2 * numbers.next());
-  return {rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length}),
-          cloud.origin + widen(cloud.positions[at]) + off * widen(cloud.normals[at])};
+  return {rotation, cloud.origin + widen(cloud.positions[at]) + off * widen(cloud.normals[at])};
 }
 
 }  // namespace vpm::bench
