@@ -5,6 +5,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm::bench {
 namespace {
@@ -37,7 +38,8 @@ TEST(Report, JsonSaysWhatWasRunAndWhere) {
 TEST(Report, IsWrittenIntoANewFolder) {
   Report report;
   report.suite = "accuracy";
-  const std::string folder = testing::TempDir() + "report_test/deep";
+  const test::TemporaryFolder temporary;
+  const std::string folder = temporary.path("new/deep");
   write(report, "vpm-bench accuracy", folder);
   EXPECT_FALSE(file::read_all(folder + "/accuracy.json").empty());
   EXPECT_FALSE(file::read_all(folder + "/accuracy.csv").empty());

@@ -1,16 +1,15 @@
 #include "libvpm/file/overwrite.h"
 
 #include "libvpm/core/error.h"
-#include "tests/file/temporary_folder.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm::file {
 namespace {
 
-class Overwrite : public TemporaryFolder {
+class Overwrite : public test::InTemporaryFolder {
  protected:
   void SetUp() override {
-    TemporaryFolder::SetUp();
     Writer(Kind::cloud, {{"unit", "m"}}).write(path("cloud"));
     write_all(path("text"), std::string_view("x,y,z\n"));
     write_all(path("empty"), std::string_view());

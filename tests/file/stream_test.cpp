@@ -11,16 +11,17 @@
 #include <thread>
 
 #include "libvpm/core/error.h"
-#include "tests/file/temporary_folder.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm::file {
 namespace {
 
 using test::kind_of_fault;
+using test::text_of;
 
 namespace fs = std::filesystem;
-using Stream = TemporaryFolder;
+using Stream = test::InTemporaryFolder;
 using Names = std::vector<std::string>;
 
 constexpr std::size_t kLimit = 1 << 16;  // of a file's size, in children that must fail

@@ -1,37 +1,31 @@
 // Golden files give the content that is listed beside them, and are written again byte by byte.
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "libvpm/cloud/cloud_file.h"
-#include "libvpm/file/stream.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
 #include "tests/formats/content_dump.h"
 #include "tests/formats/golden_content.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm::golden {
 namespace {
 
 const std::string kGolden = VPM_SOURCE_DIR "/formats/golden/v1/";
 
-std::string text_of(const std::string& path) {
-  const std::vector<std::byte> bytes = file::read_all(path);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
+using test::text_of;
 
 template <class Content>
 void expect_golden(const std::string& name, Content (*read)(const std::string&),
                    void (*write)(const std::string&, const Content&), const Content& made) {
   const Content content = read(kGolden + name);
   EXPECT_EQ(dump(content), nlohmann::json::parse(text_of(kGolden + name + ".json")));
-  const std::string copy = testing::TempDir() + "golden-" + std::to_string(::getpid()) + "-" + name;
+  const test::TemporaryFolder folder;
+  const std::string copy = folder.path(name);
   write(copy, content);
   EXPECT_EQ(text_of(copy), text_of(kGolden + name)) << "read and written again";
   write(copy, made);
   EXPECT_EQ(text_of(copy), text_of(kGolden + name)) << "made anew";
-  std::filesystem::remove(copy);
 }
 
 TEST(Golden, Packing) {

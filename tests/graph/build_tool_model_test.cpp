@@ -9,6 +9,7 @@
 #include "libvpm/model/tool_model_file.h"
 #include "tests/graph/test_packing.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm {
 namespace {
@@ -55,16 +56,9 @@ ToolModel scaled(ToolModel m, double by) {
 }
 
 std::string bytes_of(const ToolModel& model) {
-  const std::string path = testing::TempDir() + "build_tool_model_test.vpmg";
-  write_tool_model(path, model);
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  std::string bytes;
-  char buffer[65536];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, file)) > 0;)
-    bytes.append(buffer, n);
-  std::fclose(file);
-  std::remove(path.c_str());
-  return bytes;
+  const test::TemporaryFolder folder;
+  write_tool_model(folder.path("model"), model);
+  return test::text_of(folder.path("model"));
 }
 
 TEST(BuildToolModel, GivesTheSameBytesForAnyThreadCount) {

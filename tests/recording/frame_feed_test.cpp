@@ -6,8 +6,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "tests/file/temporary_folder.h"
 #include "tests/import/test_files.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm {
 namespace {
@@ -21,10 +21,9 @@ ImportOptions camera() {
 }
 
 // Walls at 1 m, 1.01 m, ...; a frame every 10 ms; some are empty, broken or lost.
-class AFeed : public file::TemporaryFolder {
+class AFeed : public test::InTemporaryFolder {
  protected:
   void SetUp() override {
-    file::TemporaryFolder::SetUp();
     for (std::size_t k = 0; k < 12; ++k) {
       const std::string name = path(std::to_string(k) + ".png");
       const auto depth = static_cast<std::uint16_t>(k == kEmpty ? 0 : 1000 + 10 * k);

@@ -6,16 +6,16 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "tests/file/temporary_folder.h"
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm {
 namespace {
 
 using test::refusal;
 
-class ARecording : public file::TemporaryFolder {
+class ARecording : public test::InTemporaryFolder {
  protected:
   void write(const std::string& name, const std::string& text = "x") {
     std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());

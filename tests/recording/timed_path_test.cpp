@@ -6,12 +6,12 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "tests/file/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm {
 namespace {
 
-class ATimedPath : public file::TemporaryFolder {
+class ATimedPath : public test::InTemporaryFolder {
  protected:
   TimedPath path_of(const std::string& text) {
     file::write_all(path("path.txt"), text);

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <sstream>
 
-#include "libvpm/file/stream.h"
 #include "libvpm/model/sphere.h"
+#include "tests/temporary_folder.h"
 
 namespace vpm::synthetic {
 namespace {
@@ -68,13 +68,9 @@ TEST(Shapes, AreClosedOutwardAndHaveTheirVolume) {
 
 TEST(Shapes, OffFileHoldsEveryBit) {
   const Solid solid = make_twisted_torus(0.06, 0.03, 2, 32);
-  const std::string path = testing::TempDir() + "shapes_test.off";
-  write_off(path, solid);
-  const std::vector<std::byte> bytes = file::read_all(path);
-  std::string text(bytes.size(), '\0');
-  std::transform(bytes.begin(), bytes.end(), text.begin(),
-                 [](std::byte b) { return static_cast<char>(b); });
-  std::istringstream in(text);
+  const test::TemporaryFolder folder;
+  write_off(folder.path("shape.off"), solid);
+  std::istringstream in(test::text_of(folder.path("shape.off")));
   std::string magic;
   std::size_t vertices = 0, triangles = 0, edges = 0;
   in >> magic >> vertices >> triangles >> edges;
