@@ -14,10 +14,11 @@ namespace {
 
 constexpr std::size_t kBlockSamples = 64;
 
-// Sorts pieces into runs that are compact in space; `ends` receives the ends of the runs. All runs
-// but one of a split are filled.
-void group(std::span<CellPiece> pieces, std::size_t offset, std::vector<std::size_t>& ends) {
-  if (pieces.size() <= kBlockSamples) {
+// Sorts pieces into runs of `size` that are compact in space; `ends` receives the ends of the runs.
+// All runs but one of a split are filled.
+void group(std::span<CellPiece> pieces, std::size_t size, std::size_t offset,
+           std::vector<std::size_t>& ends) {
+  if (pieces.size() <= size) {
     ends.push_back(offset + pieces.size());
     return;
   }
@@ -27,10 +28,10 @@ void group(std::span<CellPiece> pieces, std::size_t offset, std::vector<std::siz
   std::stable_sort(pieces.begin(), pieces.end(), [&](const CellPiece& a, const CellPiece& b) {
     return coordinate(a.centroid, axis) < coordinate(b.centroid, axis);
   });
-  const std::size_t blocks = (pieces.size() + kBlockSamples - 1) / kBlockSamples;
-  const std::size_t middle = blocks / 2 * kBlockSamples;
-  group(pieces.first(middle), offset, ends);
-  group(pieces.subspan(middle), offset + middle, ends);
+  const std::size_t runs = (pieces.size() + size - 1) / size;
+  const std::size_t middle = runs / 2 * size;
+  group(pieces.first(middle), size, offset, ends);
+  group(pieces.subspan(middle), size, offset + middle, ends);
 }
 
 float round_up(double value) {
@@ -64,12 +65,14 @@ struct SphereCell {
 };
 
 SphereCell build_cell(std::vector<CellPiece> pieces, const Placement& placement) {
-  std::vector<std::size_t> ends;
-  group(pieces, 0, ends);
+  std::vector<std::size_t> ends, of_neighbors;
+  group(pieces, kBlockSamples, 0, ends);
   SphereCell cell;
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
-    CellBlock block = placement.block(std::span(pieces).subspan(begin, end - begin));
+    const std::span<CellPiece> of_block = std::span(pieces).subspan(begin, end - begin);
+    group(of_block, kNeighborSamples, 0, of_neighbors);
+    CellBlock block = placement.block(of_block);
     block.begin = static_cast<std::uint32_t>(begin);
     block.end = static_cast<std::uint32_t>(end);
     cell.blocks.push_back(block);

@@ -44,7 +44,9 @@ struct PointLocationGrid {
 
 // The volume share of a sphere: all points of the solid whose nearest sphere surface is this one's.
 // A cell is cut into blocks and a block into samples: compact pieces of the share, each known by
-// its centroid, volume and size.
+// its centroid, volume and size. Samples that follow one another in a block, kNeighborSamples from
+// its first one on and so forth, lie side by side.
+inline constexpr std::uint32_t kNeighborSamples = 4;
 struct CellBlock {
   Vec3f center;  // of a ball that encloses the block's part of the share, about
                  // ToolModel::center_of_mass

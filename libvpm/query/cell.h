@@ -201,12 +201,19 @@ class CellMeasure {
   template <class Near>
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, const Near& near,
                   ToolSum& sum) const {
-    if (is_cut(piece, look)) {
-      const double inside = surface_.fraction_inside(look.reading, look.x, piece.radius);
-      sum.add(piece.weight * inside, in_tool(look.reading.normal), arm(piece.at));
-      return;
-    }
-    const Vec3 normal = surface_.closest_normal(look.x, look.reading);
+    if (is_cut(piece, look))
+      add_cut(piece, look, sum);
+    else
+      add_behind(piece, look, closest_normal(look), near, sum);
+  }
+  VPM_HD void add_cut(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
+    const double inside = surface_.fraction_inside(look.reading, look.x, piece.radius);
+    sum.add(piece.weight * inside, in_tool(look.reading.normal), arm(piece.at));
+  }
+  // The same of one that is not cut, where the way out of its middle is known.
+  template <class Near>
+  VPM_HD void add_behind(const SharePiece& piece, const PieceLook& look, Vec3 normal,
+                         const Near& near, ToolSum& sum) const {
     OtherWall other;
     if (is_divisible(piece.extent) &&
         near.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point, piece.extent,
@@ -214,6 +221,15 @@ class CellMeasure {
       add_divided(piece, look.x, normal, other, sum);
     else
       add_pushed(piece, normal, sum);
+  }
+  VPM_HD Vec3 closest_normal(const PieceLook& look) const {
+    return surface_.closest_normal(look.x, look.reading);
+  }
+  // Of a block's samples that lie side by side (kNeighborSamples), those that are wholly behind the
+  // surface are pushed in the direction of the first of them, where that is searched for; so are
+  // those that may be hidden.
+  VPM_HD static bool shares_direction(const SharePiece& sample, const PieceLook& look) {
+    return Surface::kSearchesFoot && look.is_inside && !is_cut(sample, look);
   }
   VPM_HD bool is_divisible(double extent) const {
     return extent >= kLeastDivided * tool_reach_.length;
@@ -234,7 +250,7 @@ class CellMeasure {
     sum.add_moment(piece.weight - part.weight, arm(piece.weight * piece.at - part.moment),
                    in_tool(normal));
   }
-  // The same of one that is not cut, with its direction.
+  // Adds one that is pushed along one normal.
   VPM_HD void add_pushed(const SharePiece& piece, Vec3 normal, ToolSum& sum) const {
     sum.add(piece.weight, in_tool(normal), arm(piece.at));
   }
@@ -242,6 +258,9 @@ class CellMeasure {
     plane.add(look.reading.normal, relative(look.reading.foot));
   }
 
+  VPM_HD static bool is_of_pass(const PieceLook& look, Pass pass) {
+    return look.is_hidden == (pass == Pass::hidden);
+  }
   // What a pass of run() does with a piece. Notes what it says of its share; the sum is left to the
   // caller.
   enum class Take { leave, wait, add };  // wait: for the second pass
@@ -249,7 +268,7 @@ class CellMeasure {
                    CellResult& result) const {
     if (!look.is_inside) return Take::leave;
     result.is_far |= look.is_far;
-    if (look.is_hidden != (pass == Pass::hidden)) return look.is_hidden ? Take::wait : Take::leave;
+    if (!is_of_pass(look, pass)) return look.is_hidden ? Take::wait : Take::leave;
     if (look.is_hidden && !is_vouched_for(look, result.plane)) return Take::leave;
     if (is_cut(piece, look) && !look.is_hidden) add_to_plane(look, result.plane);
     return Take::add;
@@ -263,6 +282,32 @@ class CellMeasure {
     const Take taken = take(piece, look, pass, result);
     if (taken == Take::add) add(piece, look, near, result.sum);
     return taken == Take::wait;
+  }
+  // The same of sample `k` of a block.
+  struct SharedDirection {
+    std::uint32_t neighbors = UINT32_MAX;  // samples from kNeighborSamples times this on
+    PieceLook first;
+    bool is_known = false;
+    Vec3 normal;
+  };
+  template <class Near>
+  VPM_HD bool add_sample(std::uint32_t k, const SharePiece& piece, Pass pass,
+                         SharedDirection& shared, CellResult& result, const Near& near) const {
+    const PieceLook look = look_at(piece, result.point, near);
+    result.point = look.reading.point;
+    const bool shares = shares_direction(piece, look) && is_of_pass(look, pass);
+    if (shares && shared.neighbors != k / kNeighborSamples)
+      shared = {k / kNeighborSamples, look, false, {}};
+    const Take taken = take(piece, look, pass, result);
+    if (taken != Take::add) return taken == Take::wait;
+    if (!shares) {
+      add(piece, look, near, result.sum);
+      return false;
+    }
+    if (!shared.is_known) shared.normal = closest_normal(shared.first);
+    shared.is_known = true;
+    add_pushed(piece, shared.normal, result.sum);
+    return false;
   }
 
   // Adds what one piece contributes to reached().
@@ -327,8 +372,9 @@ struct SamplesInTurn {
   VPM_HD bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
                   typename Measure::Pass pass, const Near& near, CellResult& result) const {
     bool any_waits = false;
+    typename Measure::SharedDirection shared;
     for (std::uint32_t k = 0; k < count; ++k)
-      any_waits |= measure.add_piece(piece_of(samples[k]), pass, result, near);
+      any_waits |= measure.add_sample(k, piece_of(samples[k]), pass, shared, result, near);
     return any_waits;
   }
   template <class Measure>

@@ -38,25 +38,26 @@ class SamplesTogether {
   bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
            typename Measure::Pass pass, const DepthSurface& surface, CellResult& result) {
     bool any_waits = false;
+    neighbors_ = kNone;  // of another block
     for (std::uint32_t first = 0; first < count; first += kAtOnce) {
       const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
       const std::uint32_t found =
           read_samples(surface, measure.to_surface(), {samples + first, some}, readings_);
       for (std::uint32_t k = 0; k < found; ++k)
         any_waits |=
-            add_one(measure, samples[first + readings_[k].sample], readings_[k].at, pass, result);
+            add_one(measure, samples, first + readings_[k].sample, readings_[k].at, pass, result);
     }
     return any_waits;
   }
   // Adds those whose directions were put off, to be found together.
   template <class Measure>
   void flush(const Measure& measure, CellResult& result) {
-    if (pushed_count_ == 0) return;
+    if (direction_count_ == 0) return;
     Vec3 normals[kAtOnce];
-    closest_normals(measure.surface(), {pushed_at_, pushed_count_}, normals);
+    closest_normals(measure.surface(), {searched_, direction_count_}, normals);
     for (std::uint32_t k = 0; k < pushed_count_; ++k)
-      measure.add_pushed(pushed_[k], normals[k], result.sum);
-    pushed_count_ = 0;
+      measure.add_pushed(pushed_[k].piece, normals[pushed_[k].direction], result.sum);
+    direction_count_ = pushed_count_ = 0;
   }
   static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
                              std::uint32_t count) {
@@ -67,26 +68,46 @@ class SamplesTogether {
   static constexpr std::uint32_t kAtOnce = 16;
 
   template <class Measure>
-  bool add_one(const Measure& measure, const CellSample& sample, const PlaceReading& at,
-               typename Measure::Pass pass, CellResult& result) {
-    const SharePiece piece = piece_of(sample);
+  bool add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
+               const PlaceReading& at, typename Measure::Pass pass, CellResult& result) {
+    const SharePiece piece = piece_of(samples[k]);
     const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
+    const bool shares = Measure::shares_direction(piece, look) && Measure::is_of_pass(look, pass);
+    if (shares && neighbors_ != k / kNeighborSamples) {
+      neighbors_ = k / kNeighborSamples;
+      first_ = at;
+      is_listed_ = false;
+    }
     const auto taken = measure.take(piece, look, pass, result);
     if (taken != Measure::Take::add) return taken == Measure::Take::wait;
-    if (Measure::is_cut(piece, look)) {
-      measure.add(piece, look, result.sum);
+    if (!shares) {
+      measure.add_cut(piece, look, result.sum);
       return false;
     }
-    pushed_[pushed_count_] = piece;
-    pushed_at_[pushed_count_] = at;
-    if (++pushed_count_ == kAtOnce) flush(measure, result);
+    if (!is_listed_) {
+      if (direction_count_ == kAtOnce) flush(measure, result);
+      searched_[direction_count_++] = first_;
+      is_listed_ = true;
+    }
+    pushed_[pushed_count_++] = {piece, direction_count_ - 1};
     return false;
   }
 
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  struct Pushed {
+    SharePiece piece;
+    std::uint32_t direction;  // which of those that are searched for
+  };
+
   SampleReading readings_[kAtOnce];
-  SharePiece pushed_[kAtOnce];
-  PlaceReading pushed_at_[kAtOnce];
-  std::uint32_t pushed_count_ = 0;
+  PlaceReading searched_[kAtOnce];
+  Pushed pushed_[kAtOnce * kNeighborSamples];
+  std::uint32_t direction_count_ = 0, pushed_count_ = 0;
+  // Of the neighbours that are dealt with, the first one that is pushed, and whether its direction
+  // is the last that is searched for.
+  std::uint32_t neighbors_ = kNone;
+  PlaceReading first_;
+  bool is_listed_ = false;
 };
 
 template <class Surface>

@@ -30,9 +30,10 @@ struct DepthSurface {
   static constexpr double kJump = 0.03;
   // Below this cosine between normal and ray the normal is not trusted to scale a distance.
   static constexpr double kGrazing = 0.05;
-  static constexpr int kFootSteps = 5;        // of the search for the nearest surface point
-  static constexpr double kFootPixels = 0.5;  // a step shorter than this ends the search
-  static constexpr double kCreasePixels = 2;  // a foot further aside than this lies on a crease
+  static constexpr bool kSearchesFoot = true;  // for the nearest surface point:
+  static constexpr int kFootSteps = 5;         // steps of the search
+  static constexpr double kFootPixels = 0.5;   // a step shorter than this ends the search
+  static constexpr double kCreasePixels = 2;   // a foot further aside than this lies on a crease
   // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
   // or curved; those of a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;

@@ -25,6 +25,8 @@ struct SecondPlane {
 
 // A view: plain pointers, for host or device.
 struct DiskSurface {
+  static constexpr bool kSearchesFoot = false;  // the disk of a reading is the nearest
+
   PointTree feet;  // in canonical order
   const Vec3f* normals = nullptr;
   const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/query/ball_fraction.h"
@@ -113,6 +114,30 @@ TEST_P(Cells, HoldTheShareOfTheirSphere) {
     sum += weight;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
+}
+
+// Sum of squared distances from their mean.
+double scatter(std::span<const CellSample> samples) {
+  Vec3 mean;
+  for (const CellSample& s : samples) mean += widen(s.center) / static_cast<double>(samples.size());
+  double sum = 0;
+  for (const CellSample& s : samples) sum += squared_norm(widen(s.center) - mean);
+  return sum;
+}
+
+// Cut into n equal parts each way, a body's parts scatter by 1 / n^2 of it: blocks of 64 samples in
+// groups of 4 by (4 / 64)^(2/3) = 0.16, if both were cubes.
+TEST_P(Cells, SamplesThatFollowOneAnotherLieSideBySide) {
+  const ToolModel model = build_tool_model(test::greedy_packing(GetParam()(), 300, 40000), {});
+  const Level& level = model.levels.back();
+  const std::span<const CellSample> samples = level.samples;
+  double of_neighbors = 0, of_blocks = 0;
+  for (const CellBlock& block : level.blocks) {
+    of_blocks += scatter(samples.subspan(block.begin, block.end - block.begin));
+    for (std::uint32_t s = block.begin; s < block.end; s += kNeighborSamples)
+      of_neighbors += scatter(samples.subspan(s, std::min(kNeighborSamples, block.end - s)));
+  }
+  EXPECT_LT(of_neighbors, 0.2 * of_blocks);
 }
 
 // Every point of the solid in a block of the sphere whose surface is nearest.

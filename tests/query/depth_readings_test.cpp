@@ -214,6 +214,46 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   }
 }
 
+Vec3 force_of(const ToolSum& sum) {
+  return {sum.force[0].real(), sum.force[1].real(), sum.force[2].real()};
+}
+
+TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 4);
+  const Level& level = tool.levels[0];
+  const std::vector<BlockMass> masses = block_masses(level);
+  double volume = 0;
+  Vec3 together, alone;
+  for (int k = 0; k < 300; ++k) {
+    const Pose to_surface{testing::generic_rotation(),
+                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+    for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+      const CellMeasure measure(
+          surface_, to_surface, tool.reach,
+          CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
+                   level.block_begin[i + 1], tool.spheres[i].center, level.share_reach[i]});
+      const CellBlock& block = level.blocks[level.block_begin[i]];
+      const auto block_look = measure.look_at(block);
+      if (block_look.side != Side::mixed || block_look.is_flat) continue;
+      CellResult result, of_each;
+      bool any_hidden = false;
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const SharePiece piece = piece_of(level.samples[s]);
+        const auto look = measure.look_at(piece);
+        any_hidden |= look.is_inside && look.is_hidden;
+        if (look.is_inside) measure.add(piece, look, of_each.sum);
+      }
+      if (any_hidden) continue;
+      result = measure.run(SamplesTogether{});
+      ASSERT_EQ(result.sum.volume.value, of_each.sum.volume.value);
+      volume += result.sum.volume.real();
+      together += force_of(result.sum);
+      alone += force_of(of_each.sum);
+    }
+  }
+  EXPECT_LT(norm(together - alone), 0.01 * volume);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, DepthReadings,
                          ::testing::Values("tilted-wall", "ball", "groove", "step", "plate",
                                            "block"),

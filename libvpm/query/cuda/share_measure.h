@@ -221,8 +221,9 @@ class ShareMeasure {
         return piece_of(level_.block_masses[k], level_.blocks[k]);
     }
   }
-  __device__ bool add_piece(const Measure& measure, const Task& task, std::uint32_t k,
-                            CellResult& result);
+  __device__ bool add_piece(const Tile& tile, const Measure& measure, const Task& task,
+                            std::uint32_t k, CellResult& result);
+  __device__ static unsigned first_neighbor(const Tile& tile, bool shares, bool hidden);
   __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatBlock& flat,
                            const Task& task, CellResult& result);
   __device__ void note_task(const Task& task, const CellResult& result, bool hidden_counts);
@@ -382,7 +383,10 @@ __device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Side side) {
     lists_.add(TaskLists::samples_narrow, {unit.share, Task::samples, begin, count});
     return;
   }
-  const std::uint32_t half = count > TaskLists::kWide ? (count + 1) / 2 : count;
+  // Neighbours stay together.
+  constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
+  const std::uint32_t half =
+      count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;
   lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
   if (half < count)
     lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
@@ -446,8 +450,8 @@ __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, 
   if (TaskLists::is_flat(list)) {
     add_flat(tile, measure, flat(list, slot), task, result);
   } else {
-    for (std::uint32_t k = tile.lane; k < task.count; k += tile.width)
-      hidden_counts |= add_piece(measure, task, task.begin + k, result);
+    for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
+      hidden_counts |= add_piece(tile, measure, task, begin + tile.lane, result);
     __syncwarp(tile.mask);
     add_up(tile, result.sum);
     if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
@@ -457,17 +461,31 @@ __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, 
   if (tile.leads()) note_task(task, result, hidden_counts);
 }
 
-// What one piece adds to CellMeasure::run() or, where its share is whole, to reached(). A hidden
-// piece is left for when the share's plane is known; returns whether it has some volume.
+// What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
+// whole, to reached(). A hidden piece is left for when the share's plane is known; returns whether
+// it has some volume. By all threads of a tile.
 template <class Surface>
-__device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const Task& task,
-                                                 std::uint32_t k, CellResult& result) {
-  const SharePiece piece = this->piece(task.form, k);
+__device__ bool ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure& measure,
+                                                 const Task& task, std::uint32_t k,
+                                                 CellResult& result) {
+  const bool exists = k < task.count;
+  const SharePiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
   const typename Measure::PieceLook look = measure.look_at(piece);
-  if (!look.is_inside) return false;
+  const bool inside = exists && look.is_inside, cut = Measure::is_cut(piece, look);
+  const bool shares =
+      exists && task.form == Task::samples && Measure::shares_direction(piece, look);
+  const unsigned first =
+      Surface::kSearchesFoot ? first_neighbor(tile, shares, look.is_hidden) : tile.lane;
+  Vec3 normal;
+  if (inside && !cut && first == tile.lane) normal = measure.closest_normal(look);
+  if (Surface::kSearchesFoot) normal = tile.from(normal, first);
+  if (!inside) return false;
   result.is_far |= look.is_far;
   ToolSum sum;
-  measure.add(piece, look, sum);
+  if (cut)
+    measure.add_cut(piece, look, sum);
+  else
+    measure.add_behind(piece, look, normal, surface_, sum);
   if (look.is_hidden && !task.is_whole()) {
     // Member by member, as above.
     HiddenPiece& hidden = space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)];
@@ -480,6 +498,16 @@ __device__ bool ShareMeasure<Surface>::add_piece(const Measure& measure, const T
   if (!task.is_whole() && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);
   result.sum.add(sum);
   return false;
+}
+
+// The first lane of those that share a direction with this one; itself where it has its own.
+template <class Surface>
+__device__ unsigned ShareMeasure<Surface>::first_neighbor(const Tile& tile, bool shares,
+                                                          bool hidden) {
+  const unsigned of_hidden = tile.which(shares && hidden), of_seen = tile.which(shares && !hidden);
+  const unsigned begin = tile.lane / kNeighborSamples * kNeighborSamples;
+  const unsigned sharing = (hidden ? of_hidden : of_seen) >> begin;
+  return shares ? begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1 : tile.lane;
 }
 
 // The weights of the samples by all threads, their sums in the samples' order by four. The result

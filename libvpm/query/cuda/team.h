@@ -62,6 +62,10 @@ struct Tile {
   }
   __device__ bool leads() const { return lane == 0; }
   __device__ bool any(bool value) const { return __any_sync(mask, value) != 0; }
+  // A bit for each lane.
+  __device__ unsigned which(bool value) const {
+    return __ballot_sync(mask, value) >> (threadIdx.x % 32 - lane);
+  }
   template <class T>
   __device__ T from(T value, unsigned source) const {
     return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
