@@ -56,7 +56,7 @@ class SamplesTogether {
     Vec3 normals[kAtOnce];
     closest_normals(measure.surface(), {searched_, direction_count_}, normals);
     for (std::uint32_t k = 0; k < pushed_count_; ++k)
-      measure.add_pushed(pushed_[k].piece, normals[pushed_[k].direction], result.sum);
+      measure.add_pushed(piece_of(*pushed_[k].sample), normals[pushed_[k].direction], result.sum);
     direction_count_ = pushed_count_ = 0;
   }
   static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
@@ -89,13 +89,13 @@ class SamplesTogether {
       searched_[direction_count_++] = first_;
       is_listed_ = true;
     }
-    pushed_[pushed_count_++] = {piece, direction_count_ - 1};
+    pushed_[pushed_count_++] = {samples + k, direction_count_ - 1};
     return false;
   }
 
   static constexpr std::uint32_t kNone = UINT32_MAX;
   struct Pushed {
-    SharePiece piece;
+    const CellSample* sample;
     std::uint32_t direction;  // which of those that are searched for
   };
 
