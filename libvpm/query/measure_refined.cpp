@@ -21,10 +21,14 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
   ToolSum sum;
   Result result;
-  if (cloud.is_organised())
+  if (cloud.is_organised()) {
     run_on(cloud.depth_surface(), cloud.camera_to_world(), cloud, pose, sum, result);
-  else
-    run_on(cloud.disk_surface(), Pose{{}, cloud.origin()}, cloud, pose, sum, result);
+  } else {
+    constexpr double kPlaces = 1.25;  // of the tool's reach: where most places lie that are read
+    DiskSurface disks = cloud.disk_surface();
+    disks.feet.enter_near(pose * tool_.center_of_mass - cloud.origin(), kPlaces * tool_.reach);
+    run_on(disks, Pose{{}, cloud.origin()}, cloud, pose, sum, result);
+  }
   sum.write(tool_, pose.rotation, result);
   return result;
 }

@@ -1,6 +1,7 @@
 #include "libvpm/query/point_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "libvpm/core/vector_clones.h"
@@ -23,6 +24,38 @@ PointBox around(const PointBox& a, const PointBox& b) {
 void BoxQuad::set(std::uint32_t k, const PointBox& box) {
   low[0][k] = box.low.x, low[1][k] = box.low.y, low[2][k] = box.low.z;
   high[0][k] = box.high.x, high[1][k] = box.high.y, high[2][k] = box.high.z;
+}
+
+void PointTree::enter_near(Vec3 center, double reach) {
+  entry = {};
+  const std::uint32_t nearest_point = nearest(center, HUGE_VAL);
+  if (nearest_point == kNoPoint) return;
+  constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+  const double ball = kSlack * (reach + norm(widen(points[nearest_point]) - center));
+  const double farthest = kSlack * (reach + ball);
+  // Four nodes at most, as far down as that goes.
+  std::array<std::uint32_t, 4> held{1};
+  std::size_t size = 1;
+  if (!begins_at_root()) held = {2, 3}, size = 2;
+  while (held[0] < leaves) {
+    std::array<std::uint32_t, 16> below;
+    std::size_t found = 0;
+    for (std::size_t n = 0; n < size; ++n) {
+      for (std::uint32_t node = 4 * held[n]; node < 4 * held[n] + 4; ++node) {
+        if (box_of(node).squared_distance(center) <= farthest * farthest) below[found++] = node;
+      }
+    }
+    if (found == 0 || found > held.size()) break;
+    std::copy_n(below.begin(), found, held.begin());
+    size = found;
+  }
+  for (std::uint32_t k = 0; k < held.size(); ++k) {
+    entry.nodes[k] = held[k < size ? k : size - 1];
+    entry.boxes.set(k, k < size ? box_of(held[k]) : kEmpty);
+  }
+  entry.center = center;
+  entry.squared_reach = reach * reach;
+  entry.ball = ball;
 }
 
 VPM_VECTOR_CLONES

@@ -2,6 +2,7 @@
 // a ball. For host and device.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <span>
@@ -56,8 +57,9 @@ class NodeStack {
     keys_[0] = 0;
     nodes_[size_++] = 1;
   }
-  // Those of a quad that are near enough, the nearest last.
-  VPM_HD void push(std::uint32_t quad, const double (&squared)[4], std::uint64_t last) {
+  // Those of four nodes that are near enough, the nearest last. `node_of`: of k from 0 to 3.
+  template <class NodeOf>
+  VPM_HD void push(const NodeOf& node_of, const double (&squared)[4], std::uint64_t last) {
     std::uint64_t key[4];
     for (std::uint32_t k = 0; k < 4; ++k) key[k] = key_of(squared[k], k);
     order(key[0], key[1]), order(key[2], key[3]);
@@ -65,7 +67,7 @@ class NodeStack {
     order(key[1], key[2]);
     for (const std::uint64_t k : key) {
       keys_[size_] = k;
-      nodes_[size_] = 4 * quad + static_cast<std::uint32_t>(k & kWhich);
+      nodes_[size_] = node_of(static_cast<std::uint32_t>(k & kWhich));
       size_ += k <= last ? 1 : 0;
     }
   }
@@ -98,6 +100,20 @@ struct PointRadii {
   const float* of_nodes = nullptr;
 };
 
+// Nodes of a tree that hold all points near a place: where searches begin, so that what is
+// elsewhere costs nothing. For the host.
+struct TreeEntry {
+  BoxQuad boxes;
+  std::uint32_t nodes[4] = {};  // ascending; those that are not used have empty boxes
+  Vec3 center;
+  double squared_reach = -1;  // places may be as far from the centre; less than 0: none
+  double ball = 0;            // about each of them all points in a ball of this radius are held
+
+  bool holds(Vec3 x, double radius) const {
+    return squared_norm(x - center) <= squared_reach && radius <= ball;
+  }
+};
+
 // A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
 // 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A
 // step goes down two levels, from the root or from its children, so that it ends at a leaf.
@@ -109,6 +125,10 @@ struct PointTree {
   const BoxQuad* boxes = nullptr;  // of node k: k % 4 of quad k / 4
   std::uint32_t count = 0;
   std::uint32_t leaves = 0;  // a power of two
+  TreeEntry entry{};
+
+  // Lets searches about places that are no further than `reach` from a centre begin near there.
+  void enter_near(Vec3 center, double reach);
 
   // The best of those that were considered; kNoPoint where none was as near as the bound.
   struct Nearest {
@@ -137,10 +157,8 @@ struct PointTree {
 
   VPM_HD std::uint32_t nodes() const { return 4 * quads(); }  // those of which arrays tell
   VPM_HD std::uint32_t quads() const { return leaves > 1 ? leaves / 2 : 1; }
-  VPM_HD PointBox leaf_of(std::uint32_t point) const {
-    const std::uint32_t node = leaves + point / kLeafSize;
-    return boxes[node / 4].box(node % 4);
-  }
+  VPM_HD PointBox leaf_of(std::uint32_t point) const { return box_of(leaves + point / kLeafSize); }
+  VPM_HD PointBox box_of(std::uint32_t node) const { return boxes[node / 4].box(node % 4); }
   VPM_HD std::uint32_t end_of_leaf(std::uint32_t begin) const {
     return begin + kLeafSize < count ? begin + kLeafSize : count;
   }
@@ -210,8 +228,10 @@ struct PointTree {
     VPM_HD bool operator()(std::uint32_t) const { return true; }
   };
 
-  // Which points a search considers: by node and by point, with squared distances.
+  // Which points a search considers: by node and by point, with squared distances. The best of them
+  // lies within this distance, or is the nearest of all.
   struct EachPoint {
+    static double within(const PointTree&) { return 0; }
     VPM_HD bool takes_node(std::uint32_t, double) const { return true; }
     VPM_HD bool takes_point(std::uint32_t, double) const { return true; }
   };
@@ -219,6 +239,11 @@ struct PointTree {
     double radius;
     PointRadii radii;
 
+    double within(const PointTree& tree) const {
+      const float* const of_nodes = radii.of_nodes;
+      return radius +
+             double{tree.begins_at_root() ? of_nodes[1] : std::max(of_nodes[2], of_nodes[3])};
+    }
     VPM_HD bool takes_node(std::uint32_t node, double squared) const {
       return touches(radii.of_nodes[node], squared);
     }
@@ -238,25 +263,16 @@ struct PointTree {
   template <class Distances, class Takes>
   VPM_HD void search(Vec3 x, const Takes& takes, Nearest& best) const {
     NodeStack waiting;
-    double squared[4];
-    if (begins_at_root()) {
-      waiting.push_root();
-    } else {
-      Distances::to_boxes(boxes[0], x, squared);
-      squared[0] = squared[1] = HUGE_VAL;
-      waiting.push(0, squared, NodeStack::last_key(best.squared));
-    }
+    begin_search<Distances>(x, takes, best, waiting);
     while (!waiting.is_empty()) {
       const std::uint64_t key = waiting.top_key(), last = NodeStack::last_key(best.squared);
       const std::uint32_t node = waiting.take();
       // A node at exactly the best distance may hold an equal point of smaller index.
       if (key > last) continue;
+      double squared[4];
       if (node < leaves) {
         Distances::to_boxes(boxes[node], x, squared);
-        for (std::uint32_t k = 0; k < 4; ++k) {
-          if (!takes.takes_node(4 * node + k, squared[k])) squared[k] = HUGE_VAL;
-        }
-        waiting.push(node, squared, last);
+        push_taken([&](std::uint32_t k) { return 4 * node + k; }, squared, takes, last, waiting);
         continue;
       }
       const std::uint32_t begin = (node - leaves) * kLeafSize, end = end_of_leaf(begin);
@@ -267,6 +283,34 @@ struct PointTree {
         }
       }
     }
+  }
+  template <class Distances, class Takes>
+  VPM_HD void begin_search(Vec3 x, const Takes& takes, const Nearest& best,
+                           NodeStack& waiting) const {
+    const std::uint64_t last = NodeStack::last_key(best.squared);
+    double squared[4];
+#ifndef __CUDA_ARCH__
+    if (entry.holds(x, takes.within(*this))) {
+      Distances::to_boxes(entry.boxes, x, squared);
+      push_taken([&](std::uint32_t k) { return entry.nodes[k]; }, squared, takes, last, waiting);
+      return;
+    }
+#endif
+    if (begins_at_root()) {
+      waiting.push_root();
+      return;
+    }
+    Distances::to_boxes(boxes[0], x, squared);
+    squared[0] = squared[1] = HUGE_VAL;
+    waiting.push([](std::uint32_t k) { return k; }, squared, last);
+  }
+  template <class NodeOf, class Takes>
+  VPM_HD static void push_taken(const NodeOf& node_of, double (&squared)[4], const Takes& takes,
+                                std::uint64_t last, NodeStack& waiting) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (!takes.takes_node(node_of(k), squared[k])) squared[k] = HUGE_VAL;
+    }
+    waiting.push(node_of, squared, last);
   }
   void search_by_vectors(Vec3 x, Nearest& best) const;
   void search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest& best) const;
@@ -284,22 +328,34 @@ VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, co
   std::uint32_t stack[NodeStack::kRoom + 1];
   int size = 0;
   double squared[4];
-  const auto push = [&](std::uint32_t quad, std::uint32_t first) {
-    Distances::to_boxes(boxes[quad], center, squared);
+  const auto push = [&](const BoxQuad& quad, const auto& node_of, std::uint32_t first) {
+    Distances::to_boxes(quad, center, squared);
     for (std::uint32_t k = 4; k-- > first;) {
-      const std::uint32_t node = 4 * quad + k;
+      const std::uint32_t node = node_of(k);
       stack[size] = node;
       size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
     }
   };
-  if (begins_at_root())
+  const auto push_children = [&](std::uint32_t node, std::uint32_t first) {
+    push(
+        boxes[node], [&](std::uint32_t k) { return 4 * node + k; }, first);
+  };
+#ifndef __CUDA_ARCH__
+  const bool enters_near = squared_radius <= entry.ball * entry.ball && entry.holds(center, 0);
+#else
+  constexpr bool enters_near = false;
+#endif
+  if (enters_near)
+    push(
+        entry.boxes, [&](std::uint32_t k) { return entry.nodes[k]; }, 0);
+  else if (begins_at_root())
     stack[size++] = 1;
   else
-    push(0, 2);
+    push_children(0, 2);
   while (size > 0) {
     const std::uint32_t node = stack[--size];
     if (node < leaves) {
-      push(node, 0);
+      push_children(node, 0);
       continue;
     }
     const std::uint32_t begin = (node - leaves) * kLeafSize;

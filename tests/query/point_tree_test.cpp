@@ -132,6 +132,47 @@ TEST_P(TreeOf, FindsTheNearestOfTheBallsThatTouch) {
   }
 }
 
+// Searches that begin near a place, of places about it and elsewhere.
+TEST_P(TreeOf, FindsTheSameFromNearby) {
+  const OrderedPoints ordered(scattered(GetParam(), true));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> at(-1, 1);
+  std::vector<float> radii;
+  for (std::size_t i = 0; i < ordered.points.size(); ++i)
+    radii.push_back(static_cast<float>(0.02 * (at(random) + 1)));
+  const std::vector<float> largest = largest_in_nodes(radii);
+  const PointRadii balls{radii.data(), largest.data()};
+  const PointTree whole = ordered.tree();
+  const auto listed = [](const PointTree& tree, Vec3 center, double radius) {
+    std::vector<std::uint32_t> visited;
+    tree.for_points_in_ball(center, radius * radius, [&](std::uint32_t i) {
+      visited.push_back(i);
+      return true;
+    });
+    return visited;
+  };
+  bool any_is_small = false;
+  for (int k = 0; k < 200; ++k) {
+    const Vec3 center = k % 9 == 0 ? 1e3 * Vec3{at(random), 1, 0} : Vec3{at(random), at(random), 0};
+    const double reach = 0.1 * (at(random) + 1);
+    PointTree near = whole;
+    near.enter_near(center, reach);
+    any_is_small |= near.entry.nodes[0] >= 16;
+    for (int j = 0; j < 8; ++j) {
+      const Vec3 x =
+          center + (j < 6 ? 0.55 : 3.0) * reach * Vec3{at(random), at(random), at(random)};
+      const double radius = reach * (at(random) + 1.05);
+      ASSERT_EQ(near.nearest(x, HUGE_VAL), whole.nearest(x, HUGE_VAL));
+      ASSERT_EQ(near.nearest(x, radius), whole.nearest(x, radius));
+      ASSERT_EQ(near.nearest_touching(x, radius, balls), whole.nearest_touching(x, radius, balls));
+      ASSERT_EQ(listed(near, x, radius), listed(whole, x, radius));
+    }
+  }
+  if (GetParam() >= 1000) {
+    EXPECT_TRUE(any_is_small);
+  }
+}
+
 // One leaf, full and not; trees with an even and an odd number of levels.
 INSTANTIATE_TEST_SUITE_P(Points, TreeOf,
                          ::testing::Values(1, 2, 7, 8, 9, 16, 17, 31, 33, 64, 65, 100, 129, 1000,
