@@ -38,7 +38,7 @@ TEST(Report, JsonSaysWhatWasRunAndWhere) {
 TEST(Report, IsWrittenIntoANewFolder) {
   Report report;
   report.suite = "accuracy";
-  const test::TemporaryFolder temporary;
+  const file::TemporaryFolder temporary;
   const std::string folder = temporary.path("new/deep");
   write(report, "vpm-bench accuracy", folder);
   EXPECT_FALSE(file::read_all(folder + "/accuracy.json").empty());

@@ -20,7 +20,7 @@ void expect_golden(const std::string& name, Content (*read)(const std::string&),
                    void (*write)(const std::string&, const Content&), const Content& made) {
   const Content content = read(kGolden + name);
   EXPECT_EQ(dump(content), nlohmann::json::parse(text_of(kGolden + name + ".json")));
-  const test::TemporaryFolder folder;
+  const file::TemporaryFolder folder;
   const std::string copy = folder.path(name);
   write(copy, content);
   EXPECT_EQ(text_of(copy), text_of(kGolden + name)) << "read and written again";

@@ -56,7 +56,7 @@ ToolModel scaled(ToolModel m, double by) {
 }
 
 std::string bytes_of(const ToolModel& model) {
-  const test::TemporaryFolder folder;
+  const file::TemporaryFolder folder;
   write_tool_model(folder.path("model"), model);
   return test::text_of(folder.path("model"));
 }

@@ -235,7 +235,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto block_look = measure.look_at(block);
       if (block_look.side != Side::mixed || block_look.is_flat) continue;
-      CellResult result, of_each;
+      CellResult of_each;
       bool any_hidden = false;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const SharePiece piece = piece_of(level.samples[s]);
@@ -244,7 +244,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
         if (look.is_inside) measure.add(piece, look, of_each.sum);
       }
       if (any_hidden) continue;
-      result = measure.run(SamplesTogether{});
+      const CellResult result = measure.run(SamplesTogether{});
       ASSERT_EQ(result.sum.volume.value, of_each.sum.volume.value);
       volume += result.sum.volume.real();
       together += force_of(result.sum);

@@ -68,7 +68,7 @@ TEST(Shapes, AreClosedOutwardAndHaveTheirVolume) {
 
 TEST(Shapes, OffFileHoldsEveryBit) {
   const Solid solid = make_twisted_torus(0.06, 0.03, 2, 32);
-  const test::TemporaryFolder folder;
+  const file::TemporaryFolder folder;
   write_off(folder.path("shape.off"), solid);
   std::istringstream in(test::text_of(folder.path("shape.off")));
   std::string magic;

@@ -1,12 +1,10 @@
 // vpm-bench replay: a haptic loop on a recorded stream of frames.
 
-#include <stdlib.h>
-
 #include <cmath>
 #include <filesystem>
 
-#include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/file/temporary_folder.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
@@ -41,16 +39,12 @@ std::string pcd_of(const DepthImage& depth, const Intrinsics& k) {
 class SyntheticRecording {
  public:
   SyntheticRecording() {
-    std::string name = (fs::temp_directory_path() / "vpm-replay-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr)
-      throw Error(ErrorKind::cannot_write, "cannot make a folder like " + name);
-    folder_ = name;
     synthetic::Scene scene = synthetic::make_scene("ball");
     constexpr int kFrames = 15;
     constexpr double kStep = 0.01;  // m between frames
     for (int k = 0; k < kFrames; ++k) {
       scene.camera.to_world.translation = {kStep * k, 0, 0};
-      const std::string stem = (folder_ / ("frame-" + std::to_string(100 + k))).string();
+      const std::string stem = folder_.path("frame-" + std::to_string(100 + k));
       const DepthImage depth = synthetic::render_with_kinect_noise(
           *scene.surface, scene.camera, static_cast<std::uint64_t>(k) + 1);
       file::write_all(stem + ".pcd", pcd_of(depth, scene.camera.intrinsics));
@@ -58,20 +52,14 @@ class SyntheticRecording {
                       "1 0 0 " + std::to_string(kStep * k) + "\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
     }
     const Intrinsics& i = scene.camera.intrinsics;
-    file::write_all((folder_ / "camera-intrinsics.txt").string(),
+    file::write_all(folder_.path("camera-intrinsics.txt"),
                     std::to_string(i.fx) + " 0 " + std::to_string(i.cx) + "\n0 " +
                         std::to_string(i.fy) + " " + std::to_string(i.cy) + "\n0 0 1\n");
   }
-  ~SyntheticRecording() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  SyntheticRecording(const SyntheticRecording&) = delete;
-  SyntheticRecording& operator=(const SyntheticRecording&) = delete;
-  std::string folder() const { return folder_.string(); }
+  std::string folder() const { return folder_.path().string(); }
 
  private:
-  fs::path folder_;
+  file::TemporaryFolder folder_;
 };
 
 // The red kitchen of a folder of depth images, or the folder itself.

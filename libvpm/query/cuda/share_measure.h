@@ -84,6 +84,9 @@ class ShareMeasure {
   // What a round adds to a list: a task of each unit in a patch, two of each other.
   static constexpr unsigned kTasksOfRound = kThreads;
   static_assert(2 * kThreads / kLanes <= kTasksOfRound && kTasksOfRound <= TaskLists::kTasks);
+  // Neighbours are measured by lanes of one tile.
+  static_assert(TaskLists::kNarrow % kNeighborSamples == 0 &&
+                TaskLists::kWide % kNeighborSamples == 0);
 
   __device__ void clear_lists() {
     clear_seen();

@@ -1,0 +1,39 @@
+// A folder for files that nobody else may meet, and that go with the object.
+#pragma once
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include "libvpm/core/error.h"
+
+namespace vpm::file {
+
+// Fresh, in the system's folder for such; removed at the end with all that is in it. Throws
+// Error(cannot_write) where it cannot be made.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    // mkdtemp puts other letters in place of the last six.
+    std::string name = (std::filesystem::temp_directory_path() / "vpm-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw Error(ErrorKind::cannot_write, "cannot make a folder like " + name);
+    folder_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return folder_; }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace vpm::file
