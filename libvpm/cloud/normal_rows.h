@@ -24,12 +24,13 @@ struct NormalRow {
   }
 };
 
-// What the estimators read: the frame with a margin of half a window.
+// What the estimators read: the frame with a margin of half a window, or more where others want it.
 struct NormalImages {
   PaddedImage inverse;
   PaddedImage depth;  // of pca only
 
-  void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options);
+  void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options,
+              int least_margin = 0);
   void take_rows(const DepthImage& image, const NormalOptions& options, int begin, int end);
 };
 

@@ -36,8 +36,9 @@ void for_rows(std::uint32_t height, const std::function<void(int begin, int end)
 
 }  // namespace
 
-void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options) {
-  inverse.resize(width, height, options.window / 2);
+void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options,
+                          int least_margin) {
+  inverse.resize(width, height, std::max(options.window / 2, least_margin));
   if (options.method == NormalMethod::pca) depth.resize(width, height, options.window / 2);
 }
 

@@ -6,8 +6,8 @@
 //   const DepthFrame frame = frames.prepare(camera_to_world);   // begins, and returns at once
 //   const Result r = query.run(frame, pose);                    // a thousand times a second
 //
-// A query gives the bits that it gives on PreparedCloud(make_cloud(image, camera, normals)),
-// whatever the device.
+// A query gives the bits that it gives on PreparedCloud(make_cloud(image, camera, normals),
+// points), whatever the device.
 //
 // Frames are immutable and may be held, copied, and queried by several threads; memory of one that
 // nobody holds is used again. So while the loop queries one frame, the next can be filled and
@@ -32,6 +32,7 @@ struct DepthFrameOptions {
   std::optional<double> counts_per_metre;  // images are 16-bit counts; otherwise metres in float
   NormalOptions normals;
   Device device;  // that of the queries; others than it copy what the CPU prepares
+  PointReading points = PointReading::settled;
 };
 
 class FrameSlot;  // frame_slot.h

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "libvpm/cloud/vector_tile.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
@@ -42,7 +43,8 @@ struct RowOfPoints {
   const float* depth;
   const NormalRow& seen;
   const double* ray_x;
-  Vec3f *positions, *normals, *pixel_normals;
+  Vec3f *positions, *normals;
+  float *back_x, *back_y, *back_z;  // of the pixels, in the camera's axes
   std::uint8_t* exists;
 };
 
@@ -50,19 +52,6 @@ struct RowFacts {
   std::uint32_t points = 0;
   bool is_sound = true;
 };
-
-// As arrays of their coordinates, which compilers turn into vector code.
-struct Tile {
-  float x[kTile], y[kTile], z[kTile];
-};
-
-[[gnu::always_inline]] inline void store(const Tile& tile, int count, Vec3f* to) {
-  if (count == kTile) {
-    for (int i = 0; i < kTile; ++i) to[i] = {tile.x[i], tile.y[i], tile.z[i]};
-  } else {
-    for (int i = 0; i < count; ++i) to[i] = {tile.x[i], tile.y[i], tile.z[i]};
-  }
-}
 
 [[gnu::always_inline]] inline void place_tile(const RowOfPoints& row, int first, RowFacts& facts) {
   const int count = std::min(kTile, row.width - first);
@@ -73,7 +62,7 @@ struct Tile {
   const float *nx = row.seen.x.data() + first, *ny = row.seen.y.data() + first,
               *nz = row.seen.z.data() + first;
   const double* ray_x = row.ray_x + first;
-  Tile position, normal, back;
+  VectorTile position, normal, back;
   std::uint32_t exists[kTile], points = 0, odd = 0;
   for (int i = 0; i < kTile; ++i) {
     const double z = depth[i];
@@ -91,9 +80,11 @@ struct Tile {
   for (int i = 0; i < kTile; ++i) points += exists[i];
   facts.points += points;
   facts.is_sound = facts.is_sound && odd == 0;
-  store(position, count, row.positions + first);
-  store(normal, count, row.normals + first);
-  store(back, count, row.pixel_normals + first);
+  position.store(count, row.positions + first);
+  normal.store(count, row.normals + first);
+  std::copy(back.x, back.x + count, row.back_x + first);
+  std::copy(back.y, back.y + count, row.back_y + first);
+  std::copy(back.z, back.z + count, row.back_z + first);
   std::copy(exists, exists + count, row.exists + first);
 }
 
@@ -118,7 +109,8 @@ void compact_row(const std::uint8_t* exists, int width, std::uint32_t first, Vec
 
 }  // namespace
 
-FramePreparation::FramePreparation(const NormalOptions& options) : options_(options) {
+FramePreparation::FramePreparation(const NormalOptions& options, PointReading points)
+    : options_(options), points_(points) {
   check_normal_options(options);
 }
 
@@ -127,7 +119,8 @@ void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
   check_intrinsics(camera.intrinsics);
   if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
       !prepare_rows(depth, camera, cloud))
-    cloud = PreparedCloud(make_cloud(depth, camera, options_));  // tells what is wrong, if anything
+    cloud = PreparedCloud(make_cloud(depth, camera, options_),
+                          points_);  // tells what is wrong, if anything
 }
 
 // False where a normal is not sound.
@@ -145,12 +138,12 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   cloud.foot_boxes_.clear();
   cloud.positions_.resize(pixels);
   cloud.normals_.resize(pixels);
-  cloud.pixel_normals_.resize(pixels);
   cloud.pixel_begin_.resize(pixels + 1);
   row_points_.resize(height);
   rays_.resize(width + kTile);
   for (std::size_t u = 0; u < width; ++u) rays_[u] = (static_cast<double>(u) - k.cx) / k.fx;
-  images_.resize(depth.width, depth.height, options_);
+  images_.resize(depth.width, depth.height, options_, kSettledMargin);
+  seen_.resize(depth.width, depth.height);
   parallel_for(height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
     images_.take_rows(depth, options_, static_cast<int>(begin), static_cast<int>(end));
   });
@@ -166,7 +159,8 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
       const auto [points, sound] = place_row(
           {static_cast<int>(width), (static_cast<double>(v) - k.cy) / k.fy,
            camera.to_world.rotation, to_camera, depth.depth.data() + at, row, rays_.data(),
-           positions, normals, cloud.pixel_normals_.data() + at, exists.data()});
+           positions, normals, seen_.x.at(0, static_cast<int>(v)),
+           seen_.y.at(0, static_cast<int>(v)), seen_.z.at(0, static_cast<int>(v)), exists.data()});
       if (!sound) is_sound = false;
       row_points_[v] = points;
       std::uint32_t* pixel_begin = cloud.pixel_begin_.data() + at;
@@ -178,7 +172,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
     }
   });
   close_ranks(width, cloud);
-  cloud.tiles_.build(images_.inverse);
+  cloud.take_image(images_.inverse, seen_, points_, settled_);
   return is_sound;
 }
 

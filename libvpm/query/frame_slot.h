@@ -15,7 +15,7 @@ class FrameSlot {
   explicit FrameSlot(const DepthFrameOptions& options)
       : options_(options),
         camera_{options.intrinsics, options.width, options.height, {}},
-        preparation_(options.normals) {}
+        preparation_(options.normals, options.points) {}
   virtual ~FrameSlot() = default;
   FrameSlot(const FrameSlot&) = delete;
   FrameSlot& operator=(const FrameSlot&) = delete;

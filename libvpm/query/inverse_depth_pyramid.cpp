@@ -4,7 +4,6 @@
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
-#include "libvpm/query/hole_closing.h"
 
 namespace vpm {
 namespace {
@@ -31,8 +30,7 @@ void unite_rows(const InverseDepthRange* __restrict above,
 
 }  // namespace
 
-void InverseDepthPyramid::build(PaddedImage& inverse) {
-  close_holes(inverse);
+void InverseDepthPyramid::build(const PaddedImage& inverse) {
   auto width = static_cast<std::size_t>(inverse.width),
        height = static_cast<std::size_t>(inverse.height);
   std::size_t count = 1;

@@ -10,9 +10,9 @@ namespace vpm {
 
 class InverseDepthPyramid {
  public:
-  // Of an image of inverse depth with a margin, 0 where nothing was measured. Closes its holes
-  // (hole_closing.h) first. Takes no new memory for an image of the size before.
-  void build(PaddedImage& inverse);
+  // Of an image of inverse depth, 0 where nothing is known. Takes no new memory for an image of the
+  // size before.
+  void build(const PaddedImage& inverse);
 
   int levels() const { return static_cast<int>(levels_.size()); }
   const std::vector<InverseDepthRange>& level(int k) const {

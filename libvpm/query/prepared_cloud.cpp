@@ -11,6 +11,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/hole_closing.h"
 #include "libvpm/query/leaf_order.h"
 
 namespace vpm {
@@ -56,12 +57,14 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   check_extent(cloud);
   if (cloud.sensor) {
     camera_ = cloud.sensor->camera;
-    order_by_pixel(cloud);
     const DepthImage& depth = cloud.sensor->depth;
-    PaddedImage inverse;
-    inverse.resize(depth.width, depth.height, 1);
+    NormalImage seen;
+    seen.resize(depth.width, depth.height);
+    order_by_pixel(cloud, seen);
+    PaddedImage inverse, settled;
+    inverse.resize(depth.width, depth.height, kSettledMargin);
     take_inverse_depth(depth, 0, inverse.height, inverse);
-    tiles_.build(inverse);
+    take_image(inverse, seen, points, settled);
   } else {
     order_in_space(cloud);
     largest_radii_ = largest_in_nodes(radii_);
@@ -77,7 +80,7 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   }
 }
 
-void PreparedCloud::order_by_pixel(const Cloud& cloud) {
+void PreparedCloud::order_by_pixel(const Cloud& cloud, NormalImage& seen) {
   std::vector<std::uint32_t> order(cloud.size());
   std::iota(order.begin(), order.end(), 0u);
   if (!std::is_sorted(cloud.pixels.begin(), cloud.pixels.end(), std::less_equal<>())) {
@@ -98,7 +101,6 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
   const Intrinsics& k = camera_->intrinsics;
   const std::size_t pixels = std::size_t{camera_->width} * camera_->height;
   pixel_begin_.assign(pixels + 1, 0);
-  pixel_normals_.assign(pixels, Vec3f{});
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t pixel = cloud.pixels[order[i]];
     if (i > 0 && pixel == cloud.pixels[order[i - 1]]) {
@@ -114,9 +116,22 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud) {
              std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
     }
     pixel_begin_[pixel + 1] = 1;
-    pixel_normals_[pixel] = narrow(to_camera.rotation * widen(normals_[i]));
+    seen.set(static_cast<int>(u), static_cast<int>(v),
+             narrow(to_camera.rotation * widen(normals_[i])));
   }
   std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
+}
+
+void PreparedCloud::take_image(PaddedImage& inverse, const NormalImage& seen, PointReading points,
+                               PaddedImage& settled) {
+  close_holes(inverse);
+  if (points == PointReading::settled) {
+    settle(inverse, seen, settled, pixel_normals_);
+    tiles_.build(settled);
+  } else {
+    take_normals(seen, pixel_normals_);
+    tiles_.build(inverse);
+  }
 }
 
 void PreparedCloud::order_in_space(const Cloud& cloud) {

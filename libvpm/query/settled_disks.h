@@ -9,9 +9,6 @@
 
 namespace vpm {
 
-// How a cloud without a camera is read. As it was measured it is ready in less time.
-enum class PointReading { settled, as_measured };
-
 struct SettledDisks {
   std::vector<Vec3f> feet, normals;      // of each disk
   std::vector<std::uint32_t> second_of;  // of each disk: index into seconds, or kNoPoint

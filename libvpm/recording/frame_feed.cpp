@@ -36,7 +36,7 @@ DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& n
   const auto& [camera, depth] = *scan.image;
   if (!frames_ || !same_image_size_and_rays(camera, camera_)) {
     frames_.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height, std::nullopt,
-                                      options_.normals, options_.device});
+                                      options_.normals, options_.device, points_});
     camera_ = camera;
   }
   std::copy(depth.depth.begin(), depth.depth.end(), frames_->metres().begin());

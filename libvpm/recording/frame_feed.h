@@ -45,10 +45,10 @@ struct PreparedChange {
 class FrameReader {
  public:
   // `options`: how images become clouds, and where: those for a device are prepared there. The
-  // cameras' poses are the recording's. `points`: how frames without a camera are read.
+  // cameras' poses are the recording's.
   FrameReader(const Recording& recording, const ImportOptions& options,
               PointReading points = PointReading::settled)
-      : recording_(recording), options_(options), points_(points), preparation_(options.normals) {}
+      : recording_(recording), options_(options), points_(points), preparation_(options.normals, points) {}
 
   PreparedChange prepare(FrameChange change);
   // A cloud that is not needed any more: the next frame takes its memory.

@@ -125,6 +125,21 @@ TEST_P(SameFrame, OfImagesOfAnySize) {
   }
 }
 
+TEST_P(SameFrame, AsMeasured) {
+  for (const auto& [name, depths] : kImages) {
+    const DepthImage image = image_of(depths, 97, 61);
+    DepthFrameOptions options = options_of(image, {GetParam()});
+    options.points = PointReading::as_measured;
+    DepthFrames frames(options);
+    const auto memory = testing::memory_on_device(frame_of(frames, image, kFarPose));
+    ASSERT_TRUE(memory);
+    const Camera camera{options.intrinsics, image.width, image.height, kFarPose};
+    EXPECT_TRUE(testing::same_bits(
+        *memory, testing::memory_of(PreparedCloud(make_cloud(image, camera, options.normals),
+                                                  PointReading::as_measured))));
+  }
+}
+
 TEST_P(SameFrame, WithAnyWindowAndGate) {
   for (const auto& [name, depths] : kImages) {
     const DepthImage image = image_of(depths, 83, 45);

@@ -72,8 +72,8 @@ Frame frame(std::uint32_t width, std::uint32_t height) {
 }
 
 void expect_same(FramePreparation& preparation, const Frame& f, const NormalOptions& options,
-                 PreparedCloud& cloud) {
-  const PreparedCloud expected(make_cloud(f.depth, f.camera, options));
+                 PreparedCloud& cloud, PointReading points = PointReading::settled) {
+  const PreparedCloud expected(make_cloud(f.depth, f.camera, options), points);
   ASSERT_GT(expected.positions().size(), 0u);
   const std::uint64_t before = cloud.serial();
   preparation.prepare(f.depth, f.camera, cloud);
@@ -103,6 +103,16 @@ TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
     expect_same(preparation, frame(333, 97), options, cloud);
   }
   set_thread_count(0);
+}
+
+TEST(FramePreparation, ReadsPointsAsMeasured) {
+  const NormalOptions options;
+  FramePreparation preparation(options, PointReading::as_measured);
+  PreparedCloud cloud{Cloud{}};
+  Frame f = frame(200, 150);
+  expect_same(preparation, f, options, cloud, PointReading::as_measured);
+  f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};  // beyond the usual
+  expect_same(preparation, f, options, cloud, PointReading::as_measured);
 }
 
 TEST(FramePreparation, CamerasBeyondTheUsualAreNoOthers) {

@@ -63,8 +63,9 @@ void declare(CLI::App& app, Arguments& a) {
       "Do not count the cloud's points in spheres: quicker with many spheres; lines then have "
       "no field points");
   app.add_flag("--raw-points", a.raw_points,
-               "Take points without a camera as they were measured: a cloud is ready in a tenth of "
-               "the time, but noise, edges and thin plates err more");
+               "Take points as they were measured: a cloud is ready sooner, without a camera in a "
+               "tenth of the time, but noise errs more, and without a camera edges and thin plates "
+               "do too; queries take longer");
   app.add_option("--coupling", a.coupling,
                  "Take --poses or --trajectory for those of a haptic device that holds the tool by "
                  "a spring and "
@@ -212,7 +213,7 @@ void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& qu
   file::write_all(a.stats, stats.dump(2) + "\n");
 }
 
-// The measure as printed reads no disks.
+// The measure as printed reads points as they are.
 PointReading reading_of_points(const Arguments& a) {
   return a.raw_points || a.measure == "paper" ? PointReading::as_measured : PointReading::settled;
 }

@@ -7,12 +7,6 @@
 namespace vpm::cuda {
 namespace {
 
-// The tile of the whole image that holds tile (u, v) of level `fine`.
-__device__ InverseDepthRange* tile_above(const CloudRecipe& recipe, int level, int u0, int v0) {
-  const int per_row = ((static_cast<int>(recipe.camera.width) - 1) >> level) + 1;
-  return recipe.room.tiles[level] + static_cast<std::size_t>(v0 >> level) * per_row + (u0 >> level);
-}
-
 // Arrays of a block.
 template <class Normals, int Radius>
 struct TileArrays {
@@ -21,14 +15,11 @@ struct TileArrays {
   double *ray_x, *ray_y;
   float *inverse, *depth;  // with the margin
   float* closed;           // after the first pass, with a margin of 1
-  float* surface;          // after both: the tile's own pixels
   Vec3f* normals;          // camera axes
   Vec3f* world_normals;
   std::uint16_t* gated;  // pixels whose windows are not smooth
-  InverseDepthRange* ranges;
 
   static constexpr int kClosedWidth = kTileWidth + 2, kClosedHeight = kTileHeight + 2;
-  static constexpr int kRanges = kTilePixels / 4 + kTilePixels / 16 + kTilePixels / 64 + 2;
   static_assert(sizeof(Column) * kTileWidth >= sizeof(Vec3f) * kTileWidth);
 
   __device__ TileArrays(const TileFrame<Radius>& tile, SharedArrays arrays)
@@ -38,11 +29,9 @@ struct TileArrays {
         inverse(arrays.take<float>(tile.rows() * tile.pitch())),
         depth(arrays.take<float>(Normals::kNeedsDepth ? tile.rows() * tile.pitch() : 0)),
         closed(arrays.take<float>(kClosedWidth * kClosedHeight)),
-        surface(arrays.take<float>(kTilePixels)),
         normals(arrays.take<Vec3f>(kTilePixels)),
         world_normals(arrays.take<Vec3f>(kTilePixels)),
-        gated(arrays.take<std::uint16_t>(kTilePixels)),
-        ranges(arrays.take<InverseDepthRange>(kRanges)) {}
+        gated(arrays.take<std::uint16_t>(kTilePixels)) {}
 
   static std::size_t bytes(int radius) {
     const int margin = TileFrame<Radius>::margin_of(radius);
@@ -52,10 +41,9 @@ struct TileArrays {
     };
     return size(sizeof(Column), kTileHeight * (kTileWidth + 2 * radius)) +
            size(sizeof(double), kTileWidth + kTileHeight) +
-           size(sizeof(float), (Normals::kNeedsDepth ? 2 : 1) * image +
-                                   kClosedWidth * kClosedHeight + kTilePixels) +
-           size(2 * sizeof(Vec3f) + sizeof(std::uint16_t), kTilePixels) +
-           size(sizeof(InverseDepthRange), kRanges);
+           size(sizeof(float),
+                (Normals::kNeedsDepth ? 2 : 1) * image + kClosedWidth * kClosedHeight) +
+           size(2 * sizeof(Vec3f) + sizeof(std::uint16_t), kTilePixels);
   }
 };
 
@@ -126,7 +114,8 @@ class TileWork {
                                   normal))
         arrays_.gated[atomicAdd(&gated, 1U)] = static_cast<std::uint16_t>(k);
       arrays_.normals[k] = normal;
-      arrays_.surface[k] = has_holes ? closed_twice(x, y) : inverse;
+      if (tile_.holds(x, y))
+        recipe_.closed[tile_.pixel(x, y)] = has_holes ? closed_twice(x, y) : inverse;
     }
   }
   __device__ __forceinline__ void find_gated_normals(unsigned count) const {
@@ -136,7 +125,7 @@ class TileWork {
     }
   }
 
-  // What queries read, but in shared memory. Adds up the points.
+  // The points, but in shared memory. Adds them up.
   __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
     for (int k = thread(); k < kTilePixels; k += kTileThreads) {
       const int x = k % kTileWidth, y = k / kTileWidth;
@@ -160,34 +149,9 @@ class TileWork {
     }
   }
   __device__ __forceinline__ void write_points() const {
-    write(positions(), recipe_.room.positions);
-    write(arrays_.world_normals, recipe_.room.normals);
-    write(arrays_.normals, recipe_.room.pixel_normals);
-  }
-
-  // Levels 0 to kTileLevels, and this tile's part of what lies above.
-  __device__ __forceinline__ void write_tiles() const {
-    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
-      const int x = k % kTileWidth, y = k / kTileWidth;
-      const float value = arrays_.surface[k];
-      if (tile_.holds(x, y)) recipe_.room.tiles[0][tile_.pixel(x, y)] = {value, value};
-    }
-    InverseDepthRange* fine = nullptr;
-    InverseDepthRange* coarse = arrays_.ranges;
-    for (int level = 1; level <= kTileLevels; ++level) {
-      const int count = (kTileWidth >> level) * (kTileHeight >> level);
-      if (thread() < count) coarse[thread()] = write_tile(level, fine);
-      fine = coarse;
-      coarse += count;
-      __syncthreads();
-    }
-    // Inverse depths are not negative, so they are in the order of their bits.
-    const int level = kTileLevels + 1 + thread();
-    if (level >= recipe_.room.levels) return;
-    const InverseDepthRange range = united(fine[0], fine[1]);
-    auto* const above = reinterpret_cast<int*>(tile_above(recipe_, level, tile_.u0, tile_.v0));
-    atomicMin(above, __float_as_int(range.low));
-    atomicMax(above + 1, __float_as_int(range.high));
+    write_rows(tile_, positions(), recipe_.room.positions);
+    write_rows(tile_, arrays_.world_normals, recipe_.room.normals);
+    write_rows(tile_, arrays_.normals, recipe_.seen);
   }
 
  private:
@@ -225,41 +189,6 @@ class TileWork {
     return reinterpret_cast<Vec3f*>(arrays_.columns);
   }
 
-  // Rows of the tile, word by word, so that a warp's words lie together.
-  __device__ __forceinline__ void write(const Vec3f* from, Vec3f* to) const {
-    const auto* const words = reinterpret_cast<const float*>(from);
-    auto* const image = reinterpret_cast<float*>(to);
-    constexpr int kRow = 3 * kTileWidth;
-#pragma unroll 6
-    for (int k = thread(); k < 3 * kTilePixels; k += kTileThreads) {
-      const int x = k % kRow, y = k / kRow;
-      if (x < 3 * (tile_.width - tile_.u0) && tile_.v0 + y < tile_.height)
-        image[3 * tile_.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
-    }
-  }
-
-  // What lies outside of the image adds nothing.
-  __device__ __forceinline__ InverseDepthRange write_tile(int level,
-                                                          const InverseDepthRange* fine) const {
-    const int per_row = kTileWidth >> level, x = thread() % per_row, y = thread() / per_row;
-    InverseDepthRange range{CUDART_INF_F, 0};
-#pragma unroll
-    for (int child = 0; child < 4; ++child) {
-      const int cx = 2 * x + child % 2, cy = 2 * y + child / 2;
-      if (fine != nullptr) {
-        range = united(range, fine[cy * 2 * per_row + cx]);
-      } else if (tile_.holds(cx, cy)) {
-        const float value = arrays_.surface[cy * kTileWidth + cx];
-        range = united(range, {value, value});
-      }
-    }
-    const int u = (tile_.u0 >> level) + x, v = (tile_.v0 >> level) + y;
-    if (level < recipe_.room.levels && u <= (tile_.width - 1) >> level &&
-        v <= (tile_.height - 1) >> level)
-      *tile_above(recipe_, level, u << level, v << level) = range;
-    return range;
-  }
-
   const CloudRecipe& recipe_;
   TileFrame<Radius> tile_;
   Arrays arrays_;
@@ -285,7 +214,7 @@ __global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
   work.find_normals(has_holes, gated);
   __syncthreads();
   work.find_gated_normals(gated);
-  work.write_tiles();  // meets at its end
+  __syncthreads();
   work.place_points(points, doubtful);
   __syncthreads();
   work.write_points();
@@ -408,21 +337,8 @@ void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream) {
   const Choice choice = choose(method, recipe.window / 2);
-  const auto tiles_along = [](std::uint32_t size, int tile) {
-    return (size + static_cast<unsigned>(tile) - 1) / static_cast<unsigned>(tile);
-  };
-  cudaLaunchConfig_t launch{};
-  launch.gridDim =
-      tiles_along(recipe.camera.width, kTileWidth) * tiles_along(recipe.camera.height, kTileHeight);
-  launch.blockDim = kTileThreads;
-  launch.dynamicSmemBytes = choice.bytes;
-  launch.stream = stream;
-  cudaLaunchAttribute overlap;
-  overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  overlap.val.programmaticStreamSerializationAllowed = 1;
-  launch.attrs = &overlap;
-  launch.numAttrs = preparation.overlaps ? 1 : 0;
-  check(cudaLaunchKernelEx(&launch, choice.kernel, recipe, counters, answer, sequence));
+  launch_over_tiles(recipe, choice.kernel, choice.bytes, preparation.overlaps, stream, recipe,
+                    counters, answer, sequence);
 }
 
 }  // namespace vpm::cuda

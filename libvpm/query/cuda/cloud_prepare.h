@@ -1,5 +1,5 @@
-// From a depth image in the host's memory to a cloud that queries can read on a device: what
-// make_cloud() and PreparedCloud make of it, bit by bit.
+// From a depth image in the host's memory to points with normals on a device: what make_cloud()
+// makes of it, bit by bit, and the image without holes. cloud_settle.h makes the surface of that.
 #pragma once
 
 #include "libvpm/cloud/normals.h"

@@ -8,7 +8,7 @@ namespace vpm::cuda {
 struct CloudRoom {
   Vec3f* positions = nullptr;      // about the camera, world axes; NaN where there is no point
   Vec3f* normals = nullptr;        // world axes
-  Vec3f* pixel_normals = nullptr;  // camera axes, turned back from the former
+  Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
   Vec3f* estimated = nullptr;      // camera axes, as estimate_normals() has them; may be null
   InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
   std::int32_t levels = 0;

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "libvpm/core/lengths.h"
+#include "libvpm/query/cuda/cloud_settle.h"
 #include "libvpm/query/cuda/cloud_slot.h"
 
 namespace vpm::cuda {
@@ -49,6 +50,8 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       image_(whole_groups(pixels()) * (image_bytes() / pixels()) / sizeof(uint4)),
       depth_(whole_groups(pixels())),
       inverse_(whole_groups(pixels())),
+      closed_(pixels()),
+      seen_(pixels()),
       cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
       counters_(1),
       answer_(1),
@@ -90,6 +93,7 @@ void CloudSlot::make(cudaStream_t stream, Vec3f* estimated) {
   from_image.room.estimated = estimated;
   prepare_on_device(from_image, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), ++sequence_, stream);
+  settle_on_device(from_image, preparation_.overlaps, stream);
 }
 
 std::vector<Vec3f> CloudSlot::estimate_normals() {
@@ -116,6 +120,9 @@ CloudRecipe CloudSlot::recipe() const {
           o.normals.window,
           EdgeGate(o.normals, o.intrinsics),
           WholeWindow(o.normals.window),
+          closed_.get(),
+          seen_.get(),
+          o.points,
           cloud_.room()};
 }
 

@@ -5,7 +5,9 @@
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/query/cuda/cloud_room.h"
+#include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/hole_closing.h"
+#include "libvpm/query/point_reading.h"
 
 namespace vpm::cuda {
 
@@ -19,6 +21,9 @@ struct CloudRecipe {
   int window = 0;
   EdgeGate edges;
   WholeWindow whole;
+  float* closed = nullptr;  // inverse depth without holes that are to be closed
+  Vec3f* seen = nullptr;    // normals of the pixels, camera axes, turned back from the world's
+  PointReading points = PointReading::settled;
   CloudRoom room;
 };
 
@@ -64,6 +69,22 @@ class TileFrame {
   int radius_;
 };
 
+// The rows of a block's tile to their places in the image, word by word, so that a warp's words lie
+// together.
+template <int Radius>
+__device__ __forceinline__ void write_rows(const TileFrame<Radius>& tile, const Vec3f* from,
+                                           Vec3f* to) {
+  const auto* const words = reinterpret_cast<const float*>(from);
+  auto* const image = reinterpret_cast<float*>(to);
+  constexpr int kRow = 3 * kTileWidth;
+#pragma unroll 6
+  for (int k = static_cast<int>(threadIdx.x); k < 3 * kTilePixels; k += kTileThreads) {
+    const int x = k % kRow, y = k / kRow;
+    if (x < 3 * (tile.width - tile.u0) && tile.v0 + y < tile.height)
+      image[3 * tile.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
+  }
+}
+
 // A block's shared memory, cut into arrays.
 class SharedArrays {
  public:
@@ -78,5 +99,27 @@ class SharedArrays {
  private:
   unsigned char* next_;
 };
+
+// A block for each tile of the image. `overlaps`: it may be launched before what comes before it in
+// the stream is done, which it waits for itself.
+template <class... Parameters, class... Arguments>
+void launch_over_tiles(const CloudRecipe& recipe, void (*kernel)(Parameters...), std::size_t shared,
+                       bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
+  const auto tiles_along = [](std::uint32_t size, int tile) {
+    return (size + static_cast<unsigned>(tile) - 1) / static_cast<unsigned>(tile);
+  };
+  cudaLaunchConfig_t launch{};
+  launch.gridDim =
+      tiles_along(recipe.camera.width, kTileWidth) * tiles_along(recipe.camera.height, kTileHeight);
+  launch.blockDim = kTileThreads;
+  launch.dynamicSmemBytes = shared;
+  launch.stream = stream;
+  cudaLaunchAttribute overlap;
+  overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  overlap.val.programmaticStreamSerializationAllowed = 1;
+  launch.attrs = &overlap;
+  launch.numAttrs = overlaps ? 1 : 0;
+  check(cudaLaunchKernelEx(&launch, kernel, arguments...));
+}
 
 }  // namespace vpm::cuda

@@ -30,9 +30,15 @@ $ python3 -c "n = range(-40, 41); print('ply', 'format ascii 1.0', f'element ver
 $ for raw in '' --raw-points; do vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt $raw -o points$raw.jsonl && $VALIDATE query-result points$raw.jsonl; done
 $ cmp -s points.jsonl points--raw-points.jsonl || python3 -c "import json; a, b = ([json.loads(l)['volume_fraction'] for l in open(f)] for f in ('points.jsonl', 'points--raw-points.jsonl')); print(max(abs(x - y) for x, y in zip(a, b)) < 0.01, max(a) > 0.1)"
 True True
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --raw-points | cmp - <(vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt)
 $ vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt --measure paper --raw-points | cmp - <(vpm-query --tool cube.vpmg --cloud points.vpmc --poses path.txt --measure paper)
 $ mkdir points && cp wall.ply points/0.ply && for raw in '' --raw-points; do vpm-query --tool cube.vpmg --frames points --trajectory path.txt --rate 1 $raw --quiet | python3 -c "import json, sys; print([json.loads(l)['volume'] for l in sys.stdin])" | cmp - <(python3 -c "import json; print([json.loads(l)['volume'] for l in open('points$raw.jsonl')])"); done
+
+# So are those that a camera has seen.
+$ python3 -c "w, h = 80, 60; print('VERSION .7', 'FIELDS x y z', 'SIZE 4 4 4', 'TYPE F F F', 'COUNT 1 1 1', f'WIDTH {w}', f'HEIGHT {h}', 'VIEWPOINT 0 0 0 1 0 0 0', f'POINTS {w * h}', 'DATA ascii', *(f'{(u - 40) / 60 * z} {(v - 30) / 60 * z} {z}' for v in range(h) for u in range(w) for z in [1 + (7 * u + 5 * v) % 11 / 2000]), sep='\n')" > seen.pcd && vpm-normals seen.pcd -o seen.vpmc --quiet
+$ for raw in '' --raw-points; do vpm-query --tool cube.vpmg --cloud seen.vpmc --poses path.txt $raw -o seen$raw.jsonl; done
+$ cmp -s seen.jsonl seen--raw-points.jsonl || python3 -c "import json; a, b = ([json.loads(l)['volume_fraction'] for l in open(f)] for f in ('seen.jsonl', 'seen--raw-points.jsonl')); print(max(abs(x - y) for x, y in zip(a, b)) < 0.01, max(a) > 0.1)"
+True True
+$ mkdir seen && cp seen.pcd seen/0.pcd && for raw in '' --raw-points; do vpm-query --tool cube.vpmg --frames seen --trajectory path.txt --rate 1 $raw --quiet | python3 -c "import json, sys; print([json.loads(l)['volume'] for l in sys.stdin])" | cmp - <(python3 -c "import json; print([json.loads(l)['volume'] for l in open('seen$raw.jsonl')])"); done
 
 # A generous deadline changes nothing but the reason; an impossible one takes the coarsest level and says so.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 1e7 -o d.jsonl --stats stats.json && $VALIDATE query-result d.jsonl && $VALIDATE query-stats stats.json
