@@ -42,10 +42,11 @@ struct DiskSurface {
     if (i == kNoPoint) return {};
     const TangentPlane own = plane_of(i);
     const double distance = own.distance(x);
-    if (const SecondPlane* const second = second_at(i)) {
-      const TangentPlane beyond = second->plane();
+    if (knows_second(i)) {
+      const SecondPlane& second = second_at(i);
+      const TangentPlane beyond = second.plane();
       const double other = beyond.distance(x);
-      if (second->is_convex ? other > distance : other < distance)
+      if (second.is_convex ? other > distance : other < distance)
         return {true, other, beyond.normal, beyond.foot, i};
     }
     return {true, distance, own.normal, own.foot, i};
@@ -53,14 +54,14 @@ struct DiskSurface {
 
   // The part of a ball about x that is behind the surface that was read there.
   VPM_HD double fraction_inside(const Reading& reading, Vec3 x, double radius) const {
-    const SecondPlane* const second = second_at(reading.point);
-    if (second == nullptr) return ball_fraction_inside(reading.distance / radius);
-    const TangentPlane own = plane_of(reading.point), beyond = second->plane();
+    if (!knows_second(reading.point)) return ball_fraction_inside(reading.distance / radius);
+    const SecondPlane& second = second_at(reading.point);
+    const TangentPlane own = plane_of(reading.point), beyond = second.plane();
     const double first_inside = ball_fraction_inside(own.distance(x) / radius);
     const double second_inside = ball_fraction_inside(beyond.distance(x) / radius);
     const double cosine = dot(own.normal, beyond.normal);
-    return second->is_convex ? fraction_of_both(first_inside, second_inside, cosine)
-                             : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
+    return second.is_convex ? fraction_of_both(first_inside, second_inside, cosine)
+                            : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
   }
 
   // The surface for places in a ball: the points that may be nearest to one of them, if they are
@@ -72,9 +73,8 @@ struct DiskSurface {
   // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
   // sides of a groove, towards these, or their crease.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    const SecondPlane* const second = second_at(reading.point);
-    if (second != nullptr && !second->is_convex)
-      return normal_below_groove(x, reading, second->plane());
+    if (knows_second(reading.point) && !second_at(reading.point).is_convex)
+      return normal_below_groove(x, reading, second_at(reading.point).plane());
     const Vec3 towards = reading.foot - x;
     const double height = dot(reading.normal, towards);
     const Vec3 aside = towards - height * reading.normal;
@@ -87,7 +87,7 @@ struct DiskSurface {
   template <class Visit>
   VPM_HD void for_normals_of(std::uint32_t i, const Visit& visit) const {
     visit(widen(normals[i]));
-    if (const SecondPlane* const second = second_at(i)) visit(widen(second->normal));
+    if (knows_second(i)) visit(widen(second_at(i).normal));
   }
   // Whether all that disks in a ball know faces the way of n: the cosine is above `least`.
   VPM_HD bool face_one_way(Vec3 center, double radius, Vec3 n, double least) const {
@@ -240,9 +240,13 @@ struct DiskSurface {
   VPM_HD double rim_of(std::uint32_t i) const {
     return kRim * radii.of_points[i];
   }
-  // Null: the disk knows one plane only.
-  VPM_HD const SecondPlane* second_at(std::uint32_t i) const {
-    return second_of[i] == kNoPoint ? nullptr : seconds + second_of[i];
+  // Not by a pointer that may be null: code that nvcc 13.0 makes of that for sm_90 has been seen to
+  // read through one behind its check.
+  VPM_HD bool knows_second(std::uint32_t i) const {
+    return second_of[i] != kNoPoint;
+  }
+  VPM_HD const SecondPlane& second_at(std::uint32_t i) const {
+    return seconds[second_of[i]];
   }
 
   // Whether another wall than `own` may be the nearest to one of the places about a body at which
