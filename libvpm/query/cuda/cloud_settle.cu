@@ -16,8 +16,8 @@ constexpr int kRanges = kTilePixels / 4 + kTilePixels / 16 + kTilePixels / 64 + 
 static_assert(kSettledRadius <= kSettledAcross);
 
 struct SharedTile {
-  float inverse[kWidth * kHeight];  // with the margin
-  Vec3f seen[kWidth * kHeight];
+  float inverse[kWidth * kHeight];         // with the margin
+  float4 seen[kWidth * kHeight];           // normals and, again, inverse depth: read together
   float4 columns[kColumns * kTileHeight];  // of the windows
   float surface[kTilePixels];
   Vec3f normals[kTilePixels];
@@ -43,12 +43,14 @@ class SettleWork {
 #pragma unroll
       for (int x = thread() % 32; x < kWidth; x += 32) {
         const bool is_inside = is_row && u + x >= 0 && u + x < tile_.width;
-        shared_.inverse[row * kWidth + x] = is_inside ? recipe_.closed[first + x] : 0.0F;
+        const float inverse = is_inside ? recipe_.closed[first + x] : 0.0F;
+        shared_.inverse[row * kWidth + x] = inverse;
+        seen[4 * (row * kWidth + x) + 3] = inverse;
       }
 #pragma unroll
       for (int w = thread() % 32; w < 3 * kWidth; w += 32) {
         const bool is_inside = is_row && 3 * u + w >= 0 && 3 * u + w < 3 * tile_.width;
-        seen[row * 3 * kWidth + w] = is_inside ? words[3 * first + w] : 0.0F;
+        seen[4 * (row * kWidth + w / 3) + w % 3] = is_inside ? words[3 * first + w] : 0.0F;
       }
     }
   }
@@ -83,9 +85,9 @@ class SettleWork {
   }
   __device__ void take_as_measured() const {
     for (int k = thread(); k < kTilePixels; k += kTileThreads) {
-      const int at = tile_.index(k % kTileWidth, k / kTileWidth);
-      shared_.surface[k] = shared_.inverse[at];
-      shared_.normals[k] = shared_.seen[at];
+      const SeenPixel<float> pixel = seen_at(k % kTileWidth, k / kTileWidth);
+      shared_.surface[k] = pixel.inverse;
+      shared_.normals[k] = {pixel.x, pixel.y, pixel.z};
     }
   }
 
@@ -124,9 +126,8 @@ class SettleWork {
   }
 
   __device__ SeenPixel<float> seen_at(int x, int y) const {
-    const int at = tile_.index(x, y);
-    const Vec3f normal = shared_.seen[at];
-    return {shared_.inverse[at], normal.x, normal.y, normal.z};
+    const float4 pixel = shared_.seen[tile_.index(x, y)];
+    return {pixel.w, pixel.x, pixel.y, pixel.z};
   }
   __device__ Window column_at(int x, int y) const {
     const float4 column = shared_.columns[y * kColumns + x + kSettledRadius];
