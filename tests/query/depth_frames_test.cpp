@@ -8,6 +8,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
@@ -49,6 +50,25 @@ TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
   Result results[2];
   query.run(frame, poses, results);
   testing::expect_equal(expected, results[1]);
+}
+
+TEST(DepthFrames, AreReadAsMeasuredWhereThatIsAsked) {
+  const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
+  const Camera camera{kIntrinsics, 80, 60, {}};
+  const DepthImage image = synthetic::render_with_kinect_noise(*scene.surface, camera, 1);
+  const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
+  DepthFrameOptions options = options_of();
+  Result found[2];
+  for (const PointReading points : {PointReading::settled, PointReading::as_measured}) {
+    options.points = points;
+    DepthFrames frames(options);
+    std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
+    Result& result = found[points == PointReading::settled ? 0 : 1];
+    result = Query(tool, {}).run(frames.prepare({}), kPose);
+    testing::expect_equal(
+        result, Query(tool, {}).run(PreparedCloud(make_cloud(image, camera, {}), points), kPose));
+  }
+  EXPECT_NE(found[0].volume, found[1].volume);
 }
 
 TEST(DepthFrames, OfCountsAreThoseOfTheirMetres) {
