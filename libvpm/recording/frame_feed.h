@@ -48,7 +48,10 @@ class FrameReader {
   // cameras' poses are the recording's.
   FrameReader(const Recording& recording, const ImportOptions& options,
               PointReading points = PointReading::settled)
-      : recording_(recording), options_(options), points_(points), preparation_(options.normals, points) {}
+      : recording_(recording),
+        options_(options),
+        points_(points),
+        preparation_(options.normals, points) {}
 
   PreparedChange prepare(FrameChange change);
   // A cloud that is not needed any more: the next frame takes its memory.
