@@ -57,7 +57,9 @@ struct DepthSurface {
   std::int32_t levels = 0;
   const Vec3f* normals = nullptr;  // of each pixel, camera axes; zero where none is known
   const InverseDepthRange* tiles[kMaxLevels] =
-      {};  // tiles[l]: 2^l by 2^l pixels; tiles[0].high is the pixel's
+      {};                           // tiles[l]: 2^l by 2^l pixels; tiles[0].high is the pixel's
+  const float* measured = nullptr;  // inverse depth before noise was taken out (settled_image.h):
+                                    // what was seen to be free stays free
 
   struct Pixel {
     double inverse_depth = 0;  // 0: unknown
@@ -68,6 +70,9 @@ struct DepthSurface {
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
   VPM_HD double inverse_depth(std::int32_t u, std::int32_t v) const {
     return tiles[0][v * width + u].high;
+  }
+  VPM_HD double measured_at(std::int32_t u, std::int32_t v) const {
+    return measured[v * width + u];
   }
 
   // Whether four pixels are all known and show one surface. Real: double, or a vector of such.
@@ -199,16 +204,16 @@ struct DepthSurface {
                : look.side;
   }
   static VPM_HD PixelRectangle pixels_of(const Look& look) { return look.pixels; }
-  // Whether none of these pixels shows a surface nearer than `depth`; of their rows only the
-  // `first`, and every `step` after it. The middle is asked first, which mostly says no.
+  // Whether none of these pixels, as measured, shows a surface nearer than `depth`; of their rows
+  // only the `first`, and every `step` after it. The middle is asked first, which mostly says no.
   VPM_HD bool is_seen_past(const PixelRectangle& p, double depth, std::uint32_t first,
                            std::uint32_t step) const {
     if (std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) > kMostPixels) return false;
-    if (!(depth * inverse_depth((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
+    if (!(depth * measured_at((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
     for (std::int32_t v = p.v0 + static_cast<std::int32_t>(first); v <= p.v1;
          v += static_cast<std::int32_t>(step)) {
       bool past = true;  // of a row at a time: reads that do not wait for each other
-      for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * inverse_depth(u, v) < 1;
+      for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * measured_at(u, v) < 1;
       if (!past) return false;
     }
     return true;
@@ -273,7 +278,7 @@ struct DepthSurface {
     const double v = k.fy * (center.y * per_depth) + k.cy + 0.5;
     if (!(u >= 0 && v >= 0 && u < width && v < height)) return true;
     return (center.z + radius) *
-               inverse_depth(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) <
+               measured_at(static_cast<std::int32_t>(u), static_cast<std::int32_t>(v)) <
            1;
   }
 

@@ -125,6 +125,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud, NormalImage& seen) {
 void PreparedCloud::take_image(PaddedImage& inverse, const NormalImage& seen, PointReading points,
                                PaddedImage& settled) {
   close_holes(inverse);
+  take_pixels(inverse, measured_);
   if (points == PointReading::settled) {
     settle(inverse, seen, settled, pixel_normals_);
     tiles_.build(settled);
@@ -176,6 +177,7 @@ DepthSurface PreparedCloud::depth_surface() const {
   surface.height = static_cast<std::int32_t>(camera_->height);
   surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
   surface.normals = pixel_normals_.data();
+  surface.measured = measured_.data();
   for (int level = 0; level < surface.levels; ++level) {
     surface.tiles[level] = tiles_.level(level).data();
   }

@@ -88,6 +88,7 @@ class PreparedCloud {
   std::optional<Camera> camera_;
   std::vector<std::uint32_t> pixel_begin_;
   std::vector<Vec3f> pixel_normals_;  // camera axes
+  std::vector<float> measured_;       // inverse depth of each pixel
   InverseDepthPyramid tiles_;
 
   std::vector<BoxQuad> boxes_;  // of the positions

@@ -15,10 +15,27 @@ constexpr std::size_t kRowsPerTask = 32;
 
 // Windows of a row, as sums down each of their columns.
 struct ColumnSums {
-  std::vector<float> sum, squares, low, high;  // of column u at u + kSettledRadius
+  static constexpr int kNumbers = 6;
+  std::vector<float> numbers[kNumbers];  // of column u at u + kSettledRadius
 
-  explicit ColumnSums(std::size_t stride)
-      : sum(stride + kTile), squares(stride + kTile), low(stride + kTile), high(stride + kTile) {}
+  explicit ColumnSums(std::size_t stride) {
+    for (std::vector<float>& of_columns : numbers) of_columns.resize(stride + kTile);
+  }
+  [[gnu::always_inline]] void set(int i, const WindowOfDepths<Floats>& column) {
+    const Floats values[] = {column.sum,      column.squares,    column.all.low,
+                             column.all.high, column.beside.low, column.beside.high};
+    for (int k = 0; k < kNumbers; ++k) store(values[k], numbers[k].data() + i);
+  }
+  [[gnu::always_inline]] WindowOfDepths<Floats> at(int i) const {
+    const auto number = [&](int k) __attribute__((always_inline)) {
+      return load<Floats>(numbers[k].data() + i);
+    };
+    WindowOfDepths<Floats> column;
+    column.sum = number(0), column.squares = number(1);
+    column.all = {number(2), number(3)};
+    column.beside = {number(4), number(5)};
+    return column;
+  }
 };
 
 [[gnu::always_inline]] inline void sum_columns(const PaddedImage& inverse, int v,
@@ -28,26 +45,17 @@ struct ColumnSums {
     const float* middle = inverse.at(i - kSettledRadius, v);
     WindowOfDepths<Floats> column(load<Floats>(middle));
     for (int d = 1; d <= kSettledRadius; ++d)
-      column.add_rows(load<Floats>(middle + d * stride), load<Floats>(middle - d * stride),
-                      static_cast<float>(d));
-    store(column.sum, columns.sum.data() + i);
-    store(column.squares, columns.squares.data() + i);
-    store(column.low, columns.low.data() + i);
-    store(column.high, columns.high.data() + i);
+      column.add_rows(load<Floats>(middle + d * stride), load<Floats>(middle - d * stride), d);
+    columns.set(i, column);
   }
 }
 
 // The windows about pixels u, u + 1, ...
 [[gnu::always_inline]] inline WindowOfDepths<Floats> windows_at(const ColumnSums& columns, int u) {
-  const auto column = [&](int du) __attribute__((always_inline)) {
-    const int i = u + kSettledRadius + du;
-    return WindowOfDepths<Floats>(
-        load<Floats>(columns.sum.data() + i), load<Floats>(columns.squares.data() + i),
-        load<Floats>(columns.low.data() + i), load<Floats>(columns.high.data() + i));
-  };
-  WindowOfDepths<Floats> window = column(0);
+  const int middle = u + kSettledRadius;
+  WindowOfDepths<Floats> window = columns.at(middle);
   for (int d = 1; d <= kSettledRadius; ++d)
-    window.add_columns(column(d), column(-d), static_cast<float>(d));
+    window.add_columns(columns.at(middle + d), columns.at(middle - d), d);
   return window;
 }
 
@@ -147,6 +155,14 @@ void take_normals(const NormalImage& seen, std::vector<Vec3f>& normals) {
       for (int u = 0; u < image.width; ++u)
         row[u] = {*seen.x.at(u, v), *seen.y.at(u, v), *seen.z.at(u, v)};
     }
+  });
+}
+
+void take_pixels(const PaddedImage& image, std::vector<float>& pixels) {
+  pixels.resize(first_of_row(image, image.height));
+  for_rows(image.height, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v)
+      std::copy_n(image.at(0, v), image.width, pixels.data() + first_of_row(image, v));
   });
 }
 

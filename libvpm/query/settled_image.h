@@ -32,7 +32,8 @@ inline constexpr int kSettledMargin =
 void settle(const PaddedImage& inverse, const NormalImage& seen, PaddedImage& settled,
             std::vector<Vec3f>& normals);
 
-// The normals as they were estimated, in the same form.
+// The normals as they were estimated, in the same form; and the image by pixel.
 void take_normals(const NormalImage& seen, std::vector<Vec3f>& normals);
+void take_pixels(const PaddedImage& image, std::vector<float>& pixels);
 
 }  // namespace vpm

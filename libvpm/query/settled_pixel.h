@@ -30,56 +30,72 @@ template <class Real>
          (off >= -allowed);
 }
 
+// Least and greatest of some inverse depths.
+template <class Real>
+struct ExtentOfDepths {
+  Real low, high;
+
+  [[gnu::always_inline]] VPM_HD void take(const ExtentOfDepths& other) {
+    low = other.low < low ? other.low : low;
+    high = other.high > high ? other.high : high;
+  }
+  [[gnu::always_inline]] VPM_HD Real nearest_to(const Real& value) const {
+    const Real not_below = value < low ? low : value;
+    return not_below > high ? high : not_below;
+  }
+};
+
 // Of a column of a window, then of the window: sums of inverse depths, and of those times the
-// squared distance from the middle; their range.
+// squared distance from the middle; their extent, and that of the pixels beside the middle.
 template <class Real>
 struct WindowOfDepths {
-  Real sum, squares, low, high;
+  Real sum, squares;
+  ExtentOfDepths<Real> all, beside;
 
+  WindowOfDepths() = default;
   [[gnu::always_inline]] VPM_HD explicit WindowOfDepths(const Real& middle)
-      : sum(middle), squares{}, low(middle), high(middle) {}
-  [[gnu::always_inline]] VPM_HD WindowOfDepths(const Real& s, const Real& of_squares,
-                                               const Real& least, const Real& most)
-      : sum(s), squares(of_squares), low(least), high(most) {}
+      : sum(middle), squares{}, all{middle, middle}, beside{middle, middle} {}
 
-  // The pixels at this distance below and above the middle of a column.
-  [[gnu::always_inline]] VPM_HD void add_rows(const Real& below, const Real& above,
-                                              float distance) {
+  // The pixels at this distance below and above the middle of a column, nearer ones first.
+  [[gnu::always_inline]] VPM_HD void add_rows(const Real& below, const Real& above, int distance) {
+    const auto squared = static_cast<float>(distance * distance);
     const Real both = below + above;
     sum += both;
-    squares += distance * distance * both;
-    take(below, below);
-    take(above, above);
+    squares += squared * both;
+    all.take({below, below});
+    all.take({above, above});
+    if (distance == 1) beside = all;
   }
   // The columns at this distance from the middle one.
   [[gnu::always_inline]] VPM_HD void add_columns(const WindowOfDepths& right,
-                                                 const WindowOfDepths& left, float distance) {
+                                                 const WindowOfDepths& left, int distance) {
+    const auto squared = static_cast<float>(distance * distance);
     const Real both = right.sum + left.sum;
     sum += both;
-    squares += right.squares + left.squares + distance * distance * both;
-    take(right.low, right.high);
-    take(left.low, left.high);
+    squares += right.squares + left.squares + squared * both;
+    all.take(right.all);
+    all.take(left.all);
+    if (distance == 1) {
+      beside.take(right.beside);
+      beside.take(left.beside);
+    }
   }
 
   // Whether all its pixels are known and belong to one surface.
   [[gnu::always_inline]] VPM_HD auto is_one_surface() const {
-    return (low > 0.0F) & (high - low <= static_cast<float>(DepthSurface::kJump) * high);
+    return (all.low > 0.0F) &
+           (all.high - all.low <= static_cast<float>(DepthSurface::kJump) * all.high);
   }
   // At its middle, of the least-squares paraboloid of inverse depth: exact for planes, and where
-  // curvature is even. It has .27 of the noise of a pixel.
+  // curvature is even. It has .27 of the noise of a pixel. It never leaves the extent of the nine
+  // pixels in the middle, so that what these show to be free stays so.
   [[gnu::always_inline]] VPM_HD Real paraboloid() const {
     constexpr float kWidth = 2 * kSettledRadius + 1, kSide = kWidth * kWidth;
     constexpr float kCount = kSide;                      // sums over the window of 1,
     constexpr float kSquare = kSide * (kSide - 1) / 12;  // of u^2, and of u^2 (u^2 + v^2)
     constexpr float kFourth = kSquare * ((3 * kSide - 7) / 20 + (kSide - 1) / 12);
     constexpr float kRatio = kFourth / kSquare;
-    return (kRatio * sum - squares) / (kRatio * kCount - 2 * kSquare);
-  }
-
- private:
-  [[gnu::always_inline]] VPM_HD void take(const Real& least, const Real& most) {
-    low = least < low ? least : low;
-    high = most > high ? most : high;
+    return beside.nearest_to((kRatio * sum - squares) / (kRatio * kCount - 2 * kSquare));
   }
 };
 

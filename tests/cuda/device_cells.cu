@@ -141,6 +141,8 @@ std::vector<CellAnswer> cells_on_device(const PreparedCloud& cloud, const ToolMo
       static_cast<std::size_t>(surface.width) * static_cast<std::size_t>(surface.height);
   const DeviceArray<Vec3f> normals(surface.normals, pixels);
   surface.normals = normals.get();
+  const DeviceArray<float> measured(surface.measured, pixels);
+  surface.measured = measured.get();
   std::vector<std::unique_ptr<DeviceArray<InverseDepthRange>>> tiles;
   for (int l = 0; l < surface.levels; ++l) {
     const std::size_t rows = static_cast<std::size_t>(((surface.height - 1) >> l) + 1);

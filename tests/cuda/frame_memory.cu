@@ -35,6 +35,7 @@ std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   FrameMemory memory{fetched(points.positions, points.count),
                      fetched(points.normals, points.count),
                      fetched(surface.normals, points.count),
+                     fetched(surface.measured, points.count),
                      {}};
   for (int level = 0; level < surface.levels; ++level)
     memory.tiles.push_back(fetched(surface.tiles[level], tile_count(surface, level)));
@@ -49,6 +50,7 @@ FrameMemory memory_of(const PreparedCloud& cloud) {
   FrameMemory memory{std::vector<Vec3f>(pixels, {nowhere, nowhere, nowhere}),
                      std::vector<Vec3f>(pixels),
                      {surface.normals, surface.normals + pixels},
+                     {surface.measured, surface.measured + pixels},
                      {}};
   for (std::size_t p = 0; p < pixels; ++p) {
     if (begin[p] == begin[p + 1]) continue;
@@ -63,7 +65,8 @@ FrameMemory memory_of(const PreparedCloud& cloud) {
 
 bool same_bits(const FrameMemory& a, const FrameMemory& b) {
   bool same = a.positions.size() == b.positions.size() && a.tiles.size() == b.tiles.size() &&
-              same_bytes(a.normals, b.normals) && same_bytes(a.pixel_normals, b.pixel_normals);
+              same_bytes(a.normals, b.normals) && same_bytes(a.pixel_normals, b.pixel_normals) &&
+              same_bytes(a.measured, b.measured);
   for (std::size_t p = 0; same && p < a.positions.size(); ++p) {
     const Vec3f &x = a.positions[p], &y = b.positions[p];
     same = (std::isnan(x.x) && std::isnan(y.x)) || std::memcmp(&x, &y, sizeof x) == 0;

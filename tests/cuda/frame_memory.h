@@ -10,6 +10,7 @@ namespace vpm::testing {
 
 struct FrameMemory {
   std::vector<Vec3f> positions, normals, pixel_normals;  // by pixel; positions NaN without a point
+  std::vector<float> measured;
   std::vector<std::vector<InverseDepthRange>> tiles;
 };
 

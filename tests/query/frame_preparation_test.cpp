@@ -35,6 +35,7 @@ std::string bytes_of(const PreparedCloud& cloud) {
   add(bytes, &camera, 1);
   const DepthSurface surface = cloud.depth_surface();
   add(bytes, surface.normals, cloud.pixel_begin().size() - 1);
+  add(bytes, surface.measured, cloud.pixel_begin().size() - 1);
   for (int level = 0; level < surface.levels; ++level) {
     const std::size_t rows = static_cast<std::size_t>((surface.height - 1) >> level) + 1;
     add(bytes, surface.tiles[level], rows * static_cast<std::size_t>(surface.tiles_per_row(level)));

@@ -55,7 +55,7 @@ TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
     bool in_front = true;
     for (std::int32_t v = look.pixels.v0; v <= look.pixels.v1; ++v) {
       for (std::int32_t u = look.pixels.u0; u <= look.pixels.u1; ++u)
-        in_front &= (center.z + radius) * surface.inverse_depth(u, v) < 1;
+        in_front &= (center.z + radius) * surface.measured_at(u, v) < 1;
     }
     EXPECT_EQ(surface.side_of_ball(center, radius) == Side::free, in_front);
     free += in_front;

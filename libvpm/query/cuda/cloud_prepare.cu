@@ -115,7 +115,7 @@ class TileWork {
         arrays_.gated[atomicAdd(&gated, 1U)] = static_cast<std::uint16_t>(k);
       arrays_.normals[k] = normal;
       if (tile_.holds(x, y))
-        recipe_.closed[tile_.pixel(x, y)] = has_holes ? closed_twice(x, y) : inverse;
+        recipe_.room.measured[tile_.pixel(x, y)] = has_holes ? closed_twice(x, y) : inverse;
     }
   }
   __device__ __forceinline__ void find_gated_normals(unsigned count) const {

@@ -18,7 +18,7 @@ static_assert(kSettledRadius <= kSettledAcross);
 struct SharedTile {
   float inverse[kWidth * kHeight];         // with the margin
   float4 seen[kWidth * kHeight];           // normals and, again, inverse depth: read together
-  float4 columns[kColumns * kTileHeight];  // of the windows
+  Window columns[kColumns * kTileHeight];  // of the windows
   float surface[kTilePixels];
   Vec3f normals[kTilePixels];
   InverseDepthRange ranges[kRanges];
@@ -43,7 +43,7 @@ class SettleWork {
 #pragma unroll
       for (int x = thread() % 32; x < kWidth; x += 32) {
         const bool is_inside = is_row && u + x >= 0 && u + x < tile_.width;
-        const float inverse = is_inside ? recipe_.closed[first + x] : 0.0F;
+        const float inverse = is_inside ? recipe_.room.measured[first + x] : 0.0F;
         shared_.inverse[row * kWidth + x] = inverse;
         seen[4 * (row * kWidth + x) + 3] = inverse;
       }
@@ -62,8 +62,8 @@ class SettleWork {
       Window column(*middle);
 #pragma unroll
       for (int d = 1; d <= kSettledRadius; ++d)
-        column.add_rows(middle[d * kWidth], middle[-d * kWidth], static_cast<float>(d));
-      shared_.columns[k] = {column.sum, column.squares, column.low, column.high};
+        column.add_rows(middle[d * kWidth], middle[-d * kWidth], d);
+      shared_.columns[k] = column;
     }
   }
 
@@ -129,15 +129,14 @@ class SettleWork {
     const float4 pixel = shared_.seen[tile_.index(x, y)];
     return {pixel.w, pixel.x, pixel.y, pixel.z};
   }
-  __device__ Window column_at(int x, int y) const {
-    const float4 column = shared_.columns[y * kColumns + x + kSettledRadius];
-    return {column.x, column.y, column.z, column.w};
+  __device__ const Window& column_at(int x, int y) const {
+    return shared_.columns[y * kColumns + x + kSettledRadius];
   }
   __device__ Window window_at(int x, int y) const {
     Window window = column_at(x, y);
 #pragma unroll
     for (int d = 1; d <= kSettledRadius; ++d)
-      window.add_columns(column_at(x + d, y), column_at(x - d, y), static_cast<float>(d));
+      window.add_columns(column_at(x + d, y), column_at(x - d, y), d);
     return window;
   }
 

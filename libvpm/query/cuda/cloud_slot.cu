@@ -50,7 +50,6 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       image_(whole_groups(pixels()) * (image_bytes() / pixels()) / sizeof(uint4)),
       depth_(whole_groups(pixels())),
       inverse_(whole_groups(pixels())),
-      closed_(pixels()),
       seen_(pixels()),
       cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
       counters_(1),
@@ -120,7 +119,6 @@ CloudRecipe CloudSlot::recipe() const {
           o.normals.window,
           EdgeGate(o.normals, o.intrinsics),
           WholeWindow(o.normals.window),
-          closed_.get(),
           seen_.get(),
           o.points,
           cloud_.room()};

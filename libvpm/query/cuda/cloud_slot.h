@@ -47,7 +47,7 @@ class CloudSlot : public FrameSlot {
 
   Stream stream_;
   MappedArray<uint4> image_;
-  DeviceArray<float> depth_, inverse_, closed_;
+  DeviceArray<float> depth_, inverse_;
   DeviceArray<Vec3f> seen_;
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;

@@ -21,8 +21,7 @@ struct CloudRecipe {
   int window = 0;
   EdgeGate edges;
   WholeWindow whole;
-  float* closed = nullptr;  // inverse depth without holes that are to be closed
-  Vec3f* seen = nullptr;    // normals of the pixels, camera axes, turned back from the world's
+  Vec3f* seen = nullptr;  // normals of the pixels, camera axes, turned back from the world's
   PointReading points = PointReading::settled;
   CloudRoom room;
 };

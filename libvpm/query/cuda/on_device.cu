@@ -155,7 +155,8 @@ void DeviceCloud::stand_at(const Pose& camera_to_world) {
 }
 
 CloudRoom DeviceCloud::room() const {
-  CloudRoom room{positions_.get(), normals_.get(), pixel_normals_.get(), nullptr, {},
+  CloudRoom room{positions_.get(), normals_.get(),  pixel_normals_.get(),
+                 nullptr,          measured_.get(), {},
                  depth_.levels};
   for (int level = 0; level < depth_.levels; ++level)
     room.tiles[level] = tiles_.get() + tile_begin_[level];
@@ -172,6 +173,7 @@ void DeviceCloud::make_room(const DepthSurface& image) {
   positions_ = DeviceArray<Vec3f>(pixels);
   normals_ = DeviceArray<Vec3f>(pixels);
   pixel_normals_ = DeviceArray<Vec3f>(pixels);
+  measured_ = DeviceArray<float>(pixels);
   points_ = {positions_.get(), normals_.get(), static_cast<std::uint32_t>(pixels), depth_.width,
              nullptr};
   std::size_t count = 0;
@@ -181,6 +183,7 @@ void DeviceCloud::make_room(const DepthSurface& image) {
   }
   tiles_ = DeviceArray<InverseDepthRange>(count);
   depth_.normals = pixel_normals_.get();
+  depth_.measured = measured_.get();
   for (int level = 0; level < depth_.levels; ++level)
     depth_.tiles[level] = tiles_.get() + tile_begin_[level];
 }
@@ -208,6 +211,7 @@ void DeviceCloud::copy_image(const PreparedCloud& cloud) {
   positions_.fill(positions.data());
   normals_.fill(normals.data());
   pixel_normals_.fill(image.normals);
+  measured_.fill(image.measured);
   std::vector<InverseDepthRange> tiles;
   for (int level = 0; level < image.levels; ++level)
     tiles.insert(tiles.end(), image.tiles[level], image.tiles[level] + tile_count(level));

@@ -71,6 +71,7 @@ class DeviceCloud {
   void copy_points(const PreparedCloud& cloud);
 
   DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
+  DeviceArray<float> measured_;
   DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
   std::size_t tile_begin_[DepthSurface::kMaxLevels] = {};
   DeviceArray<BoxQuad> boxes_, foot_boxes_;
