@@ -2,8 +2,8 @@
 //
 // A pixel's normal becomes the mean of its own and those of eight pixels around it that show the
 // same smooth surface; where all of them do, and all its window is one surface, its inverse depth
-// becomes that of a paraboloid fitted to the window. Beside creases and steps depths stay as they
-// were measured. README.md has the reasons and what they gain.
+// becomes that of a paraboloid fitted to the window, among those of the pixels beside it. Beside
+// creases and steps depths stay as they were measured. README.md has the reasons and what they gain.
 #pragma once
 
 #include <vector>
