@@ -24,13 +24,12 @@ struct NormalRow {
   }
 };
 
-// What the estimators read: the frame with a margin of half a window, or more where others want it.
+// What the estimators read: the frame with a margin of half a window.
 struct NormalImages {
   PaddedImage inverse;
   PaddedImage depth;  // of pca only
 
-  void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options,
-              int least_margin = 0);
+  void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options);
   void take_rows(const DepthImage& image, const NormalOptions& options, int begin, int end);
 };
 
@@ -52,8 +51,5 @@ std::unique_ptr<NormalRows> pca_rows(const NormalImages& images, const Intrinsic
 // The one that the options name.
 std::unique_ptr<NormalRows> normal_rows(const NormalImages& images, const Intrinsics& k,
                                         const NormalOptions& options);
-
-// Rows of one task: enough work to outweigh the rows above and below that it reads as well.
-inline constexpr std::size_t kNormalRowsPerTask = 32;
 
 }  // namespace vpm

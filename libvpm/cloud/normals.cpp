@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "libvpm/cloud/normal_rows.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/error.h"
-#include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {
@@ -28,17 +27,10 @@ void store_normals(const NormalRow& row, Vec3f* to) {
   for (std::size_t u = 0; u < row.width; ++u) to[u] = {x[u], y[u], z[u]};
 }
 
-void for_rows(std::uint32_t height, const std::function<void(int begin, int end)>& body) {
-  parallel_for(height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    body(static_cast<int>(begin), static_cast<int>(end));
-  });
-}
-
 }  // namespace
 
-void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options,
-                          int least_margin) {
-  inverse.resize(width, height, std::max(options.window / 2, least_margin));
+void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options) {
+  inverse.resize(width, height, options.window / 2);
   if (options.method == NormalMethod::pca) depth.resize(width, height, options.window / 2);
 }
 
@@ -97,8 +89,9 @@ std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& i
   std::vector<Vec3f> normals(depth.depth.size());
   NormalImages images;
   images.resize(depth.width, depth.height, options);
-  for_rows(depth.height, [&](int begin, int end) { images.take_rows(depth, options, begin, end); });
-  for_rows(depth.height, [&](int begin, int end) {
+  const auto height = static_cast<int>(depth.height);
+  for_bands(height, [&](int begin, int end) { images.take_rows(depth, options, begin, end); });
+  for_bands(height, [&](int begin, int end) {
     const auto rows = normal_rows(images, intrinsics, options);
     NormalRow row(depth.width);
     for (int v = begin; v < end; ++v) {
@@ -126,8 +119,9 @@ Cloud assemble_cloud(const DepthImage& depth, const Camera& camera,
   cloud.pixels.resize(first.back());
   cloud.sensor = CloudSensor{camera, depth};
   const Rotation& rotation = camera.to_world.rotation;
-  parallel_for(depth.height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin, k = first[begin]; v < end; ++v) {
+  for_bands(static_cast<int>(depth.height), [&](int begin, int end) {
+    std::size_t k = first[static_cast<std::size_t>(begin)];
+    for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
       for (std::size_t i = v * depth.width; i < (v + 1) * depth.width; ++i) {
         if (!is_measured(depth.depth[i])) cloud.sensor->depth.depth[i] = 0;
         if (!exists(normals[i])) continue;

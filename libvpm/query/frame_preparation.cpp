@@ -8,8 +8,8 @@
 
 #include "libvpm/cloud/vector_tile.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
+#include "libvpm/query/hole_closing.h"
 
 namespace vpm {
 namespace {
@@ -142,37 +142,44 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   row_points_.resize(height);
   rays_.resize(width + kTile);
   for (std::size_t u = 0; u < width; ++u) rays_[u] = (static_cast<double>(u) - k.cx) / k.fx;
-  images_.resize(depth.width, depth.height, options_, kSettledMargin);
+  images_.resize(depth.width, depth.height, options_);
   seen_.resize(depth.width, depth.height);
-  parallel_for(height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    images_.take_rows(depth, options_, static_cast<int>(begin), static_cast<int>(end));
+  cloud.image_.resize(depth.width, depth.height);
+  static_assert(SettledImage::kReach <= FollowingRows::kMostReach);
+  settling_.start(static_cast<int>(height), SettledImage::kReach);
+  for_bands(static_cast<int>(height), [&](int begin, int end) {
+    images_.take_rows(depth, options_, begin, end);
+    for (int v = begin; v < end; ++v)
+      std::copy_n(images_.inverse.at(0, v), width, seen_.inverse.at(0, v));
   });
+  close_holes(seen_.inverse);
   std::atomic<bool> is_sound{true};
-  parallel_for(height, kNormalRowsPerTask, [&](std::size_t begin, std::size_t end) {
+  for_bands(static_cast<int>(height), [&](int begin, int end) {
     const auto rows = normal_rows(images_, k, options_);
     NormalRow row(width);
     std::vector<std::uint8_t> exists(width);
-    for (std::size_t v = begin; v < end; ++v) {
-      rows->estimate(static_cast<int>(v), row);
-      const std::size_t at = v * width;
+    for (int v = begin; v < end; ++v) {
+      rows->estimate(v, row);
+      const std::size_t at = static_cast<std::size_t>(v) * width;
       Vec3f *positions = cloud.positions_.data() + at, *normals = cloud.normals_.data() + at;
-      const auto [points, sound] = place_row(
-          {static_cast<int>(width), (static_cast<double>(v) - k.cy) / k.fy,
-           camera.to_world.rotation, to_camera, depth.depth.data() + at, row, rays_.data(),
-           positions, normals, seen_.x.at(0, static_cast<int>(v)),
-           seen_.y.at(0, static_cast<int>(v)), seen_.z.at(0, static_cast<int>(v)), exists.data()});
+      const auto [points, sound] =
+          place_row({static_cast<int>(width), (v - k.cy) / k.fy, camera.to_world.rotation,
+                     to_camera, depth.depth.data() + at, row, rays_.data(), positions, normals,
+                     seen_.x.at(0, v), seen_.y.at(0, v), seen_.z.at(0, v), exists.data()});
       if (!sound) is_sound = false;
-      row_points_[v] = points;
+      row_points_[static_cast<std::size_t>(v)] = points;
       std::uint32_t* pixel_begin = cloud.pixel_begin_.data() + at;
       if (points < width)
         compact_row(exists.data(), static_cast<int>(width), static_cast<std::uint32_t>(at),
                     positions, normals, pixel_begin);
       else
         std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
+      settling_.made(
+          v, [&](int first, int last) { cloud.image_.read_rows(seen_, points_, first, last); });
     }
   });
   close_ranks(width, cloud);
-  cloud.take_image(images_.inverse, seen_, points_, settled_);
+  cloud.image_.finish();
   return is_sound;
 }
 

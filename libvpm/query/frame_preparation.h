@@ -5,6 +5,7 @@
 #pragma once
 
 #include "libvpm/cloud/normal_rows.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/query/prepared_cloud.h"
 
 namespace vpm {
@@ -26,8 +27,8 @@ class FramePreparation {
   NormalOptions options_;
   PointReading points_;
   NormalImages images_;
-  NormalImage seen_;
-  PaddedImage settled_;
+  SeenImage seen_;
+  FollowingRows settling_;
   std::vector<double> rays_;               // x / z of each column
   std::vector<std::uint32_t> row_points_;  // of each row
 };

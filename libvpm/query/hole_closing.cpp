@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {
@@ -51,15 +51,11 @@ void find_closed(const PaddedImage& image, int begin, int end, std::vector<Close
 }  // namespace
 
 void close_holes(PaddedImage& inverse) {
-  constexpr int kRowsPerTask = 32;
-  const int tasks = (inverse.height + kRowsPerTask - 1) / kRowsPerTask;
-  std::vector<std::vector<ClosedPixel>> closed(static_cast<std::size_t>(tasks));
+  const auto bands = static_cast<std::size_t>(inverse.height / kRowsPerBand + 1);
+  std::vector<std::vector<ClosedPixel>> closed(bands);
   for (int pass = 0; pass < kFillPasses; ++pass) {
-    parallel_for(closed.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t task = begin; task < end; ++task) {
-        const int first = static_cast<int>(task) * kRowsPerTask;
-        find_closed(inverse, first, std::min(first + kRowsPerTask, inverse.height), closed[task]);
-      }
+    for_bands(inverse.height, [&](int begin, int end) {
+      find_closed(inverse, begin, end, closed[static_cast<std::size_t>(begin / kRowsPerBand)]);
     });
     for (std::vector<ClosedPixel>& of_rows : closed) {
       for (const ClosedPixel& pixel : of_rows) *inverse.at(pixel.u, pixel.v) = pixel.value;

@@ -2,19 +2,11 @@
 
 #include <algorithm>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
-
-constexpr std::size_t kRowsPerTask = 32;
-
-VPM_VECTOR_CLONES
-void take_row(const float* __restrict inverse, std::size_t width,
-              InverseDepthRange* __restrict tiles) {
-  for (std::size_t u = 0; u < width; ++u) tiles[u] = {inverse[u], inverse[u]};
-}
 
 // A row of tiles from two of the level below; the last tile of an odd width has one column.
 VPM_VECTOR_CLONES
@@ -30,23 +22,24 @@ void unite_rows(const InverseDepthRange* __restrict above,
 
 }  // namespace
 
-void InverseDepthPyramid::build(const PaddedImage& inverse) {
-  auto width = static_cast<std::size_t>(inverse.width),
-       height = static_cast<std::size_t>(inverse.height);
-  std::size_t count = 1;
-  for (std::size_t side = std::max(width, height); side > 1; side = (side + 1) / 2) ++count;
-  levels_.resize(count);
-  levels_[0].resize(width * height);
-  parallel_for(height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      take_row(inverse.at(0, static_cast<int>(v)), width, levels_[0].data() + v * width);
-  });
-  for (std::size_t k = 1; k < count; ++k) {
+void InverseDepthPyramid::resize(std::uint32_t new_width, std::uint32_t new_height) {
+  if (width_ == new_width && height_ == new_height) return;
+  width_ = new_width, height_ = new_height;
+  levels_.clear();
+  for (std::size_t width = width_, height = height_;;) {
+    levels_.emplace_back(width * height);
+    if (std::max(width, height) <= 1) break;
+    width = (width + 1) / 2, height = (height + 1) / 2;
+  }
+}
+
+void InverseDepthPyramid::unite() {
+  std::size_t width = width_, height = height_;
+  for (std::size_t k = 1; k < levels_.size(); ++k) {
     const InverseDepthRange* fine = levels_[k - 1].data();
     const std::size_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-    levels_[k].resize(half_width * half_height);
-    parallel_for(half_height, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
+    for_bands(static_cast<int>(half_height), [&](int begin, int end) {
+      for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
         const InverseDepthRange* above = fine + 2 * v * width;
         unite_rows(above, 2 * v + 1 < height ? above + width : above, width,
                    levels_[k].data() + v * half_width);

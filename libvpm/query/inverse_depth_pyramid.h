@@ -3,16 +3,18 @@
 
 #include <vector>
 
-#include "libvpm/cloud/padded_image.h"
 #include "libvpm/query/depth_surface.h"
 
 namespace vpm {
 
 class InverseDepthPyramid {
  public:
-  // Of an image of inverse depth, 0 where nothing is known. Takes no new memory for an image of the
-  // size before.
-  void build(const PaddedImage& inverse);
+  // For an image of this size; no new memory where it has it.
+  void resize(std::uint32_t width, std::uint32_t height);
+  // A row of pixels, to be filled: inverse depth as both ends, 0 where nothing is known.
+  InverseDepthRange* row(int v) { return levels_[0].data() + static_cast<std::size_t>(v) * width_; }
+  // Makes the tiles of the pixels.
+  void unite();
 
   int levels() const { return static_cast<int>(levels_.size()); }
   const std::vector<InverseDepthRange>& level(int k) const {
@@ -20,6 +22,7 @@ class InverseDepthPyramid {
   }
 
  private:
+  std::size_t width_ = 0, height_ = 0;
   std::vector<std::vector<InverseDepthRange>> levels_;
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/query/hole_closing.h"
@@ -56,15 +57,7 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   validate(cloud, "the cloud");
   check_extent(cloud);
   if (cloud.sensor) {
-    camera_ = cloud.sensor->camera;
-    const DepthImage& depth = cloud.sensor->depth;
-    NormalImage seen;
-    seen.resize(depth.width, depth.height);
-    order_by_pixel(cloud, seen);
-    PaddedImage inverse, settled;
-    inverse.resize(depth.width, depth.height, kSettledMargin);
-    take_inverse_depth(depth, 0, inverse.height, inverse);
-    take_image(inverse, seen, points, settled);
+    take_image(cloud, points);
   } else {
     order_in_space(cloud);
     largest_radii_ = largest_in_nodes(radii_);
@@ -80,7 +73,21 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   }
 }
 
-void PreparedCloud::order_by_pixel(const Cloud& cloud, NormalImage& seen) {
+void PreparedCloud::take_image(const Cloud& cloud, PointReading points) {
+  camera_ = cloud.sensor->camera;
+  const DepthImage& depth = cloud.sensor->depth;
+  SeenImage seen;
+  seen.resize(depth.width, depth.height);
+  take_inverse_depth(depth, 0, seen.inverse.height, seen.inverse);
+  close_holes(seen.inverse);
+  order_by_pixel(cloud, seen);
+  image_.resize(depth.width, depth.height);
+  for_bands(seen.inverse.height,
+            [&](int begin, int end) { image_.read_rows(seen, points, begin, end); });
+  image_.finish();
+}
+
+void PreparedCloud::order_by_pixel(const Cloud& cloud, SeenImage& seen) {
   std::vector<std::uint32_t> order(cloud.size());
   std::iota(order.begin(), order.end(), 0u);
   if (!std::is_sorted(cloud.pixels.begin(), cloud.pixels.end(), std::less_equal<>())) {
@@ -116,23 +123,10 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud, NormalImage& seen) {
              std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
     }
     pixel_begin_[pixel + 1] = 1;
-    seen.set(static_cast<int>(u), static_cast<int>(v),
-             narrow(to_camera.rotation * widen(normals_[i])));
+    seen.set_normal(static_cast<int>(u), static_cast<int>(v),
+                    narrow(to_camera.rotation * widen(normals_[i])));
   }
   std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
-}
-
-void PreparedCloud::take_image(PaddedImage& inverse, const NormalImage& seen, PointReading points,
-                               PaddedImage& settled) {
-  close_holes(inverse);
-  take_pixels(inverse, measured_);
-  if (points == PointReading::settled) {
-    settle(inverse, seen, settled, pixel_normals_);
-    tiles_.build(settled);
-  } else {
-    take_normals(seen, pixel_normals_);
-    tiles_.build(inverse);
-  }
 }
 
 void PreparedCloud::order_in_space(const Cloud& cloud) {
@@ -168,20 +162,6 @@ void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uin
     positions_.push_back(cloud.positions[i]);
     normals_.push_back(cloud.normals[i]);
   }
-}
-
-DepthSurface PreparedCloud::depth_surface() const {
-  DepthSurface surface;
-  surface.k = camera_->intrinsics;
-  surface.width = static_cast<std::int32_t>(camera_->width);
-  surface.height = static_cast<std::int32_t>(camera_->height);
-  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
-  surface.normals = pixel_normals_.data();
-  surface.measured = measured_.data();
-  for (int level = 0; level < surface.levels; ++level) {
-    surface.tiles[level] = tiles_.level(level).data();
-  }
-  return surface;
 }
 
 PointTree PreparedCloud::point_tree() const {

@@ -11,7 +11,6 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/query/depth_surface.h"
 #include "libvpm/query/disk_surface.h"
-#include "libvpm/query/inverse_depth_pyramid.h"
 #include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/point_reading.h"
 #include "libvpm/query/settled_disks.h"
@@ -46,7 +45,7 @@ class PreparedCloud {
   // The camera's surface, where there is one; in the frame of camera_to_world().
   bool is_organised() const { return camera_.has_value(); }
   const Pose& camera_to_world() const { return camera_->to_world; }
-  DepthSurface depth_surface() const;
+  DepthSurface depth_surface() const { return image_.surface(camera_->intrinsics); }
   // Of organised clouds: the first point at or after each pixel; pixels + 1.
   const std::vector<std::uint32_t>& pixel_begin() const { return pixel_begin_; }
   PointTree point_tree() const;                         // of the positions; and
@@ -68,14 +67,11 @@ class PreparedCloud {
  private:
   friend class FramePreparation;
 
+  void take_image(const Cloud& cloud, PointReading points);
   // Notes the pixels' normals in `seen`, which has the image's size.
-  void order_by_pixel(const Cloud& cloud, NormalImage& seen);
+  void order_by_pixel(const Cloud& cloud, SeenImage& seen);
   void order_in_space(const Cloud& cloud);
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
-
-  // The camera's surface, from what it saw; closes the holes of `inverse`. `settled` is scratch.
-  void take_image(PaddedImage& inverse, const NormalImage& seen, PointReading points,
-                  PaddedImage& settled);
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
 
@@ -87,9 +83,7 @@ class PreparedCloud {
 
   std::optional<Camera> camera_;
   std::vector<std::uint32_t> pixel_begin_;
-  std::vector<Vec3f> pixel_normals_;  // camera axes
-  std::vector<float> measured_;       // inverse depth of each pixel
-  InverseDepthPyramid tiles_;
+  SettledImage image_;
 
   std::vector<BoxQuad> boxes_;  // of the positions
   std::vector<float> radii_, largest_radii_;

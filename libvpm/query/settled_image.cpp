@@ -1,34 +1,52 @@
 #include "libvpm/query/settled_image.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "libvpm/cloud/vector_tile.h"
 #include "libvpm/core/lanes.h"
-#include "libvpm/core/parallel.h"
 #include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {
 
-constexpr std::size_t kRowsPerTask = 32;
+// The windows of some pixels of a row, as sums down each of their columns.
+class ColumnSums {
+ public:
+  // So many that what is written of the first ones has left the CPU's queue when it is read again:
+  // across lanes, which CPUs do not take from there.
+  static constexpr int kPixels = 8 * kTile;
 
-// Windows of a row, as sums down each of their columns.
-struct ColumnSums {
-  static constexpr int kNumbers = 6;
-  std::vector<float> numbers[kNumbers];  // of column u at u + kSettledRadius
-
-  explicit ColumnSums(std::size_t stride) {
-    for (std::vector<float>& of_columns : numbers) of_columns.resize(stride + kTile);
+  // From pixel `first` of row v on, to the row's last tile.
+  [[gnu::always_inline]] ColumnSums(const PaddedImage& inverse, int first, int v) {
+    const auto stride = static_cast<std::ptrdiff_t>(inverse.stride);
+    const int columns = std::min(kColumns, inverse.width - first + kTile);
+    for (int i = 0; i < columns; i += kLanes) {
+      const float* middle = inverse.at(first + i - kSettledRadius, v);
+      set(i, column_of_depths<Floats>([&](int dv) __attribute__((always_inline)) {
+            return load<Floats>(middle + dv * stride);
+          }));
+    }
   }
+  // About pixels first + i, first + i + 1, ...
+  [[gnu::always_inline]] WindowOfDepths<Floats> windows_at(int i) const {
+    return window_of_depths<Floats>([&](int du) __attribute__((always_inline)) {
+      return at(i + kSettledRadius + du);
+    });
+  }
+
+ private:
+  static constexpr int kNumbers = 6;
+  static constexpr int kColumns = kPixels + kLanes;  // to whole lanes
+  static_assert(2 * kSettledRadius <= kLanes);
+
   [[gnu::always_inline]] void set(int i, const WindowOfDepths<Floats>& column) {
     const Floats values[] = {column.sum,      column.squares,    column.all.low,
                              column.all.high, column.beside.low, column.beside.high};
-    for (int k = 0; k < kNumbers; ++k) store(values[k], numbers[k].data() + i);
+    for (int k = 0; k < kNumbers; ++k) store(values[k], numbers_[k] + i);
   }
   [[gnu::always_inline]] WindowOfDepths<Floats> at(int i) const {
     const auto number = [&](int k) __attribute__((always_inline)) {
-      return load<Floats>(numbers[k].data() + i);
+      return load<Floats>(numbers_[k] + i);
     };
     WindowOfDepths<Floats> column;
     column.sum = number(0), column.squares = number(1);
@@ -36,54 +54,31 @@ struct ColumnSums {
     column.beside = {number(4), number(5)};
     return column;
   }
+
+  float numbers_[kNumbers][kColumns];
 };
-
-[[gnu::always_inline]] inline void sum_columns(const PaddedImage& inverse, int v,
-                                               ColumnSums& columns) {
-  const auto stride = static_cast<std::ptrdiff_t>(inverse.stride);
-  for (int i = 0; i < inverse.width + 2 * kSettledRadius; i += kLanes) {
-    const float* middle = inverse.at(i - kSettledRadius, v);
-    WindowOfDepths<Floats> column(load<Floats>(middle));
-    for (int d = 1; d <= kSettledRadius; ++d)
-      column.add_rows(load<Floats>(middle + d * stride), load<Floats>(middle - d * stride), d);
-    columns.set(i, column);
-  }
-}
-
-// The windows about pixels u, u + 1, ...
-[[gnu::always_inline]] inline WindowOfDepths<Floats> windows_at(const ColumnSums& columns, int u) {
-  const int middle = u + kSettledRadius;
-  WindowOfDepths<Floats> window = columns.at(middle);
-  for (int d = 1; d <= kSettledRadius; ++d)
-    window.add_columns(columns.at(middle + d), columns.at(middle - d), d);
-  return window;
-}
 
 struct Tile {
   float inverse[kTile];
   VectorTile normals;  // before they are made of unit length
 };
 
-[[gnu::always_inline]] inline void settle_tile(const PaddedImage& inverse, const NormalImage& seen,
-                                               const ColumnSums& columns, int first, int v,
-                                               Tile& tile) {
-  const auto at = [&](int u, int row) __attribute__((always_inline)) {
-    return SeenPixel<Floats>{load<Floats>(inverse.at(u, row)), load<Floats>(seen.x.at(u, row)),
-                             load<Floats>(seen.y.at(u, row)), load<Floats>(seen.z.at(u, row))};
-  };
-  for (int i = 0; i < kTile; i += kLanes) {
-    const int u = first + i;
-    if (u >= inverse.width) break;
-    SettledPixel<Floats> pixel(at(u, v));
-    for (int dv = -kSettledAcross; dv <= kSettledAcross; dv += kSettledAcross) {
-      for (int du = -kSettledAcross; du <= kSettledAcross; du += kSettledAcross) {
-        if (du != 0 || dv != 0) pixel.add(at(u + du, v + dv));
-      }
-    }
-    store(pixel.inverse_depth(windows_at(columns, u)), tile.inverse + i);
-    store(pixel.x(), tile.normals.x + i);
-    store(pixel.y(), tile.normals.y + i);
-    store(pixel.z(), tile.normals.z + i);
+// Pixel u of row v and those to its right; `columns` has them from column i on.
+[[gnu::always_inline]] inline void settle_tile(const SeenImage& seen, int u, int v,
+                                               const ColumnSums& columns, int i, Tile& tile) {
+  const auto stride = static_cast<std::ptrdiff_t>(seen.inverse.stride);
+  for (int k = 0; k < kTile; k += kLanes) {
+    const float *inverse = seen.inverse.at(u + k, v), *x = seen.x.at(u + k, v),
+                *y = seen.y.at(u + k, v), *z = seen.z.at(u + k, v);
+    const auto pixel = settled_pixel<Floats>([&](int du, int dv) __attribute__((always_inline)) {
+      const std::ptrdiff_t at = dv * stride + du;
+      return SeenPixel<Floats>{load<Floats>(inverse + at), load<Floats>(x + at),
+                               load<Floats>(y + at), load<Floats>(z + at)};
+    });
+    store(pixel.inverse_depth(columns.windows_at(i + k)), tile.inverse + k);
+    store(pixel.x(), tile.normals.x + k);
+    store(pixel.y(), tile.normals.y + k);
+    store(pixel.z(), tile.normals.z + k);
   }
 }
 
@@ -97,73 +92,69 @@ struct Tile {
 }
 
 VPM_VECTOR_CLONES
-void settle_row(const PaddedImage& inverse, const NormalImage& seen, int v, ColumnSums& columns,
-                float* settled, Vec3f* normals) {
-  sum_columns(inverse, v, columns);
-  for (int first = 0; first < inverse.width; first += kTile) {
-    const int count = std::min(kTile, inverse.width - first);
-    Tile tile{};  // zeros beyond the last pixel
-    settle_tile(inverse, seen, columns, first, v, tile);
-    std::copy(tile.inverse, tile.inverse + count, settled + first);
-    unit_length(tile.normals).store(count, normals + first);
+void settle_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* normals) {
+  const int width = seen.inverse.width;
+  for (int first = 0; first < width; first += ColumnSums::kPixels) {
+    const ColumnSums columns(seen.inverse, first, v);
+    for (int u = first; u < std::min(first + ColumnSums::kPixels, width); u += kTile) {
+      const int count = std::min(kTile, width - u);
+      Tile tile;
+      settle_tile(seen, u, v, columns, u - first, tile);
+      for (int k = 0; k < count; ++k) depths[u + k] = {tile.inverse[k], tile.inverse[k]};
+      unit_length(tile.normals).store(count, normals + u);
+    }
   }
 }
 
-void for_rows(int height, const std::function<void(int begin, int end)>& body) {
-  parallel_for(static_cast<std::size_t>(height), kRowsPerTask,
-               [&](std::size_t begin, std::size_t end) {
-                 body(static_cast<int>(begin), static_cast<int>(end));
-               });
-}
-
-std::size_t first_of_row(const PaddedImage& image, int v) {
-  return static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width);
+VPM_VECTOR_CLONES
+void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* normals) {
+  const float *inverse = seen.inverse.at(0, v), *x = seen.x.at(0, v), *y = seen.y.at(0, v),
+              *z = seen.z.at(0, v);
+  for (int u = 0; u < seen.inverse.width; ++u) {
+    depths[u] = {inverse[u], inverse[u]};
+    normals[u] = {x[u], y[u], z[u]};
+  }
 }
 
 }  // namespace
 
-void NormalImage::resize(std::uint32_t width, std::uint32_t height) {
-  for (PaddedImage* image : {&x, &y, &z}) image->resize(width, height, kSettledAcross);
+void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
+  for (PaddedImage* image : {&inverse, &x, &y, &z})
+    image->resize(width, height, SettledImage::kReach);
 }
 
-void NormalImage::set(int u, int v, Vec3f normal) {
+void SeenImage::set_normal(int u, int v, Vec3f normal) {
   *x.at(u, v) = normal.x;
   *y.at(u, v) = normal.y;
   *z.at(u, v) = normal.z;
 }
 
-void settle(const PaddedImage& inverse, const NormalImage& seen, PaddedImage& settled,
-            std::vector<Vec3f>& normals) {
-  const auto width = static_cast<std::uint32_t>(inverse.width),
-             height = static_cast<std::uint32_t>(inverse.height);
-  settled.resize(width, height, 0);
-  normals.resize(std::size_t{width} * height);
-  for_rows(inverse.height, [&](int begin, int end) {
-    ColumnSums columns(inverse.stride);
-    for (int v = begin; v < end; ++v)
-      settle_row(inverse, seen, v, columns, settled.at(0, v),
-                 normals.data() + first_of_row(inverse, v));
-  });
+void SettledImage::resize(std::uint32_t width, std::uint32_t height) {
+  width_ = static_cast<int>(width), height_ = static_cast<int>(height);
+  normals_.resize(first_of_row(height_));
+  measured_.resize(first_of_row(height_));
+  tiles_.resize(width, height);
 }
 
-void take_normals(const NormalImage& seen, std::vector<Vec3f>& normals) {
-  const PaddedImage& image = seen.x;
-  normals.resize(first_of_row(image, image.height));
-  for_rows(image.height, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      Vec3f* const row = normals.data() + first_of_row(image, v);
-      for (int u = 0; u < image.width; ++u)
-        row[u] = {*seen.x.at(u, v), *seen.y.at(u, v), *seen.z.at(u, v)};
-    }
-  });
+void SettledImage::read_rows(const SeenImage& seen, PointReading points, int begin, int end) {
+  const auto read_row = points == PointReading::settled ? settle_row : take_row;
+  for (int v = begin; v < end; ++v) {
+    read_row(seen, v, tiles_.row(v), normals_.data() + first_of_row(v));
+    std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+  }
 }
 
-void take_pixels(const PaddedImage& image, std::vector<float>& pixels) {
-  pixels.resize(first_of_row(image, image.height));
-  for_rows(image.height, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v)
-      std::copy_n(image.at(0, v), image.width, pixels.data() + first_of_row(image, v));
-  });
+DepthSurface SettledImage::surface(const Intrinsics& k) const {
+  DepthSurface surface;
+  surface.k = k;
+  surface.width = width_;
+  surface.height = height_;
+  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
+  surface.normals = normals_.data();
+  surface.measured = measured_.data();
+  for (int level = 0; level < surface.levels; ++level)
+    surface.tiles[level] = tiles_.level(level).data();
+  return surface;
 }
 
 }  // namespace vpm

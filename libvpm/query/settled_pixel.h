@@ -99,6 +99,21 @@ struct WindowOfDepths {
   }
 };
 
+// Of the column whose pixels are depth(dv), from its middle; of the window whose columns are
+// column(du).
+template <class Real, class Depth>
+[[gnu::always_inline]] VPM_HD inline WindowOfDepths<Real> column_of_depths(const Depth& depth) {
+  WindowOfDepths<Real> column(depth(0));
+  for (int d = 1; d <= kSettledRadius; ++d) column.add_rows(depth(d), depth(-d), d);
+  return column;
+}
+template <class Real, class Column>
+[[gnu::always_inline]] VPM_HD inline WindowOfDepths<Real> window_of_depths(const Column& column) {
+  WindowOfDepths<Real> window = column(0);
+  for (int d = 1; d <= kSettledRadius; ++d) window.add_columns(column(d), column(-d), d);
+  return window;
+}
+
 // A pixel and those of its neighbours that are like it.
 template <class Real>
 class SettledPixel {
@@ -131,6 +146,19 @@ class SettledPixel {
   Real x_, y_, z_;
   Mask all_alike_;
 };
+
+// Of the pixel seen(0, 0) and those around it, seen(du, dv).
+template <class Real, class Seen>
+[[gnu::always_inline]] VPM_HD inline SettledPixel<Real> settled_pixel(const Seen& seen) {
+  constexpr int kAcross = kSettledAcross;
+  SettledPixel<Real> pixel(seen(0, 0));
+  for (const int dv : {-kAcross, 0, kAcross}) {
+    pixel.add(seen(-kAcross, dv));
+    if (dv != 0) pixel.add(seen(0, dv));
+    pixel.add(seen(kAcross, dv));
+  }
+  return pixel;
+}
 
 // That makes a sum of normals one of unit length; any number where the sum is zero. (A choice
 // between two square roots would keep compilers from vectors.)

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/core/parallel.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -18,37 +18,32 @@
 namespace vpm {
 namespace {
 
-// An image with its normals, as settle() takes it.
-struct Seen {
-  PaddedImage inverse;
-  NormalImage normals;
-};
-
 struct Settled {
-  PaddedImage inverse;
-  std::vector<Vec3f> normals;
+  SettledImage image;
+  DepthSurface surface;
 
-  Vec3f normal(int u, int v) const {
-    return normals[static_cast<std::size_t>(v) * static_cast<std::size_t>(inverse.width) +
-                   static_cast<std::size_t>(u)];
+  explicit Settled(const SeenImage& seen) {
+    const int height = seen.inverse.height;
+    image.resize(static_cast<std::uint32_t>(seen.inverse.width),
+                 static_cast<std::uint32_t>(height));
+    for_bands(height, [&](int begin, int end) {
+      image.read_rows(seen, PointReading::settled, begin, end);
+    });
+    image.finish();
+    surface = image.surface({});
   }
+  float inverse(int u, int v) const { return surface.tiles[0][v * surface.width + u].high; }
+  Vec3f normal(int u, int v) const { return surface.normals[v * surface.width + u]; }
 };
 
-Seen seen(const DepthImage& depth, const Intrinsics& k) {
-  Seen result;
-  result.inverse.resize(depth.width, depth.height, kSettledMargin);
+SeenImage seen(const DepthImage& depth, const Intrinsics& k) {
+  SeenImage result;
+  result.resize(depth.width, depth.height);
   take_inverse_depth(depth, 0, result.inverse.height, result.inverse);
-  result.normals.resize(depth.width, depth.height);
   const std::vector<Vec3f> normals = estimate_normals(depth, k, {});
   for (std::size_t i = 0; i < normals.size(); ++i)
-    result.normals.set(static_cast<int>(i % depth.width), static_cast<int>(i / depth.width),
-                       normals[i]);
-  return result;
-}
-
-Settled settled(const Seen& image) {
-  Settled result;
-  settle(image.inverse, image.normals, result.inverse, result.normals);
+    result.set_normal(static_cast<int>(i % depth.width), static_cast<int>(i / depth.width),
+                      normals[i]);
   return result;
 }
 
@@ -65,7 +60,7 @@ class Scene {
   explicit Scene(const std::string& name)
       : scene_(synthetic::make_scene(name)),
         true_depth_(synthetic::render(*scene_.surface, scene_.camera)),
-        true_normals_(seen(true_depth_, intrinsics()).normals) {}
+        true_(seen(true_depth_, intrinsics())) {}
 
   const Intrinsics& intrinsics() const { return scene_.camera.intrinsics; }
   const DepthImage& true_depth() const { return true_depth_; }
@@ -91,15 +86,14 @@ class Scene {
     }
     return {std::sqrt(sums.depth / count), std::sqrt(sums.normal / count)};
   }
-  Errors errors(const Seen& s) const {
-    return errors(
-        [&](int u, int v) { return *s.inverse.at(u, v); },
-        [&](int u, int v) {
-          return Vec3f{*s.normals.x.at(u, v), *s.normals.y.at(u, v), *s.normals.z.at(u, v)};
-        });
+  Errors errors(const SeenImage& s) const {
+    return errors([&](int u, int v) { return *s.inverse.at(u, v); },
+                  [&](int u, int v) {
+                    return Vec3f{*s.x.at(u, v), *s.y.at(u, v), *s.z.at(u, v)};
+                  });
   }
   Errors errors(const Settled& s) const {
-    return errors([&](int u, int v) { return *s.inverse.at(u, v); },
+    return errors([&](int u, int v) { return s.inverse(u, v); },
                   [&](int u, int v) { return s.normal(u, v); });
   }
 
@@ -115,20 +109,20 @@ class Scene {
     return n.z < -0.8;
   }
   Vec3 true_normal(int u, int v) const {
-    return {*true_normals_.x.at(u, v), *true_normals_.y.at(u, v), *true_normals_.z.at(u, v)};
+    return {*true_.x.at(u, v), *true_.y.at(u, v), *true_.z.at(u, v)};
   }
 
   synthetic::Scene scene_;
   DepthImage true_depth_;
-  NormalImage true_normals_;
+  SeenImage true_;
 };
 
 TEST(SettledImage, NoiseFallsToWhatAWindowLeaves) {
   for (const char* name : {"tilted-wall", "ball", "inverted-ball"}) {
     SCOPED_TRACE(name);
     const Scene scene(name);
-    const Seen noisy = seen(scene.noisy_depth(), scene.intrinsics());
-    const Errors before = scene.errors(noisy), after = scene.errors(settled(noisy));
+    const SeenImage noisy = seen(scene.noisy_depth(), scene.intrinsics());
+    const Errors before = scene.errors(noisy), after = scene.errors(Settled(noisy));
     // A paraboloid over 7 by 7 pixels keeps sqrt(11 / 147) of independent noise; the noise of
     // neighbouring windows of normals is nearly so.
     EXPECT_LT(after.depth, 0.35 * before.depth);
@@ -140,7 +134,7 @@ TEST(SettledImage, WhatHasNoNoiseStaysWhereItIs) {
   for (const char* name : {"tilted-wall", "ball", "inverted-ball"}) {
     SCOPED_TRACE(name);
     const Scene scene(name);
-    const Errors after = scene.errors(settled(seen(scene.true_depth(), scene.intrinsics())));
+    const Errors after = scene.errors(Settled(seen(scene.true_depth(), scene.intrinsics())));
     EXPECT_LT(after.depth, 1e-6);   // m, at 1 m
     EXPECT_LT(after.normal, 1e-3);  // mean of normals 4 pixels aside, on a radius of .3 m
   }
@@ -166,11 +160,9 @@ TEST(SettledImage, CreasesAndStepsAreNotRoundedOff) {
   std::normal_distribution<double> noise(0, 5e-4);
   DepthImage depth = creased(0.2);
   for (float& z : depth.depth) z += static_cast<float>(noise(random));
-  const Seen image = seen(depth, {525, 525, kCrease, 20});
-  const Settled after = settled(image);
-  const auto stays = [&](int u, int v) {
-    return *after.inverse.at(u, v) == *image.inverse.at(u, v);
-  };
+  const SeenImage image = seen(depth, {525, 525, kCrease, 20});
+  const Settled after(image);
+  const auto stays = [&](int u, int v) { return after.inverse(u, v) == *image.inverse.at(u, v); };
   for (int v = 8; v < 32; ++v) {
     for (const int middle : {kCrease, kStep}) {
       for (int u = middle - kSettledRadius; u <= middle + kSettledRadius - 1; ++u)
@@ -187,8 +179,8 @@ TEST(SettledImage, DepthsStayAmongThoseOfTheNinePixelsAround) {
   DepthImage depth = creased(0);
   for (float& z : depth.depth)
     z += static_cast<float>(number(random) < 0.3 ? 0.02 * number(random) : 0);
-  const Seen image = seen(depth, {525, 525, kCrease, 20});
-  const Settled after = settled(image);
+  const SeenImage image = seen(depth, {525, 525, kCrease, 20});
+  const Settled after(image);
   int on_rim = 0;
   for (int v = 1; v < 39; ++v) {
     for (int u = 1; u < 119; ++u) {
@@ -199,7 +191,7 @@ TEST(SettledImage, DepthsStayAmongThoseOfTheNinePixelsAround) {
           high = std::max(high, *image.inverse.at(u + du, v + dv));
         }
       }
-      const float value = *after.inverse.at(u, v);
+      const float value = after.inverse(u, v);
       EXPECT_TRUE(low <= value && value <= high) << u << ", " << v;
       on_rim += (value == low || value == high) && value != *image.inverse.at(u, v);
     }
@@ -210,49 +202,48 @@ TEST(SettledImage, DepthsStayAmongThoseOfTheNinePixelsAround) {
 TEST(SettledImage, NothingComesOfNothing) {
   DepthImage depth = creased(0);
   for (std::size_t i = 0; i < depth.depth.size(); i += 3) depth.depth[i] = 0;
-  const Seen image = seen(depth, {525, 525, kCrease, 20});
-  const Settled after = settled(image);
+  const SeenImage image = seen(depth, {525, 525, kCrease, 20});
+  const Settled after(image);
   for (int v = 0; v < 40; ++v) {
     for (int u = 0; u < 120; ++u) {
       if (*image.inverse.at(u, v) > 0) continue;
-      EXPECT_EQ(*after.inverse.at(u, v), 0);
+      EXPECT_EQ(after.inverse(u, v), 0);
       EXPECT_EQ(widen(after.normal(u, v)), Vec3());
     }
   }
 }
 
 // The same arithmetic pixel by pixel, as devices have it.
-Settled one_by_one(const Seen& image) {
-  Settled result;
-  const int width = image.inverse.width, height = image.inverse.height;
-  result.inverse.resize(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), 0);
-  const auto at = [&](int u, int v) {
-    return SeenPixel<float>{*image.inverse.at(u, v), *image.normals.x.at(u, v),
-                            *image.normals.y.at(u, v), *image.normals.z.at(u, v)};
-  };
-  const auto column = [&](int u, int v) {
-    WindowOfDepths<float> sums(*image.inverse.at(u, v));
-    for (int d = 1; d <= kSettledRadius; ++d)
-      sums.add_rows(*image.inverse.at(u, v + d), *image.inverse.at(u, v - d), d);
-    return sums;
-  };
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) {
-      SettledPixel<float> pixel(at(u, v));
-      for (int dv = -kSettledAcross; dv <= kSettledAcross; dv += kSettledAcross) {
-        for (int du = -kSettledAcross; du <= kSettledAcross; du += kSettledAcross) {
-          if (du != 0 || dv != 0) pixel.add(at(u + du, v + dv));
-        }
-      }
-      WindowOfDepths<float> window = column(u, v);
-      for (int d = 1; d <= kSettledRadius; ++d)
-        window.add_columns(column(u + d, v), column(u - d, v), d);
-      *result.inverse.at(u, v) = pixel.inverse_depth(window);
-      const float scale = per_length(pixel.x(), pixel.y(), pixel.z());
-      result.normals.push_back({pixel.x() * scale, pixel.y() * scale, pixel.z() * scale});
-    }
+class OneByOne {
+ public:
+  explicit OneByOne(const SeenImage& seen) : seen_(seen) {}
+
+  SettledPixel<float> pixel(int u, int v) const {
+    return settled_pixel<float>([&](int du, int dv) {
+      return SeenPixel<float>{*seen_.inverse.at(u + du, v + dv), *seen_.x.at(u + du, v + dv),
+                              *seen_.y.at(u + du, v + dv), *seen_.z.at(u + du, v + dv)};
+    });
   }
-  return result;
+  float inverse(int u, int v) const { return pixel(u, v).inverse_depth(window(u, v)); }
+  Vec3f normal(int u, int v) const {
+    const SettledPixel<float> p = pixel(u, v);
+    const float scale = per_length(p.x(), p.y(), p.z());
+    return {p.x() * scale, p.y() * scale, p.z() * scale};
+  }
+
+ private:
+  WindowOfDepths<float> window(int u, int v) const {
+    return window_of_depths<float>([&](int du) {
+      return column_of_depths<float>([&](int dv) { return *seen_.inverse.at(u + du, v + dv); });
+    });
+  }
+
+  const SeenImage& seen_;
+};
+
+template <class T>
+bool same_bytes(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
 TEST(SettledImage, HasTheBitsOfItsPixelsAtAnySize) {
@@ -266,20 +257,16 @@ TEST(SettledImage, HasTheBitsOfItsPixelsAtAnySize) {
       depth.depth.push_back(number(random) < 0.01 ? 0.0F
                                                   : static_cast<float>(z + 2e-3 * number(random)));
     }
-    const Seen image = seen(depth, {525, 525, width / 2.0, height / 2.0});
-    const Settled expected = one_by_one(image);
-    for (const int threads : {1, 3}) {
-      set_thread_count(threads);
-      const Settled found = settled(image);
-      EXPECT_EQ(std::memcmp(found.normals.data(), expected.normals.data(),
-                            found.normals.size() * sizeof(Vec3f)),
-                0);
-      for (int v = 0; v < height; ++v)
-        EXPECT_EQ(std::memcmp(found.inverse.at(0, v), expected.inverse.at(0, v),
-                              sizeof(float) * static_cast<std::size_t>(width)),
-                  0);
+    const SeenImage image = seen(depth, {525, 525, width / 2.0, height / 2.0});
+    const OneByOne expected(image);
+    const Settled found(image);
+    int differ = 0;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u)
+        differ += !same_bytes(found.inverse(u, v), expected.inverse(u, v)) ||
+                  !same_bytes(found.normal(u, v), expected.normal(u, v));
     }
-    set_thread_count(0);
+    EXPECT_EQ(differ, 0) << width << " x " << height;
   }
 }
 

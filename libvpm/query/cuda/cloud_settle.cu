@@ -59,25 +59,15 @@ class SettleWork {
     for (int k = thread(); k < kColumns * kTileHeight; k += kTileThreads) {
       const float* const middle =
           shared_.inverse + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
-      Window column(*middle);
-#pragma unroll
-      for (int d = 1; d <= kSettledRadius; ++d)
-        column.add_rows(middle[d * kWidth], middle[-d * kWidth], d);
-      shared_.columns[k] = column;
+      shared_.columns[k] = column_of_depths<float>([&](int dv) { return middle[dv * kWidth]; });
     }
   }
 
   __device__ void settle() const {
     for (int k = thread(); k < kTilePixels; k += kTileThreads) {
       const int x = k % kTileWidth, y = k / kTileWidth;
-      SettledPixel<float> pixel(seen_at(x, y));
-#pragma unroll
-      for (int dv = -kSettledAcross; dv <= kSettledAcross; dv += kSettledAcross) {
-#pragma unroll
-        for (int du = -kSettledAcross; du <= kSettledAcross; du += kSettledAcross) {
-          if (du != 0 || dv != 0) pixel.add(seen_at(x + du, y + dv));
-        }
-      }
+      const auto pixel =
+          settled_pixel<float>([&](int du, int dv) { return seen_at(x + du, y + dv); });
       const float scale = per_length(pixel.x(), pixel.y(), pixel.z());
       shared_.surface[k] = pixel.inverse_depth(window_at(x, y));
       shared_.normals[k] = {pixel.x() * scale, pixel.y() * scale, pixel.z() * scale};
@@ -133,11 +123,7 @@ class SettleWork {
     return shared_.columns[y * kColumns + x + kSettledRadius];
   }
   __device__ Window window_at(int x, int y) const {
-    Window window = column_at(x, y);
-#pragma unroll
-    for (int d = 1; d <= kSettledRadius; ++d)
-      window.add_columns(column_at(x + d, y), column_at(x - d, y), d);
-    return window;
+    return window_of_depths<float>([&](int du) { return column_at(x + du, y); });
   }
 
   // The tile of a level of the whole image that holds a pixel.
