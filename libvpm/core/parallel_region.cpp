@@ -1,5 +1,6 @@
 #include "libvpm/core/parallel_region.h"
 
+#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -13,6 +14,21 @@ namespace {
 
 thread_local bool is_in_region = false;
 
+// Takes the first range, or the last one.
+bool take(std::atomic<std::uint64_t>& open, int end_shift, bool is_first, std::uint64_t& range) {
+  std::uint64_t seen = open.load(std::memory_order_acquire);
+  for (;;) {
+    const std::uint64_t begin = seen & ((std::uint64_t{1} << end_shift) - 1),
+                        end = seen >> end_shift;
+    if (begin >= end) return false;
+    range = is_first ? begin : end - 1;
+    const std::uint64_t rest = is_first ? seen + 1 : seen - (std::uint64_t{1} << end_shift);
+    if (open.compare_exchange_weak(seen, rest, std::memory_order_acq_rel,
+                                   std::memory_order_acquire))
+      return true;
+  }
+}
+
 }  // namespace
 
 struct ParallelRegion::Helpers {
@@ -22,7 +38,9 @@ struct ParallelRegion::Helpers {
 ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
   if (threads_ == 1) return;
   is_in_region = true;
+  part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMostParts);
   helpers_ = std::make_unique<Helpers>();
+  first_thread_ = tbb::this_task_arena::current_thread_index();
   for (int k = 1; k < threads_; ++k) helpers_->tasks.run([this] { help(); });
 }
 
@@ -44,22 +62,21 @@ void ParallelRegion::loop(std::size_t count, std::size_t grain, BodyView body) {
     return;
   }
   done_.store(0, std::memory_order_relaxed);
-  open_ranges_.store(ranges, std::memory_order_release);
-  std::uint64_t range = 0;
-  while (take_range(range)) run(range);
+  for (std::size_t k = 0; k < part_count_; ++k) {
+    const std::uint64_t begin = k * ranges / part_count_, end = (k + 1) * ranges / part_count_;
+    parts_[k].open.store(begin | end << kEndShift, std::memory_order_release);
+  }
+  run_ranges(0);
   while (done_.load(std::memory_order_acquire) < ranges) std::this_thread::yield();
   if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-bool ParallelRegion::take_range(std::uint64_t& range) {
-  std::uint64_t open = open_ranges_.load(std::memory_order_acquire);
-  while (open > 0) {
-    if (open_ranges_.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel)) {
-      range = open - 1;
-      return true;
-    }
+void ParallelRegion::run_ranges(std::size_t own) {
+  std::uint64_t range = 0;
+  for (std::size_t k = 0; k < part_count_; ++k) {
+    Part& part = parts_[(own + k) % part_count_];
+    while (take(part.open, kEndShift, k == 0, range)) run(range);
   }
-  return false;
 }
 
 void ParallelRegion::run(std::uint64_t range) {
@@ -74,12 +91,11 @@ void ParallelRegion::run(std::uint64_t range) {
 void ParallelRegion::help() {
   if (is_in_region) return;
   is_in_region = true;
-  std::uint64_t range = 0;
+  const int after = tbb::this_task_arena::current_thread_index() - first_thread_;
+  const std::size_t own = static_cast<std::size_t>(after + threads_) % part_count_;
   while (!is_over_.load(std::memory_order_acquire)) {
-    if (take_range(range))
-      run(range);
-    else
-      std::this_thread::yield();
+    run_ranges(own);
+    std::this_thread::yield();
   }
   is_in_region = false;
 }

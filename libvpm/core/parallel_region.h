@@ -1,5 +1,7 @@
 // Several short parallel loops one after the other, by the same threads: between two loops they
 // wait for the next instead of falling asleep, since waking takes longer than such a loop does.
+// Every thread begins with a part of its own, the same in each region of as many threads: what it
+// wrote the last time is still in its cache. Who is done takes from the ends of other parts.
 #pragma once
 
 #include <atomic>
@@ -22,8 +24,8 @@ class ParallelRegion {
   // How many may share the work, this one included.
   int threads() const { return threads_; }
 
-  // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long.
-  // Threads that come late find the rest; nobody waits for one that has not come.
+  // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long:
+  // less than 2^32. Threads that come late find the rest; nobody waits for one that has not come.
   template <class Body>
   void loop(std::size_t count, std::size_t grain, const Body& body) {
     loop(count, grain, {&body, [](const void* it, std::size_t begin, std::size_t end) {
@@ -39,14 +41,22 @@ class ParallelRegion {
     void (*call)(const void* body, std::size_t begin, std::size_t end) = nullptr;
   };
 
+  // The ranges of a part that nobody has taken. Who takes one may read the loop's data, which stay
+  // until it is done; who takes none must not.
+  struct alignas(64) Part {              // a line of the cache
+    std::atomic<std::uint64_t> open{0};  // the first one, and above kEndShift the one behind them
+  };
+  static constexpr std::size_t kMostParts = 16;  // further threads share them
+  static constexpr int kEndShift = 32;
+
   void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();
-  bool take_range(std::uint64_t& range);
+  void run_ranges(std::size_t own);
   void run(std::uint64_t range);
 
-  // How many ranges of the loop nobody has taken. Who takes one may read the loop's data, which
-  // stay until it is done; who takes none must not.
-  std::atomic<std::uint64_t> open_ranges_{0};
+  Part parts_[kMostParts];
+  std::size_t part_count_ = 1;
+  int first_thread_ = 0;  // the arena's index of the one that runs the loops
   std::atomic<std::uint64_t> done_{0};
   std::atomic<bool> is_over_{false};
   std::size_t count_ = 0, grain_ = 1;

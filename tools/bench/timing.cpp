@@ -102,7 +102,7 @@ class Timing {
     report_.summary += line;
     if (options_.progress) {
       const double recorded = options_.data.empty() ? 0 : 1;
-      const double stages = 6 + recorded + (6 + 2 * recorded) * static_cast<double>(sizes_.size());
+      const double stages = 7 + recorded + (7 + 3 * recorded) * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -122,10 +122,13 @@ class Timing {
     time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
     points_ = without_camera(cloud_);
     time("cloud preparation, points", 0, runs_.slow, [&] { PreparedCloud prepared(points_); });
-    FramePreparation preparation{NormalOptions{}};
-    PreparedCloud frame{Cloud{}};
-    time("frame, all at once", 0, runs_.fast,
-         [&] { preparation.prepare(depth, scene_.camera, frame); });
+    const auto time_frame = [&](const char* stage, PointReading points) {
+      FramePreparation preparation(NormalOptions{}, points);
+      PreparedCloud frame{Cloud{}};
+      time(stage, 0, runs_.fast, [&] { preparation.prepare(depth, scene_.camera, frame); });
+    };
+    time_frame("frame, all at once", PointReading::settled);
+    time_frame("frame, all at once, as measured", PointReading::as_measured);
   }
 
   // Rooms are walked through as random poses: what one costs depends on what is near.
@@ -133,7 +136,10 @@ class Timing {
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
     Query query(tool, {});
     for (const RecordedImage& image : recorded_images(options_.data)) {
-      recorded_.push_back({PreparedCloud(image.cloud), without_camera(image.cloud), {}});
+      recorded_.push_back({PreparedCloud(image.cloud),
+                           PreparedCloud(image.cloud, PointReading::as_measured),
+                           without_camera(image.cloud),
+                           {}});
       Recorded& room = recorded_.back();
       for (std::uint64_t k = 0; room.poses.size() < kPosesInRoom && k < kMostTries; ++k) {
         const Pose pose = random_pose_before(image.cloud, k, tool.reach);
@@ -161,7 +167,7 @@ class Timing {
     ToolModel model;
     time("graph", spheres, runs_.slow, [&] { model = build_tool_model(packing, GraphOptions{}); });
 
-    const PreparedCloud cloud(cloud_), points(points_);
+    const PreparedCloud cloud(cloud_), measured(cloud_, PointReading::as_measured), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, Measure measure,
@@ -173,6 +179,7 @@ class Timing {
       time(stage, spheres, runs_.fast, [&] { query.run(seen, pose); });
     };
     time_query("query refined", cloud, Measure::refined, PointLocation::grid);
+    time_query("query refined, as measured", measured, Measure::refined, PointLocation::grid);
     time_query("query refined, points", points, Measure::refined, PointLocation::grid);
     const auto time_rooms = [&](const char* stage, const auto& cloud_of) {
       Query query(model, {});
@@ -188,6 +195,8 @@ class Timing {
     if (poses_in_rooms_ > 0) {
       time_rooms("query refined, recorded rooms",
                  [](const Recorded& room) -> const PreparedCloud& { return room.seen; });
+      time_rooms("query refined, as measured, recorded rooms",
+                 [](const Recorded& room) -> const PreparedCloud& { return room.measured; });
       time_rooms("query refined, points, recorded rooms",
                  [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
     }
@@ -203,7 +212,7 @@ class Timing {
   static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // of the tool, in rooms
 
   struct Recorded {
-    PreparedCloud seen;
+    PreparedCloud seen, measured;
     Cloud cloud;  // without camera
     std::vector<Pose> poses;
     std::optional<PreparedCloud> points = {};
