@@ -84,6 +84,8 @@ class ShareFlood {
   }
 
  private:
+  static constexpr std::size_t kRowsOfChunk = 128;  // counted in a byte
+
   Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
 
   void list_cut() {
@@ -92,29 +94,53 @@ class ShareFlood {
                 [&](std::uint32_t i) { states_.cut.push_back(i); });
   }
 
-  // The cut shares are shared out evenly.
+  // What the flood may do is shared out evenly.
   void split(int threads) {
     constexpr std::size_t kFewCut = 128;  // take less time than two rounds
-    const std::vector<std::uint32_t>& cut = states_.cut;
-    const std::size_t count = std::clamp<std::size_t>(cut.size() / kFewCut, 1, threads);
+    const std::size_t count = std::clamp<std::size_t>(states_.cut.size() / kFewCut, 1, threads);
     states_.parts.resize(std::max(count, states_.parts.size()));
     states_.part_count = count;
+    const std::uint64_t all = count > 1 ? estimate_work() : 0;
+    std::uint64_t before = 0;
+    std::size_t chunk = 0;
     std::uint32_t begin = 0;
     for (std::size_t k = 0; k < count; ++k) {
+      for (; k + 1 < count && before < (k + 1) * all / count; ++chunk)
+        before += states_.work[chunk];
       FloodPart& part = states_.parts[k];
       part.begin = begin;
-      part.end = begin =
-          k + 1 < count ? first_of_patch(cut[(k + 1) * cut.size() / count]) : level_.size();
+      part.end = begin = k + 1 < count ? first_of_patch(chunk * kRowsOfChunk) : level_.size();
       part.front.clear();
       part.leaving.clear();
       part.left.clear();
     }
   }
 
+  // Of each chunk of rows and of all: a step to each share that is not free, and more from the cut
+  // ones, whose planes are asked.
+  std::uint64_t estimate_work() {
+    constexpr std::uint32_t kStepsFromCut = 2;
+    const std::vector<Cell>& cells = states_.cells;
+    std::uint64_t all = 0;
+    states_.work.clear();
+    auto cut = states_.cut.begin();
+    for (std::size_t begin = 0; begin < cells.size(); begin += kRowsOfChunk) {
+      const std::size_t end = std::min(begin + kRowsOfChunk, cells.size());
+      std::uint8_t steps = 0;
+      for (std::size_t i = begin; i < end; ++i) steps += cells[i] != Cell::free;
+      std::uint32_t work = steps;
+      for (; cut < states_.cut.end() && *cut < end; ++cut) work += kStepsFromCut;
+      states_.work.push_back(work);
+      all += work;
+    }
+    return all;
+  }
+
   std::span<FloodPart> parts() const { return {states_.parts.data(), states_.part_count}; }
 
-  std::uint32_t first_of_patch(std::uint32_t row) const {
-    return level_.cluster(level_.root(row)).begin;
+  std::uint32_t first_of_patch(std::size_t row) const {
+    return row < level_.size() ? level_.cluster(level_.root(static_cast<std::uint32_t>(row))).begin
+                               : level_.size();
   }
 
   // From the cut shares.

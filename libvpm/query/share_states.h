@@ -87,7 +87,8 @@ struct ShareStates {
   std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
   // Of each root that is a patch; of one behind the surface, the normal only.
   std::vector<CrossingPlane> planes;
-  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> cut;   // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> work;  // of the flood, estimated, in chunks of rows
   // As many as ever flooded side by side; those from `part_count` on are not in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;
