@@ -10,8 +10,6 @@ namespace {
 
 // Normals are stored as floats; anything farther from unit length was not normalised.
 constexpr double kNormalTolerance = 1e-3;
-// A camera's rotation comes from the functions of pose.h, so it is off by rounding only.
-constexpr double kCameraRotationTolerance = 1e-9;
 
 }  // namespace
 
@@ -29,11 +27,7 @@ void validate(const Camera& camera, const std::string& name) {
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (pixels == 0 || pixels > std::numeric_limits<std::uint32_t>::max())
     refuse(name + ": the camera's image is empty or has more than 2^32 - 1 pixels");
-  const Rotation& r = camera.to_world.rotation;
-  const Rotation gram = r * transpose(r);
-  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
-                     norm(gram.row2 - Vec3{0, 0, 1});
-  if (!(off <= kCameraRotationTolerance) || dot(r.row0, cross(r.row1, r.row2)) <= 0 ||
+  if (!is_rotation(camera.to_world.rotation, kCameraRotationTolerance) ||
       !is_finite(camera.to_world.translation))
     refuse(name + ": the camera's pose is not finite, or not a rotation and a translation");
 }

@@ -7,11 +7,13 @@ namespace vpm {
 
 void PaddedImage::resize(std::uint32_t new_width, std::uint32_t new_height, int frame) {
   const int w = static_cast<int>(new_width), h = static_cast<int>(new_height);
-  if (w == width && h == height && frame == margin) return;
-  width = w, height = h, margin = frame;
-  stride = std::size_t{new_width} + 2 * static_cast<std::size_t>(frame) + kLanes;
-  values.assign(stride * (std::size_t{new_height} + 2 * static_cast<std::size_t>(frame)) + kTile,
-                0.0F);
+  const std::size_t tiles = (std::size_t{new_width} + kTile - 1) / kTile,
+                    around = 2 * static_cast<std::size_t>(frame),
+                    row = tiles * kTile + around + kLanes,
+                    count = row * (std::size_t{new_height} + around);
+  if (w == width && h == height && frame == margin && values.size() == count) return;
+  values.assign(count, 0.0F);
+  width = w, height = h, margin = frame, stride = row;
 }
 
 VPM_VECTOR_CLONES

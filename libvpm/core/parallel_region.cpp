@@ -37,15 +37,24 @@ struct ParallelRegion::Helpers {
 
 ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
   if (threads_ == 1) return;
-  is_in_region = true;
   part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMostParts);
   helpers_ = std::make_unique<Helpers>();
-  first_thread_ = tbb::this_task_arena::current_thread_index();
-  for (int k = 1; k < threads_; ++k) helpers_->tasks.run([this] { help(); });
+  // A thread that is new to the scheduler gets its first place.
+  first_thread_ = std::max(tbb::this_task_arena::current_thread_index(), 0);
+  is_in_region = true;
+  try {
+    for (int k = 1; k < threads_; ++k) helpers_->tasks.run([this] { help(); });
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
 ParallelRegion::~ParallelRegion() {
-  if (!helpers_) return;
+  if (helpers_) end();
+}
+
+void ParallelRegion::end() {
   is_over_.store(true, std::memory_order_release);
   helpers_->tasks.wait();
   is_in_region = false;

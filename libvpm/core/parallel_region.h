@@ -51,6 +51,7 @@ class ParallelRegion {
 
   void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();
+  void end();
   void run_ranges(std::size_t own);
   void run(std::uint64_t range);
 

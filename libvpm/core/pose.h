@@ -54,6 +54,15 @@ VPM_HD constexpr Pose relative_to(const Pose& frame, const Pose& pose) {
   return {back * pose.rotation, back * (pose.translation - frame.translation)};
 }
 
+// Whether the rows are orthonormal to this deviation, and not mirrored. False for what is not
+// finite.
+inline bool is_rotation(const Rotation& r, double tolerance) {
+  const Rotation gram = r * transpose(r);
+  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
+                     norm(gram.row2 - Vec3{0, 0, 1});
+  return off <= tolerance && dot(r.row0, cross(r.row1, r.row2)) > 0;
+}
+
 // Deviation from a unit quaternion or an orthonormal matrix up to which an input is taken for a
 // rounded rotation and normalised (recorded camera poses reach 4e-4); beyond it the input is
 // refused.

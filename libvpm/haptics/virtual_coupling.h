@@ -55,7 +55,7 @@ struct CouplingEnergy {
 
 class VirtualCoupling {
  public:
-  // The tool starts at rest where the device is.
+  // The tool starts at rest where the device is. Throws Error(usage) for what validate() refuses.
   VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass, const Pose& device);
 
   // The tool's pose now: ask the measure here.

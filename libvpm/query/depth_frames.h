@@ -11,8 +11,9 @@
 //
 // Frames are immutable and may be held, copied, and queried by several threads; memory of one that
 // nobody holds is used again. So while the loop queries one frame, the next can be filled and
-// prepared. DepthFrames itself belongs to one thread at a time, and frames may outlive it. Nothing
-// is allocated once there is memory for as many frames as are held at a time, and the one to come.
+// prepared. DepthFrames itself belongs to one thread at a time, and frames may outlive it. On a
+// device nothing is allocated once there is memory for as many frames as are held at a time, and
+// the one to come; a CPU takes some for each frame while it prepares it.
 #pragma once
 
 #include <memory>

@@ -24,7 +24,9 @@ VPM_HD constexpr InverseDepthRange united(InverseDepthRange a, InverseDepthRange
 
 // A view: plain pointers, for host or device.
 struct DepthSurface {
-  static constexpr int kMaxLevels = 16;  // images up to 65536 pixels wide or high
+  static constexpr int kMaxLevels = 16;
+  // The widest and highest image: of the coarsest tiles, a look takes three by three.
+  static constexpr std::uint32_t kMostPixelsASide = 1U << kMaxLevels;
   // Pixels whose inverse depths differ by more than this fraction belong to two surfaces. A plane
   // at 1 m seen by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
   static constexpr double kJump = 0.03;

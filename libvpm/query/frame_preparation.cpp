@@ -28,7 +28,9 @@ double steepest(double size, double centre, double focal) {
 bool is_usual(const Camera& camera, const DepthImage& depth) {
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (depth.width != camera.width || depth.height != camera.height || pixels == 0 ||
-      pixels > PreparedCloud::kMaxPoints || !is_in_range(camera.to_world.translation))
+      pixels > PreparedCloud::kMaxPoints ||
+      std::max(depth.width, depth.height) > DepthSurface::kMostPixelsASide ||
+      !is_in_range(camera.to_world.translation))
     return false;
   const Intrinsics& k = camera.intrinsics;
   const double x = steepest(camera.width, k.cx, k.fx), y = steepest(camera.height, k.cy, k.fy);
@@ -116,11 +118,16 @@ FramePreparation::FramePreparation(const NormalOptions& options, PointReading po
 
 void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
                                PreparedCloud& cloud) {
-  check_intrinsics(camera.intrinsics);
-  if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
-      !prepare_rows(depth, camera, cloud))
-    cloud = PreparedCloud(make_cloud(depth, camera, options_),
-                          points_);  // tells what is wrong, if anything
+  try {
+    check_intrinsics(camera.intrinsics);
+    if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
+        !prepare_rows(depth, camera, cloud))
+      cloud = PreparedCloud(make_cloud(depth, camera, options_),
+                            points_);  // tells what is wrong, if anything
+  } catch (...) {
+    cloud = PreparedCloud{Cloud{}};
+    throw;
+  }
 }
 
 // False where a normal is not sound.
@@ -131,11 +138,10 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   const Intrinsics& k = camera.intrinsics;
   const Rotation to_camera =
       relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
+  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // forgets all that points need
   cloud.serial_ = PreparedCloud::next_serial();
   cloud.origin_ = camera.to_world.translation;
   cloud.camera_ = camera;
-  cloud.boxes_.clear();
-  cloud.foot_boxes_.clear();
   cloud.positions_.resize(pixels);
   cloud.normals_.resize(pixels);
   cloud.pixel_begin_.resize(pixels + 1);

@@ -17,7 +17,8 @@ class FramePreparation {
                             PointReading points = PointReading::settled);
 
   // `cloud` becomes that of the frame and takes no new memory if it held a frame of the same size;
-  // nobody may ask it meanwhile. Throws what make_cloud() and PreparedCloud() throw.
+  // nobody may ask it meanwhile. Throws what make_cloud() and PreparedCloud() throw; then `cloud`
+  // is empty.
   void prepare(const DepthImage& depth, const Camera& camera, PreparedCloud& cloud);
 
  private:

@@ -23,12 +23,13 @@ void unite_rows(const InverseDepthRange* __restrict above,
 }  // namespace
 
 void InverseDepthPyramid::resize(std::uint32_t new_width, std::uint32_t new_height) {
-  if (width_ == new_width && height_ == new_height) return;
   width_ = new_width, height_ = new_height;
-  levels_.clear();
-  for (std::size_t width = width_, height = height_;;) {
-    levels_.emplace_back(width * height);
-    if (std::max(width, height) <= 1) break;
+  std::size_t count = 1;
+  for (std::size_t side = std::max(width_, height_); side > 1; side = (side + 1) / 2) ++count;
+  levels_.resize(count);
+  std::size_t width = width_, height = height_;
+  for (std::vector<InverseDepthRange>& level : levels_) {
+    level.resize(width * height);
     width = (width + 1) / 2, height = (height + 1) / 2;
   }
 }

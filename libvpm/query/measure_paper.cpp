@@ -17,6 +17,8 @@ PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level, PointLocat
   contacts_.resize(level.sphere_count);
   normals_.resize(level.sphere_count);
   depth_.resize(level.sphere_count);
+  front_.reserve(level.sphere_count);
+  next_front_.reserve(level.sphere_count);
 }
 
 Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,

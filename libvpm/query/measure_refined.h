@@ -20,7 +20,7 @@ class RefinedMeasure {
   // Of the options, those that speak of coherent poses and of points.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
-  // Allocates nothing after the first call.
+  // With one thread, allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   // Of the last run, one per sphere.

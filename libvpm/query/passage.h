@@ -1,5 +1,5 @@
 // Which shares behind the surface the flood may pass, and which it enters from a cut share. One
-// definition for host and device; measure_refined.h says in which order they are asked.
+// definition for host and device; share_flood.h says in which order they are asked.
 #pragma once
 
 #include "libvpm/query/contact_plane.h"

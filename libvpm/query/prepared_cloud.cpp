@@ -36,9 +36,12 @@ void check_extent(const Cloud& cloud) {
       (cloud.sensor && !is_in_range(cloud.sensor->camera.to_world.translation)))
     refuse("the cloud's origin or its camera is further than 2^100 m from the world's origin");
   constexpr std::uint64_t kMaxPixels = std::numeric_limits<std::int32_t>::max();
-  if (cloud.sensor &&
-      std::uint64_t{cloud.sensor->camera.width} * cloud.sensor->camera.height > kMaxPixels)
+  if (!cloud.sensor) return;
+  const auto& [intrinsics, width, height, to_world] = cloud.sensor->camera;
+  if (std::uint64_t{width} * height > kMaxPixels)
     refuse("the cloud's image has more than 2^31 - 1 pixels; crop it, or take every second one");
+  if (std::max(width, height) > DepthSurface::kMostPixelsASide)
+    refuse("the cloud's image is more than 65536 pixels wide or high; crop it");
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ class PreparedCloud {
   // measure_paper.h).
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
 
-  // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels, an origin
-  // or camera beyond kLargestLength, or what validate(cloud) refuses. Depths outside of
-  // [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured.
-  // From a depth image, FramePreparation (frame_preparation.h) is quicker.
-  // To settle 300 000 points takes one core a millisecond where a camera saw them, otherwise a
-  // quarter of a second, with noise at grazing angles one.
+  // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536 a
+  // side, an origin or camera beyond kLargestLength, or what validate(cloud) refuses. Depths
+  // outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured. From a depth image,
+  // FramePreparation (frame_preparation.h) is quicker. To settle 300 000 points takes one core a
+  // millisecond where a camera saw them, otherwise a quarter of a second, with noise at grazing
+  // angles one.
   explicit PreparedCloud(const Cloud& cloud, PointReading points = PointReading::settled);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud

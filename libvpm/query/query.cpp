@@ -14,11 +14,7 @@ void check_pose(const Pose& pose) {
   if (!is_in_range(pose.translation)) {
     refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
   }
-  const Rotation& r = pose.rotation;
-  const Rotation gram = r * transpose(r);
-  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
-                     norm(gram.row2 - Vec3{0, 0, 1});
-  if (!(off <= kRotationRounding) || !(dot(r.row0, cross(r.row1, r.row2)) > 0)) {
+  if (!is_rotation(pose.rotation, kRotationRounding)) {
     refuse(
         "pose: its rotation is not finite, not orthonormal or mirrors; make it with "
         "rotation_from_matrix or rotation_from_quaternion");

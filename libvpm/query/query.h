@@ -7,9 +7,10 @@
 //
 // The tool must outlive its queries. A Query belongs to one thread at a time (it may use several
 // inside); tools and clouds may be shared. run() of one pose allocates nothing after the first call
-// on a cloud; several threads take what their scheduler needs for its tasks. The same input gives
-// the same bits, whatever the device, the number of threads and the order of the points: README.md
-// states the domain of that promise.
+// on a cloud with one thread; several take what their scheduler needs for its tasks, and lists of
+// what they hand to each other grow with the contact. The same input gives the same bits, whatever
+// the device, the number of threads and the order of the points: README.md states the domain of
+// that promise.
 #pragma once
 
 #include <memory>

@@ -75,7 +75,6 @@ Frame frame(std::uint32_t width, std::uint32_t height) {
 void expect_same(FramePreparation& preparation, const Frame& f, const NormalOptions& options,
                  PreparedCloud& cloud, PointReading points = PointReading::settled) {
   const PreparedCloud expected(make_cloud(f.depth, f.camera, options), points);
-  ASSERT_GT(expected.positions().size(), 0u);
   const std::uint64_t before = cloud.serial();
   preparation.prepare(f.depth, f.camera, cloud);
   EXPECT_TRUE(bytes_of(cloud) == bytes_of(expected));
@@ -104,6 +103,46 @@ TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
     expect_same(preparation, frame(333, 97), options, cloud);
   }
   set_thread_count(0);
+}
+
+TEST(FramePreparation, TakesImagesOfAnySize) {
+  const NormalOptions options;
+  FramePreparation preparation(options);
+  PreparedCloud cloud{Cloud{}};
+  for (const auto& [width, height] :
+       {std::pair(1U, 1U), std::pair(1U, 65U), std::pair(65U, 1U), std::pair(33U, 33U)})
+    expect_same(preparation, frame(width, height), options, cloud);
+}
+
+TEST(FramePreparation, TakesACloudWhoseMemoryWasMovedAway) {
+  const NormalOptions options;
+  FramePreparation preparation(options);
+  PreparedCloud cloud{Cloud{}};
+  const Frame f = frame(64, 48);
+  expect_same(preparation, f, options, cloud);
+  const PreparedCloud taken = std::move(cloud);
+  expect_same(preparation, f, options, cloud);  // NOLINT(bugprone-use-after-move): that is the test
+  EXPECT_TRUE(bytes_of(taken) == bytes_of(cloud));
+}
+
+// A normal that is not of unit length is found when the rows are made.
+TEST(FramePreparation, WhatIsRefusedLeavesNoCloudBehind) {
+  const NormalOptions options{NormalMethod::inverse_depth, 7, 0};
+  FramePreparation preparation(options);
+  PreparedCloud cloud{Cloud{}};
+  const Frame good = frame(64, 48);
+  expect_same(preparation, good, options, cloud);
+  Frame wild = good;
+  for (std::size_t i = 0; i < wild.depth.depth.size(); ++i)
+    wild.depth.depth[i] = i % 2 == 0 ? 1e-20F : 1e20F;
+  const std::string message =
+      test::refusal([&] { preparation.prepare(wild.depth, wild.camera, cloud); });
+  EXPECT_NE(message, "");
+  EXPECT_EQ(message,
+            test::refusal([&] { PreparedCloud{make_cloud(wild.depth, wild.camera, options)}; }));
+  EXPECT_EQ(cloud.positions().size(), 0U);
+  EXPECT_FALSE(cloud.is_organised());
+  expect_same(preparation, good, options, cloud);
 }
 
 TEST(FramePreparation, ReadsPointsAsMeasured) {
@@ -147,6 +186,10 @@ TEST(FramePreparation, RefusesWhatCloudsAreRefusedFor) {
   f = frame(64, 48);
   f.camera.width = 63;
   expect_refusal(f, "not as large");
+  f = frame(DepthSurface::kMostPixelsASide + 1, 1);
+  expect_refusal(f, "65536 pixels wide or high");
+  f = frame(1, DepthSurface::kMostPixelsASide + 1);
+  expect_refusal(f, "65536 pixels wide or high");
   f = frame(64, 48);
   f.camera.to_world.translation.x = 0x1p101;
   expect_refusal(f, "2^100 m");

@@ -250,7 +250,7 @@ TEST(SettledImage, HasTheBitsOfItsPixelsAtAnySize) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> number(0, 1);
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 9), std::pair(63, 5),
-                                      std::pair(65, 11), std::pair(200, 31)}) {
+                                      std::pair(65, 11), std::pair(200, 31), std::pair(577, 5)}) {
     DepthImage depth{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     for (int i = 0; i < width * height; ++i) {
       const double z = i % width < width / 2 ? 1 : 1.5;

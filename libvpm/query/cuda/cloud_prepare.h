@@ -31,7 +31,7 @@ struct CloudCounters {
 inline constexpr unsigned kPixelsAtOnce = 8;
 
 // Brings the image to the device: depths and their inverses, as recipes want them. Clears what
-// prepare_on_device() adds up in `room`.
+// settle_on_device() (cloud_settle.h) adds up in `room`.
 void take_image(const DepthSource& source, float* depth, float* inverse, std::size_t pixels,
                 const CloudRoom& room, const Camera& camera, cudaStream_t stream);
 

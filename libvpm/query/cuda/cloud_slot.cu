@@ -19,19 +19,14 @@ bool is_plain(const Camera& camera) {
   const double longest = std::sqrt(x * x + y * y + 1);
   constexpr double kLongest = 0x1p10, kWidestPixel = 0x1p10, kError = 0x1p-21;
   return std::size_t{camera.width} * camera.height <= PreparedCloud::kMaxPoints &&
+         std::max(camera.width, camera.height) <= DepthSurface::kMostPixelsASide &&
          longest <= kLongest && 1 / k.fx <= kWidestPixel && 1 / k.fy <= kWidestPixel &&
          std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
 }
 
 // As validate() and PreparedCloud ask of a camera.
-bool is_rigid(const Pose& pose) {
-  constexpr double kTolerance = 1e-9;
-  const Rotation& r = pose.rotation;
-  const Rotation gram = r * transpose(r);
-  const double off = norm(gram.row0 - Vec3{1, 0, 0}) + norm(gram.row1 - Vec3{0, 1, 0}) +
-                     norm(gram.row2 - Vec3{0, 0, 1});
-  return off <= kTolerance && dot(r.row0, cross(r.row1, r.row2)) > 0 &&
-         is_in_range(pose.translation);
+bool is_sound_pose(const Pose& pose) {
+  return is_rotation(pose.rotation, kCameraRotationTolerance) && is_in_range(pose.translation);
 }
 
 constexpr std::size_t whole_groups(std::size_t pixels) {
@@ -64,7 +59,7 @@ CloudSlot::~CloudSlot() {
 
 void CloudSlot::begin() {
   const CurrentDevice current(options().device.first());
-  is_plain_ = preparation_.fits && is_plain(camera()) && is_rigid(camera().to_world);
+  is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
   serial_ = next_serial();
   if (!is_plain_) {
     cloud();  // refuses what is to be refused
@@ -91,7 +86,8 @@ void CloudSlot::make(cudaStream_t stream, Vec3f* estimated) {
   CloudRecipe from_image = recipe();
   from_image.room.estimated = estimated;
   prepare_on_device(from_image, options().normals.method, preparation_, counters_.get(),
-                    answer_.device(), ++sequence_, stream);
+                    answer_.device(), sequence_ + 1, stream);
+  ++sequence_;  // now that it will be answered
   settle_on_device(from_image, preparation_.overlaps, stream);
 }
 
@@ -140,6 +136,8 @@ void CloudSlot::wait() const {
     if (looks % kLooksPerCheck != 0) continue;
     const cudaError_t status = cudaStreamQuery(stream_.get());
     if (status != cudaErrorNotReady) check(status);
+    if (status == cudaSuccess && !is_answered())
+      throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
   }
 }
 

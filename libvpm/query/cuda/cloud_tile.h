@@ -1,5 +1,5 @@
-// What the kernels of cloud_prepare.cu know of an image, and of the tile of it that a block works
-// on.
+// What the kernels of cloud_prepare.cu and cloud_settle.cu know of an image, and of the tile of it
+// that a block works on.
 #pragma once
 
 #include "libvpm/cloud/depth_image.h"

@@ -54,7 +54,7 @@ class DeviceLevel {
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
-  // Room for the cloud of an image, which a kernel makes (cloud_prepare.h).
+  // Room for the cloud of an image, which kernels make (cloud_prepare.h, cloud_settle.h).
   explicit DeviceCloud(const Camera& camera);
   void stand_at(const Pose& camera_to_world);
   CloudRoom room() const;
