@@ -281,7 +281,10 @@ void control(int argc, char** argv) {
   std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
   Query refined(tool, query_options);
   const Path path = make_path(refined, clouds[0], tool);
-  if (options.at("measure") == "paper") query_options.measure = Measure::paper;
+  const std::string& measure = options.at("measure");
+  if (measure != "refined" && measure != "paper")
+    throw Error(ErrorKind::usage, "measure=" + measure + ": there are refined and paper");
+  if (measure == "paper") query_options.measure = Measure::paper;
   std::deque<Query> queries;
   for (int k = 0; k < copies; ++k) {
     if (k > 0) clouds.emplace_back(cloud);

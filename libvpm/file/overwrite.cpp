@@ -49,6 +49,16 @@ void check_folder_of(const std::string& path) {
   }
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty() || a == "-" || b == "-") return false;
+  std::error_code fault;
+  const bool a_exists = fs::exists(a, fault), b_exists = fs::exists(b, fault);
+  if (a_exists != b_exists) return false;
+  if (a_exists) return fs::is_regular_file(a, fault) && fs::equivalent(a, b, fault);
+  const fs::path first = fs::weakly_canonical(fs::absolute(a, fault), fault);
+  return !fault && first == fs::weakly_canonical(fs::absolute(b, fault), fault);
+}
+
 void check_container_output(const std::string& path, Kind kind) {
   check_folder_of(path);
   if (path.empty() || path == "-") return;

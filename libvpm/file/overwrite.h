@@ -17,4 +17,8 @@ void check_text_output(const std::string& path);
 // The same without asking what would be replaced (--force).
 void check_folder_of(const std::string& path);
 
+// Whether two paths lead to one file, which may not be there yet. No pipe or device is the same as
+// another.
+bool is_same_file(const std::string& a, const std::string& b);
+
 }  // namespace vpm::file

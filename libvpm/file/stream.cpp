@@ -112,6 +112,9 @@ void write_file(const fs::path& target, std::span<const std::byte> bytes) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   TemporaryFile temporary(target);
+  struct stat there {};
+  if (::stat(target.c_str(), &there) == 0)  // who may read it stays as it was
+    ::fchmod(temporary.descriptor(), there.st_mode & 07777);
   write_to(temporary.descriptor(), bytes, target.string());
   sync(temporary.descriptor(), target.string());
   temporary.rename_to(target);

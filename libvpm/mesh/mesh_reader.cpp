@@ -57,7 +57,10 @@ void check_header_counts(const std::string& name, const std::string& what, doubl
 
 RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) refuse(name + ": the file is empty");
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as some editors write
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+    text.remove_prefix(kByteOrderMark.size());
   const std::string extension = extension_of(name);
   if (looks_like_ply(text)) return parse_ply(text, name);
   if (looks_like_off(text)) return parse_off(text, name);

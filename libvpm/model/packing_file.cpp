@@ -1,6 +1,8 @@
 #include "libvpm/model/packing_file.h"
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/file/container.h"
 #include "libvpm/model/sphere_check.h"
 
@@ -15,8 +17,9 @@ static_assert(sizeof(Sphere) == 32 && sizeof(Vec3) == 24 && sizeof(Triangle) == 
 void check_solid(const Solid& solid, const std::string& name) {
   if (solid.triangles.empty()) refuse(name + ": the solid has no triangles");
   for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
-    if (!is_finite(solid.vertices[i]))
-      refuse(name + ": vertex " + std::to_string(i) + " of the solid is not finite");
+    if (!is_in_range(solid.vertices[i]))
+      refuse(name + ": vertex " + std::to_string(i) +
+             " of the solid is not finite, or further than 2^100 m from the origin");
   }
   for (std::size_t i = 0; i < solid.triangles.size(); ++i) {
     for (const std::uint32_t vertex : solid.triangles[i]) {
@@ -27,9 +30,22 @@ void check_solid(const Solid& solid, const std::string& name) {
   }
 }
 
+// To their radius: a certificate is the packer's, not the reader's.
+void check_within(const std::vector<Sphere>& spheres, const Solid& solid, const std::string& name) {
+  Box box;
+  for (const Vec3& vertex : solid.vertices) box.add(vertex);
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    const auto& [c, r] = spheres[i];
+    if (c.x < box.low.x - r || c.y < box.low.y - r || c.z < box.low.z - r || c.x > box.high.x + r ||
+        c.y > box.high.y + r || c.z > box.high.z + r)
+      refuse(name + ": sphere " + std::to_string(i) + " lies outside of the solid");
+  }
+}
+
 void check(const Packing& packing, const std::string& name) {
   check_spheres(packing.spheres, name);
   check_solid(packing.solid, name);
+  check_within(packing.spheres, packing.solid, name);
 }
 
 Packing packing_of(const file::Reader& reader) {

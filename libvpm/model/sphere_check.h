@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/model/sphere.h"
 
 namespace vpm {
 
-// Refuses no spheres, more than 32-bit indices reach, and spheres that are not finite, not positive
-// or not largest first; names the first such sphere.
+// Refuses no spheres, more than 32-bit indices reach, and spheres that are not finite, beyond
+// kLargestLength, not positive or not largest first; names the first such sphere.
 inline void check_spheres(const std::vector<Sphere>& spheres, const std::string& name) {
   if (spheres.empty()) refuse(name + ": there are no spheres");
   if (spheres.size() >= std::numeric_limits<std::uint32_t>::max())
@@ -24,6 +25,8 @@ inline void check_spheres(const std::vector<Sphere>& spheres, const std::string&
       refuse(name + ": sphere " + std::to_string(i) + " " + defect);
     };
     if (!is_finite(s.center) || !std::isfinite(s.radius)) refuse_sphere("is not finite");
+    if (!is_in_range(s.center) || s.radius > kLargestLength)
+      refuse_sphere("is further than 2^100 m from the origin, or larger");
     if (!(s.radius > 0)) refuse_sphere("has a radius that is not positive");
     if (i > 0 && s.radius > spheres[i - 1].radius)
       refuse_sphere("is larger than the one before; spheres must be largest first");

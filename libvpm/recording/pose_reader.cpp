@@ -1,9 +1,12 @@
 #include "libvpm/recording/pose_reader.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "libvpm/core/error.h"
 
@@ -12,18 +15,25 @@ namespace {
 
 constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
 
+constexpr const char* kBlank = " \t\r";
+
+bool is_json(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(kBlank);
+  return first != std::string::npos && (line[first] == '{' || line[first] == '[');
+}
+
 std::vector<double> numbers_of(const std::string& line) {
-  constexpr const char* kBlank = " \t\r,";
+  constexpr const char* kBetween = " \t\r,";
   std::vector<double> numbers;
-  for (std::size_t at = line.find_first_not_of(kBlank); at != std::string::npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string::npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
     double value = 0;
     const auto [stop, fault] = std::from_chars(line.data() + at, line.data() + end, value);
     if (fault != std::errc() || stop != line.data() + end) {
       refuse("not a number: " + line.substr(at, end - at));
     }
     numbers.push_back(value);
-    at = line.find_first_not_of(kBlank, end);
+    at = line.find_first_not_of(kBetween, end);
   }
   return numbers;
 }
@@ -43,18 +53,21 @@ std::vector<double> numbers_of(const nlohmann::json& list) {
 PoseReader::PoseReader(const std::string& path)
     : name_(path == "-" ? "standard input" : path), stream_(path == "-" ? std::cin : file_) {
   if (path == "-") return;
+  errno = 0;
   file_.open(path);
-  if (!file_) refuse(path + ": cannot be read");
+  if (!file_) refuse("cannot read " + path + ": " + std::strerror(errno));
 }
 
 std::optional<std::string> PoseReader::next_line() {
   std::string line;
+  errno = 0;
   while (std::getline(stream_, line)) {
     ++line_;
-    const std::size_t comment = line.find('#');
-    if (comment != std::string::npos) line.resize(comment);
-    if (line.find_first_not_of(" \t\r") != std::string::npos) return line;
+    if (!is_json(line)) line.resize(std::min(line.find('#'), line.size()));
+    if (line.find_first_not_of(kBlank) != std::string::npos) return line;
+    errno = 0;
   }
+  if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
   return std::nullopt;
 }
 
@@ -63,8 +76,7 @@ std::optional<Pose> PoseReader::next() {
   if (!line) return std::nullopt;
   time_.reset();
   try {
-    const char first = (*line)[line->find_first_not_of(" \t")];
-    return first == '{' || first == '[' ? parse_json(*line) : parse_text(*line);
+    return is_json(*line) ? parse_json(*line) : parse_text(*line);
   } catch (const Error& fault) {
     refuse(place() + ": " + fault.what());
   }
@@ -74,6 +86,10 @@ Pose PoseReader::parse_json(const std::string& line) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
   if (json.is_discarded()) refuse("not JSON; a line must be one whole pose");
   if (json.is_array()) return from_numbers(numbers_of(json));
+  if (json.contains("time")) {
+    if (!json["time"].is_number()) refuse("\"time\" must be a number of seconds");
+    time_ = json["time"].get<double>();
+  }
   for (const char* key : {"pose", "matrix"}) {
     if (json.contains(key)) return from_numbers(numbers_of(json[key]));
   }
@@ -90,14 +106,15 @@ Pose PoseReader::parse_text(const std::string& line) {
       if (more.size() != kMatrixRow) refuse("a row of a 4x4 matrix must have four numbers");
       numbers.insert(numbers.end(), more.begin(), more.end());
     }
-  } else if (numbers.size() == kTimedPose) {
-    time_ = numbers.front();
-    numbers.erase(numbers.begin());
   }
-  return from_numbers(numbers);
+  return from_numbers(std::move(numbers));
 }
 
-Pose PoseReader::from_numbers(const std::vector<double>& n) {
+Pose PoseReader::from_numbers(std::vector<double> n) {
+  if (n.size() == kTimedPose && !time_) {
+    time_ = n.front();
+    n.erase(n.begin());
+  }
   Pose pose;
   double deviation = 0;
   if (n.size() == kQuaternionPose) {

@@ -14,13 +14,16 @@ namespace vpm {
 // Poses from a stream, one at a time, so that a pipe is answered line by line. Told apart by the
 // first line:
 //   JSON Lines   [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
-//   by row]} TUM text     "time tx ty tz qx qy qz qw" (the time may be left out); '#' begins a
-//   comment 4x4 text     four lines of four numbers for each pose
+//                by row]}; "time" in an object, or an eighth number in front, is the time
+//   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
+//   4x4 text     four lines of four numbers for each pose
+// In text '#' begins a comment; a line of JSON may be one.
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" is standard input
 
-  // The next pose; none at the end. Throws Error(refused) naming the line.
+  // The next pose; none at the end. Throws Error(refused) naming the line, or where the file cannot
+  // be read on.
   std::optional<Pose> next();
 
   // Of the last pose, in seconds; none where its line has none.
@@ -35,7 +38,7 @@ class PoseReader {
   std::optional<std::string> next_line();
   Pose parse_json(const std::string& line);
   Pose parse_text(const std::string& line);
-  Pose from_numbers(const std::vector<double>& numbers);
+  Pose from_numbers(std::vector<double> numbers);  // a time may come first
 
   std::string name_;
   std::ifstream file_;

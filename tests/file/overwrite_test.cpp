@@ -44,6 +44,18 @@ TEST_F(Overwrite, TextReplacesAnythingButAContainer) {
   EXPECT_EQ(text("cloud"), 2);
 }
 
+TEST_F(Overwrite, KnowsOneFileByManyNames) {
+  std::filesystem::create_symlink(path("text"), path("link"));
+  EXPECT_TRUE(is_same_file(path("text"), path("text")));
+  EXPECT_TRUE(is_same_file(path("text"), path("./text")));
+  EXPECT_TRUE(is_same_file(path("link"), path("text")));
+  EXPECT_TRUE(is_same_file(path("new"), path("./new")));
+  EXPECT_FALSE(is_same_file(path("text"), path("cloud")));
+  EXPECT_FALSE(is_same_file(path("text"), path("new")));
+  EXPECT_FALSE(is_same_file(path("new"), path("newer")));
+  for (const char* name : {"-", "", "/dev/null"}) EXPECT_FALSE(is_same_file(name, name)) << name;
+}
+
 TEST_F(Overwrite, FoldersMustBeThere) {
   EXPECT_EQ(container("missing/cloud"), 4);
   EXPECT_EQ(text("missing/text"), 4);

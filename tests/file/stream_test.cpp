@@ -61,6 +61,14 @@ TEST_F(Stream, TheUmaskSaysWhoMayRead) {
   EXPECT_EQ(status.st_mode & 0777, 0640U);
 }
 
+TEST_F(Stream, WhoMayReadAFileStaysAsItWas) {
+  write_all(path("file"), std::string_view("old"));
+  fs::permissions(path("file"), fs::perms::owner_read | fs::perms::owner_write);
+  write_all(path("file"), std::string_view("new"));
+  EXPECT_EQ(text_of(path("file")), "new");
+  EXPECT_EQ(fs::status(path("file")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
 TEST_F(Stream, ALinkStaysALink) {
   write_all(path("target"), std::string_view("old"));
   fs::create_symlink("target", path("link"));

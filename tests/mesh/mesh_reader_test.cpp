@@ -66,6 +66,7 @@ TEST(MeshReader, WindowsLinesAndBlanksDoNotMatter) {
     for (std::size_t at = 0; (at = content.find('\n', at)) != std::string::npos; at += 4)
       content.replace(at, 1, "\t\r\n\n");
     EXPECT_EQ(parse(content, "standard input").polygon_count(), 12U);
+    EXPECT_EQ(parse("\xEF\xBB\xBF" + content, "standard input").polygon_count(), 12U);
   }
 }
 

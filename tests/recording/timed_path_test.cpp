@@ -34,6 +34,16 @@ TEST_F(ATimedPath, GoesStraightAndTurnsEvenlyBetweenPoses) {
   EXPECT_EQ(quarter.at(99).translation, (Vec3{3, 0, 4}));
 }
 
+TEST_F(ATimedPath, TakesTimesFromJson) {
+  for (const char* text : {"{\"time\": 5, \"name\": \"#1\", \"pose\": [0, 0, 0, 0, 0, 0, 1]}\n"
+                           "{\"time\": 7, \"pose\": [4, 0, 0, 0, 0, 0, 1]}\n",
+                           "[5, 0, 0, 0, 0, 0, 0, 1]\n[7, 4, 0, 0, 0, 0, 0, 1]\n"}) {
+    const TimedPath path = path_of(text);
+    EXPECT_TRUE(path.has_times());
+    EXPECT_NEAR(path.at(6).translation.x, 2, 1e-12);
+  }
+}
+
 TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
   const SampledPath sampled(path_of("5 0 0 0 0 0 0 1\n5.5 1 0 0 0 0 0 1\n"), 1000);
   ASSERT_EQ(sampled.steps(), 501u);

@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
   tool.app().add_flag("--flag", flag, "A flag");
   tool.app().add_option("--act", act, "What to do")->capture_default_str();
   return tool.run(argc, argv, [&] {
-    vpm::tools::check_output(output, tool.common());
+    vpm::tools::check_files({input}, {{"--output", output, std::nullopt}}, tool.common());
     if (act == "refuse") vpm::refuse("input.off: refused as asked");
     if (act == "usage") throw vpm::Error(vpm::ErrorKind::usage, "wrong as asked");
     if (act == "unavailable") throw vpm::Error(vpm::ErrorKind::unavailable, "not there as asked");

@@ -15,6 +15,7 @@
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "tools/common/json_config.h"
+#include "tools/common/number_checks.h"
 
 namespace vpm::tools {
 namespace {
@@ -29,6 +30,7 @@ extern "C" void clean_up_and_die(int signal) {
 void set_signals() {
   // A reader that closes the pipe early is reported as a failed write, not as a silent death.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that grows beyond its limit
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // What nohup, or a shell for a background job, has set to be ignored stays ignored.
     if (std::signal(signal, clean_up_and_die) == SIG_IGN) std::signal(signal, SIG_IGN);
@@ -78,7 +80,7 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
       ->capture_default_str();
   app_.add_option("--threads", common_.threads,
                   "Threads to use; 0 is one per core. Never changes a result")
-      ->check(CLI::Range(0, 4096))
+      ->check(whole_number_in(0, 4096))
       ->capture_default_str();
   app_.add_flag("--quiet", common_.quiet, "No notes and no progress; warnings and errors stay");
   app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
@@ -97,6 +99,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
       for (CLI::Option* option : app_.get_options()) option->required(false);
     }
     app_.parse(argc, argv);
+    refuse_empty_values();
     if (dump_config_) {
       std::cout << app_.config_to_str(true, false);
       flush_output();
@@ -112,7 +115,9 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     flush_output();
     return 0;
   } catch (const CLI::Success& asked) {  // --help, --version
-    return app_.exit(asked);
+    const int code = app_.exit(asked);
+    return std::cout.flush() ? code
+                             : fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
     return fail(ErrorKind::usage, message_of(fault) + " (see " + name_ + " --help)");
   } catch (const Error& fault) {
@@ -121,6 +126,17 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return fail(ErrorKind::refused, "not enough memory for this input");
   } catch (const std::exception& fault) {
     return fail(ErrorKind::refused, fault.what());
+  }
+}
+
+// A variable of a script that is not set must not mean that an option is not given.
+void Tool::refuse_empty_values() const {
+  for (const CLI::Option* option : app_.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    if (option->get_expected_max() > 0 &&
+        std::find(values.begin(), values.end(), "") != values.end())
+      throw Error(ErrorKind::usage,
+                  option->get_name() + ": its value is empty; give one, or leave the option out");
   }
 }
 
@@ -149,12 +165,29 @@ nlohmann::json Tool::parameters() const {
   return all;
 }
 
-void check_output(const std::string& path, file::Kind kind, const CommonOptions& common) {
-  common.force ? file::check_folder_of(path) : file::check_container_output(path, kind);
-}
-
-void check_output(const std::string& path, const CommonOptions& common) {
-  common.force ? file::check_folder_of(path) : file::check_text_output(path);
+void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
+                 const CommonOptions& common) {
+  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  for (auto a = outputs.begin(); a < outputs.end(); ++a) {
+    for (auto b = outputs.begin(); b < a; ++b) {
+      if (a->path == "-" && b->path == "-")
+        wrong(std::string("only one output can be standard output: ") + b->option + " or " +
+              a->option);
+      if (file::is_same_file(a->path, b->path))
+        wrong(std::string(b->option) + " and " + a->option + " would both be written to " +
+              a->path + "; name two files");
+    }
+    if (common.force) {
+      file::check_folder_of(a->path);
+      continue;
+    }
+    a->kind ? file::check_container_output(a->path, *a->kind) : file::check_text_output(a->path);
+    for (const std::string& input : inputs) {
+      if (file::is_same_file(a->path, input))
+        wrong(std::string(a->option) + " would overwrite the input " + input +
+              "; name another output, or give --force");
+    }
+  }
 }
 
 Progress::Progress(std::string what, const CommonOptions& common)

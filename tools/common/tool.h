@@ -5,7 +5,9 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "libvpm/file/container.h"
 #include "libvpm/query/device.h"
@@ -47,6 +49,8 @@ class Tool {
   nlohmann::json parameters() const;
 
  private:
+  void refuse_empty_values() const;
+
   std::string name_;
   CLI::App app_;
   CommonOptions common_;
@@ -54,10 +58,18 @@ class Tool {
   bool on_devices_ = false;
 };
 
-// To be called before the work begins. Without --force a container replaces only one of its kind,
-// and another output (report, table, mesh) anything but a container: libvpm/file/overwrite.h.
-void check_output(const std::string& path, file::Kind kind, const CommonOptions& common);
-void check_output(const std::string& path, const CommonOptions& common);
+// An output: the option that names it, and the container that it becomes, if any.
+struct OutputFile {
+  const char* option;
+  std::string path;
+  std::optional<file::Kind> kind;
+};
+
+// To be called before the work begins. Refuses two outputs in one place. Without --force a
+// container replaces only one of its kind, another output (report, table, mesh) anything but a
+// container (libvpm/file/overwrite.h), and none of them an input.
+void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
+                 const CommonOptions& common);
 
 // Shows a line of progress and the time it may still take on standard error, if that is a terminal
 // and --quiet is not given.

@@ -10,6 +10,8 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
+#include "tools/common/number_checks.h"
+#include "tools/common/repair_option.h"
 #include "tools/common/tool.h"
 #include "tools/graph/graph_report.h"
 
@@ -28,11 +30,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--mesh", a.mesh, "Refuse the packing unless it was made of this mesh");
   app.add_option("--epsilon", a.options.epsilon,
                  "Largest gap of an edge in metres; a tenth of the smallest radius if not given")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   app.add_option("--levels", a.options.levels,
                  "Sphere counts of further levels of detail, e.g. 250,1000,4000")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->allow_extra_args(false)
+      ->check(positive_number());
   app.add_flag("--calibrate", a.calibrate,
                "Measure each level's error against the solid and keep it with the model, for "
                "vpm-query --max-error");
@@ -49,6 +52,10 @@ SolidOptions options_of(const nlohmann::json& provenance) {
   };
   options.scale = number("scale").value_or(1);
   options.weld = number("weld");
+  options.max_hole = number("max-hole");
+  const nlohmann::json::json_pointer repair("/parameters/repair");
+  if (provenance.contains(repair) && provenance.at(repair).is_string())
+    parse_repair(provenance.at(repair).get<std::string>(), options);
   return options;
 }
 
@@ -66,8 +73,10 @@ void run(const Tool& tool, Arguments& a) {
   if (a.packing == "-" && a.mesh == "-") {
     throw Error(ErrorKind::usage, "only one of the packing and --mesh can be standard input");
   }
-  check_output(a.output, file::Kind::tool_model, tool.common());
-  check_output(a.report, tool.common());
+  check_files(
+      {a.packing, a.mesh},
+      {{"--output", a.output, file::Kind::tool_model}, {"--report", a.report, std::nullopt}},
+      tool.common());
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
 

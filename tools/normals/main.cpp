@@ -33,11 +33,12 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.depth.empty()) wrong("no depth image is given: name a file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
     wrong("nothing would be written: give -o OUT.vpmc, --export or --report");
-  if ((a.output == "-") && (a.report == "-")) wrong("only one output can be standard output");
   if (!a.export_path.empty()) check_points_path(a.export_path);
-  check_output(a.output, file::Kind::cloud, common);
-  check_output(a.report, common);
-  check_output(a.export_path, common);
+  check_files({a.depth},
+              {{"--output", a.output, file::Kind::cloud},
+               {"--report", a.report, std::nullopt},
+               {"--export", a.export_path, std::nullopt}},
+              common);
 }
 
 nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, double seconds) {

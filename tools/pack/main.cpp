@@ -1,7 +1,6 @@
 // vpm-pack: fills a mesh with spheres that neither overlap nor protrude.
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -22,12 +21,16 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
+#include "tools/common/number_checks.h"
+#include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/pack/pack_report.h"
 
 namespace vpm::tools {
 namespace {
+
+constexpr long long kMostSpheres = 0xFFFFFFFE;  // of a packing file
 
 struct Arguments {
   std::string mesh, repair, output, report, export_path, link, for_scene;
@@ -41,14 +44,16 @@ struct Arguments {
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("mesh", a.mesh, "Closed mesh: OBJ, OFF, PLY, STL or OM; - is standard input");
   app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
-  app.add_option("--spheres", a.spheres, "Stop after this many spheres")->capture_default_str();
+  app.add_option("--spheres", a.spheres, "Stop after this many spheres")
+      ->check(whole_number_in(1, kMostSpheres))
+      ->capture_default_str();
   app.add_option("--coverage", a.coverage, "Stop at this share of the solid's volume, 0 to 1")
       ->capture_default_str();
   app.add_option(
          "--inertia-error", a.inertia_error,
          "Stop where the inertia tensor (of equal mass, about the solid's centre of mass) is "
          "this near to the solid's, e.g. 0.01")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, m")->capture_default_str();
   app.add_option("--max-radius", a.max_radius, "Place no larger sphere, m");
   app.add_flag("--grow", a.grow,
@@ -78,23 +83,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--max-hole", a.max_hole,
                  "Refuse wider holes with --repair voxel or flood, m (flood: 1/16 of the longest "
                  "side)")
-      ->check(CLI::PositiveNumber);
-}
-
-// "holes", "voxel", "voxel=RES", "flood" or "flood=RES"; false for another word.
-bool parse_repair(std::string_view word, SolidOptions& options) {
-  const std::string_view mode = word.substr(0, word.find('='));
-  if (word == "holes") {
-    options.repair = Repair::holes;
-    return true;
-  }
-  if (mode != "voxel" && mode != "flood") return false;
-  options.repair = mode == "voxel" ? Repair::voxel : Repair::flood;
-  if (word == mode) return true;
-  const char* const end = word.data() + word.size();
-  const auto [last, fault] =
-      std::from_chars(word.data() + mode.size() + 1, end, options.repair_voxels);
-  return fault == std::errc() && last == end;
+      ->check(positive_number());
 }
 
 SolidOptions solid_options(const Arguments& a) {
@@ -126,15 +115,14 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty())
     wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
-  if (a.spheres == 0) wrong("--spheres must be at least 1");
-  if ((a.output == "-") + (a.report == "-") + (a.export_path == "-") > 1)
-    wrong("only one output can be standard output");
   if (a.mesh == "-" && a.for_scene == "-")
     wrong("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
-  check_output(a.output, file::Kind::packing, common);
-  check_output(a.report, common);
-  check_output(a.export_path, common);
+  check_files({a.mesh, a.for_scene},
+              {{"--output", a.output, file::Kind::packing},
+               {"--report", a.report, std::nullopt},
+               {"--export", a.export_path, std::nullopt}},
+              common);
 }
 
 // What a robot description calls the part: without --link the mesh's name without folder and
@@ -161,6 +149,19 @@ SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   return scale;
 }
 
+std::string why_none_fits(const Arguments& a, StopReason stop) {
+  if (stop == StopReason::min_radius && !a.for_scene.empty())
+    return "the points of " + a.for_scene + " resolve spheres from " +
+           std::to_string(a.min_radius) + " m; are both in metres?";
+  if (stop == StopReason::min_radius) return "give a smaller --min-radius";
+  if (a.max_radius)
+    return "those below 1/131072 of its longest side are not looked for; give a larger "
+           "--max-radius";
+  return "it is nowhere wider than 1/131072 of its longest side, and spheres so small are not "
+         "looked "
+         "for; pack it in parts";
+}
+
 PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid& checked) {
   Progress progress("packing", tool.common());
   PackOptions options;
@@ -172,13 +173,7 @@ PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid
   options.max_radius = a.max_radius.value_or(std::numeric_limits<double>::infinity());
   options.progress = [&](double fraction) { progress.update(fraction); };
   PackResult result = pack(checked.solid, options);
-  if (result.spheres.empty()) {
-    refuse(a.mesh + ": no sphere fits: " +
-           (result.stop == StopReason::min_radius
-                ? "give a smaller --min-radius"
-                : "it is nowhere wider than 1/131072 of its longest side, and spheres so small are "
-                  "not looked for; pack it in parts"));
-  }
+  if (result.spheres.empty()) refuse(a.mesh + ": no sphere fits: " + why_none_fits(a, result.stop));
   return result;
 }
 
@@ -204,7 +199,9 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   if (result.stop == StopReason::numerical_floor)
     fewer("what is left is too narrow for the numbers");
   if (result.partly_searched)
-    tool.note("the solid is so thin that only a part of its room was searched, spread over it");
+    tool.note(
+        "beside the solid the spheres are so small that only a part of its room was searched, "
+        "spread over it");
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 

@@ -10,6 +10,7 @@
 #include "libvpm/model/tool_model_file.h"
 #include "libvpm/query/query.h"
 #include "libvpm/recording/timed_path.h"
+#include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
@@ -73,7 +74,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option(
          "--batch", a.batch,
          "Poses that a device takes at once; answers come in their order. Changes no result")
-      ->check(CLI::Range(1, 1 << 20))
+      ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str();
   declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
@@ -107,9 +108,13 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
-  check_output(a.output, common);
-  check_output(a.spheres_out, common);
-  check_output(a.stats, common);
+  if (!replays && !is_default(a.replay))
+    wrong("--method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames");
+  check_files({a.tool, a.cloud, a.poses, a.replay.trajectory, a.replay.camera_poses},
+              {{"--output", a.output, std::nullopt},
+               {"--spheres-out", a.spheres_out, std::nullopt},
+               {"--stats", a.stats, std::nullopt}},
+              common);
 }
 
 LevelRequest level_request(const Arguments& a) {

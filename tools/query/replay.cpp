@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "libvpm/core/error.h"
+#include "tools/common/number_checks.h"
 #include "tools/query/coupled.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
@@ -42,17 +43,17 @@ void declare(CLI::App& app, ReplayArguments& a) {
                                            "Path of the tool through the frames, as for --poses");
   frames->needs(trajectory);
   app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
-      ->check(CLI::Range(1.0, 1e6));
+      ->check(number_in(1, 1e6));
   app.add_option("--camera-poses", a.camera_poses,
                  "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
                  "frames, or groundtruth.txt");
   app.add_option("--frame-rate", a.frame_rate,
                  "Frames per second, where their names have numbers but no times")
-      ->check(CLI::Range(1e-3, 1e6))
+      ->check(number_in(1e-3, 1e6))
       ->capture_default_str();
   app.add_option("--frame-latency", a.frame_latency,
                  "Seconds from the time of a frame until a step can see it")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(number_in(0, 3600))
       ->capture_default_str();
   app.add_flag("--align-starts", a.align_starts,
                "Path and frames begin together, whatever their times say");
@@ -66,6 +67,13 @@ void declare(CLI::App& app, ReplayArguments& a) {
         "--realtime", "--intrinsics", "--depth-scale", "--camera-pose"})
     app.get_option(name)->needs(frames);
   for (const char* name : {"--cloud", "--pose", "--poses"}) frames->excludes(app.get_option(name));
+}
+
+bool is_default(const ReplayArguments& a) {
+  const ReplayArguments other;
+  return a.import.method == other.import.method && a.import.window == other.import.window &&
+         a.import.edge_gate == other.import.edge_gate && a.frame_rate == other.frame_rate &&
+         a.frame_latency == other.frame_latency;
 }
 
 Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,

@@ -27,6 +27,8 @@ struct ReplayArguments {
 };
 
 void declare(CLI::App& app, ReplayArguments& arguments);
+// Whether none of what has a default was given another value.
+bool is_default(const ReplayArguments& arguments);
 
 class Replay {
  public:

@@ -95,7 +95,7 @@ $ vpm-probe in.off -o - --count many
 2> vpm-probe: error: Could not convert: --count = many (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --threads -1
-2> vpm-probe: error: --threads: Value -1 not in range 0 to 4096 (see vpm-probe --help)
+2> vpm-probe: error: --threads: -1 is not a whole number from 0 to 4096 (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --device tpu
 2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda,cuda:N,cuda:all} (see vpm-probe --help)

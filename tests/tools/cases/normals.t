@@ -58,10 +58,10 @@ $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,
 2> vpm-normals: error: pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0,0,0'
 [2]
 $ vpm-normals wall.png -o - --report - --intrinsics 60,60,31.5,23.5
-2> vpm-normals: error: only one output can be standard output
+2> vpm-normals: error: only one output can be standard output: --output or --report
 [2]
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report wall.vpmc
-2> vpm-normals: error: wall.vpmc exists and is a cloud (.vpmc); name another output, or give --force to overwrite it
+2> vpm-normals: error: --output and --report would both be written to wall.vpmc; name two files
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 600,600,319.5,239.5
 2> vpm-normals: warning: wall.png: the principal point of 600.000000,600.000000,319.500000,239.500000 lies outside of the image of 64 x 48 pixels; are these the intrinsics of this image's size?

@@ -57,13 +57,13 @@ $ vpm-pack cube.off --export cube.xyz
 2> vpm-pack: error: export: the name 'cube.xyz' must end with .csv, .json, .ply (.points.ply), .vtk, .yml (.yaml), .urdf or .srdf
 [2]
 $ vpm-pack cube.off --spheres 0 -o zero.vpmp
-2> vpm-pack: error: --spheres must be at least 1
+2> vpm-pack: error: --spheres: 0 is not a whole number from 1 to 4294967294 (see vpm-pack --help)
 [2]
 $ vpm-pack cube.off --weld 2 -o weld.vpmp
 2> vpm-pack: error: weld: must lie between 0 and 0.1; it is a share of the mesh's diagonal
 [2]
 $ vpm-pack cube.off -o - --report -
-2> vpm-pack: error: only one output can be standard output
+2> vpm-pack: error: only one output can be standard output: --output or --report
 [2]
 $ vpm-pack cube.off -o missing/cube.vpmp
 2> vpm-pack: error: cannot write missing/cube.vpmp: there is no folder missing

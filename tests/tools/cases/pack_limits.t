@@ -22,7 +22,7 @@ $ vpm-pack box.off --inertia-error 0 -o none.vpmp
 # Thin solids: packed, or the reason why not.
 $ sed 's/^\(.*\) 1$/\1 0.0001/' cube.off > sheet.off && vpm-pack sheet.off --spheres 20 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["spheres"], round(r["r_max"], 9), r["partly_searched"])'
 20 5e-05 True
-2> vpm-pack: note: the solid is so thin that only a part of its room was searched, spread over it
+2> vpm-pack: note: beside the solid the spheres are so small that only a part of its room was searched, spread over it
 $ sed 's/^\(.*\) 1$/\1 0.000001/' cube.off > foil.off && vpm-pack foil.off -o foil.vpmp
 2> vpm-pack: error: foil.off: no sphere fits: it is nowhere wider than 1/131072 of its longest side, and spheres so small are not looked for; pack it in parts
 [1]

@@ -1,0 +1,106 @@
+# Mistakes of scripts and fingers: said before anything is lost.
+
+$ cp $SOURCE/tests/tools/inputs/* .
+$ vpm-pack cube.off -o cube.vpmp --spheres 30 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 10,20
+$ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5
+$ printf '%s\n' '0 0 0 0.8 0 0 0 1' '1 0 0 0.95 0 0 0 1' > path.txt
+
+# No output takes the place of an input, unless that is forced.
+$ vpm-pack cube.off -o new.vpmp --spheres 3 --report cube.off
+2> vpm-pack: error: --report would overwrite the input cube.off; name another output, or give --force
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o path.txt
+2> vpm-query: error: --output would overwrite the input path.txt; name another output, or give --force
+[2]
+$ ln -s wall.png link.png; vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --report link.png
+2> vpm-normals: error: --report would overwrite the input wall.png; name another output, or give --force
+[2]
+$ cmp cube.off $SOURCE/tests/tools/inputs/cube.off && cmp wall.png $SOURCE/tests/tools/inputs/wall.png && wc -l < path.txt
+2
+$ cp cube.off gone.off; vpm-pack gone.off --spheres 3 --report gone.off --force --quiet; head -c 1 gone.off
+{
+
+# Nor of another output.
+$ vpm-pack cube.off --spheres 3 --report same.json --export ./same.json
+2> vpm-pack: error: --report and --export would both be written to ./same.json; name two files
+[2]
+$ vpm-graph cube.vpmp -o - --report -
+2> vpm-graph: error: only one output can be standard output: --output or --report
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --stats -
+2> vpm-query: error: only one output can be standard output: --output or --stats
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o both.json --stats both.json
+2> vpm-query: error: --output and --stats would both be written to both.json; name two files
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o /dev/null --stats /dev/null
+
+# A variable that is not set is no value.
+$ vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose "$POSE"
+2> vpm-normals: error: --camera-pose: its value is empty; give one, or leave the option out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error ''
+2> vpm-query: error: --max-error: its value is empty; give one, or leave the option out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level=
+2> vpm-query: error: --level: 1 required UINT missing (see vpm-query --help)
+[2]
+$ echo '{"output": ""}' > empty.json; vpm-pack cube.off --spheres 3 --report - --config empty.json
+2> vpm-pack: error: --output: its value is empty; give one, or leave the option out
+[2]
+
+# Numbers that are none, or out of range.
+$ vpm-pack cube.off -o new.vpmp --spheres -5
+2> vpm-pack: error: --spheres: -5 is not a whole number from 1 to 4294967294 (see vpm-pack --help)
+[2]
+$ vpm-pack cube.off -o new.vpmp --spheres 18446744073709551616
+2> vpm-pack: error: --spheres: 18446744073709551616 is not a whole number from 1 to 4294967294 (see vpm-pack --help)
+[2]
+$ vpm-pack cube.off -o new.vpmp --inertia-error nan
+2> vpm-pack: error: --inertia-error: nan is not a number greater than 0 (see vpm-pack --help)
+[2]
+$ vpm-graph cube.vpmp -o new.vpmg --epsilon 1mm
+2> vpm-graph: error: --epsilon: 1mm is not a number greater than 0 (see vpm-graph --help)
+[2]
+$ vpm-graph cube.vpmp -o new.vpmg --levels 10,0
+2> vpm-graph: error: --levels: 0 is not a number greater than 0 (see vpm-graph --help)
+[2]
+$ vpm-query --tool cube.vpmg --frames . --trajectory path.txt --rate nan
+2> vpm-query: error: --rate: nan is not a number from 1 to 1e+06 (see vpm-query --help)
+[2]
+$ vpm-graph --levels 10,20 cube.vpmp -o - | cmp - cube.vpmg
+
+# Options that would do nothing.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9
+2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --frame-latency 1
+2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
+[2]
+
+# Poses: what is no text file, times and number signs in JSON, a time too many.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses .
+2> vpm-query: error: cannot read .: Is a directory
+[1]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses missing.txt
+2> vpm-query: error: cannot read missing.txt: No such file or directory
+[1]
+$ echo '{"name": "part#3", "time": 5, "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | wc -l
+1
+$ for p in '[0, 0, 0.95, 0, 0, 0, 1]' '[7, 0, 0, 0.95, 0, 0, 0, 1]' '0 0 0.95 0 0 0 1 # here'; do echo "$p" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | md5sum; done | uniq | wc -l
+1
+$ echo '{"time": 1, "pose": [1, 0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
+2> vpm-query: error: standard input, line 1: found 8 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row)
+[1]
+$ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
+2> vpm-query: error: standard input, line 1: "time" must be a number of seconds
+[1]
+
+# Help that nobody can read.
+$ vpm-pack --help > /dev/full
+2> vpm-pack: error: cannot write to standard output
+[4]
+
+# A packing of a mesh that was repaired is known by the mesh.
+$ vpm-pack cube.off --repair voxel=20 --spheres 5 -o voxels.vpmp --quiet
+$ vpm-graph voxels.vpmp -o voxels.vpmg --mesh cube.off

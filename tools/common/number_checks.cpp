@@ -1,0 +1,52 @@
+#include "tools/common/number_checks.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+namespace vpm::tools {
+namespace {
+
+// As CLI11 reads it.
+template <class Number>
+std::optional<Number> number_of(const std::string& text) {
+  Number value{};
+  if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
+  return value;
+}
+
+std::string words_of(double value) {
+  std::ostringstream words;
+  words << value;
+  return words.str();
+}
+
+}  // namespace
+
+NumberCheck positive_number() {
+  return [](const std::string& text) -> std::string {
+    const std::optional<double> value = number_of<double>(text);
+    if (value && *value > 0 && std::isfinite(*value)) return {};
+    return text + " is not a number greater than 0";
+  };
+}
+
+NumberCheck number_in(double low, double high) {
+  return [low, high](const std::string& text) -> std::string {
+    const std::optional<double> value = number_of<double>(text);
+    if (value && *value >= low && *value <= high) return {};
+    return text + " is not a number from " + words_of(low) + " to " + words_of(high);
+  };
+}
+
+NumberCheck whole_number_in(long long low, long long high) {
+  return [low, high](const std::string& text) -> std::string {
+    const std::optional<long long> value = number_of<long long>(text);
+    if (value && *value >= low && *value <= high) return {};
+    return text + " is not a whole number from " + std::to_string(low) + " to " +
+           std::to_string(high);
+  };
+}
+
+}  // namespace vpm::tools
