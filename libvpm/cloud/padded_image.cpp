@@ -9,7 +9,7 @@ void PaddedImage::resize(std::uint32_t new_width, std::uint32_t new_height, int 
   const int w = static_cast<int>(new_width), h = static_cast<int>(new_height);
   const std::size_t tiles = (std::size_t{new_width} + kTile - 1) / kTile,
                     around = 2 * static_cast<std::size_t>(frame),
-                    row = tiles * kTile + around + kLanes,
+                    row = tiles * kTile + around + kWideLanes,
                     count = row * (std::size_t{new_height} + around);
   if (w == width && h == height && frame == margin && values.size() == count) return;
   values.assign(count, 0.0F);

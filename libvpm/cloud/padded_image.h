@@ -13,7 +13,7 @@ namespace vpm {
 inline constexpr int kTile = 64;
 
 // (0, 0) is the image's own first pixel; coordinates from -margin to size + margin are there, and
-// to the right of them enough for the margin of a whole last tile and a group of lanes.
+// to the right of them enough for the margin of a whole last tile and a group of wide lanes.
 struct PaddedImage {
   int width = 0, height = 0, margin = 0;
   std::size_t stride = 0;
