@@ -284,7 +284,7 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   ResultSink sink(a.output);
-  replay.run(query, std::move(coupling), options.measure, sink);
+  replay.run(query, coupling, options.measure, sink);
   sink.finish();
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
