@@ -67,10 +67,17 @@ constexpr const char* kPlyCorners =
     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
     "property uchar green\nproperty uchar blue\n";
 
+// What is no UTF-8 becomes U+FFFD, as in JSON.
+std::string valid_text(const std::string& name) {
+  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
+  return nlohmann::json::parse(nlohmann::json(name).dump(-1, ' ', false, kReplace))
+      .get<std::string>();
+}
+
 // A name between quotes of XML.
 std::string xml_text(const std::string& name) {
   std::string text;
-  for (const char c : name) {
+  for (const char c : valid_text(name)) {
     switch (c) {
       case '&':
         text += "&amp;";

@@ -119,6 +119,15 @@ TEST(PackingExport, LinkNamesAreQuoted) {
     EXPECT_NE(text.find("=\"a &quot;b&quot; &lt;c> &amp; d\\\""), std::string::npos);
 }
 
+TEST(PackingExport, LinkNamesAreUtf8) {
+  const std::string link = "\xC3\xA4\xFF\xFE", shown = "\xC3\xA4\xEF\xBF\xBD\xEF\xBF\xBD";
+  for (const std::string& text : {packing_as_yml(kSpheres, link), packing_as_urdf(kSpheres, link),
+                                  packing_as_srdf(kSpheres, link)}) {
+    EXPECT_NE(text.find('"' + shown + '"'), std::string::npos);
+    EXPECT_EQ(text.find('\xFF'), std::string::npos);
+  }
+}
+
 TEST(PackingExport, PointsCarryColourAndRadius) {
   const std::string bytes = packing_as_points(kSpheres);
   const std::size_t body = bytes.find("end_header\n") + 11;
