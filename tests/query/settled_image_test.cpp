@@ -10,6 +10,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/row_bands.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -213,16 +214,19 @@ TEST(SettledImage, NothingComesOfNothing) {
   }
 }
 
-// The same arithmetic pixel by pixel, as devices have it.
+// The same arithmetic pixel by pixel, in loops of its own.
 class OneByOne {
  public:
   explicit OneByOne(const SeenImage& seen) : seen_(seen) {}
 
   SettledPixel<float> pixel(int u, int v) const {
-    return settled_pixel<float>([&](int du, int dv) {
-      return SeenPixel<float>{*seen_.inverse.at(u + du, v + dv), *seen_.x.at(u + du, v + dv),
-                              *seen_.y.at(u + du, v + dv), *seen_.z.at(u + du, v + dv)};
-    });
+    SettledPixel<float> pixel(at(u, v));
+    for (int dv = -kSettledAcross; dv <= kSettledAcross; dv += kSettledAcross) {
+      for (int du = -kSettledAcross; du <= kSettledAcross; du += kSettledAcross) {
+        if (du != 0 || dv != 0) pixel.add(at(u + du, v + dv));
+      }
+    }
+    return pixel;
   }
   float inverse(int u, int v) const { return pixel(u, v).inverse_depth(window(u, v)); }
   Vec3f normal(int u, int v) const {
@@ -232,10 +236,20 @@ class OneByOne {
   }
 
  private:
+  SeenPixel<float> at(int u, int v) const {
+    return {*seen_.inverse.at(u, v), *seen_.x.at(u, v), *seen_.y.at(u, v), *seen_.z.at(u, v)};
+  }
+  WindowOfDepths<float> column(int u, int v) const {
+    WindowOfDepths<float> sums(*seen_.inverse.at(u, v));
+    for (int d = 1; d <= kSettledRadius; ++d)
+      sums.add_rows(*seen_.inverse.at(u, v + d), *seen_.inverse.at(u, v - d), d);
+    return sums;
+  }
   WindowOfDepths<float> window(int u, int v) const {
-    return window_of_depths<float>([&](int du) {
-      return column_of_depths<float>([&](int dv) { return *seen_.inverse.at(u + du, v + dv); });
-    });
+    WindowOfDepths<float> sums = column(u, v);
+    for (int d = 1; d <= kSettledRadius; ++d)
+      sums.add_columns(column(u + d, v), column(u - d, v), d);
+    return sums;
   }
 
   const SeenImage& seen_;
@@ -249,8 +263,9 @@ bool same_bytes(const T& a, const T& b) {
 TEST(SettledImage, HasTheBitsOfItsPixelsAtAnySize) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> number(0, 1);
-  for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 9), std::pair(63, 5),
-                                      std::pair(65, 11), std::pair(200, 31), std::pair(577, 5)}) {
+  for (const auto& [width, height] :
+       {std::pair(1, 1), std::pair(2, 9), std::pair(63, 5), std::pair(65, 11), std::pair(200, 31),
+        std::pair(577, 5), std::pair(70, 97)}) {
     DepthImage depth{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     for (int i = 0; i < width * height; ++i) {
       const double z = i % width < width / 2 ? 1 : 1.5;
@@ -259,14 +274,18 @@ TEST(SettledImage, HasTheBitsOfItsPixelsAtAnySize) {
     }
     const SeenImage image = seen(depth, {525, 525, width / 2.0, height / 2.0});
     const OneByOne expected(image);
-    const Settled found(image);
-    int differ = 0;
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u)
-        differ += !same_bytes(found.inverse(u, v), expected.inverse(u, v)) ||
-                  !same_bytes(found.normal(u, v), expected.normal(u, v));
+    for (const int threads : {1, 3}) {
+      set_thread_count(threads);
+      const Settled found(image);
+      int differ = 0;
+      for (int v = 0; v < height; ++v) {
+        for (int u = 0; u < width; ++u)
+          differ += !same_bytes(found.inverse(u, v), expected.inverse(u, v)) ||
+                    !same_bytes(found.normal(u, v), expected.normal(u, v));
+      }
+      EXPECT_EQ(differ, 0) << width << " x " << height << ", " << threads << " threads";
     }
-    EXPECT_EQ(differ, 0) << width << " x " << height;
+    set_thread_count(0);
   }
 }
 
