@@ -3,13 +3,6 @@
 #include "libvpm/core/parallel.h"
 
 namespace vpm {
-namespace {
-
-int bands_of(int height) {
-  return (height + kRowsPerBand - 1) / kRowsPerBand;
-}
-
-}  // namespace
 
 void for_bands(int height, const std::function<void(int begin, int end)>& body) {
   parallel_for(static_cast<std::size_t>(bands_of(height)), 1,

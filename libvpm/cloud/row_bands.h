@@ -10,6 +10,9 @@ namespace vpm {
 
 // Enough work to outweigh the rows above and below that a band reads as well.
 inline constexpr int kRowsPerBand = 32;
+constexpr int bands_of(int height) {
+  return (height + kRowsPerBand - 1) / kRowsPerBand;
+}
 
 // Calls body(begin, end) for each band of [0, height), each beginning at a multiple of
 // kRowsPerBand.

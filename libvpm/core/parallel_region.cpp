@@ -14,26 +14,28 @@ namespace {
 
 thread_local bool is_in_region = false;
 
-// Takes the first range, or the last one.
-bool take(std::atomic<std::uint64_t>& open, int end_shift, bool is_first, std::uint64_t& range) {
-  std::uint64_t seen = open.load(std::memory_order_acquire);
-  for (;;) {
-    const std::uint64_t begin = seen & ((std::uint64_t{1} << end_shift) - 1),
-                        end = seen >> end_shift;
-    if (begin >= end) return false;
-    range = is_first ? begin : end - 1;
-    const std::uint64_t rest = is_first ? seen + 1 : seen - (std::uint64_t{1} << end_shift);
-    if (open.compare_exchange_weak(seen, rest, std::memory_order_acq_rel,
-                                   std::memory_order_acquire))
-      return true;
-  }
-}
-
 }  // namespace
 
 struct ParallelRegion::Helpers {
   tbb::task_group tasks;
 };
+
+void ParallelRegion::Part::open(std::uint64_t begin, std::uint64_t end) {
+  open_.store(begin | end << kEndShift, std::memory_order_release);
+}
+
+bool ParallelRegion::Part::take(bool is_first, std::uint64_t& range) {
+  constexpr std::uint64_t kOneAtEnd = std::uint64_t{1} << kEndShift;
+  std::uint64_t seen = open_.load(std::memory_order_acquire);
+  for (;;) {
+    const std::uint64_t begin = seen % kOneAtEnd, end = seen >> kEndShift;
+    if (begin >= end) return false;
+    range = is_first ? begin : end - 1;
+    if (open_.compare_exchange_weak(seen, is_first ? seen + 1 : seen - kOneAtEnd,
+                                    std::memory_order_acq_rel, std::memory_order_acquire))
+      return true;
+  }
+}
 
 ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
   if (threads_ == 1) return;
@@ -71,10 +73,8 @@ void ParallelRegion::loop(std::size_t count, std::size_t grain, BodyView body) {
     return;
   }
   done_.store(0, std::memory_order_relaxed);
-  for (std::size_t k = 0; k < part_count_; ++k) {
-    const std::uint64_t begin = k * ranges / part_count_, end = (k + 1) * ranges / part_count_;
-    parts_[k].open.store(begin | end << kEndShift, std::memory_order_release);
-  }
+  for (std::size_t k = 0; k < part_count_; ++k)
+    parts_[k].open(k * ranges / part_count_, (k + 1) * ranges / part_count_);
   run_ranges(0);
   while (done_.load(std::memory_order_acquire) < ranges) std::this_thread::yield();
   if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -84,7 +84,7 @@ void ParallelRegion::run_ranges(std::size_t own) {
   std::uint64_t range = 0;
   for (std::size_t k = 0; k < part_count_; ++k) {
     Part& part = parts_[(own + k) % part_count_];
-    while (take(part.open, kEndShift, k == 0, range)) run(range);
+    while (part.take(k == 0, range)) run(range);
   }
 }
 

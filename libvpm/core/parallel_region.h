@@ -43,11 +43,17 @@ class ParallelRegion {
 
   // The ranges of a part that nobody has taken. Who takes one may read the loop's data, which stay
   // until it is done; who takes none must not.
-  struct alignas(64) Part {              // a line of the cache
-    std::atomic<std::uint64_t> open{0};  // the first one, and above kEndShift the one behind them
+  class alignas(64) Part {  // a line of the cache
+   public:
+    void open(std::uint64_t begin, std::uint64_t end);
+    // The first one, or the last one.
+    bool take(bool is_first, std::uint64_t& range);
+
+   private:
+    static constexpr int kEndShift = 32;
+    std::atomic<std::uint64_t> open_{0};  // the first one, and above kEndShift the one behind them
   };
   static constexpr std::size_t kMostParts = 16;  // further threads share them
-  static constexpr int kEndShift = 32;
 
   void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();

@@ -67,17 +67,15 @@ constexpr const char* kPlyCorners =
     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
     "property uchar green\nproperty uchar blue\n";
 
-// What is no UTF-8 becomes U+FFFD, as in JSON.
-std::string valid_text(const std::string& name) {
-  constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
-  return nlohmann::json::parse(nlohmann::json(name).dump(-1, ' ', false, kReplace))
-      .get<std::string>();
+// A name in quotes of JSON, which YAML takes too. What is no UTF-8 becomes U+FFFD.
+std::string json_text(const std::string& name) {
+  return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// A name between quotes of XML.
+// The same name between quotes of XML.
 std::string xml_text(const std::string& name) {
   std::string text;
-  for (const char c : valid_text(name)) {
+  for (const char c : nlohmann::json::parse(json_text(name)).get<std::string>()) {
     switch (c) {
       case '&':
         text += "&amp;";
@@ -183,9 +181,7 @@ std::string packing_as_vtk(const std::vector<Sphere>& spheres) {
 
 std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link) {
   // Strings of JSON are strings of YAML.
-  const std::string name =
-      nlohmann::json(link).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::string text = "collision_spheres:\n  " + name + ":\n";
+  std::string text = "collision_spheres:\n  " + json_text(link) + ":\n";
   for (const Sphere& s : spheres) {
     text += "    - \"center\": [" + text_of(s.center, ", ") +
             "]\n      \"radius\": " + digits(s.radius) + '\n';

@@ -51,8 +51,7 @@ void find_closed(const PaddedImage& image, int begin, int end, std::vector<Close
 }  // namespace
 
 void close_holes(PaddedImage& inverse) {
-  const auto bands = static_cast<std::size_t>(inverse.height / kRowsPerBand + 1);
-  std::vector<std::vector<ClosedPixel>> closed(bands);
+  std::vector<std::vector<ClosedPixel>> closed(static_cast<std::size_t>(bands_of(inverse.height)));
   for (int pass = 0; pass < kFillPasses; ++pass) {
     for_bands(inverse.height, [&](int begin, int end) {
       find_closed(inverse, begin, end, closed[static_cast<std::size_t>(begin / kRowsPerBand)]);

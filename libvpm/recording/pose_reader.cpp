@@ -59,13 +59,10 @@ PoseReader::PoseReader(const std::string& path)
 }
 
 std::optional<std::string> PoseReader::next_line() {
-  std::string line;
-  errno = 0;
-  while (std::getline(stream_, line)) {
+  for (std::string line; errno = 0, std::getline(stream_, line);) {
     ++line_;
     if (!is_json(line)) line.resize(std::min(line.find('#'), line.size()));
     if (line.find_first_not_of(kBlank) != std::string::npos) return line;
-    errno = 0;
   }
   if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
   return std::nullopt;

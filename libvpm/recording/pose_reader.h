@@ -17,7 +17,7 @@ namespace vpm {
 //                by row]}; "time" in an object, or an eighth number in front, is the time
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   4x4 text     four lines of four numbers for each pose
-// In text '#' begins a comment; a line of JSON may be one.
+// '#' begins a comment, but not within a line of JSON.
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" is standard input

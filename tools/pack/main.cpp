@@ -157,9 +157,8 @@ std::string why_none_fits(const Arguments& a, StopReason stop) {
   if (a.max_radius)
     return "those below 1/131072 of its longest side are not looked for; give a larger "
            "--max-radius";
-  return "it is nowhere wider than 1/131072 of its longest side, and spheres so small are not "
-         "looked "
-         "for; pack it in parts";
+  return "it is nowhere wider than 1/131072 of its longest side, and spheres so small are "
+         "not looked for; pack it in parts";
 }
 
 PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid& checked) {

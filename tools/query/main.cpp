@@ -110,11 +110,12 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
   if (!replays && !is_default(a.replay))
     wrong("--method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames");
-  check_files({a.tool, a.cloud, a.poses, a.replay.trajectory, a.replay.camera_poses},
-              {{"--output", a.output, std::nullopt},
-               {"--spheres-out", a.spheres_out, std::nullopt},
-               {"--stats", a.stats, std::nullopt}},
-              common);
+  check_files(
+      {a.tool, a.cloud, a.poses, a.replay.frames, a.replay.trajectory, a.replay.camera_poses},
+      {{"--output", a.output, std::nullopt},
+       {"--spheres-out", a.spheres_out, std::nullopt},
+       {"--stats", a.stats, std::nullopt}},
+      common);
 }
 
 LevelRequest level_request(const Arguments& a) {

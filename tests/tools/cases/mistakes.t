@@ -12,6 +12,9 @@ $ vpm-pack cube.off -o new.vpmp --spheres 3 --report cube.off
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o path.txt
 2> vpm-query: error: --output would overwrite the input path.txt; name another output, or give --force
 [2]
+$ echo '0 wall.png' > list.txt; vpm-query --tool cube.vpmg --frames list.txt --trajectory path.txt -o list.txt
+2> vpm-query: error: --output would overwrite the input list.txt; name another output, or give --force
+[2]
 $ ln -s wall.png link.png; vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --report link.png
 2> vpm-normals: error: --report would overwrite the input wall.png; name another output, or give --force
 [2]
