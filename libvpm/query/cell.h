@@ -39,8 +39,9 @@ inline constexpr double kFlatness = 0.1;
 template <class Surface>
 class CellMeasure {
  public:
-  // What hides a piece is another surface, maybe: those wait until the cell's plane is known.
-  enum class Pass { seen, hidden };
+  // What is far behind a surface may be hidden by another one than that which cuts the cell: it
+  // waits until the cell's plane is known.
+  enum class Pass { near, far };
 
   // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
   // tool's, and scales the arms.
@@ -57,33 +58,33 @@ class CellMeasure {
   VPM_HD CellResult run(Samples samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
     result.point = point;
-    bool any_hidden = false;
+    bool any_waits = false;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-      any_hidden |= add_block(b, Pass::seen, samples, result);
-    if (any_hidden) {
+      any_waits |= add_block(b, Pass::near, samples, result);
+    if (any_waits && result.plane.count > 0) {
       for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-        add_block(b, Pass::hidden, samples, result);
+        add_block(b, Pass::far, samples, result);
     }
     samples.flush(*this, result);
     return result;
   }
 
   // What of an uncut share that the flood has reached is inside, where run() does not know it
-  // because it is far. `whole`: all of it is behind some surface; `nearest` gives the nearest cut
-  // share, where it is needed.
-  template <class Nearest>
-  VPM_HD ToolSum reached(bool whole, const Nearest& nearest) const {
+  // because it is far. `whole`: all of it is behind some surface; `vouches(x, foot)`: whether a far
+  // place at x is inside, behind the surface's place `foot`.
+  template <class Vouches>
+  VPM_HD ToolSum reached(bool whole, const Vouches& vouches) const {
     ToolSum sum;
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
       const Side side = whole ? Side::behind : side_of(block);
       if (side == Side::free) continue;
       if (side != Side::mixed) {
-        add_reached(nearest, piece_of(cell_.masses[b], block), sum);
+        add_reached(vouches, piece_of(cell_.masses[b], block), sum);
         continue;
       }
       for (std::uint32_t s = block.begin; s < block.end; ++s)
-        add_reached(nearest, piece_of(cell_.samples[s]), sum);
+        add_reached(vouches, piece_of(cell_.samples[s]), sum);
     }
     return sum;
   }
@@ -119,18 +120,18 @@ class CellMeasure {
         is_of_one_wall(result.center, block.radius, result.tangent, look.point);
     return result;
   }
-  // Whether a block where the surface is one plane is pushed along its normal: it may be a part of
-  // another surface than that which cuts the cell, or another wall may be nearer.
+  // Whether a block where the surface is one plane is pushed along its normal: that may be a part
+  // of another surface than the one which cuts the cell, or another wall may be nearer.
   VPM_HD bool is_of_one_wall(Vec3 center, double radius, const TangentPlane& tangent,
                              std::uint32_t point) const {
     OtherWall other;
-    return !is_hidden(tangent.foot) &&
+    return !is_far(tangent.distance(center)) &&
            !(is_divisible(radius) &&
              surface_.find_other_wall(center, tangent, point, radius, kOneDirection, other));
   }
 
-  // Adds what one block contributes to run(): first of all that is seen, then, knowing the plane,
-  // of what is hidden. Returns whether something was left for the second pass.
+  // Adds what one block contributes to run(): first of all that is near, then, knowing the plane,
+  // of what is far. Returns whether something was left for the second pass.
   template <class Samples>
   VPM_HD bool add_block(std::uint32_t b, Pass pass, Samples& samples, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
@@ -140,21 +141,13 @@ class CellMeasure {
     if (look.side != Side::mixed)
       return add_piece(piece_of(cell_.masses[b], block), pass, result, surface_);
     if (look.is_flat) {
-      if (pass == Pass::hidden) return false;
-      result.is_far |= is_far(look.tangent.distance(look.center));
+      if (pass == Pass::far) return false;
       add_block<Samples>(b, {look.tangent, to_surface_}, result);
       return false;
     }
     const auto& near = surface_.around_ball(look.center, block.radius, look.point);
     return samples.add(*this, cell_.samples + block.begin, block.end - block.begin, pass, near,
                        result);
-  }
-
-  // Whether a place of the surface may be another one's than that which cuts the cell.
-  VPM_HD bool is_hidden(Vec3 foot) const {
-    const double beyond = (kSheetReach - 1) * cell_.reach;
-    const double near = cell_.reach + (beyond < tool_reach_.length ? beyond : tool_reach_.length);
-    return squared_norm(foot - center_) > near * near;
   }
 
   // Whether a place at this signed distance is further behind the surface than the tool's reach.
@@ -166,7 +159,6 @@ class CellMeasure {
     Reading reading;
     bool is_inside = false;  // a part of it at least; the rest is said of such only
     bool is_far = false;     // further behind the surface than the tool's reach
-    bool is_hidden = false;  // by another surface than that of the cell, maybe
   };
   VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point = kNoPoint) const {
     return look_at(piece, point, surface_);
@@ -183,10 +175,9 @@ class CellMeasure {
     look.is_inside = reading.known && reading.distance < piece.radius;
     if (!look.is_inside) return look;
     look.is_far = is_far(reading.distance);
-    look.is_hidden = is_hidden(reading.foot);
     return look;
   }
-  // Whether the cell's own plane vouches for a hidden piece.
+  // Whether the cell's own plane vouches for a far piece.
   VPM_HD bool is_vouched_for(const PieceLook& look, const ContactPlane& plane) const {
     return plane.vouches_for(relative(look.x), relative(look.reading.foot),
                              tool_reach_.length / cell_.reach);
@@ -227,7 +218,7 @@ class CellMeasure {
   }
   // Of a block's samples that lie side by side (kNeighborSamples), those that are wholly behind the
   // surface are pushed in the direction of the first of them, where that is searched for; so are
-  // those that may be hidden.
+  // the far ones.
   VPM_HD static bool shares_direction(const SharePiece& sample, const PieceLook& look) {
     return Surface::kSearchesFoot && look.is_inside && !is_cut(sample, look);
   }
@@ -255,11 +246,12 @@ class CellMeasure {
     sum.add(piece.weight, in_tool(normal), arm(piece.at));
   }
   VPM_HD void add_to_plane(const PieceLook& look, ContactPlane& plane) const {
-    plane.add(look.reading.normal, relative(look.reading.foot));
+    const Reading& at = look.reading;
+    plane.add(at.normal, relative(look.x - at.distance * at.normal));
   }
 
   VPM_HD static bool is_of_pass(const PieceLook& look, Pass pass) {
-    return look.is_hidden == (pass == Pass::hidden);
+    return look.is_far == (pass == Pass::far);
   }
   // What a pass of run() does with a piece. Notes what it says of its share; the sum is left to the
   // caller.
@@ -268,9 +260,9 @@ class CellMeasure {
                    CellResult& result) const {
     if (!look.is_inside) return Take::leave;
     result.is_far |= look.is_far;
-    if (!is_of_pass(look, pass)) return look.is_hidden ? Take::wait : Take::leave;
-    if (look.is_hidden && !is_vouched_for(look, result.plane)) return Take::leave;
-    if (is_cut(piece, look) && !look.is_hidden) add_to_plane(look, result.plane);
+    if (!is_of_pass(look, pass)) return look.is_far ? Take::wait : Take::leave;
+    if (look.is_far && !is_vouched_for(look, result.plane)) return Take::leave;
+    if (is_cut(piece, look)) add_to_plane(look, result.plane);
     return Take::add;
   }
   // Adds what one piece contributes to a pass. Returns whether it waits.
@@ -311,17 +303,11 @@ class CellMeasure {
   }
 
   // Adds what one piece contributes to reached().
-  template <class Nearest>
-  VPM_HD void add_reached(const Nearest& nearest, const SharePiece& piece, ToolSum& sum) const {
+  template <class Vouches>
+  VPM_HD void add_reached(const Vouches& vouches, const SharePiece& piece, ToolSum& sum) const {
     const PieceLook look = look_at(piece);
-    if (!look.is_inside) return;
-    if (look.is_far) {
-      const CutShare cut = nearest();
-      if (!cut.plane.vouches_for(cut.relative(look.x), cut.relative(look.reading.foot),
-                                 tool_reach_.length / cut.reach))
-        return;
-    }
-    add(piece, look, sum);
+    if (look.is_inside && (!look.is_far || vouches(look.x, look.reading.foot)))
+      add(piece, look, sum);
   }
 
   // Adds a block that a plane crosses.

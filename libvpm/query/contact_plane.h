@@ -6,15 +6,14 @@
 
 namespace vpm {
 
-// A surface further than this many reaches from the cell's centre, or than the tool's reach from
-// the cell, may be another one than that which cuts the cell: a place behind it is merely hidden by
-// it (a silhouette before a background), unless the cell's own plane vouches for both.
+// A surface further than this many reaches from a share's centre may be another one than that which
+// cuts the share.
 inline constexpr double kSheetReach = 3;
 
 // The surface inside a cell, averaged: used for what lies out of the direct view.
 struct ContactPlane {
-  // Unit normals, and feet relative to the cell's reach: |terms| <= kSheetReach < 8; 2^20 samples
-  // fit.
+  // Unit normals, and feet relative to the cell's reach, of samples that they cut: |terms| < 8;
+  // 2^20 samples fit.
   using Sum = FixedSum<40>;
   Sum normal[3], foot[3];
   std::int64_t count = 0;
@@ -33,9 +32,9 @@ struct ContactPlane {
     return dot(normalized_or_zero(n), relative - p);
   }
   // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
-  // object more than `near` in front of it. Where there is no plane nothing speaks against.
+  // object more than `near` in front of it. Without a plane nothing does.
   VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
-    return count == 0 || (height(relative) < 0 && height(hiding) <= near);
+    return count > 0 && height(relative) < 0 && height(hiding) <= near;
   }
 };
 
@@ -48,6 +47,9 @@ struct CutShare {
 
   VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
   VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
+  VPM_HD bool vouches_for(Vec3 x, Vec3 hiding, double near) const {
+    return plane.vouches_for(relative(x), relative(hiding), near / reach);
+  }
 };
 
 }  // namespace vpm

@@ -32,6 +32,9 @@ struct DepthSurface {
   static constexpr double kJump = 0.03;
   // Below this cosine between normal and ray the normal is not trusted to scale a distance.
   static constexpr double kGrazing = 0.05;
+  // A ray that has passed the surface is inside, as far as anybody knows: what is behind it, no
+  // further than the tool's reach, counts, and no flood needs to come.
+  static constexpr bool kTellsInside = true;
   static constexpr bool kSearchesFoot = true;  // for the nearest surface point:
   static constexpr int kFootSteps = 5;         // steps of the search
   static constexpr double kFootPixels = 0.5;   // a step shorter than this ends the search

@@ -25,6 +25,7 @@ struct SecondPlane {
 
 // A view: plain pointers, for host or device.
 struct DiskSurface {
+  static constexpr bool kTellsInside = false;   // nobody knows from where disks were seen
   static constexpr bool kSearchesFoot = false;  // the disk of a reading is the nearest
 
   PointTree feet;  // in canonical order

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -18,28 +19,41 @@ namespace vpm {
 class FloodMemory {
  public:
   FloodMemory(std::size_t shares, std::size_t clusters)
-      : inside_(shares), feet_(clusters), known_(clusters) {}
+      : last_(shares, clusters), next_(shares, clusters) {}
 
-  void forget() {
-    std::fill(inside_.begin(), inside_.end(), false);
-    std::fill(known_.begin(), known_.end(), false);
+  bool was_inside(std::uint32_t share) const { return last_.inside[share] != 0; }
+  bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
+    return last_.known[cluster] && squared_norm(foot - last_.feet[cluster]) <= reach * reach;
   }
+  void forget(std::uint32_t share) { last_.inside[share] = false; }
+  void forget() { last_.clear(); }
+
   // `read(foot)`: where the share is behind the surface, world coordinates; false if nobody knows.
   // The first of a cluster that is known stands for all of it.
   template <class Read>
   void remember(std::uint32_t share, std::uint32_t cluster, const Read& read) {
-    if (!known_[cluster]) known_[cluster] = read(feet_[cluster]);
-    inside_[share] = known_[cluster];
+    if (!next_.known[cluster]) next_.known[cluster] = read(next_.feet[cluster]);
+    next_.inside[share] = next_.known[cluster];
   }
-  bool was_inside(std::uint32_t share) const { return inside_[share] != 0; }
-  bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
-    return known_[cluster] && squared_norm(foot - feet_[cluster]) <= reach * reach;
+  // When all is remembered: it replaces what was.
+  void turn() {
+    std::swap(last_, next_);
+    next_.clear();
   }
 
  private:
-  std::vector<char> inside_;  // of each share
-  std::vector<Vec3> feet_;    // of each cluster
-  std::vector<char> known_;
+  struct Memory {
+    Memory(std::size_t shares, std::size_t clusters)
+        : inside(shares), feet(clusters), known(clusters) {}
+    void clear() {
+      std::fill(inside.begin(), inside.end(), false);
+      std::fill(known.begin(), known.end(), false);
+    }
+    std::vector<char> inside;  // of each share
+    std::vector<Vec3> feet;    // of each cluster
+    std::vector<char> known;
+  };
+  Memory last_, next_;
 };
 
 }  // namespace vpm

@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <mutex>
 
+#include "libvpm/query/seen_shares.h"
 #include "libvpm/query/share_classifier.h"
 #include "libvpm/query/share_flood.h"
 
 namespace vpm {
+namespace {
+
+// What decides which shares behind a surface are inside.
+template <class Surface>
+using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, ShareFlood<Surface>>;
+
+}  // namespace
 
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
@@ -43,43 +51,44 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
                              counts_points_ ? &points : nullptr, shares_);
   ParallelRegion region;
   result.points = classifier.run(region);
-  ShareFlood flood(tool_, reach_, level_, surface, to_surface, shares_);
-  flood.run(region);
-  if (memory_) {
-    if (shares_.cut.empty()) flood.run_from(*memory_, to_world);
-    flood.remember(to_world, *memory_);
-  }
+  CutShares cut(tool_, level_, to_surface, shares_);
+  cut.list();
+  Inside<Surface> inside(reach_, level_, surface, to_surface, cut, shares_);
+  inside.run(region);
+  if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
   for (const std::uint32_t i : shares_.cut) sum.add(shares_.results[i].sum);
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
-  result.inside = add_inside(surface, to_surface, flood, region, sum);
+  result.inside = add_inside(surface, to_surface, inside, region, sum);
+  if (memory_) remember(surface, to_surface, to_world, inside);
 }
 
-template <class Surface, class Flood>
+template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_inside(const Surface& surface, const Pose& to_surface,
-                                         const Flood& flood, ParallelRegion& region, ToolSum& sum) {
+                                         const Inside& inside, ParallelRegion& region,
+                                         ToolSum& sum) {
   constexpr std::size_t kGrain = 512;
   std::mutex adding;
-  std::uint32_t inside = 0;
+  std::uint32_t all = 0;
   region.loop(level_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
     std::uint32_t count = 0;
     for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
-      const ToolSum part = sum_of(surface, to_surface, flood, i);
+      const ToolSum part = sum_of(surface, to_surface, inside, i);
       of_all.add(part);
       if (part.volume.value != 0)
         ++count;
       else
-        shares_.cells[i] = Cell::free;  // the flood passed through the hidden
+        shares_.cells[i] = Cell::free;  // hidden, not inside
     });
     const std::lock_guard lock(adding);
     sum.add(of_all);
-    inside += count;
+    all += count;
   });
-  return inside;
+  return all;
 }
 
-template <class Surface, class Flood>
-ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Flood& flood,
+template <class Surface, class Inside>
+ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                                std::uint32_t row) const {
   ToolSum sum;
   if (shares_.cells[row] == Cell::pushed) {
@@ -90,12 +99,30 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
   if (shares_.cells[row] == Cell::partial && !result.is_far) return result.sum;
   const CellView view = level_.cell(row);
   const CellMeasure measure(surface, to_surface, reach_, view);
-  const auto nearest = [&] { return flood.nearest_cut_share(row); };
+  const auto vouches = [&](Vec3 x, Vec3 foot) { return inside.vouches_for(row, x, foot); };
   const bool whole = shares_.cells[row] == Cell::whole;
   if (!whole || !is_compact(level_.reach(row), reach_.length))
-    return measure.reached(whole, nearest);
-  measure.add_reached(nearest, piece_of(level_.mass(row), view), sum);
+    return measure.reached(whole, vouches);
+  measure.add_reached(vouches, piece_of(level_.mass(row), view), sum);
   return sum;
+}
+
+// What is cut and inside now.
+template <class Surface, class Inside>
+void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
+                              const Inside& inside) {
+  const auto keep = [&](std::uint32_t i) {
+    memory_->remember(i, level_.root(i), [&](Vec3& foot) {
+      const Reading reading = surface.read(to_surface * level_.cell(i).center);
+      foot = to_world * reading.foot;
+      return reading.known;
+    });
+  };
+  for (const std::uint32_t i : shares_.cut) keep(i);
+  for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {
+    if (shares_.cells[i] != Cell::free && inside.is_sure(i)) keep(i);
+  });
+  memory_->turn();
 }
 
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {

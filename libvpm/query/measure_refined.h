@@ -35,13 +35,16 @@ class RefinedMeasure {
   template <class Surface>
   void run_on(const Surface& surface, const Pose& to_world, const PreparedCloud& cloud,
               const Pose& pose, ToolSum& sum, Result& result);
-  // What the flood has taken; returns the number of shares that count.
-  template <class Surface, class Flood>
-  std::uint32_t add_inside(const Surface& surface, const Pose& to_surface, const Flood& flood,
+  // Of shares that nothing cuts; `inside` has taken them. Returns the number of those that count.
+  template <class Surface, class Inside>
+  std::uint32_t add_inside(const Surface& surface, const Pose& to_surface, const Inside& inside,
                            ParallelRegion& region, ToolSum& sum);
-  template <class Surface, class Flood>
-  ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Flood& flood,
+  template <class Surface, class Inside>
+  ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                  std::uint32_t row) const;
+  template <class Surface, class Inside>
+  void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
+                const Inside& inside);
 
   const ToolModel& tool_;
   ToolReach reach_;

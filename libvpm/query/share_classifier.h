@@ -194,7 +194,7 @@ class ShareClassifier {
     const CellResult& result = states_.results[i];
     if (result.plane.count > 0)
       states_.set(i, Cell::cut, Passage::closed);
-    else if (result.sum.volume.value > 0)
+    else if (result.sum.volume.value > 0 || result.is_far)
       states_.set(i, Cell::partial, passage);
     else
       states_.set(i, Cell::free, Passage::closed);

@@ -1,36 +1,35 @@
-// The second step of the refined measure: which shares behind the surface are inside. The surface
-// enters the tool through cut shares; from there every share behind it that the graph reaches is.
-// Which ones does not depend on the order of the traversal.
+// The second step of the refined measure where nobody knows from where points were seen: which
+// shares behind the surface are inside. The surface enters the tool through cut shares; from there
+// every share behind it that the graph reaches is. Which ones does not depend on the order of the
+// traversal.
 #pragma once
 
 #include <algorithm>
 #include <span>
-#include <utility>
 
 #include "libvpm/core/parallel_region.h"
+#include "libvpm/query/cut_shares.h"
 #include "libvpm/query/flood_memory.h"
 #include "libvpm/query/passage.h"
 #include "libvpm/query/patch.h"
-#include "libvpm/query/share_states.h"
 
 namespace vpm {
 
 template <class Surface>
 class ShareFlood {
  public:
-  ShareFlood(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
-             const Surface& surface, const Pose& to_surface, ShareStates& states)
-      : tool_(tool),
-        reach_(reach),
+  ShareFlood(ToolReach reach, const SpatialLevel& level, const Surface& surface,
+             const Pose& to_surface, const CutShares& cut, ShareStates& states)
+      : reach_(reach),
         level_(level),
         surface_(surface),
         to_surface_(to_surface),
+        cut_(cut),
         states_(states) {}
 
   // By all threads of the region, each in its part of the tool: what leads from one part to another
   // is taken up in the next round.
   void run(ParallelRegion& region) {
-    list_cut();
     split(region.threads());
     region.loop(states_.part_count, 1,
                 [&](std::size_t k, std::size_t) { enter(states_.parts[k]); });
@@ -42,7 +41,7 @@ class ShareFlood {
 
   // Where the surface passes through no share: those stay inside that were, or were cut, as long as
   // they are behind the same surface; so does what the graph reaches from them near it.
-  void run_from(const FloodMemory& memory, const Pose& to_world) {
+  void run_from(FloodMemory& memory, const Pose& to_world) {
     FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
       if (states_.cells[i] == Cell::open) states_.cells[i] = Cell::whole;
@@ -64,35 +63,17 @@ class ShareFlood {
     }
   }
 
-  // What is cut and inside now.
-  void remember(const Pose& to_world, FloodMemory& memory) const {
-    memory.forget();
-    const auto keep = [&](std::uint32_t i) {
-      memory.remember(i, level_.root(i), [&](Vec3& foot) {
-        const Reading reading = surface_.read(center(i));
-        foot = to_world * reading.foot;
-        return reading.known;
-      });
-    };
-    for (const std::uint32_t i : states_.cut) keep(i);
-    for_rows_in(Passage::taken, states_.passages, 0, level_.size(), keep);
+  // Whether a place of a share that the flood has taken is inside, though far behind the surface.
+  bool vouches_for(std::uint32_t row, Vec3 x, Vec3 foot) const {
+    return cut_.are_none() || cut_.nearest_to(row).vouches_for(x, foot, reach_.length);
   }
-
-  // The cut share nearest to one that the flood has taken; without plane where nothing is cut.
-  CutShare nearest_cut_share(std::uint32_t row) const {
-    return states_.cut.empty() ? CutShare{} : cut_share(nearest_cut(row));
-  }
+  // Whether a share that counts is one to be remembered.
+  static bool is_sure(std::uint32_t) { return true; }
 
  private:
   static constexpr std::size_t kRowsOfChunk = 128;  // counted in a byte
 
   Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
-
-  void list_cut() {
-    states_.cut.clear();
-    for_rows_in(Cell::cut, states_.cells, 0, level_.size(),
-                [&](std::uint32_t i) { states_.cut.push_back(i); });
-  }
 
   // What the flood may do is shared out evenly.
   void split(int threads) {
@@ -238,12 +219,12 @@ class ShareFlood {
     }
     states_.squared_gaps[j] = squared_gap(reading);
     if (!is_hidden_share(states_.squared_gaps[j], reach_.length)) return Passage::open;
-    return cut_share(nearest_cut(j)).height(at) < 0 ? Passage::open : Passage::closed;
+    return cut_.nearest_to(j).height(at) < 0 ? Passage::open : Passage::closed;
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {
     return lies_near_sheet(squared_gap_of(row), level_.reach(cut), level_.reach(row)) ||
-           cut_share(cut).height(center(row)) < 0;
+           cut_.at(cut).height(center(row)) < 0;
   }
   double squared_gap_of(std::uint32_t row) {
     if (states_.passages[row] == Passage::patch) {
@@ -267,26 +248,11 @@ class ShareFlood {
     return holds(at, reading.foot);
   }
 
-  // Equal distances go to the sphere with the smaller index.
-  std::uint32_t nearest_cut(std::uint32_t row) const {
-    const Vec3 center = tool_.spheres[level_.sphere(row)].center;
-    const auto rank = [&](std::uint32_t cut) {
-      const std::uint32_t sphere = level_.sphere(cut);
-      return std::pair(squared_norm(tool_.spheres[sphere].center - center), sphere);
-    };
-    return *std::min_element(states_.cut.begin(), states_.cut.end(),
-                             [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
-  }
-
-  CutShare cut_share(std::uint32_t cut) const {
-    return {states_.results[cut].plane, center(cut), level_.reach(cut)};
-  }
-
-  const ToolModel& tool_;
   ToolReach reach_;
   const SpatialLevel& level_;
   const Surface& surface_;
   const Pose& to_surface_;
+  const CutShares& cut_;
   ShareStates& states_;
 };
 

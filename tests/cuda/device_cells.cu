@@ -59,9 +59,12 @@ VPM_HD CellAnswer answer(const Surface& surface, const Pose& to_surface, const L
   const CellView view = level.cell(i);
   CellMeasure<Surface> measure(surface, to_surface, level.tool_reach, view);
   const CellResult result = measure.run(SamplesInTurn{});
-  const auto nearest = [&] { return CutShare{result.plane, to_surface * view.center, view.reach}; };
+  const CutShare own{result.plane, to_surface * view.center, view.reach};
+  const auto vouches = [&](Vec3 x, Vec3 foot) {
+    return own.vouches_for(x, foot, level.tool_reach);
+  };
   return {surface.side_of_ball(to_surface * view.center, view.reach), result,
-          measure.reached(true, nearest)};
+          measure.reached(true, vouches)};
 }
 
 template <class Surface>

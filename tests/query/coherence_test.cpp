@@ -36,19 +36,24 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   Query query(tool, coherent()), alone(tool, {});
-  bool was_wholly_behind = false;
+  int near = 0, far = 0;  // poses wholly behind the wall, where one alone may be right and is not
   for (const Pose& pose : through_the_wall(1.6)) {
+    const double z = pose.translation.z;
     const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
-    if (seen_alone.boundary > 0 || pose.translation.z < 1) {
-      EXPECT_TRUE(r == seen_alone) << pose.translation.z;  // the memory adds nothing
-    } else {
-      was_wholly_behind = true;
-      EXPECT_EQ(seen_alone.volume, 0);
-      EXPECT_NEAR(r.volume_fraction, 1, 1e-12) << pose.translation.z;
-      EXPECT_NEAR(r.wrench.force.z, -r.volume, 1e-6 * r.volume);
+    if (seen_alone.boundary > 0 || z < 1) {
+      EXPECT_TRUE(r == seen_alone) << z;  // the memory adds nothing
+      continue;
     }
+    EXPECT_NEAR(r.volume_fraction, 1, 1e-12) << z;
+    EXPECT_NEAR(r.wrench.force.z, -r.volume, 1e-6 * r.volume);
+    EXPECT_LE(seen_alone.volume, r.volume);
+    near += seen_alone.volume > 0;
+    if (z < 1 + 2 * tool.reach) continue;
+    ++far;
+    EXPECT_EQ(seen_alone.volume, 0) << z;
   }
-  EXPECT_TRUE(was_wholly_behind);
+  EXPECT_GT(near, 5);
+  EXPECT_GT(far, 100);
 }
 
 TEST(CoherentPoses, ForgetWhenTold) {
@@ -63,7 +68,8 @@ TEST(CoherentPoses, ForgetWhenTold) {
   EXPECT_EQ(query.run(cloud, deep).volume, 0);
 }
 
-// In free space behind an object, as the camera sees it: never inside.
+// In free space behind an object, further than the tool reaches, as the camera sees it: never
+// inside.
 TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
@@ -73,6 +79,25 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
     const Pose pose{generic_rotation(), {x, 0.01, 1.25}};
     EXPECT_TRUE(query.run(cloud, pose) == alone.run(cloud, pose)) << x;
   }
+}
+
+// What counts only since an object hides it, near its front, is not remembered where it moves away
+// behind the object.
+TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
+  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const ToolModel tool = lattice_cube(0.05, 5, 3);
+  Query query(tool, coherent()), alone(tool, {});
+  int hidden = 0;
+  const auto expect_nothing_remembered = [&](Vec3 at) {
+    const Pose pose{generic_rotation(), at};
+    const Result r = query.run(cloud, pose);
+    EXPECT_TRUE(r == alone.run(cloud, pose)) << at.x << ' ' << at.z;
+    hidden += r.boundary == 0 && r.volume > 0;
+  };
+  for (double x = 0.25; x > 0; x -= kStep) expect_nothing_remembered({x, 0.01, 1.05});
+  for (double z = 1.05; z < 1.3; z += kStep) expect_nothing_remembered({0, 0.01, z});
+  EXPECT_GT(hidden, 50);
+  EXPECT_EQ(query.run(cloud, {generic_rotation(), {0, 0.01, 1.3}}).volume, 0);
 }
 
 Cloud wall_at(double z) {
@@ -114,7 +139,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   constexpr double kWallStep = 0.015;
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   Query query(tool, coherent()), alone(tool, {});
-  int cut = 0, wholly_behind = 0, k = 0;
+  int cut = 0, wholly_behind = 0, lost = 0, k = 0;
   const auto query_frame = [&](double z) {
     const PreparedCloud cloud(make_frame(z));
     for (int n = 0; n < kQueriesPerFrame; ++n, ++k) {
@@ -125,7 +150,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
         ASSERT_TRUE(r == seen_alone) << z << ' ' << n;
       } else {
         ++wholly_behind;
-        ASSERT_EQ(seen_alone.volume, 0);
+        lost += seen_alone.volume_fraction < 0.5;
         ASSERT_NEAR(r.volume_fraction, 1, 1e-12) << z << ' ' << n;
       }
     }
@@ -134,6 +159,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   for (double z = 0.89; z < 1.11; z += kWallStep) query_frame(z);
   EXPECT_GT(cut, 5 * kQueriesPerFrame);
   EXPECT_GT(wholly_behind, kQueriesPerFrame);
+  EXPECT_GE(lost, kQueriesPerFrame);  // without the memory
 }
 
 TEST(CoherentPoses, AreRightInAMovingScene) {

@@ -185,7 +185,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 5);
   const Level& level = tool.levels[0];
   const std::vector<BlockMass> masses = block_masses(level);
-  int cut = 0, pushed = 0, hidden = 0;  // samples of blocks that are neither flat nor on one side
+  int cut = 0, pushed = 0, far = 0;  // samples of blocks that are neither flat nor on one side
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
                           {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
@@ -203,14 +203,14 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
         const SharePiece piece = piece_of(level.samples[s]);
         const auto look = measure.look_at(piece);
         if (!look.is_inside) continue;
-        ++(look.is_hidden ? hidden : measure.is_cut(piece, look) ? cut : pushed);
+        ++(look.is_far ? far : measure.is_cut(piece, look) ? cut : pushed);
       }
     }
   }
   EXPECT_GT(cut, 500);
   EXPECT_GT(pushed, 500);
   if (std::string(GetParam()) == "block") {
-    EXPECT_GT(hidden, 500);
+    EXPECT_GT(far, 500);
   }
 }
 
@@ -236,14 +236,14 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
       const auto block_look = measure.look_at(block);
       if (block_look.side != Side::mixed || block_look.is_flat) continue;
       CellResult of_each;
-      bool any_hidden = false;
+      bool any_far = false;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const SharePiece piece = piece_of(level.samples[s]);
         const auto look = measure.look_at(piece);
-        any_hidden |= look.is_inside && look.is_hidden;
+        any_far |= look.is_inside && look.is_far;
         if (look.is_inside) measure.add(piece, look, of_each.sum);
       }
-      if (any_hidden) continue;
+      if (any_far) continue;
       const CellResult result = measure.run(SamplesTogether{});
       ASSERT_EQ(result.sum.volume.value, of_each.sum.volume.value);
       volume += result.sum.volume.real();

@@ -145,6 +145,47 @@ TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   }
 }
 
+// Behind the block's front (z = 1, 0.2 m wide), no further than this, as far as the camera's rays
+// cross it.
+double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, double near) {
+  const auto count = std::count_if(places.begin(), places.end(), [&](const Vec3& place) {
+    const Vec3 x = pose * place;
+    return x.z > 1 && x.z < 1 + near && std::abs(x.x) < 0.1 * x.z && std::abs(x.y) < 0.1 * x.z;
+  });
+  return static_cast<double>(count) / static_cast<double>(places.size());
+}
+
+// A tool that comes from the side meets a face of the block that the camera cannot see. Where it
+// touches the front, that vouches for what is deeper.
+TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
+  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const ToolModel tool = lattice_cube(kEdge, 10, 3);
+  std::vector<Vec3> places;
+  constexpr int kPlaces = 40;
+  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
+    const auto at = [](int n) { return kEdge * ((n % kPlaces + 0.5) / kPlaces - 0.5); };
+    places.push_back({at(k), at(k / kPlaces), at(k / (kPlaces * kPlaces))});
+  }
+  for (const double z : {0.98, 1.0, 1.18, 1.23}) {
+    Query query(tool, {});
+    double before = 0, expected_before = 0, most = 0;
+    const double near = z > 1 + tool.reach ? tool.reach : 2 * tool.reach;
+    for (double x = 0.3; x > 0; x -= 0.002) {
+      const Pose pose{generic_rotation(), {x, 0.01, z}};
+      const Result r = query.run(cloud, pose);
+      const double expected = behind_the_front(places, pose, near);
+      // A pixel is 2 mm wide; pieces as deep as the tool's reach count whole or not at all.
+      EXPECT_NEAR(r.volume_fraction, expected, 0.02) << x << ' ' << z;
+      EXPECT_LE(std::abs(r.volume_fraction - before), std::abs(expected - expected_before) + 0.012)
+          << x << ' ' << z;
+      before = r.volume_fraction;
+      expected_before = expected;
+      most = std::max(most, expected);
+    }
+    EXPECT_GT(most, 0.1) << z;
+  }
+}
+
 TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
   // Half of the tool touches the wall in sight, the other half is hidden by the block in front.
   const synthetic::Scene scene = synthetic::make_scene("block");
