@@ -39,10 +39,6 @@ inline constexpr double kFlatness = 0.1;
 template <class Surface>
 class CellMeasure {
  public:
-  // What is far behind a surface may be hidden by another one than that which cuts the cell: it
-  // waits until the cell's plane is known.
-  enum class Pass { near, far };
-
   // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
   // tool's, and scales the arms.
   VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
@@ -53,45 +49,59 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  // `samples`: SamplesInTurn, or what adds the same sooner. `point`: where to begin to read disks.
+  // What of a cell through which the surface may pass is inside; of a cell that it does not cut,
+  // without the far pieces. `samples`: SamplesInTurn, or what adds the same sooner. `point`: where
+  // to begin to read disks.
   template <class Samples>
   VPM_HD CellResult run(Samples samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
     result.point = point;
-    bool any_waits = false;
-    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-      any_waits |= add_block(b, Pass::near, samples, result);
-    if (any_waits && result.plane.count > 0) {
-      for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
-        add_block(b, Pass::far, samples, result);
-    }
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, result);
     samples.flush(*this, result);
+    if (result.is_far && result.plane.count > 0) {
+      const CutShare own{result.plane, center_, cell_.reach};
+      add_far([&](Vec3 x, Vec3 foot) { return own.vouches_for(x, foot, tool_reach_.length); },
+              result.sum);
+    }
     return result;
   }
 
-  // What of an uncut share that the flood has reached is inside, where run() does not know it
-  // because it is far. `whole`: all of it is behind some surface; `vouches(x, foot)`: whether a far
-  // place at x is inside, behind the surface's place `foot`.
+  // A surface further away than the tool's reach may be another one than that which cuts the tool:
+  // a place behind it is merely hidden by it, unless the plane of a cut cell vouches for both.
+  // `vouches(x, foot)`: whether one does for a place at x, behind the surface's place `foot`.
+  //
+  // Adds the far pieces, which run() leaves out.
   template <class Vouches>
-  VPM_HD ToolSum reached(bool whole, const Vouches& vouches) const {
-    ToolSum sum;
+  VPM_HD void add_far(const Vouches& vouches, ToolSum& sum) const {
+    const auto add_if_far = [&](const SharePiece& piece) {
+      const PieceLook look = look_at(piece);
+      if (look.is_far && vouches(look.x, look.reading.foot)) add(piece, look, sum);
+    };
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
-      const Side side = whole ? Side::behind : side_of(block);
-      if (side == Side::free) continue;
-      if (side != Side::mixed) {
-        add_reached(vouches, piece_of(cell_.masses[b], block), sum);
+      const BlockLook look = look_at(block);
+      if (look.side == Side::free || look.is_flat) continue;
+      if (look.side != Side::mixed) {
+        add_if_far(piece_of(cell_.masses[b], block));
         continue;
       }
       for (std::uint32_t s = block.begin; s < block.end; ++s)
-        add_reached(vouches, piece_of(cell_.samples[s]), sum);
+        add_if_far(piece_of(cell_.samples[s]));
     }
+  }
+  // What of a cell wholly behind some surface is inside.
+  template <class Vouches>
+  VPM_HD ToolSum whole(const Vouches& vouches) const {
+    ToolSum sum;
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
+      add_whole_piece(vouches, piece_of(cell_.masses[b], cell_.blocks[b]), sum);
     return sum;
   }
-
-  // The side of one block of the cell.
-  VPM_HD Side side_of(const CellBlock& block) const {
-    return surface_.look_at_ball(to_surface_ * widen(block.center), block.radius).side;
+  template <class Vouches>
+  VPM_HD void add_whole_piece(const Vouches& vouches, const SharePiece& piece, ToolSum& sum) const {
+    const PieceLook look = look_at(piece);
+    if (look.is_inside && (!look.is_far || vouches(look.x, look.reading.foot)))
+      add(piece, look, sum);
   }
 
   // How well one plane must fit to serve a whole block, m.
@@ -130,24 +140,21 @@ class CellMeasure {
              surface_.find_other_wall(center, tangent, point, radius, kOneDirection, other));
   }
 
-  // Adds what one block contributes to run(): first of all that is near, then, knowing the plane,
-  // of what is far. Returns whether something was left for the second pass.
+  // Adds what one block contributes to run().
   template <class Samples>
-  VPM_HD bool add_block(std::uint32_t b, Pass pass, Samples& samples, CellResult& result) const {
+  VPM_HD void add_block(std::uint32_t b, Samples& samples, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const BlockLook look = look_at(block);
-    if (look.side == Side::free) return false;
+    if (look.side == Side::free) return;
     if (look.point != kNoPoint) result.point = look.point;
-    if (look.side != Side::mixed)
-      return add_piece(piece_of(cell_.masses[b], block), pass, result, surface_);
-    if (look.is_flat) {
-      if (pass == Pass::far) return false;
+    if (look.side != Side::mixed) {
+      add_piece(piece_of(cell_.masses[b], block), result);
+    } else if (look.is_flat) {
       add_block<Samples>(b, {look.tangent, to_surface_}, result);
-      return false;
+    } else {
+      const auto& near = surface_.around_ball(look.center, block.radius, look.point);
+      samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
     }
-    const auto& near = surface_.around_ball(look.center, block.radius, look.point);
-    return samples.add(*this, cell_.samples + block.begin, block.end - block.begin, pass, near,
-                       result);
   }
 
   // Whether a place at this signed distance is further behind the surface than the tool's reach.
@@ -176,11 +183,6 @@ class CellMeasure {
     if (!look.is_inside) return look;
     look.is_far = is_far(reading.distance);
     return look;
-  }
-  // Whether the cell's own plane vouches for a far piece.
-  VPM_HD bool is_vouched_for(const PieceLook& look, const ContactPlane& plane) const {
-    return plane.vouches_for(relative(look.x), relative(look.reading.foot),
-                             tool_reach_.length / cell_.reach);
   }
   VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
     return look.reading.distance > -piece.radius;
@@ -217,10 +219,10 @@ class CellMeasure {
     return surface_.closest_normal(look.x, look.reading);
   }
   // Of a block's samples that lie side by side (kNeighborSamples), those that are wholly behind the
-  // surface are pushed in the direction of the first of them, where that is searched for; so are
-  // the far ones.
+  // surface are pushed in the direction of the first of them, where that is searched for. Far ones
+  // go their own ways.
   VPM_HD static bool shares_direction(const SharePiece& sample, const PieceLook& look) {
-    return Surface::kSearchesFoot && look.is_inside && !is_cut(sample, look);
+    return Surface::kSearchesFoot && look.is_inside && !look.is_far && !is_cut(sample, look);
   }
   VPM_HD bool is_divisible(double extent) const {
     return extent >= kLeastDivided * tool_reach_.length;
@@ -250,64 +252,37 @@ class CellMeasure {
     plane.add(at.normal, relative(look.x - at.distance * at.normal));
   }
 
-  VPM_HD static bool is_of_pass(const PieceLook& look, Pass pass) {
-    return look.is_far == (pass == Pass::far);
-  }
-  // What a pass of run() does with a piece. Notes what it says of its share; the sum is left to the
-  // caller.
-  enum class Take { leave, wait, add };  // wait: for the second pass
-  VPM_HD Take take(const SharePiece& piece, const PieceLook& look, Pass pass,
-                   CellResult& result) const {
-    if (!look.is_inside) return Take::leave;
+  // Notes what a piece says of its cell. Returns whether run() adds it.
+  VPM_HD bool note(const SharePiece& piece, const PieceLook& look, CellResult& result) const {
+    if (!look.is_inside) return false;
     result.is_far |= look.is_far;
-    if (!is_of_pass(look, pass)) return look.is_far ? Take::wait : Take::leave;
-    if (look.is_far && !is_vouched_for(look, result.plane)) return Take::leave;
     if (is_cut(piece, look)) add_to_plane(look, result.plane);
-    return Take::add;
+    return !look.is_far;
   }
-  // Adds what one piece contributes to a pass. Returns whether it waits.
-  template <class Near>
-  VPM_HD bool add_piece(const SharePiece& piece, Pass pass, CellResult& result,
-                        const Near& near) const {
-    const PieceLook look = look_at(piece, result.point, near);
+  // Adds what one piece contributes to run().
+  VPM_HD void add_piece(const SharePiece& piece, CellResult& result) const {
+    const PieceLook look = look_at(piece, result.point);
     result.point = look.reading.point;
-    const Take taken = take(piece, look, pass, result);
-    if (taken == Take::add) add(piece, look, near, result.sum);
-    return taken == Take::wait;
+    if (note(piece, look, result)) add(piece, look, result.sum);
   }
   // The same of sample `k` of a block.
   struct SharedDirection {
     std::uint32_t neighbors = UINT32_MAX;  // samples from kNeighborSamples times this on
-    PieceLook first;
-    bool is_known = false;
     Vec3 normal;
   };
   template <class Near>
-  VPM_HD bool add_sample(std::uint32_t k, const SharePiece& piece, Pass pass,
-                         SharedDirection& shared, CellResult& result, const Near& near) const {
+  VPM_HD void add_sample(std::uint32_t k, const SharePiece& piece, SharedDirection& shared,
+                         CellResult& result, const Near& near) const {
     const PieceLook look = look_at(piece, result.point, near);
     result.point = look.reading.point;
-    const bool shares = shares_direction(piece, look) && is_of_pass(look, pass);
-    if (shares && shared.neighbors != k / kNeighborSamples)
-      shared = {k / kNeighborSamples, look, false, {}};
-    const Take taken = take(piece, look, pass, result);
-    if (taken != Take::add) return taken == Take::wait;
-    if (!shares) {
+    if (!note(piece, look, result)) return;
+    if (!shares_direction(piece, look)) {
       add(piece, look, near, result.sum);
-      return false;
+      return;
     }
-    if (!shared.is_known) shared.normal = closest_normal(shared.first);
-    shared.is_known = true;
+    if (shared.neighbors != k / kNeighborSamples)
+      shared = {k / kNeighborSamples, closest_normal(look)};
     add_pushed(piece, shared.normal, result.sum);
-    return false;
-  }
-
-  // Adds what one piece contributes to reached().
-  template <class Vouches>
-  VPM_HD void add_reached(const Vouches& vouches, const SharePiece& piece, ToolSum& sum) const {
-    const PieceLook look = look_at(piece);
-    if (look.is_inside && (!look.is_far || vouches(look.x, look.reading.foot)))
-      add(piece, look, sum);
   }
 
   // Adds a block that a plane crosses.
@@ -353,15 +328,12 @@ class CellMeasure {
 
 // The samples of a block that the surface may cut, one after another.
 struct SamplesInTurn {
-  // Returns whether some wait for the second pass.
   template <class Measure, class Near>
-  VPM_HD bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
-                  typename Measure::Pass pass, const Near& near, CellResult& result) const {
-    bool any_waits = false;
+  VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+                  const Near& near, CellResult& result) const {
     typename Measure::SharedDirection shared;
     for (std::uint32_t k = 0; k < count; ++k)
-      any_waits |= measure.add_sample(k, piece_of(samples[k]), pass, shared, result, near);
-    return any_waits;
+      measure.add_sample(k, piece_of(samples[k]), shared, result, near);
   }
   template <class Measure>
   VPM_HD void flush(const Measure&, CellResult&) const {}  // nothing is put off

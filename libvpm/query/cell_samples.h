@@ -35,19 +35,16 @@ struct SamplesAmongDisks : SamplesInTurn {
 class SamplesTogether {
  public:
   template <class Measure>
-  bool add(const Measure& measure, const CellSample* samples, std::uint32_t count,
-           typename Measure::Pass pass, const DepthSurface& surface, CellResult& result) {
-    bool any_waits = false;
+  void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+           const DepthSurface& surface, CellResult& result) {
     neighbors_ = kNone;  // of another block
     for (std::uint32_t first = 0; first < count; first += kAtOnce) {
       const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
       const std::uint32_t found =
           read_samples(surface, measure.to_surface(), {samples + first, some}, readings_);
       for (std::uint32_t k = 0; k < found; ++k)
-        any_waits |=
-            add_one(measure, samples, first + readings_[k].sample, readings_[k].at, pass, result);
+        add_one(measure, samples, first + readings_[k].sample, readings_[k].at, result);
     }
-    return any_waits;
   }
   // Adds those whose directions were put off, to be found together.
   template <class Measure>
@@ -68,29 +65,21 @@ class SamplesTogether {
   static constexpr std::uint32_t kAtOnce = 16;
 
   template <class Measure>
-  bool add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
-               const PlaceReading& at, typename Measure::Pass pass, CellResult& result) {
+  void add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
+               const PlaceReading& at, CellResult& result) {
     const SharePiece piece = piece_of(samples[k]);
     const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
-    const bool shares = Measure::shares_direction(piece, look) && Measure::is_of_pass(look, pass);
-    if (shares && neighbors_ != k / kNeighborSamples) {
-      neighbors_ = k / kNeighborSamples;
-      first_ = at;
-      is_listed_ = false;
-    }
-    const auto taken = measure.take(piece, look, pass, result);
-    if (taken != Measure::Take::add) return taken == Measure::Take::wait;
-    if (!shares) {
+    if (!measure.note(piece, look, result)) return;
+    if (!Measure::shares_direction(piece, look)) {
       measure.add_cut(piece, look, result.sum);
-      return false;
+      return;
     }
-    if (!is_listed_) {
+    if (neighbors_ != k / kNeighborSamples) {
+      neighbors_ = k / kNeighborSamples;
       if (direction_count_ == kAtOnce) flush(measure, result);
-      searched_[direction_count_++] = first_;
-      is_listed_ = true;
+      searched_[direction_count_++] = at;
     }
     pushed_[pushed_count_++] = {samples + k, direction_count_ - 1};
-    return false;
   }
 
   static constexpr std::uint32_t kNone = UINT32_MAX;
@@ -103,11 +92,7 @@ class SamplesTogether {
   PlaceReading searched_[kAtOnce];
   Pushed pushed_[kAtOnce * kNeighborSamples];
   std::uint32_t direction_count_ = 0, pushed_count_ = 0;
-  // Of the neighbours that are dealt with, the first one that is pushed, and whether its direction
-  // is the last that is searched for.
-  std::uint32_t neighbors_ = kNone;
-  PlaceReading first_;
-  bool is_listed_ = false;
+  std::uint32_t neighbors_ = kNone;  // for which the last direction is searched
 };
 
 template <class Surface>

@@ -95,15 +95,18 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
     add_whole(reach_, level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
     return sum;
   }
-  const CellResult& result = shares_.results[row];
-  if (shares_.cells[row] == Cell::partial && !result.is_far) return result.sum;
   const CellView view = level_.cell(row);
   const CellMeasure measure(surface, to_surface, reach_, view);
   const auto vouches = [&](Vec3 x, Vec3 foot) { return inside.vouches_for(row, x, foot); };
-  const bool whole = shares_.cells[row] == Cell::whole;
-  if (!whole || !is_compact(level_.reach(row), reach_.length))
-    return measure.reached(whole, vouches);
-  measure.add_reached(vouches, piece_of(level_.mass(row), view), sum);
+  if (shares_.cells[row] == Cell::partial) {
+    const CellResult& result = shares_.results[row];
+    sum = result.sum;
+    if (result.is_far) measure.add_far(vouches, sum);
+  } else if (is_compact(level_.reach(row), reach_.length)) {
+    measure.add_whole_piece(vouches, piece_of(level_.mass(row), view), sum);
+  } else {
+    sum = measure.whole(vouches);
+  }
   return sum;
 }
 

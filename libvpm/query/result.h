@@ -25,7 +25,7 @@ struct Result {
   double volume_fraction = 0;  // volume / volume of the tool
   Wrench wrench;
   std::uint32_t boundary = 0;  // spheres that the surface cuts
-  std::uint32_t inside = 0;    // spheres reached by the flood
+  std::uint32_t inside = 0;    // spheres behind the surface that count
   // Distinct cloud points strictly inside a sphere of the tool; none where they were not counted.
   std::optional<std::uint32_t> points;
 

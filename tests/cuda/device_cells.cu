@@ -64,7 +64,7 @@ VPM_HD CellAnswer answer(const Surface& surface, const Pose& to_surface, const L
     return own.vouches_for(x, foot, level.tool_reach);
   };
   return {surface.side_of_ball(to_surface * view.center, view.reach), result,
-          measure.reached(true, vouches)};
+          measure.whole(vouches)};
 }
 
 template <class Surface>

@@ -117,7 +117,8 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.edges = edges_.get();
   view_.edge_begin = edge_begin_.get();
   view_.edge_count = static_cast<std::uint32_t>(edges_.size());
-  view_.piece_count = static_cast<std::uint32_t>(samples_.size() + blocks_.size());
+  view_.piece_count =
+      static_cast<std::uint32_t>(samples_.size() + blocks_.size() + level.sphere_count);
   view_.grid = view_of(level.grid);
   view_.grid.begin = grid_begin_.get();
   view_.grid.spheres = grid_spheres_.get();

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <type_traits>
 
 #include "libvpm/query/cuda/flood.h"
 #include "libvpm/query/cuda/measure_on_device.h"
 #include "libvpm/query/cuda/points.h"
 #include "libvpm/query/cuda/refined_measure.h"
+#include "libvpm/query/cuda/seen_shares.h"
 #include "libvpm/query/cuda/share_measure.h"
 
 namespace vpm::cuda {
@@ -31,69 +33,76 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.gaps = first.gaps + shares;
   space.parents = first.parents + shares + team;
   space.cut = first.cut + shares;
-  space.hidden = first.hidden + team * level.piece_count;
+  space.far = first.far + team * level.piece_count;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
   space.planes = first.planes + team * kThreads;
   return space;
 }
 
-// Whether one block floods a level in its own memory.
-__host__ __device__ bool is_small(const LevelView& level) {
-  return level.count <= kFloodShares && level.edge_count <= kFloodEdges;
-}
+// What decides which shares behind a surface are inside.
+template <class Surface, class Team>
+using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Team>, Flood<Team>>;
 
 // Memory of a block; the steps of a query follow each other.
+template <class Surface>
 union BlockShared {
   MeasureShared measure;
-  FloodBlock flood;
+  typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
 // The first step of one query by all blocks of a launch: `sphere_blocks` deal with spheres, the
-// others with points. These are done sooner: they clear what the next query begins with.
+// others with points. Returns what this thread has added up.
 template <class Surface>
-__device__ void measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
-                               unsigned sphere_blocks, unsigned turn, RefinedCounters& counters,
-                               BlockShared& shared) {
-  const ShareNotes& next = launch.space.notes[(turn + 1) % 2];
+__device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                                    unsigned sphere_blocks, unsigned turn,
+                                    RefinedCounters& counters, BlockShared<Surface>& shared) {
   const Part of_spheres{blockIdx.x, sphere_blocks};
   const Part of_points{blockIdx.x - sphere_blocks, gridDim.x - sphere_blocks};
-  if (blockIdx.x < sphere_blocks) {
-    ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                          counters, of_spheres, launch.counts_points, shared.measure)
-        .run();
-    if (sphere_blocks == gridDim.x) next.clear(launch.level, of_spheres);
-  } else {
+  if (blockIdx.x >= sphere_blocks) {
     count_points(launch.level, launch.points, frame, of_points,
                  launch.space.notes[turn % 2].points);
-    next.clear(launch.level, of_points);
+    return {};
   }
+  return ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
+                               counters, of_spheres, launch.counts_points, shared.measure)
+      .run();
 }
 
-// One query; the last block to come finishes it alone. For levels of few shares.
+// What the next query begins with, when nobody waits for this one any more.
+template <class Surface>
+__device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) {
+  launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
+}
+
+// One query; the last block to come finishes it alone. For levels of few shares, and where nothing
+// is left to be done but in rare cases.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    one_pose_small(const __grid_constant__ RefinedLaunch<Surface> launch,
-                   const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
-                   RefinedCounters* counters, Answer* answer, unsigned sequence) {
-  __shared__ BlockShared shared;
+    one_pose_by_last(const __grid_constant__ RefinedLaunch<Surface> launch,
+                     const __grid_constant__ PoseFrame frame, unsigned sphere_blocks,
+                     Totals* totals, RefinedCounters* counters, Answer* answer, unsigned sequence) {
+  __shared__ BlockShared<Surface> shared;
   __shared__ RawResult total;
-  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
-  if (threadIdx.x == 0) total = RawResult{};
-  if (!is_last_block(totals->done)) return;
+  const RawResult found = measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+  if (Surface::kTellsInside) add_block(found, totals->result);
+  if (!is_last_block(totals->done)) {
+    clear_next(launch, sequence);
+    return;
+  }
   const std::uint64_t met = now();
+  if (threadIdx.x == 0) total = totals->result;
   BlockTeam team;
-  const RawResult part =
-      Flood<Surface, BlockTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
-                                sequence, *counters, team, shared.flood, true)
-          .run();
-  add_block(part, total);
+  Inside<Surface, BlockTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
+                                    *counters, team, shared.inside, launch.counts_points);
+  if (inside.prepare()) add_block(inside.run(), total);
   if (threadIdx.x == 0) total.flood_ns = static_cast<std::uint32_t>(now() - met);
   __syncthreads();
   send(total, answer, sequence);
   if (threadIdx.x == 0) {
-    totals->done = 0;
+    *totals = Totals{};
     *counters = RefinedCounters{};
   }
+  clear_next(launch, sequence);
 }
 
 // One query by all blocks of a cooperative launch.
@@ -102,17 +111,17 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
              const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
              RefinedCounters* counters, Answer* answer, unsigned sequence) {
-  __shared__ BlockShared shared;
+  __shared__ BlockShared<Surface> shared;
   __shared__ RawResult total;
-  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+  const RawResult found = measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+  if (Surface::kTellsInside) add_block(found, totals->result);
   GridTeam team(&totals->arrived);
   team.sync();
   const std::uint64_t met = now();
-  const RawResult part =
-      Flood<Surface, GridTeam>(launch.level, launch.surface, frame.to_surface, launch.space,
-                               sequence, *counters, team, shared.flood, false)
-          .run();
-  add_block(part, totals->result);
+  Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
+                                   *counters, team, shared.inside, launch.counts_points);
+  if (inside.prepare()) add_block(inside.run(), totals->result);
+  clear_next(launch, sequence);
   if (!is_last_block(totals->done)) return;
   if (threadIdx.x == 0) {
     total = totals->result;
@@ -130,7 +139,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     many_poses(const __grid_constant__ RefinedLaunch<Surface> launch,
                const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
                RawResult* results) {
-  __shared__ BlockShared shared;
+  __shared__ BlockShared<Surface> shared;
   __shared__ PoseFrame frame;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
@@ -148,16 +157,16 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     __syncthreads();
     if (launch.counts_points)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
-    ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
-                          launch.counts_points, shared.measure)
-        .run();
+    const RawResult found =
+        ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
+                              launch.counts_points, shared.measure)
+            .run();
+    if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();
-    const RawResult part =
-        Flood<Surface, BlockTeam>(level, launch.surface, frame.to_surface, space, turn, counters,
-                                  team, shared.flood, is_small(level))
-            .run();
-    add_block(part, total);
+    Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
+                                      shared.inside, launch.counts_points);
+    if (inside.prepare()) add_block(inside.run(), total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
@@ -176,7 +185,7 @@ class RefinedMemory {
         gaps_(level.count * teams),
         parents_((std::size_t{level.count} + 1) * teams),
         cut_(level.count * teams),
-        hidden_(level.piece_count * teams),
+        far_(level.piece_count * teams),
         flats_(2 * TaskLists::kTasks * blocks),
         patches_(kThreads * blocks) {
     words_.clear();
@@ -192,7 +201,7 @@ class RefinedMemory {
             gaps_.get(),
             parents_.get(),
             cut_.get(),
-            hidden_.get(),
+            far_.get(),
             flats_.get(),
             patches_.get()};
   }
@@ -202,7 +211,7 @@ class RefinedMemory {
     constexpr std::size_t kOfShare =
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
-    return level.count * kOfShare + level.piece_count * sizeof(HiddenPiece) +
+    return level.count * kOfShare + level.piece_count * sizeof(FarPiece) +
            2 * TaskLists::kTasks * sizeof(FlatBlock) + kThreads * sizeof(CrossingPlane);
   }
 
@@ -212,7 +221,7 @@ class RefinedMemory {
   DeviceArray<ContactPlane> planes_;
   DeviceArray<double> gaps_;
   DeviceArray<std::uint32_t> parents_, cut_;
-  DeviceArray<HiddenPiece> hidden_;
+  DeviceArray<FarPiece> far_;
   DeviceArray<FlatBlock> flats_;
   DeviceArray<CrossingPlane> patches_;
 };
@@ -274,8 +283,8 @@ class RefinedOnDevice : public MeasureOnDevice {
     unsigned sphere_blocks = blocks();
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
-    if (is_small(level_.view())) {
-      check(cudaLaunchKernel(one_pose_small<Surface>, blocks(), kThreads, values, 0, stream()));
+    if (is_small(level_.view()) || (Surface::kTellsInside && !counts_points_)) {
+      check(cudaLaunchKernel(one_pose_by_last<Surface>, blocks(), kThreads, values, 0, stream()));
     } else {
       check(
           cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));

@@ -5,7 +5,7 @@
 // A unit (block of a share) of a patch is classified by one thread, others by four lanes, which
 // look at the balls of its share, the block and the sphere. What is to be measured is listed as
 // tasks in shared memory, and warps take these: a lane for each sample, or for each piece that is
-// taken whole.
+// taken whole. Where no flood decides what is inside, each thread adds up what it finds.
 #pragma once
 
 #include "libvpm/query/cuda/share_tasks.h"
@@ -51,9 +51,9 @@ class ShareMeasure {
         shared_(shared),
         lists_(shared.lists) {}
 
-  // By all threads of the block, for its part of the chunks.
-  __device__ void run() {
-    if (part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
+  // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
+  __device__ RawResult run() {
+    if (kFloods && part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
     clear_lists();
     const bool are_few =
         level_.chunk_count <= kFewRounds * (blockDim.x / ReadByLanes::kLanes) * part_.parts;
@@ -75,10 +75,13 @@ class ShareMeasure {
       __syncthreads();
     }
     measure_tasks();
+    count_share(words_before_, bits_added_, found_);
+    return found_;
   }
 
  private:
   using Measure = CellMeasure<Surface>;
+  static constexpr bool kFloods = !Surface::kTellsInside;
   static constexpr unsigned kLanes = 4;      // of a unit in no patch
   static constexpr unsigned kFewRounds = 2;  // of more, each lane looks at a chunk of its own
   // What a round adds to a list: a task of each unit in a patch, two of each other.
@@ -210,8 +213,9 @@ class ShareMeasure {
   __device__ bool is_seen_past(const Tile& lanes, Side side, const Look& look, double depth) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
+  __device__ void note_behind(const Unit& unit, Vec3 normal);
   __device__ void list_block(const Unit& unit, Side side);
-  __device__ void list_crossed(const Unit& unit, const CrossingPlane& plane, bool is_far);
+  __device__ void list_crossed(const Unit& unit, const CrossingPlane& plane);
   __device__ void measure_tasks();
   __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
   __device__ SharePiece piece(Task::Form form, std::uint32_t k) const {
@@ -224,12 +228,13 @@ class ShareMeasure {
         return piece_of(level_.block_masses[k], level_.blocks[k]);
     }
   }
-  __device__ bool add_piece(const Tile& tile, const Measure& measure, const Task& task,
+  __device__ void add_piece(const Tile& tile, const Measure& measure, const Task& task,
                             std::uint32_t k, CellResult& result);
-  __device__ static unsigned first_neighbor(const Tile& tile, bool shares, bool hidden);
+  __device__ static unsigned first_neighbor(const Tile& tile, bool shares);
   __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatBlock& flat,
                            const Task& task, CellResult& result);
-  __device__ void note_task(const Task& task, const CellResult& result, bool hidden_counts);
+  __device__ void note_task(const Task& task, const CellResult& result);
+  __device__ void count(std::uint32_t share, std::uint32_t bits);
 
   const LevelView& level_;
   const Surface& surface_;
@@ -241,6 +246,8 @@ class ShareMeasure {
   bool counts_points_;
   MeasureShared& shared_;
   TaskLists& lists_;
+  RawResult found_;
+  std::uint32_t words_before_ = 0, bits_added_ = 0;  // of the share that was noted last
 };
 
 // By the lanes of each unit, all threads of a warp together; `active`: it is to be noted.
@@ -265,19 +272,23 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const Side of_share = side_of(Unit::of_share), of_sphere = side_of(Unit::of_sphere);
   const Side side = seen.side() == Side::mixed ? of_share : seen.side();
 
-  const bool reads_share = lanes.lane == Unit::of_share && side != Side::free;
+  const bool reads_share = kFloods && lanes.lane == Unit::of_share && side != Side::free;
   const bool reads_block = lanes.lane == Unit::of_block && side == Side::mixed &&
                            (flags & Unit::has_block) != 0 && look.side == Side::mixed &&
                            surface_.may_be_flat(look);
   Reading reading;
   if (reads_share || reads_block) reading = surface_.read(at, look.point);
 
-  const double gap = squared_gap(reading);
-  const bool hidden =
-      lanes.from(seen.seen() != Seen::behind_near && is_hidden_share(gap, level_.tool_reach.length),
-                 Unit::of_share);
-  const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
-  const bool whole = side == Side::behind || (side == Side::uncut && behind);
+  double gap = 0;
+  bool hidden = false, whole = side == Side::behind;
+  if (kFloods) {
+    gap = squared_gap(reading);
+    hidden = lanes.from(
+        seen.seen() != Seen::behind_near && is_hidden_share(gap, level_.tool_reach.length),
+        Unit::of_share);
+    const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
+    whole |= side == Side::uncut && behind;
+  }
   if (!active) return;
   if (lanes.lane == Unit::of_share && head) {
     std::uint32_t word = whole ? kWhole : side == Side::mixed ? kMixed : 0;
@@ -298,7 +309,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         measure.is_of_one_wall(at, ball.radius, tangent, look.point);
     if (is_flat)
-      list_crossed(unit, {tangent, to_surface_}, measure.is_far(tangent.distance(at)));
+      list_crossed(unit, {tangent, to_surface_});
     else
       list_block(unit, look.side);
   } else if (whole && (flags & Unit::is_compact) != 0) {
@@ -327,9 +338,24 @@ template <class Surface>
 __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_t word,
                                                   double gap) {
   const std::uint32_t i = unit.share;
+  if (!kFloods) word &= kCountsPoints;
   if (word != 0) atomicOr(&notes_.words[i], word);
+  if (!kFloods) return;
   space_.gaps[i] = gap;
   space_.parents[i + 1] = i + 1;
+}
+
+// A share wholly behind the surface of its patch.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::note_behind(const Unit& unit, Vec3 normal) {
+  ToolSum sum;
+  add_whole(level_.tool_reach, level_.share_masses[unit.share], normal, sum);
+  if (kFloods) {
+    notes_.sums[unit.share] = sum;
+  } else {
+    found_.sum.add(sum);
+    if (sum.volume.value != 0) count(unit.share, kCounted);
+  }
 }
 
 // One unit of a patch that a plane crosses.
@@ -348,10 +374,8 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
   if (head) {
     std::uint32_t word = 0;
     if (behind) {
-      ToolSum sum;
-      add_whole(level_.tool_reach, level_.share_masses[unit.share], plane.normal, sum);
-      notes_.sums[unit.share] = sum;
-      word = kPartial;
+      note_behind(unit, plane.normal);
+      if (kFloods) word = kPartial;
     }
     if (counts_points_) {
       const UnitBall& sphere = unit.balls[Unit::of_sphere];
@@ -360,15 +384,14 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
     }
     note_share(unit, word, distance * distance);
   }
-  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) list_crossed(unit, plane, false);
+  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) list_crossed(unit, plane);
 }
 
 // A share of a patch behind the surface.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal) {
-  ToolSum sum;
-  add_whole(level_.tool_reach, level_.share_masses[unit.share], normal, sum);
-  notes_.sums[unit.share] = sum;
+  note_behind(unit, normal);
+  if (!kFloods) return;
   const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
   note_share(unit, kWhole, squared_gap(surface_.read(at)));
 }
@@ -397,8 +420,7 @@ __device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Side side) {
 
 // Lists a block where the surface is one plane, if the plane crosses it.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const CrossingPlane& plane,
-                                                    bool is_far) {
+__device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const CrossingPlane& plane) {
   const UnitBall& ball = unit.balls[Unit::of_block];
   const double distance = plane.distance(ball.center);
   const Task task{unit.share, Task::samples, unit.begin, unit.end - unit.begin};
@@ -409,14 +431,12 @@ __device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const Cros
     FlatBlock& block = flat(list, lists_.add(list, task));
     block.plane = plane;
     block.block = unit.block;
-    block.is_far = is_far;
     return;
   }
   CellResult result;
-  result.is_far = is_far;
   if (distance <= -ball.radius)
     add_whole(level_.tool_reach, level_.block_masses[unit.block], plane.normal, result.sum);
-  note_task(task, result, false);
+  note_task(task, result);
 }
 
 // Warps take bundles of tasks of one list, as many as have room in a warp; those that take longest
@@ -449,26 +469,23 @@ __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, 
   const Measure measure = measure_of(
       {.samples = level_.samples, .center = level_.centers[i], .reach = level_.reach[i]});
   CellResult result;
-  bool hidden_counts = false;  // a hidden piece has some volume
   if (TaskLists::is_flat(list)) {
     add_flat(tile, measure, flat(list, slot), task, result);
   } else {
     for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
-      hidden_counts |= add_piece(tile, measure, task, begin + tile.lane, result);
+      add_piece(tile, measure, task, begin + tile.lane, result);
     __syncwarp(tile.mask);
     add_up(tile, result.sum);
     if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
     result.is_far = tile.any(result.is_far);
-    hidden_counts = tile.any(hidden_counts);
   }
-  if (tile.leads()) note_task(task, result, hidden_counts);
+  if (tile.leads()) note_task(task, result);
 }
 
 // What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
-// whole, to reached(). A hidden piece is left for when the share's plane is known; returns whether
-// it has some volume. By all threads of a tile.
+// whole, to whole(). Far pieces are listed. By all threads of a tile.
 template <class Surface>
-__device__ bool ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure& measure,
+__device__ void ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure& measure,
                                                  const Task& task, std::uint32_t k,
                                                  CellResult& result) {
   const bool exists = k < task.count;
@@ -477,39 +494,35 @@ __device__ bool ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure
   const bool inside = exists && look.is_inside, cut = Measure::is_cut(piece, look);
   const bool shares =
       exists && task.form == Task::samples && Measure::shares_direction(piece, look);
-  const unsigned first =
-      Surface::kSearchesFoot ? first_neighbor(tile, shares, look.is_hidden) : tile.lane;
+  const unsigned first = Surface::kSearchesFoot ? first_neighbor(tile, shares) : tile.lane;
   Vec3 normal;
   if (inside && !cut && first == tile.lane) normal = measure.closest_normal(look);
   if (Surface::kSearchesFoot) normal = tile.from(normal, first);
-  if (!inside) return false;
+  if (!inside) return;
   result.is_far |= look.is_far;
   ToolSum sum;
   if (cut)
     measure.add_cut(piece, look, sum);
   else
     measure.add_behind(piece, look, normal, surface_, sum);
-  if (look.is_hidden && !task.is_whole()) {
-    // Member by member, as above.
-    HiddenPiece& hidden = space_.hidden[atomicAdd(&counters_.hidden_pieces, 1U)];
-    hidden.at = look.x;
-    hidden.foot = look.reading.foot;
-    hidden.sum = sum;
-    hidden.share = task.share;
-    return sum.volume.value > 0;
+  if (look.is_far) {
+    // Member by member: the whole would be stored byte by byte.
+    FarPiece& far = space_.far[atomicAdd(&counters_.far, 1U)];
+    far.at = look.x;
+    far.foot = look.reading.foot;
+    far.sum = sum;
+    far.share = task.share;
+    return;
   }
-  if (!task.is_whole() && Measure::is_cut(piece, look)) measure.add_to_plane(look, result.plane);
+  if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
   result.sum.add(sum);
-  return false;
 }
 
 // The first lane of those that share a direction with this one; itself where it has its own.
 template <class Surface>
-__device__ unsigned ShareMeasure<Surface>::first_neighbor(const Tile& tile, bool shares,
-                                                          bool hidden) {
-  const unsigned of_hidden = tile.which(shares && hidden), of_seen = tile.which(shares && !hidden);
+__device__ unsigned ShareMeasure<Surface>::first_neighbor(const Tile& tile, bool shares) {
   const unsigned begin = tile.lane / kNeighborSamples * kNeighborSamples;
-  const unsigned sharing = (hidden ? of_hidden : of_seen) >> begin;
+  const unsigned sharing = tile.which(shares) >> begin;
   return shares ? begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1 : tile.lane;
 }
 
@@ -546,23 +559,32 @@ __device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure&
   if (!tile.leads()) return;
   measure.add_crossed(level_.blocks[flat.block], flat.plane,
                       {sums[0], {sums[1], sums[2], sums[3]}, is_cut}, result);
-  result.is_far = flat.is_far;
 }
 
-// By one thread, what all threads of its tile have found. Where nothing of a share is cut, its
-// hidden pieces count without asking.
+// By one thread, what all threads of its tile have found.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::note_task(const Task& task, const CellResult& result,
-                                                 bool hidden_counts) {
+__device__ void ShareMeasure<Surface>::note_task(const Task& task, const CellResult& result) {
   const std::uint32_t i = task.share;
   const bool cut = result.plane.count > 0;
-  const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || hidden_counts);
-  const bool unsure = result.is_far && !cut;
-  const std::uint32_t bits = (cut ? kCut : 0) | (partial ? kPartial : 0) | (unsure ? kUnsure : 0);
-  if (unsure) atomicAdd(&counters_.unsure, 1U);
-  if (bits != 0) atomicOr(&notes_.words[i], bits);
-  add_atomically(result.sum, notes_.sums[i]);
+  if (kFloods) {
+    const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
+    const std::uint32_t bits = (cut ? kCut | kSummed : 0) | (partial ? kPartial : 0);
+    if (bits != 0) atomicOr(&notes_.words[i], bits);
+    add_atomically(result.sum, notes_.sums[i]);
+  } else {
+    found_.sum.add(result.sum);
+    if (cut || result.sum.volume.value != 0) count(i, kCounted | (cut ? kCut : 0));
+  }
   if (cut) add_atomically(result.plane, notes_.planes[i]);
+}
+
+// Notes that a share counts; others may do so too. What its word was is needed only when the next
+// one comes, so that nobody waits for it.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::count(std::uint32_t share, std::uint32_t bits) {
+  count_share(words_before_, bits_added_, found_);
+  words_before_ = atomicOr(&notes_.words[share], bits);
+  bits_added_ = bits;
 }
 
 }  // namespace vpm::cuda

@@ -13,11 +13,11 @@ enum ShareBit : std::uint32_t {
   kPartial = 2,  // pieces are inside, as far as the sum says
   kWhole = 4,    // behind the surface
   kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
-  kUnsure = 16,  // so it does of a piece
+  kSummed = 16,  // of a cut share: its sum is noted
   kMixed = 256,  // the surface may pass through it
   kCountsPoints = 32,  // the surface may pass the sphere
   kReached = 64,       // by the flood; only where one block floods alone
-  kCounted = 128,      // in the result, as boundary or as inside
+  kCounted = 128,      // in the result: as boundary, if it is cut, or as inside
 };
 
 __device__ inline bool may_be_inside(std::uint32_t word) {
@@ -50,8 +50,8 @@ struct ShareNotes {
         if (i < level.count) points[i] = 0;
         if (noted[k] == 0) continue;
         words[i] = 0;
-        sums[i] = ToolSum{};
-        planes[i] = ContactPlane{};
+        if ((noted[k] & (kPartial | kWhole | kSummed)) != 0) sums[i] = ToolSum{};
+        if ((noted[k] & kCut) != 0) planes[i] = ContactPlane{};
       }
     }
   }
@@ -61,11 +61,11 @@ struct ShareNotes {
 struct FlatBlock {
   CrossingPlane plane;
   std::uint32_t block = 0;
-  bool is_far = false;  // further behind the surface than the tool's reach
 };
 
-// A piece of a mixed share for which the share's own plane must vouch, and what it adds then.
-struct HiddenPiece {
+// A piece further behind the surface than the tool's reach, and what it adds where the plane of a
+// cut share vouches for it.
+struct FarPiece {
   Vec3 at, foot;  // that the surface showed there
   ToolSum sum;
   std::uint32_t share = 0;
@@ -77,7 +77,7 @@ struct RefinedSpace {
   double* gaps = nullptr;            // squared_gap of shares that may be inside
   std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
   std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
-  HiddenPiece* hidden = nullptr;
+  FarPiece* far = nullptr;
   FlatBlock* flats = nullptr;       // of each thread block's lists of flat tasks
   CrossingPlane* planes = nullptr;  // of the patches that a thread block looks at
 };
@@ -85,10 +85,18 @@ struct RefinedSpace {
 // Counters of a query; 0 at the start.
 struct RefinedCounters {
   unsigned hidden = 0;  // shares
-  unsigned unsure = 0;  // shares, at most as many
-  unsigned hidden_pieces = 0;
-  unsigned cut = 0;  // as far as they are listed
+  unsigned far = 0;     // pieces
+  unsigned cut = 0;     // shares, as far as they are listed
 };
+
+// Counts a share to whose word bits were added that say so.
+__device__ inline void count_share(std::uint32_t before, std::uint32_t bits, RawResult& result) {
+  const auto is_inside = [](std::uint32_t word) {
+    return (word & kCounted) != 0 && (word & kCut) == 0 ? 1U : 0U;
+  };
+  result.boundary += (bits & ~before & kCut) != 0 ? 1 : 0;
+  result.inside += is_inside(before | bits) - is_inside(before);
+}
 
 __device__ inline unsigned read(const unsigned& counter) {
   return *const_cast<const volatile unsigned*>(&counter);
@@ -96,8 +104,7 @@ __device__ inline unsigned read(const unsigned& counter) {
 // By one thread for all of its block: so many at one place would wait for each other.
 __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
   __shared__ RefinedCounters found;
-  if (threadIdx.x == 0)
-    found = {read(counters.hidden), read(counters.unsure), read(counters.hidden_pieces), 0};
+  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0};
   __syncthreads();
   return found;
 }

@@ -19,6 +19,7 @@ struct Part {
 // A block alone.
 class BlockTeam {
  public:
+  static constexpr bool kIsBlock = true;
   __device__ unsigned thread() const { return threadIdx.x; }
   __device__ unsigned threads() const { return blockDim.x; }
   __device__ Part block() const { return {}; }
@@ -28,6 +29,7 @@ class BlockTeam {
 // All blocks of a cooperative launch.
 class GridTeam {
  public:
+  static constexpr bool kIsBlock = false;
   __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
   __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
   __device__ unsigned threads() const { return gridDim.x * blockDim.x; }

@@ -46,7 +46,7 @@ struct Edge {
 // One level of a tool.
 struct LevelView {
   std::uint32_t count = 0, chunk_count = 0, edge_count = 0;  // `count` of spheres
-  std::uint32_t piece_count = 0;                             // samples and blocks
+  std::uint32_t piece_count = 0;  // samples, blocks and shares: no query finds more
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
   const double* reach = nullptr;  // of the shares
