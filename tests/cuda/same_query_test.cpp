@@ -93,6 +93,26 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                                             ::testing::Values(Measure::refined, Measure::paper)),
                          name_of);
 
+// Images and points by turns: what one way through the kernels notes must not be there for the
+// other.
+TEST(ImagesAndPoints, GiveTheSameByTurns) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const Cloud seen = testing::see(synthetic::make_scene("block"));
+  const PreparedCloud image(seen), points(without_camera(seen));
+  for (const ToolModel& tool :
+       {testing::lattice_cube(0.3, 6, 3), testing::lattice_cube(0.25, 20, 1)}) {
+    QueryOptions options;
+    Query on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    Query on_device(tool, options);
+    for (int k = 0; k < 64; ++k) {
+      SCOPED_TRACE(k);
+      const PreparedCloud& cloud = k % 3 == 0 ? points : image;
+      expect_equal(on_cpu.run(cloud, pose_of(k)), on_device.run(cloud, pose_of(k)));
+    }
+  }
+}
+
 // Its middle sphere is joined to all others, as a large sphere of a packing is to small ones.
 ToolModel lattice_with_hub(std::uint32_t n) {
   ToolModel tool = testing::lattice_cube(0.3, n, 1);

@@ -42,8 +42,8 @@ struct Totals {
 
 // Adds up a block's parts into `total`, which may lie in shared memory.
 __device__ inline void add_block(const RawResult& part, RawResult& total) {
-  constexpr int kWarps = kThreads / 32, kValues = 10;
-  __shared__ std::int64_t values[kValues][kWarps];
+  constexpr int kMostWarps = kMostThreads / 32, kValues = 10;
+  __shared__ std::int64_t values[kValues][kMostWarps];
   const ToolSum& s = part.sum;
   const std::int64_t mine[kValues] = {
       s.volume.value,    s.force[0].value,  s.force[1].value, s.force[2].value, s.torque[0].value,
@@ -58,7 +58,7 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   __syncthreads();
   if (threadIdx.x >= kValues) return;
   std::int64_t sum = 0;
-  for (int w = 0; w < kWarps; ++w) sum += values[threadIdx.x][w];
+  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum += values[threadIdx.x][w];
   if (sum == 0) return;
   ToolSum& t = total.sum;
   std::int64_t* const sums[] = {&t.volume.value,   &t.force[0].value,  &t.force[1].value,

@@ -35,6 +35,7 @@ class CutShares {
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
                                        const Add& add) const {
     const Tile warp(32);
+    if (read(counters_.cut) == 0) return;
     for (unsigned k = team_.thread() / 32; k < count; k += team_.threads() / 32) {
       const FarPiece& far = space_.far[k];
       const std::uint32_t i = far.share, word = notes_.words[i];

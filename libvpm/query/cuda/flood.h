@@ -55,8 +55,8 @@ class Flood {
     if (in_shared_) bring_to_shared();
   }
 
-  // Whether there is anything to be done.
-  __device__ static bool prepare() { return true; }
+  // When the first step is done: whether it has left anything.
+  __device__ static bool has_more() { return true; }
   // This thread's part of the result. All threads of the team.
   __device__ RawResult run() {
     const RefinedCounters found = read_for_block(counters_);
@@ -225,6 +225,7 @@ __device__ void Flood<Team>::flood_in_shared() {
   bool changes = true;
   while (__syncthreads_or(changes) != 0) {
     constexpr unsigned kMost = kFloodEdges / kThreads;
+    static_assert(kMost <= 32);
     unsigned crossed = 0;  // a bit for each edge of this thread
 #pragma unroll 4
     for (unsigned n = 0; n < kMost; ++n) {

@@ -52,11 +52,11 @@ inline unsigned processor_count() {
 }
 
 // Blocks that fill the device, as far as their memory takes no more than a quarter of it.
-inline unsigned teams_that_fit(std::size_t bytes_of_team) {
+inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_processor) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total));
   const std::size_t fit = std::min(free, total / 4) / std::max<std::size_t>(bytes_of_team, 1);
-  const std::size_t wanted = std::size_t{kBlocksPerProcessor} * processor_count();
+  const std::size_t wanted = std::size_t{blocks_per_processor} * processor_count();
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }
 

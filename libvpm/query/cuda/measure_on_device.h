@@ -13,7 +13,8 @@ namespace vpm::cuda {
 class MeasureOnDevice : public DeviceMeasure {
  public:
   // The device must be the current one.
-  MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
+  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor)
+      : device_(device), tool_(tool), blocks_(blocks_per_processor * processor_count()) {}
 
   Result run(const PreparedCloud& cloud, const Pose& pose) final;
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -38,7 +39,7 @@ class MeasureOnDevice : public DeviceMeasure {
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
   // Of a launch that answers one query.
-  unsigned blocks() const { return kBlocksPerProcessor * processors_; }
+  unsigned blocks() const { return blocks_; }
   cudaStream_t stream() const { return stream_.get(); }
 
  private:
@@ -60,8 +61,8 @@ class MeasureOnDevice : public DeviceMeasure {
 
   int device_;
   const ToolModel& tool_;
+  unsigned blocks_;
   Stream stream_;
-  unsigned processors_ = processor_count();
   MappedArray<Answer> answer_{1};
   unsigned sequence_ = 0;
   double flood_microseconds_ = 0;

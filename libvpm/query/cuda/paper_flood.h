@@ -78,9 +78,10 @@ __device__ inline void gather(const PaperLevel& level, const PointsView& points,
 
 // Memory that the threads of a block share while they pass a hub.
 struct HubShared {
-  static constexpr unsigned kOfThread = 4, kAtOnce = kOfThread * kThreads;  // neighbours
+  static constexpr unsigned kAtOnce = 32 * 32;  // neighbours: each lane of a warp counts 32
+  static constexpr unsigned kOfThread = kAtOnce / kPaperThreads;
 
-  std::uint32_t hubs[kThreads];
+  std::uint32_t hubs[kPaperThreads];
   unsigned hub_count;
   unsigned counts[kAtOnce / 32];
   double terms[3][kAtOnce];

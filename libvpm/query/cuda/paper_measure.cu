@@ -21,7 +21,7 @@ __device__ PaperSpace space_of(const PaperSpace& first, std::size_t spheres) {
 // One query by all blocks of a cooperative launch. Two spaces take turns: while points are
 // gathered in one, the other is cleared of the query before, whose states could be asked for until
 // now.
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
     one_pose(const __grid_constant__ PaperLaunch launch, const __grid_constant__ PoseFrame frame,
              Totals* totals, PaperCounters* counters, Answer* answer, unsigned sequence) {
   __shared__ HubShared shared;
@@ -50,7 +50,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 }
 
 // Each block a query of its own, one after another.
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
     many_poses(const __grid_constant__ PaperLaunch launch, const __grid_constant__ CloudFrame cloud,
                const Pose* poses, unsigned count, RawResult* results) {
   __shared__ HubShared shared;
@@ -116,7 +116,7 @@ std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
 class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
-      : MeasureOnDevice(tool, device),
+      : MeasureOnDevice(tool, device, kPaperBlocksPerProcessor),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),
@@ -139,7 +139,8 @@ class PaperOnDevice : public MeasureOnDevice {
   // Teams that share the work of a batch.
   struct Teams {
     explicit Teams(std::size_t spheres)
-        : count(teams_that_fit(spheres * PaperMemory::kBytesOfSphere)), memory(spheres, count) {}
+        : count(teams_that_fit(spheres * PaperMemory::kBytesOfSphere, kPaperBlocksPerProcessor)),
+          memory(spheres, count) {}
     unsigned count;
     PaperMemory memory;
   };
@@ -150,12 +151,12 @@ class PaperOnDevice : public MeasureOnDevice {
     Totals* totals = totals_.get();
     PaperCounters* counters = counters_.get();
     void* values[] = {&arguments, &pose, &totals, &counters, &answer, &sequence};
-    check(cudaLaunchCooperativeKernel(one_pose, blocks(), kThreads, values, 0, stream()));
+    check(cudaLaunchCooperativeKernel(one_pose, blocks(), kPaperThreads, values, 0, stream()));
   }
   void launch(const Pose* poses, unsigned count, RawResult* results) override {
     if (!teams_) teams_ = std::make_unique<Teams>(level_.count);
     const PaperLaunch arguments{level_, cloud().points(), teams_->memory.space()};
-    many_poses<<<std::min(teams_->count, count), kThreads, 0, stream()>>>(
+    many_poses<<<std::min(teams_->count, count), kPaperThreads, 0, stream()>>>(
         arguments, cloud().frame(), poses, count, results);
     check(cudaGetLastError());
   }

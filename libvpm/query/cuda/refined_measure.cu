@@ -74,38 +74,37 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
   launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
 }
 
-// One query; the last block to come finishes it alone. For levels of few shares, and where nothing
-// is left to be done but in rare cases.
-template <class Surface>
+// One query; the last block to come floods alone. For levels of few shares.
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    one_pose_by_last(const __grid_constant__ RefinedLaunch<Surface> launch,
-                     const __grid_constant__ PoseFrame frame, unsigned sphere_blocks,
-                     Totals* totals, RefinedCounters* counters, Answer* answer, unsigned sequence) {
-  __shared__ BlockShared<Surface> shared;
+    one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
+                   const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
+                   RefinedCounters* counters, Answer* answer, unsigned sequence) {
+  __shared__ BlockShared<DiskSurface> shared;
   __shared__ RawResult total;
-  const RawResult found = measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
-  if (Surface::kTellsInside) add_block(found, totals->result);
+  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
   if (!is_last_block(totals->done)) {
     clear_next(launch, sequence);
     return;
   }
   const std::uint64_t met = now();
-  if (threadIdx.x == 0) total = totals->result;
+  if (threadIdx.x == 0) total = RawResult{};
   BlockTeam team;
-  Inside<Surface, BlockTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
-                                    *counters, team, shared.inside, launch.counts_points);
-  if (inside.prepare()) add_block(inside.run(), total);
+  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence, *counters,
+                             team, shared.inside, launch.counts_points)
+                .run(),
+            total);
   if (threadIdx.x == 0) total.flood_ns = static_cast<std::uint32_t>(now() - met);
   __syncthreads();
   send(total, answer, sequence);
   if (threadIdx.x == 0) {
-    *totals = Totals{};
+    totals->done = 0;
     *counters = RefinedCounters{};
   }
   clear_next(launch, sequence);
 }
 
-// One query by all blocks of a cooperative launch.
+// One query by all blocks of a cooperative launch. Where the first step has found all, the last
+// block to come sends the answer, and the others go.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
@@ -116,21 +115,31 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   const RawResult found = measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   GridTeam team(&totals->arrived);
-  team.sync();
-  const std::uint64_t met = now();
   Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
                                    *counters, team, shared.inside, launch.counts_points);
-  if (inside.prepare()) add_block(inside.run(), totals->result);
+  const auto send_total = [&](std::uint64_t met) {
+    if (threadIdx.x == 0) {
+      total = totals->result;
+      total.flood_ns = static_cast<std::uint32_t>(now() - met);
+    }
+    __syncthreads();
+    send(total, answer, sequence);
+  };
+  const bool is_last = team.arrive();
+  std::uint64_t met = now();
+  if (is_last && !inside.has_more()) send_total(met);
+  team.wait();
+  met = now();
+  const bool has_more = inside.has_more();
+  if (has_more) add_block(inside.run(), totals->result);
   clear_next(launch, sequence);
   if (!is_last_block(totals->done)) return;
+  if (has_more) send_total(met);
+  __syncthreads();
   if (threadIdx.x == 0) {
-    total = totals->result;
-    total.flood_ns = static_cast<std::uint32_t>(now() - met);
     *totals = Totals{};
     *counters = RefinedCounters{};
   }
-  __syncthreads();
-  send(total, answer, sequence);
 }
 
 // Each block a query of its own, one after another.
@@ -166,7 +175,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     __syncthreads();
     Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
                                       shared.inside, launch.counts_points);
-    if (inside.prepare()) add_block(inside.run(), total);
+    if (inside.has_more()) add_block(inside.run(), total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
@@ -229,7 +238,7 @@ class RefinedMemory {
 class RefinedOnDevice : public MeasureOnDevice {
  public:
   RefinedOnDevice(const ToolModel& tool, const Level& level, bool counts_points, int device)
-      : MeasureOnDevice(tool, device),
+      : MeasureOnDevice(tool, device, kBlocksPerProcessor),
         level_(tool, level),
         counts_points_(counts_points),
         memory_(level_.view(), 1, blocks()),
@@ -243,7 +252,8 @@ class RefinedOnDevice : public MeasureOnDevice {
   // Teams that share the work of a batch.
   struct Teams {
     explicit Teams(const LevelView& level)
-        : count(teams_that_fit(RefinedMemory::bytes_of_team(level))), memory(level, count, count) {}
+        : count(teams_that_fit(RefinedMemory::bytes_of_team(level), kBlocksPerProcessor)),
+          memory(level, count, count) {}
     unsigned count;
     RefinedMemory memory;
   };
@@ -283,8 +293,8 @@ class RefinedOnDevice : public MeasureOnDevice {
     unsigned sphere_blocks = blocks();
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
-    if (is_small(level_.view()) || (Surface::kTellsInside && !counts_points_)) {
-      check(cudaLaunchKernel(one_pose_by_last<Surface>, blocks(), kThreads, values, 0, stream()));
+    if (!Surface::kTellsInside && is_small(level_.view())) {
+      check(cudaLaunchKernel(one_pose_small, blocks(), kThreads, values, 0, stream()));
     } else {
       check(
           cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));

@@ -23,8 +23,8 @@ class SeenShares {
         cut_(level, to_surface, space, notes_, counters, team),
         counts_points_(counts_points) {}
 
-  // Whether there is anything to be done.
-  __device__ bool prepare() {
+  // When the first step is done: whether it has left anything.
+  __device__ bool has_more() {
     far_ = read_for_block(counters_).far;
     return far_ > 0 || counts_points_;
   }

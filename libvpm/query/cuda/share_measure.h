@@ -291,7 +291,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   }
   if (!active) return;
   if (lanes.lane == Unit::of_share && head) {
-    std::uint32_t word = whole ? kWhole : side == Side::mixed ? kMixed : 0;
+    std::uint32_t word = whole ? kWhole : 0;
     if (side == Side::mixed && of_sphere == Side::mixed) word |= kCountsPoints;
     if ((whole || side == Side::mixed) && hidden) {
       word |= kHidden;

@@ -64,7 +64,7 @@ struct SeenUnit {
     return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
   }
 };
-static_assert(kThreads <= 256 && Chunk::kUnits <= 8);
+static_assert(kThreads <= kMostThreads && kMostThreads <= 256 && Chunk::kUnits <= 8);
 
 // Memory that the threads of a block share.
 struct MeasureShared {

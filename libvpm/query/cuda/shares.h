@@ -14,7 +14,6 @@ enum ShareBit : std::uint32_t {
   kWhole = 4,    // behind the surface
   kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
   kSummed = 16,  // of a cut share: its sum is noted
-  kMixed = 256,  // the surface may pass through it
   kCountsPoints = 32,  // the surface may pass the sphere
   kReached = 64,       // by the flood; only where one block floods alone
   kCounted = 128,      // in the result: as boundary, if it is cut, or as inside
@@ -104,6 +103,7 @@ __device__ inline unsigned read(const unsigned& counter) {
 // By one thread for all of its block: so many at one place would wait for each other.
 __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
   __shared__ RefinedCounters found;
+  __syncthreads();
   if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0};
   __syncthreads();
   return found;

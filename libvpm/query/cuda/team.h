@@ -8,8 +8,11 @@
 
 namespace vpm::cuda {
 
-// Most threads of a block, and blocks of one multiprocessor that they leave room for.
-inline constexpr unsigned kThreads = 256, kBlocksPerProcessor = 2;
+// Threads of a block, and blocks of one multiprocessor that they leave room for. Registers are what
+// limits the refined measure.
+inline constexpr unsigned kThreads = 128, kBlocksPerProcessor = 3;
+inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
+inline constexpr unsigned kMostThreads = 256;
 
 // Work dealt out to blocks: row k to part k % parts.
 struct Part {
@@ -35,13 +38,25 @@ class GridTeam {
   __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
   __device__ Part block() const { return {blockIdx.x, gridDim.x}; }
   __device__ void sync() {
+    arrive();
+    wait();
+  }
+  // The two halves of sync(). Whether this block is the last to arrive.
+  __device__ bool arrive() {
+    __shared__ bool is_last;
     __syncthreads();
     target_ += gridDim.x;
     if (threadIdx.x == 0) {
-      ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device> arrived(*arrived_);
       __threadfence();
-      arrived.fetch_add(1, ::cuda::memory_order_relaxed);
-      while (arrived.load(::cuda::memory_order_relaxed) < target_) {
+      is_last = count().fetch_add(1, ::cuda::memory_order_relaxed) == target_ - 1;
+      __threadfence();
+    }
+    __syncthreads();
+    return is_last;
+  }
+  __device__ void wait() {
+    if (threadIdx.x == 0) {
+      while (count().load(::cuda::memory_order_relaxed) < target_) {
       }
       __threadfence();
     }
@@ -49,6 +64,9 @@ class GridTeam {
   }
 
  private:
+  using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
+  __device__ Count count() const { return Count(*arrived_); }
+
   unsigned* arrived_;  // 0 at the start of a launch
   unsigned target_ = 0;
 };
