@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
-#include "libvpm/query/flood_memory.h"
+#include "libvpm/query/pose_memory.h"
 #include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
@@ -51,7 +51,7 @@ class RefinedMeasure {
   bool counts_points_;
   SpatialLevel level_;
   ShareStates shares_;
-  std::optional<FloodMemory> memory_;
+  std::optional<PoseMemory> memory_;
 };
 
 }  // namespace vpm

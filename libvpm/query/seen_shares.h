@@ -5,8 +5,8 @@
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cut_shares.h"
-#include "libvpm/query/flood_memory.h"
 #include "libvpm/query/passage.h"
+#include "libvpm/query/pose_memory.h"
 
 namespace vpm {
 
@@ -31,7 +31,7 @@ class SeenShares {
 
   // Where the surface passes through no share: those stay inside that were, or were cut, as long as
   // they are behind the same surface.
-  void run_from(FloodMemory& memory, const Pose& to_world) {
+  void run_from(PoseMemory& memory, const Pose& to_world) {
     memory_ = &memory;
     for (std::uint32_t i = 0; i < level_.size(); ++i) {
       if (!memory.was_inside(i)) continue;
@@ -57,7 +57,7 @@ class SeenShares {
 
  private:
   Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
-  bool stays(std::uint32_t row, const FloodMemory& memory, const Pose& to_world) const {
+  bool stays(std::uint32_t row, const PoseMemory& memory, const Pose& to_world) const {
     if (states_.cells[row] == Cell::free) return false;
     const Reading reading = surface_.read(center(row));
     return reading.known &&
@@ -73,7 +73,7 @@ class SeenShares {
   const Pose& to_surface_;
   const CutShares& cut_;
   ShareStates& states_;
-  const FloodMemory* memory_ = nullptr;  // of a tool that nothing cuts
+  const PoseMemory* memory_ = nullptr;  // of a tool that nothing cuts
   bool any_stays_ = false;
 };
 

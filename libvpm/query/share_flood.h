@@ -9,9 +9,9 @@
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cut_shares.h"
-#include "libvpm/query/flood_memory.h"
 #include "libvpm/query/passage.h"
 #include "libvpm/query/patch.h"
+#include "libvpm/query/pose_memory.h"
 
 namespace vpm {
 
@@ -41,7 +41,7 @@ class ShareFlood {
 
   // Where the surface passes through no share: those stay inside that were, or were cut, as long as
   // they are behind the same surface; so does what the graph reaches from them near it.
-  void run_from(FloodMemory& memory, const Pose& to_world) {
+  void run_from(PoseMemory& memory, const Pose& to_world) {
     FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
       if (states_.cells[i] == Cell::open) states_.cells[i] = Cell::whole;

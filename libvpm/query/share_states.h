@@ -15,16 +15,16 @@ namespace vpm {
 enum class Cell : std::uint8_t {
   free,     // counts for nothing
   cut,      // the surface passes through it: its result counts
-  partial,  // behind the surface as far as its result says, if the flood comes
-  pushed,   // behind the surface of its patch, along the normal of that, if the flood comes
-  whole,    // behind the surface, if the flood comes
+  partial,  // behind the surface as far as its result says, if it is taken
+  pushed,   // behind the surface of its patch, along the normal of that, if it is taken
+  whole,    // behind the surface, if it is taken
   open,     // no surface near; its centre decides when the flood comes
 };
 
-// Whether the flood may pass a share.
+// Whether a share is inside, and before that, whether the flood may pass it.
 enum class Passage : std::uint8_t {
   closed,  // to what is free or cut, too
-  taken,   // the flood has come
+  taken,   // it is inside, or hidden
   unknown,
   middle,  // unknown: the middle of its cluster, an open patch, decides
   open,    // its squared gap is known

@@ -22,12 +22,13 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling sti
 $ cut -d' ' -f2- device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | wc -l
 3
 
-# One motion: a tool that has passed wholly behind the wall is still inside; seen alone it is not.
+# One motion: a tool that has passed wholly behind the wall is still inside; seen alone, only what is no further behind it
+# than the tool's reach is known to be.
 $ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 1.05 0 0 0 1' '0 0 1.12 0 0 0 1' '0 0 1.3 0 0 0 1' > deep.txt
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
 [0.25, 0.75, 1.0, 1.0]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
-[0.25, 0.75, 0.0, 0.0]
+[0.25, 0.75, 0.75, 0.0]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --batch 2
 2> vpm-query: error: --coherent goes pose by pose at one level; leave --batch and --deadline-us out
 [2]

@@ -1,10 +1,10 @@
 // What a coherent sequence of poses remembers of the last one: the shares that were inside, or cut,
 // and behind which place of the surface each cluster of shares was.
 //
-// A tool that has passed wholly behind the surface is cut by nothing, so that the flood has no
-// entry: seen alone, such a pose cannot be told from a tool that something merely hides. With the
-// memory a share stays inside as long as it is behind the same surface as before: one that is
-// still within the tool's reach of where its cluster was. README.md, "Coherent poses".
+// A tool that has passed wholly behind the surface is cut by nothing: seen alone, what is far
+// behind the surface there cannot be told from what something merely hides. With the memory a share
+// stays inside as long as it is behind the same surface as before: one that is still within the
+// tool's reach of where its cluster was. README.md, "Coherent poses".
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,9 @@
 
 namespace vpm {
 
-class FloodMemory {
+class PoseMemory {
  public:
-  FloodMemory(std::size_t shares, std::size_t clusters)
+  PoseMemory(std::size_t shares, std::size_t clusters)
       : last_(shares, clusters), next_(shares, clusters) {}
 
   bool was_inside(std::uint32_t share) const { return last_.inside[share] != 0; }
