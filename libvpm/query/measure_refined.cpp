@@ -56,22 +56,22 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   Inside<Surface> inside(reach_, level_, surface, to_surface, cut, shares_);
   inside.run(region);
   if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
-  for (const std::uint32_t i : shares_.cut) sum.add(shares_.results[i].sum);
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
-  result.inside = add_inside(surface, to_surface, inside, region, sum);
+  result.inside = add_up(surface, to_surface, inside, region, sum);
   if (memory_) remember(surface, to_surface, to_world, inside);
 }
 
 template <class Surface, class Inside>
-std::uint32_t RefinedMeasure::add_inside(const Surface& surface, const Pose& to_surface,
-                                         const Inside& inside, ParallelRegion& region,
-                                         ToolSum& sum) {
+std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
+                                     const Inside& inside, ParallelRegion& region, ToolSum& sum) {
   constexpr std::size_t kGrain = 512;
   std::mutex adding;
   std::uint32_t all = 0;
   region.loop(level_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
     std::uint32_t count = 0;
+    for_rows_in(Cell::cut, shares_.cells, begin, end,
+                [&](std::uint32_t i) { of_all.add(shares_.results[i].sum); });
     for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
       const ToolSum part = sum_of(surface, to_surface, inside, i);
       of_all.add(part);

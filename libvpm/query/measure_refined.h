@@ -35,10 +35,10 @@ class RefinedMeasure {
   template <class Surface>
   void run_on(const Surface& surface, const Pose& to_world, const PreparedCloud& cloud,
               const Pose& pose, ToolSum& sum, Result& result);
-  // Of shares that nothing cuts; `inside` has taken them. Returns the number of those that count.
+  // Cut shares, and those that `inside` has taken; returns how many of these count.
   template <class Surface, class Inside>
-  std::uint32_t add_inside(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                           ParallelRegion& region, ToolSum& sum);
+  std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
+                       ParallelRegion& region, ToolSum& sum);
   template <class Surface, class Inside>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                  std::uint32_t row) const;
