@@ -259,9 +259,8 @@ def scaling(report):
     line = lambda name, key, digits=0: [name] + [f"{r[key]:.{digits}f}" for r in rows]
     text = table(["spheres"] + [thousands(r["spheres"]) for r in rows],
                  [line("refined, µs median", "refined_median_us"), line("p99", "refined_p99_us"),
-                  line("of that flood, on the device's clock", "refined_flood_us"),
                   line("`--measure paper`, µs median", "paper_median_us"), line("p99", "paper_p99_us"),
-                  line("of that flood", "paper_flood_us"),
+                  line("of that flood, on the device's clock", "paper_flood_us"),
                   line("as printed, by its own algorithm, µs median", "baseline_median_us"),
                   line("p99", "baseline_p99_us"), line("of that boundary", "boundary_us"), line("and flood", "flood_us"),
                   line("ratio to refined", "ratio")])
