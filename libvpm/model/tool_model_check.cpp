@@ -17,6 +17,8 @@ constexpr double kSumTolerance = 1e-6;
 // Parts further than this many reaches from the centre of mass do not belong to the tool. The fixed
 // point of libvpm/query/tool_sum.h holds arms up to 8.
 constexpr double kFarthestPart = 2;
+// Of a share's, from its sphere's centre, in reaches of the share.
+constexpr double kFarthestOfShare = 7;
 // What libvpm/query/cell.h counts exactly.
 constexpr std::size_t kMostSamplesOfACell = std::size_t{1} << 20;
 // Traversals of a hierarchy recurse; one that halves its spheres at every node needs 32.
@@ -196,6 +198,7 @@ class LevelCheck {
         fail("sample " + std::to_string(i) + " lies beyond the tool's reach");
       weights += sample.weight;
     }
+    for (std::uint32_t i = 0; i < level_.sphere_count; ++i) check_share(i);
     const auto differ = [](double sum, double whole) {
       return !(std::abs(sum - whole) <= kSumTolerance * whole);
     };
@@ -207,6 +210,22 @@ class LevelCheck {
            " times the tool's volume");
     if (differ(weights, 1))
       fail("the weights of its samples sum to " + std::to_string(weights) + " instead of 1");
+  }
+
+  // Places of a share are summed in parts of its reach (contact_plane.h).
+  void check_share(std::uint32_t i) const {
+    const Vec3 center = model_.spheres[i].center - model_.center_of_mass;
+    const double farthest = kFarthestOfShare * level_.share_reach[i];
+    const auto check = [&](Vec3 at, double radius) {
+      if (!(norm(at - center) + radius <= farthest))
+        fail("the share of sphere " + std::to_string(i) + " reaches further than it says");
+    };
+    for (std::uint32_t b = level_.block_begin[i]; b < level_.block_begin[i + 1]; ++b) {
+      const CellBlock& block = level_.blocks[b];
+      check(widen(block.center), block.radius);
+      for (std::uint32_t s = block.begin; s < block.end; ++s)
+        check(widen(level_.samples[s].center), level_.samples[s].radius);
+    }
   }
 
   const ToolModel& model_;

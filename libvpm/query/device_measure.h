@@ -39,7 +39,8 @@ class DeviceMeasure {
 
   // Of the last single run.
   virtual void read_states(std::vector<SphereState>& states) = 0;
-  // What came after the boundary was known, by the device's clock.
+  // What came after the boundary was known, by the device's clock: next to nothing where a camera
+  // tells what is inside.
   virtual double flood_microseconds() const = 0;
 };
 

@@ -113,17 +113,21 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
 // What is cut and inside now.
 template <class Surface, class Inside>
 void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
-                              const Inside& inside) {
+                              Inside& inside) {
+  inside.begin_to_remember(to_world, *memory_);
   const auto keep = [&](std::uint32_t i) {
-    memory_->remember(i, level_.root(i), [&](Vec3& foot) {
-      const Reading reading = surface.read(to_surface * level_.cell(i).center);
-      foot = to_world * reading.foot;
-      return reading.known;
-    });
+    const std::uint32_t root = level_.root(i);
+    if (memory_->is_known(root) && inside.follows(i)) {
+      memory_->remember(i);
+      return;
+    }
+    const Reading reading = surface.read(to_surface * level_.cell(i).center);
+    const Vec3 foot = to_world * reading.foot;
+    if (reading.known && inside.is_sure(i, foot)) memory_->remember(i, root, foot);
   };
   for (const std::uint32_t i : shares_.cut) keep(i);
   for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {
-    if (shares_.cells[i] != Cell::free && inside.is_sure(i)) keep(i);
+    if (shares_.cells[i] != Cell::free) keep(i);
   });
   memory_->turn();
 }

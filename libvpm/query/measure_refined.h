@@ -44,7 +44,7 @@ class RefinedMeasure {
                  std::uint32_t row) const;
   template <class Surface, class Inside>
   void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
-                const Inside& inside);
+                Inside& inside);
 
   const ToolModel& tool_;
   ToolReach reach_;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/core/vec3.h"
+#include "libvpm/query/surface.h"
 
 namespace vpm {
 
@@ -25,16 +25,21 @@ class PoseMemory {
   bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
     return last_.known[cluster] && squared_norm(foot - last_.feet[cluster]) <= reach * reach;
   }
+  // The plane in which the surface cut the tool when it last did.
+  const TangentPlane& touched() const { return touched_; }
+  void touch(const TangentPlane& plane) { touched_ = plane; }
   void forget(std::uint32_t share) { last_.inside[share] = false; }
   void forget() { last_.clear(); }
 
-  // `read(foot)`: where the share is behind the surface, world coordinates; false if nobody knows.
-  // The first of a cluster that is known stands for all of it.
-  template <class Read>
-  void remember(std::uint32_t share, std::uint32_t cluster, const Read& read) {
-    if (!next_.known[cluster]) next_.known[cluster] = read(next_.feet[cluster]);
-    next_.inside[share] = next_.known[cluster];
+  // `foot`: where the share is behind the surface, world coordinates. The first of a cluster stands
+  // for all of it.
+  void remember(std::uint32_t share, std::uint32_t cluster, Vec3 foot) {
+    if (!next_.known[cluster]) next_.feet[cluster] = foot;
+    next_.known[cluster] = next_.inside[share] = true;
   }
+  bool is_known(std::uint32_t cluster) const { return next_.known[cluster] != 0; }
+  // Of a cluster that is known.
+  void remember(std::uint32_t share) { next_.inside[share] = true; }
   // When all is remembered: it replaces what was.
   void turn() {
     std::swap(last_, next_);
@@ -54,6 +59,7 @@ class PoseMemory {
     std::vector<char> known;
   };
   Memory last_, next_;
+  TangentPlane touched_;
 };
 
 }  // namespace vpm

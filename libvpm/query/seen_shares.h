@@ -48,11 +48,22 @@ class SeenShares {
                            : cut_.nearest_to(row).vouches_for(x, foot, reach_.length);
   }
 
-  // Whether a share that counts is one to be remembered: not if all that speaks for it is that
-  // something hides it.
-  bool is_sure(std::uint32_t row) const {
-    if (!cut_.are_none() || has_stayed(row)) return true;
-    return any_stays_ && !is_hidden_share(squared_gap(surface_.read(center(row))), reach_.length);
+  // What to remember of shares that count: not those of which all that is known is that something
+  // hides them. What hides them must not be further than the tool's reach in front of the mean
+  // plane of all that was cut last; where nothing is cut, some must stay, and the share be near.
+  void begin_to_remember(const Pose& to_world, PoseMemory& memory) {
+    to_world_ = to_world;
+    if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
+    plane_ = memory.touched();
+  }
+  // Whether to remember a share of which another one of its cluster is remembered.
+  bool follows(std::uint32_t row) const { return !cut_.are_none() || has_stayed(row); }
+  // Whether to remember any, behind the surface's place `foot` of the world.
+  bool is_sure(std::uint32_t row, Vec3 foot) const {
+    if (has_stayed(row)) return true;
+    if (plane_.distance(foot) > reach_.length) return false;
+    const double squared = squared_norm(foot - to_world_ * center(row));
+    return !cut_.are_none() || (any_stays_ && !is_hidden_share(squared, reach_.length));
   }
 
  private:
@@ -62,6 +73,16 @@ class SeenShares {
     const Reading reading = surface_.read(center(row));
     return reading.known &&
            memory.is_near(level_.root(row), to_world * reading.foot, reach_.length);
+  }
+  TangentPlane mean_plane_of_cut() const {
+    Vec3 normal, foot;
+    for (const std::uint32_t i : states_.cut) {
+      const CutShare cut = cut_.at(i);
+      normal += cut.plane.mean_normal();
+      foot += cut.center + cut.reach * cut.plane.mean_foot();
+    }
+    foot = 1 / static_cast<double>(states_.cut.size()) * foot;
+    return {to_world_.rotation * normalized_or_zero(normal), to_world_ * foot};
   }
   bool has_stayed(std::uint32_t row) const {
     return memory_ != nullptr && memory_->was_inside(row);
@@ -73,6 +94,8 @@ class SeenShares {
   const Pose& to_surface_;
   const CutShares& cut_;
   ShareStates& states_;
+  Pose to_world_;                       // from the surface's axes
+  TangentPlane plane_;                  // world, of what was cut last
   const PoseMemory* memory_ = nullptr;  // of a tool that nothing cuts
   bool any_stays_ = false;
 };

@@ -41,7 +41,7 @@ class ShareFlood {
 
   // Where the surface passes through no share: those stay inside that were, or were cut, as long as
   // they are behind the same surface; so does what the graph reaches from them near it.
-  void run_from(PoseMemory& memory, const Pose& to_world) {
+  void run_from(const PoseMemory& memory, const Pose& to_world) {
     FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
       if (states_.cells[i] == Cell::open) states_.cells[i] = Cell::whole;
@@ -67,8 +67,10 @@ class ShareFlood {
   bool vouches_for(std::uint32_t row, Vec3 x, Vec3 foot) const {
     return cut_.are_none() || cut_.nearest_to(row).vouches_for(x, foot, reach_.length);
   }
-  // Whether a share that counts is one to be remembered.
-  static bool is_sure(std::uint32_t) { return true; }
+  // What to remember: all that counts (as SeenShares).
+  static void begin_to_remember(const Pose&, const PoseMemory&) {}
+  static bool follows(std::uint32_t) { return true; }
+  static bool is_sure(std::uint32_t, Vec3) { return true; }
 
  private:
   static constexpr std::size_t kRowsOfChunk = 128;  // counted in a byte

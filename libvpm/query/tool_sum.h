@@ -16,10 +16,14 @@ struct ToolSum {
   Sum volume, force[3], torque[3];
 
   VPM_HD void add(double part, Vec3 normal, Vec3 arm) { add_moment(part, part * arm, normal); }
-  // Of several parts pushed in one direction: their sum, and the sum of each times its arm.
+  // Of several parts pushed in one direction: their sum, and the sum of each times its arm. What
+  // has no volume here adds nothing, so that nobody needs to ask whether it is in a sum.
   VPM_HD void add_moment(double part, Vec3 moment, Vec3 normal) {
+    Sum resolved;
+    resolved.add(part);
+    if (resolved.value == 0) return;
     const Vec3 f = part * normal, t = cross(moment, normal);
-    volume.add(part);
+    volume.add(resolved);
     force[0].add(f.x), force[1].add(f.y), force[2].add(f.z);
     torque[0].add(t.x), torque[1].add(t.y), torque[2].add(t.z);
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/scenes.h"
@@ -98,6 +99,33 @@ TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
   for (double z = 1.05; z < 1.3; z += kStep) expect_nothing_remembered({0, 0.01, z});
   EXPECT_GT(hidden, 50);
   EXPECT_EQ(query.run(cloud, {generic_rotation(), {0, 0.01, 1.3}}).volume, 0);
+}
+
+// A tool that cuts a wall, and then moves behind a hand in front of it: what counts there only
+// since the hand hides it is not remembered.
+TEST(CoherentPoses, DoNotRememberWhatAnotherObjectHides) {
+  DepthImage depth;
+  depth.width = 160;
+  depth.height = 120;
+  for (std::uint32_t i = 0; i < depth.width * depth.height; ++i)
+    depth.depth.push_back(i % depth.width < 80 ? 0.92F : 1.2F);
+  const Camera camera{{131.25, 131.25, 79.5, 59.5}, 160, 120, {}};
+  const PreparedCloud cloud(make_cloud(depth, camera, NormalOptions{}));
+  const ToolModel tool = lattice_cube(0.2, 10, 2);
+  Query query(tool, coherent()), alone(tool, {});
+  int cut = 0, hidden = 0;
+  const auto run = [&](double x, double z) {
+    const Pose pose{generic_rotation(), {x, 0, z}};
+    const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
+    EXPECT_TRUE(r == seen_alone) << x << ' ' << z;
+    cut += r.boundary > 0;
+    hidden += r.boundary == 0 && r.volume > 0;
+  };
+  for (double x = 0.15; x > -0.25; x -= kStep) run(x, 1.19);
+  for (double z = 1.19; z < 1.5; z += kStep) run(-0.25, z);
+  EXPECT_GT(cut, 50);
+  EXPECT_GT(hidden, 50);
+  EXPECT_EQ(query.run(cloud, {generic_rotation(), {-0.25, 0, 1.5}}).volume, 0);
 }
 
 Cloud wall_at(double z) {

@@ -1,4 +1,4 @@
-// Ten thousand random poses per scene and point spacing: does the flood ever leak?
+// Ten thousand random poses per scene and point spacing: does anything ever leak?
 //
 // A leak is an error above kLeak of the tool. Truth is a count of places in the tool; what no
 // camera can know counts for neither side (sight.h).

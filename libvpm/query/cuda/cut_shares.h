@@ -29,7 +29,7 @@ class CutShares {
   // By all threads of a tile. Ties go to the smaller index; level.count where nothing is cut.
   __device__ std::uint32_t nearest_to(const Tile& tile, std::uint32_t i) const;
 
-  // Adds the far pieces that count. `may_count(share, word)`: of one that is not cut; `add(share,
+  // Adds the far pieces that count. `may_count(share)`: of one that is not cut; `add(share,
   // sum)`: by one thread.
   template <class MayCount, class Add>
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
@@ -40,7 +40,7 @@ class CutShares {
       const FarPiece& far = space_.far[k];
       const std::uint32_t i = far.share, word = notes_.words[i];
       const bool cut = (word & kCut) != 0;
-      if (!cut && !may_count(i, word)) continue;
+      if (!cut && !may_count(i)) continue;
       const std::uint32_t by = cut ? i : nearest_to(warp, i);
       if (by < level_.count && warp.leads() &&
           at(by).vouches_for(far.at, far.foot, level_.tool_reach.length))

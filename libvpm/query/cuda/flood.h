@@ -75,7 +75,7 @@ class Flood {
     team_.sync();
     if (found.far > 0) {
       cut_.add_far(
-          found.far, [&](std::uint32_t i, std::uint32_t) { return is_inside(i, words_[i]); },
+          found.far, [&](std::uint32_t i) { return is_inside(i, words_[i]); },
           [&](std::uint32_t i, const ToolSum& sum) { add_atomically(sum, notes_.sums[i]); });
       team_.sync();
     }

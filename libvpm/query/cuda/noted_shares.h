@@ -38,6 +38,8 @@ class NotedShares {
       return;
     }
     lists_all_ = true;
+    __syncthreads();
+    if (threadIdx.x == 0) list_.count = 0;
     for (std::uint32_t first = begin; first < level_.count;) {
       lists_all_ &= first == begin;
       __syncthreads();

@@ -116,7 +116,8 @@ std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
 class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
-      : MeasureOnDevice(tool, device, kPaperBlocksPerProcessor),
+      : MeasureOnDevice(tool, device,
+                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),

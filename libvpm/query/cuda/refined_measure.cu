@@ -103,8 +103,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
   clear_next(launch, sequence);
 }
 
-// One query by all blocks of a cooperative launch. Where the first step has found all, the last
-// block to come sends the answer, and the others go.
+// One query by all blocks of a cooperative launch. Where the first step has found all (no far
+// pieces, and nobody asks for points), the last block to come sends the answer, and the others go.
 template <class Surface>
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
@@ -238,7 +238,10 @@ class RefinedMemory {
 class RefinedOnDevice : public MeasureOnDevice {
  public:
   RefinedOnDevice(const ToolModel& tool, const Level& level, bool counts_points, int device)
-      : MeasureOnDevice(tool, device, kBlocksPerProcessor),
+      : MeasureOnDevice(
+            tool, device,
+            std::min(blocks_that_fit(one_pose<DepthSurface>, kThreads, kBlocksPerProcessor),
+                     blocks_that_fit(one_pose<DiskSurface>, kThreads, kBlocksPerProcessor))),
         level_(tool, level),
         counts_points_(counts_points),
         memory_(level_.view(), 1, blocks()),

@@ -24,18 +24,16 @@ class SeenShares {
         counts_points_(counts_points) {}
 
   // When the first step is done: whether it has left anything.
-  __device__ bool has_more() {
-    far_ = read_for_block(counters_).far;
-    return far_ > 0 || counts_points_;
-  }
+  __device__ bool has_more() const { return counts_points_ || read_for_block(counters_).far > 0; }
   // This thread's part of the result, beyond that of the first step. All threads of the team.
   __device__ RawResult run() {
     RawResult result;
-    if (far_ > 0) {
+    const unsigned far = read_for_block(counters_).far;
+    if (far > 0) {
       cut_.list();
       team_.sync();
       cut_.add_far(
-          far_, [](std::uint32_t, std::uint32_t) { return true; },
+          far, [](std::uint32_t) { return true; },
           [&](std::uint32_t i, const ToolSum& sum) {
             result.sum.add(sum);
             if (sum.volume.value != 0)
@@ -57,7 +55,6 @@ class SeenShares {
   NotedShares<Team> noted_;
   CutShares<Team> cut_;
   bool counts_points_;
-  unsigned far_ = 0;  // pieces
 };
 
 }  // namespace vpm::cuda

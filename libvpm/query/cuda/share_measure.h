@@ -500,6 +500,7 @@ __device__ void ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure
   if (Surface::kSearchesFoot) normal = tile.from(normal, first);
   if (!inside) return;
   result.is_far |= look.is_far;
+  if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
   ToolSum sum;
   if (cut)
     measure.add_cut(piece, look, sum);
@@ -514,7 +515,6 @@ __device__ void ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure
     far.share = task.share;
     return;
   }
-  if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
   result.sum.add(sum);
 }
 

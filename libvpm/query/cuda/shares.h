@@ -7,7 +7,9 @@
 
 namespace vpm::cuda {
 
-// The bits of a share's word.
+// The bits of a share's word. Where a camera tells what is inside, only kCut, kCountsPoints and
+// kCounted are set, and of what is noted of shares only points and planes; the rest serves the
+// flood.
 enum ShareBit : std::uint32_t {
   kCut = 1,      // the surface passes through a piece
   kPartial = 2,  // pieces are inside, as far as the sum says

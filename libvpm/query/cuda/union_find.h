@@ -12,8 +12,6 @@ class UnionFind {
  public:
   __device__ explicit UnionFind(std::uint32_t* parents) : parents_(parents) {}
 
-  __device__ void reset(std::uint32_t node) const { parents_[node] = node; }
-
   __device__ std::uint32_t root(std::uint32_t node) const {
     std::uint32_t at = node, parent = load(at);
     while (parent != at) {
