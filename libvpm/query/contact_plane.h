@@ -23,17 +23,17 @@ struct ContactPlane {
     foot[0].add(relative_foot.x), foot[1].add(relative_foot.y), foot[2].add(relative_foot.z);
     ++count;
   }
-  // Unit; count > 0.
-  VPM_HD Vec3 mean_normal() const {
-    return normalized_or_zero({normal[0].real(), normal[1].real(), normal[2].real()});
-  }
+  VPM_HD Vec3 normals() const { return {normal[0].real(), normal[1].real(), normal[2].real()}; }
+  // Where count > 0.
   VPM_HD Vec3 mean_foot() const {
     const double per = 1 / static_cast<double>(count);
     return {per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
   }
   // Height of a place above the plane, both relative to the cell's centre and reach; negative
   // behind it.
-  VPM_HD double height(Vec3 relative) const { return dot(mean_normal(), relative - mean_foot()); }
+  VPM_HD double height(Vec3 relative) const {
+    return dot(normalized_or_zero(normals()), relative - mean_foot());
+  }
   // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
   // object more than `near` in front of it. Without a plane nothing does.
   VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {

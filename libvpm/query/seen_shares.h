@@ -78,7 +78,7 @@ class SeenShares {
     Vec3 normal, foot;
     for (const std::uint32_t i : states_.cut) {
       const CutShare cut = cut_.at(i);
-      normal += cut.plane.mean_normal();
+      normal += cut.plane.normals();
       foot += cut.center + cut.reach * cut.plane.mean_foot();
     }
     foot = 1 / static_cast<double>(states_.cut.size()) * foot;
