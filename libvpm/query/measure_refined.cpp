@@ -95,13 +95,14 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
     add_whole(reach_, level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
     return sum;
   }
+  const bool partial = shares_.cells[row] == Cell::partial;
+  if (partial && !shares_.results[row].is_far) return shares_.results[row].sum;
   const CellView view = level_.cell(row);
   const CellMeasure measure(surface, to_surface, reach_, view);
   const auto vouches = [&](Vec3 x, Vec3 foot) { return inside.vouches_for(row, x, foot); };
-  if (shares_.cells[row] == Cell::partial) {
-    const CellResult& result = shares_.results[row];
-    sum = result.sum;
-    if (result.is_far) measure.add_far(vouches, sum);
+  if (partial) {
+    sum = shares_.results[row].sum;
+    measure.add_far(vouches, sum);
   } else if (is_compact(level_.reach(row), reach_.length)) {
     measure.add_whole_piece(vouches, piece_of(level_.mass(row), view), sum);
   } else {

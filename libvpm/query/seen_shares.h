@@ -3,6 +3,8 @@
 // the memory of poses before.
 #pragma once
 
+#include <algorithm>
+
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cut_shares.h"
 #include "libvpm/query/passage.h"
