@@ -12,6 +12,7 @@
 //   method=inverse-depth   of the images' normals; or pca
 //   batch=1       so many poses are asked at once, as planners do
 //   points=0      1: also counts the cloud's points in spheres, which no control loop needs
+//   standby=0     microseconds that the device stays ready for the next pose
 //   json=FILE     the figures, also as JSON
 //   poses=FILE    the first path=400 poses, for vpm-query --poses
 #include <algorithm>
@@ -219,7 +220,8 @@ nlohmann::json about(const QueryOptions& options, const Level& level, const Prep
   return {{"device", device_name(options.device)},
           {"measure", options.measure == Measure::paper ? "paper" : "refined"},
           {"spheres", level.sphere_count},
-          {"points", cloud.positions().size()}};
+          {"points", cloud.positions().size()},
+          {"standby_us", options.standby_us}};
 }
 
 nlohmann::json to_json(const Figures& figures) {
@@ -244,7 +246,7 @@ Options parse(int argc, char** argv) {
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
                   {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
-                  {"points", "0"}};
+                  {"points", "0"},    {"standby", "0"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
@@ -252,7 +254,7 @@ Options parse(int argc, char** argv) {
       throw Error(ErrorKind::usage,
                   text +
                       ": the options are device= measure= queries= level= "
-                      "rotate= frames= behind= method= batch= points= json= poses= path=");
+                      "rotate= frames= behind= method= batch= points= standby= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -273,6 +275,7 @@ void control(int argc, char** argv) {
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
   query_options.counts_points = number(options, "points", 0) != 0;
+  query_options.standby_us = static_cast<unsigned>(number(options, "standby", 0));
   const int copies = number(options, "rotate", 1), count = number(options, "queries", 1);
 
   const ToolModel tool = read_tool_model(argv[1]);

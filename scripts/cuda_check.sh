@@ -3,8 +3,8 @@
 # times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_tests, frame-stages, vpm-normals and vpm-query; LEVELS
 # are like 1000,17000.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
-# compared byte for byte, of both measures, one by one and in batches; 4. ten thousand queries at each level, with the data of
-# eight tools and clouds by turns; 5. a hundred thousand poses in batches; 6. scripts/cuda_frames_check.sh, which writes
+# compared byte for byte, of both measures, one by one, in batches and standing by; 4. ten thousand queries at each level, with
+# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches; 6. scripts/cuda_frames_check.sh, which writes
 # OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
@@ -31,6 +31,10 @@ for measure in refined paper; do
     "${ask[@]}" --device cuda -o "$work/one.jsonl"
     "${ask[@]}" --device cuda --batch 128 -o "$work/many.jsonl"
     same+=("$measure:$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
+    [[ $measure == refined ]] || continue
+    "${ask[@]}" --no-points --device cpu -o "$work/cpu.jsonl" --force
+    "${ask[@]}" --no-points --device cuda --standby-us 2000 -o "$work/one.jsonl" --force
+    same+=("standby:$level=$(verdict cmp "$work/cpu.jsonl" "$work/one.jsonl")")
   done
 done
 
@@ -39,6 +43,7 @@ for level in ${levels//,/ }; do
   for copies in 1 8; do
     "${loop[@]}" rotate=$copies queries=10000 json="$work/loop-$level-$copies.json" >/dev/null
   done
+  "${loop[@]}" rotate=8 queries=10000 standby=2000 json="$work/loop-$level-standby.json" >/dev/null
   "${loop[@]}" rotate=8 queries=4000 measure=paper json="$work/loop-$level-paper.json" >/dev/null
   "${loop[@]}" batch=16384 queries=114688 json="$work/batch-$level.json" >/dev/null
   "${loop[@]}" batch=16384 queries=16384 measure=paper json="$work/batch-$level-paper.json" >/dev/null
@@ -54,13 +59,13 @@ smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format
 report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),
-    "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["measure"] != "refined", r["spheres"], r["copies"])),
+    "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["measure"] != "refined", r["standby_us"], r["spheres"], r["copies"])),
     "batch": sorted(load("batch-*.json"), key=lambda r: (r["measure"] != "refined", r["spheres"])),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{smi}, commit {commit}: tests {tests}, compute-sanitizer {sanitizers}, CPU and device the same {same}")
 for r in report["control_loop"]:
-    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies{', standing by' if r['standby_us'] else ''}  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
 for r in report["batch"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON

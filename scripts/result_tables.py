@@ -222,10 +222,14 @@ def single_precision(report):
 def cuda(report):
     rates = {(r["measure"], r["spheres"]): r["poses_per_second"] for r in report["batch"]}
     copies = max(r["copies"] for r in report["control_loop"])
-    return table(["measure", "spheres", "query, µs median", "p99", "batches, poses/s"],
-                 [[r["measure"], thousands(r["spheres"]), f"{r['median_us']:.0f}", f"{r['p99_us']:.0f}",
+    rotated = [r for r in report["control_loop"] if r["copies"] == copies]
+    micro = lambda r: f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
+    standing = {r["spheres"]: micro(r) for r in rotated if r["standby_us"] > 0}
+    return table(["measure", "spheres", "query, µs median / p99", "standing by", "batches, poses/s"],
+                 [[r["measure"], thousands(r["spheres"]), micro(r),
+                   standing[r["spheres"]] if r["measure"] == "refined" else "",
                    thousands(int(float(f"{rates[r['measure'], r['spheres']]:.3g}")))]
-                  for r in report["control_loop"] if r["copies"] == copies])
+                  for r in rotated if r["standby_us"] == 0])
 
 
 def cuda_frames(report):

@@ -31,6 +31,9 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach))) {
     throw Error(ErrorKind::usage, "the stiffness is so large that forces overflow");
   }
+  if (options.standby_us > QueryOptions::kLongestStandby) {
+    throw Error(ErrorKind::usage, "a device stands by for a second (1000000 us) at most");
+  }
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda())) {
     throw Error(ErrorKind::usage,
                 "coherent poses are a matter of the refined measure on the CPU; leave the other "

@@ -28,9 +28,9 @@ namespace vpm {
 class Query {
  public:
   // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
-  // model has no such level, coherence is asked of another measure or device, or the stiffness is
-  // not positive or so large that forces overflow. The model must be one that validate() of
-  // tool_model.h accepts.
+  // model has no such level, coherence is asked of another measure or device, the stiffness is not
+  // positive or so large that forces overflow, or a device is to stand by for too long. The model
+  // must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not

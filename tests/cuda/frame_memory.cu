@@ -29,7 +29,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
   if (!slot.is_on_device() || !slot.is_sound()) return std::nullopt;
-  cuda::check(cudaEventSynchronize(slot.ready()));
+  cuda::check(cudaEventSynchronize(slot.ready().get()));
   const cuda::PointsView& points = slot.device_cloud().points();
   const DepthSurface& surface = slot.device_cloud().depth_surface();
   FrameMemory memory{fetched(points.positions, points.count),

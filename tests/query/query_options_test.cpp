@@ -1,6 +1,7 @@
 // Options that leave out what nobody asks for.
 #include <gtest/gtest.h>
 
+#include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
@@ -28,6 +29,17 @@ TEST(QueryOptions, WithoutPointsEverythingElseStays) {
         testing::expect_equal(counted, result);
       }
     }
+  }
+}
+
+TEST(QueryOptions, NoDeviceStandsByForLongerThanASecond) {
+  const ToolModel tool = testing::lattice_cube(0.2, 2, 1);
+  EXPECT_NO_THROW(Query(tool, {.standby_us = QueryOptions::kLongestStandby}));
+  try {
+    Query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
+    FAIL() << "stands by for too long";
+  } catch (const Error& fault) {
+    EXPECT_EQ(fault.kind(), ErrorKind::usage);
   }
 }
 

@@ -31,6 +31,7 @@ struct Arguments {
   double stiffness = 1;
   std::string coupling;
   std::size_t batch = 1;
+  std::uint32_t standby_us = 0;
   ReplayArguments replay;
 };
 
@@ -76,6 +77,11 @@ void declare(CLI::App& app, Arguments& a) {
          "Poses that a device takes at once; answers come in their order. Changes no result")
       ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str();
+  app.add_option("--standby-us", a.standby_us,
+                 "Microseconds that a device stays ready for the next pose, and does nothing else; "
+                 "with --no-points, in depth images. Changes no result")
+      ->check(whole_number_in(0, QueryOptions::kLongestStandby))
+      ->capture_default_str();
   declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
@@ -105,6 +111,11 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong("--coherent goes pose by pose at one level; leave --batch and --deadline-us out");
   if (a.batch > 1 && (a.deadline_us || !a.coupling.empty() || replays))
     wrong("--batch answers many poses at once; leave --deadline-us, --coupling and --frames out");
+  if (a.standby_us > 0 && (!a.no_points || a.batch > 1 || a.measure == "paper" || a.coherent))
+    wrong(
+        "--standby-us waits for single poses of the refined measure; give --no-points too, and "
+        "leave "
+        "--batch, --measure paper and --coherent out");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
@@ -304,6 +315,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.stiffness = a.stiffness;
   options.coherent = a.coherent;
   options.counts_points = !a.no_points;
+  options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);
   a.replay.frames.empty() ? run_poses(tool, a, model, options)
                           : run_replay(tool, a, model, options);

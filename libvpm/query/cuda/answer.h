@@ -24,16 +24,23 @@ __device__ inline std::uint64_t now() {
   return time;
 }
 
-// By the threads of a block, from its shared memory.
-__device__ inline void send(const RawResult& result, Answer* answer, unsigned sequence) {
-  const auto* const words = reinterpret_cast<const std::uint32_t*>(&result);
+// This thread's word of a result; of the first ones of a block.
+__device__ inline std::uint32_t word_of(const RawResult& result) {
+  const unsigned k = threadIdx.x;
+  return k < Answer::kWords ? reinterpret_cast<const std::uint32_t*>(&result)[k] : 0;
+}
+
+// By the threads of a block, with their words. `flood_ns` goes with the result.
+__device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* answer,
+                            unsigned sequence) {
+  constexpr unsigned kFlood = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t);
   const unsigned k = threadIdx.x;
   if (k < Answer::kWords)
     *static_cast<volatile std::uint64_t*>(&answer->words[k]) =
-        std::uint64_t{sequence} << 32 | words[k];
+        std::uint64_t{sequence} << 32 | (k == kFlood ? static_cast<std::uint32_t>(flood_ns) : word);
 }
 
-// Sums of one query over its blocks. All 0 between launches: the last block clears them.
+// Sums of one query over its blocks. All 0 between queries: the last block clears them.
 struct Totals {
   RawResult result;
   unsigned done = 0;     // blocks that have added their part
@@ -78,9 +85,9 @@ __device__ inline bool is_last_block(unsigned& done) {
   __shared__ bool last;
   __syncthreads();
   if (threadIdx.x == 0) {
-    __threadfence();
+    fence();
     last = atomicAdd(&done, 1U) == gridDim.x - 1;
-    __threadfence();
+    if (last) fence();
   }
   __syncthreads();
   return last;

@@ -5,6 +5,7 @@
 #include "libvpm/core/lengths.h"
 #include "libvpm/query/cuda/cloud_settle.h"
 #include "libvpm/query/cuda/cloud_slot.h"
+#include "libvpm/query/cuda/standby.h"
 
 namespace vpm::cuda {
 namespace {
@@ -66,9 +67,10 @@ void CloudSlot::begin() {
     return;
   }
   cloud_.stand_at(camera().to_world);
+  dismiss_standby_for(ready_);
   take(stream_.get());
   make(stream_.get());
-  check(cudaEventRecord(ready_.get(), stream_.get()));
+  check(cudaEventRecord(ready_->get(), stream_.get()));
 }
 
 void CloudSlot::take(cudaStream_t stream) {
@@ -94,6 +96,7 @@ void CloudSlot::make(cudaStream_t stream, Vec3f* estimated) {
 std::vector<Vec3f> CloudSlot::estimate_normals() {
   const CurrentDevice current(options().device.first());
   const DeviceArray<Vec3f> estimated(pixels());
+  dismiss_standby();
   take(stream_.get());
   make(stream_.get(), estimated.get());
   check(cudaStreamSynchronize(stream_.get()));
@@ -134,9 +137,7 @@ void CloudSlot::wait() const {
   constexpr unsigned kLooksPerCheck = 1U << 16;  // whether the launch has failed
   for (unsigned looks = 1; !is_answered(); ++looks) {
     if (looks % kLooksPerCheck != 0) continue;
-    const cudaError_t status = cudaStreamQuery(stream_.get());
-    if (status != cudaErrorNotReady) check(status);
-    if (status == cudaSuccess && !is_answered())
+    if (is_done(cudaStreamQuery(stream_.get())) && !is_answered())
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
   }
 }

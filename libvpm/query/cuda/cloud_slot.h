@@ -28,7 +28,7 @@ class CloudSlot : public FrameSlot {
   }
 
   const DeviceCloud& device_cloud() const { return cloud_; }
-  cudaEvent_t ready() const { return ready_.get(); }
+  const Event& ready() const { return *ready_; }
 
   // Of the image, in camera axes, whether the cloud can be made here or not.
   std::vector<Vec3f> estimate_normals();
@@ -52,7 +52,7 @@ class CloudSlot : public FrameSlot {
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
-  Event ready_{cudaEventDisableTiming};
+  std::shared_ptr<Event> ready_ = std::make_shared<Event>(cudaEventDisableTiming);
   Preparation preparation_;
   bool is_plain_ = false;
   unsigned sequence_ = 0;

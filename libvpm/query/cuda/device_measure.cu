@@ -31,7 +31,7 @@ std::unique_ptr<DeviceMeasure> make_on_one(const ToolModel& tool, const Level& l
                                            const QueryOptions& options, int device) {
   return options.measure == Measure::paper
              ? cuda::make_paper_measure(tool, level, device)
-             : cuda::make_refined_measure(tool, level, options.counts_points, device);
+             : cuda::make_refined_measure(tool, level, options, device);
 }
 
 }  // namespace

@@ -36,6 +36,20 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
+// Whether what cudaEventQuery and the like say is that the work is done. Forgets that it is not,
+// which would be taken for the error of a later launch.
+inline bool is_done(cudaError_t status) {
+  if (status == cudaErrorNotReady) {
+    cudaGetLastError();
+    return false;
+  }
+  check(status);
+  return true;
+}
+inline bool has_happened(const Event& event) {
+  return is_done(cudaEventQuery(event.get()));
+}
+
 // By the device's clock; of events that have happened.
 inline double microseconds_between(const Event& begin, const Event& end) {
   float milliseconds = 0;
@@ -71,8 +85,10 @@ inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_pr
 }
 
 // Looks at the host's own memory until the device has written the whole answer there; that is
-// quicker than waiting for the stream.
-inline RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream) {
+// quicker than waiting for the stream. Calls meanwhile() between the looks.
+template <class Meanwhile>
+RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
+                   const Meanwhile& meanwhile) {
   constexpr unsigned kLooksPerCheck = 1U << 16;  // whether the launch has failed
   std::uint32_t words[Answer::kWords];
   unsigned looks = 0;
@@ -80,10 +96,10 @@ inline RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t 
     const std::uint64_t word = *static_cast<const volatile std::uint64_t*>(&answer.words[k]);
     if (word >> 32 == sequence) {
       words[k++] = static_cast<std::uint32_t>(word);
-    } else if (++looks % kLooksPerCheck == 0) {
-      const cudaError_t status = cudaStreamQuery(stream);
-      if (status != cudaErrorNotReady) check(status);
+      continue;
     }
+    meanwhile();
+    if (++looks % kLooksPerCheck == 0) is_done(cudaStreamQuery(stream));
   }
   RawResult result;
   std::memcpy(static_cast<void*>(&result), words, sizeof(words));

@@ -38,14 +38,37 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
 
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
-  launch(frame, answer_.device(), ++sequence_);
-  const RawResult raw = wait_for(*answer_.host(), sequence_, stream_.get());
+  const RawResult raw = answer(frame);
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
 }
 
+RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
+  ++sequence_;
+  // A new frame may not be ready: a stream waits for it.
+  if (standby_ && !has_new_frame()) {
+    const Standing standing = this->standing(answer_.device());
+    if (standing.launch != nullptr)
+      return standby_->ask(standing.kernel,
+                           {standing.launch, frame.to_surface, sequence_, standby_us_},
+                           *answer_.host(), sequence_);
+  }
+  dismiss_standby();
+  wait_for_frame();
+  launch(frame, answer_.device(), sequence_);
+  return wait_for(*answer_.host(), sequence_, stream_.get(), [] {});
+}
+
+void MeasureOnDevice::wait_for_frame() {
+  if (!has_new_frame()) return;
+  check(cudaStreamWaitEvent(stream_.get(), frame_->ready().get()));
+  awaited_ = frame_->serial();
+}
+
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
   if (!batch_) batch_ = std::make_unique<Batch>();
+  dismiss_standby();
+  wait_for_frame();
   for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
     const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
     check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
@@ -74,6 +97,7 @@ void MeasureOnDevice::bring(const PreparedCloud& cloud) {
     copy_ = on_device(cloud);
     serial_ = cloud.serial();
   }
+  frame_ = nullptr;
   cloud_ = copy_.get();
 }
 
@@ -81,10 +105,7 @@ const CloudSlot* MeasureOnDevice::bring(const DepthFrame& frame) {
   const auto* const slot = dynamic_cast<const CloudSlot*>(&frame.slot());
   if (slot == nullptr || slot->options().device.first() != device_ || !slot->is_on_device())
     return nullptr;
-  if (slot->serial() != frame_serial_) {
-    check(cudaStreamWaitEvent(stream_.get(), slot->ready()));
-    frame_serial_ = slot->serial();
-  }
+  frame_ = slot;
   cloud_ = &slot->device_cloud();
   return slot;
 }

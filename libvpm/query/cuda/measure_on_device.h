@@ -6,15 +6,21 @@
 #include "libvpm/query/cuda/cloud_slot.h"
 #include "libvpm/query/cuda/launch.h"
 #include "libvpm/query/cuda/on_device.h"
+#include "libvpm/query/cuda/standby.h"
 #include "libvpm/query/device_measure.h"
 
 namespace vpm::cuda {
 
 class MeasureOnDevice : public DeviceMeasure {
  public:
-  // The device must be the current one.
-  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor)
-      : device_(device), tool_(tool), blocks_(blocks_per_processor * processor_count()) {}
+  // The device must be the current one. `standby_us`: of QueryOptions.
+  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor,
+                  unsigned standby_us)
+      : device_(device),
+        tool_(tool),
+        blocks_(blocks_per_processor * processor_count()),
+        standby_us_(standby_us),
+        standby_(standby_us > 0 ? standby() : nullptr) {}
 
   Result run(const PreparedCloud& cloud, const Pose& pose) final;
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -28,6 +34,13 @@ class MeasureOnDevice : public DeviceMeasure {
  protected:
   // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
+  // The kernel that stands by for queries of the cloud, and its arguments on the device; none where
+  // each is launched.
+  struct Standing {
+    StandbyKernel kernel;
+    const void* launch = nullptr;
+  };
+  virtual Standing standing(Answer* /*answer*/) { return {}; }
   // Many, of poses and to results on the device.
   virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
   // No point further from the centre of mass matters.
@@ -57,6 +70,10 @@ class MeasureOnDevice : public DeviceMeasure {
   // Null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
+  RawResult answer(const PoseFrame& frame);
+  // Whether no query of this one has seen the frame yet, and before that.
+  bool has_new_frame() const { return frame_ != nullptr && frame_->serial() != awaited_; }
+  void wait_for_frame();
   void ask(std::span<const Pose> poses, std::span<Result> results);
 
   int device_;
@@ -67,7 +84,11 @@ class MeasureOnDevice : public DeviceMeasure {
   unsigned sequence_ = 0;
   double flood_microseconds_ = 0;
   std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
-  std::uint64_t serial_ = 0, frame_serial_ = 0;
+  std::uint64_t serial_ = 0;
+  const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
+  std::uint64_t awaited_ = 0;         // the last frame that the stream has waited for
+  unsigned standby_us_;
+  std::shared_ptr<Standby> standby_;
   const DeviceCloud* cloud_ = nullptr;  // of the queries under way
   std::unique_ptr<Batch> batch_;
 };

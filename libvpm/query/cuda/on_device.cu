@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
 
 #include "libvpm/query/cuda/on_device.h"
+#include "libvpm/query/cuda/standby.h"
 #include "libvpm/query/measure_refined.h"
 
 namespace vpm::cuda {
@@ -150,6 +152,11 @@ DeviceCloud::DeviceCloud(const Camera& camera) {
   stand_at(camera.to_world);
 }
 
+std::uint64_t DeviceCloud::next_serial() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 void DeviceCloud::stand_at(const Pose& camera_to_world) {
   frame_.origin = camera_to_world.translation;
   frame_.camera_to_world = camera_to_world;
@@ -257,6 +264,7 @@ std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {
   std::erase_if(copies, [](const auto& entry) { return entry.second.expired(); });
   std::weak_ptr<const DeviceCloud>& known = copies[{device, cloud.serial()}];
   std::shared_ptr<const DeviceCloud> copy = known.lock();
+  if (!copy) dismiss_standby();  // to make room may wait for all kernels
   if (!copy) known = copy = std::make_shared<const DeviceCloud>(cloud);
   return copy;
 }

@@ -59,6 +59,8 @@ class DeviceCloud {
   void stand_at(const Pose& camera_to_world);
   CloudRoom room() const;
 
+  // Different for any two of a process, and not 0. What kernels see of the surface stays the same.
+  std::uint64_t serial() const { return serial_; }
   const CloudFrame& frame() const { return frame_; }
   const PointsView& points() const { return points_; }
   const DepthSurface& depth_surface() const { return depth_; }  // of organised clouds
@@ -70,6 +72,9 @@ class DeviceCloud {
   void copy_image(const PreparedCloud& cloud);
   void copy_points(const PreparedCloud& cloud);
 
+  static std::uint64_t next_serial();
+
+  std::uint64_t serial_ = next_serial();
   DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
   DeviceArray<float> measured_;
   DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another

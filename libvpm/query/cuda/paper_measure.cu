@@ -41,12 +41,11 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   if (threadIdx.x == 0) {
     total = totals->result;
     total.points = read(counters[turn].points);
-    total.flood_ns = static_cast<std::uint32_t>(now() - met);
     *totals = Totals{};
     counters[1 - turn] = PaperCounters{};
   }
   __syncthreads();
-  send(total, answer, sequence);
+  send(word_of(total), now() - met, answer, sequence);
 }
 
 // Each block a query of its own, one after another.
@@ -117,7 +116,7 @@ class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
       : MeasureOnDevice(tool, device,
-                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
+                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor), 0),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),

@@ -17,7 +17,13 @@ struct RefinedLaunch {
   Surface surface;
   PointsView points;
   RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
-  bool counts_points;
+  bool counts_points = false;
+  // Of one pose: the blocks that deal with spheres, the others do with points; and what these add
+  // up.
+  unsigned sphere_blocks = 0;
+  Totals* totals = nullptr;
+  RefinedCounters* counters = nullptr;
+  Answer* answer = nullptr;
 };
 
 // The memory of one of several teams, each of one block.
@@ -50,21 +56,19 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
-// The first step of one query by all blocks of a launch: `sphere_blocks` deal with spheres, the
-// others with points. Returns what this thread has added up.
+// The first step of one query by all blocks of a launch. Returns what this thread has added up.
 template <class Surface>
 __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
-                                    unsigned sphere_blocks, unsigned turn,
-                                    RefinedCounters& counters, BlockShared<Surface>& shared) {
-  const Part of_spheres{blockIdx.x, sphere_blocks};
-  const Part of_points{blockIdx.x - sphere_blocks, gridDim.x - sphere_blocks};
-  if (blockIdx.x >= sphere_blocks) {
+                                    unsigned turn, BlockShared<Surface>& shared) {
+  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  const Part of_points{blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks};
+  if (blockIdx.x >= launch.sphere_blocks) {
     count_points(launch.level, launch.points, frame, of_points,
                  launch.space.notes[turn % 2].points);
     return {};
   }
   return ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                               counters, of_spheres, launch.counts_points, shared.measure)
+                               *launch.counters, of_spheres, launch.counts_points, shared.measure)
       .run();
 }
 
@@ -77,68 +81,86 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
 // One query; the last block to come floods alone. For levels of few shares.
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
     one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
-                   const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
-                   RefinedCounters* counters, Answer* answer, unsigned sequence) {
+                   const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<DiskSurface> shared;
   __shared__ RawResult total;
-  measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
-  if (!is_last_block(totals->done)) {
+  measure_shares(launch, frame, sequence, shared);
+  if (!is_last_block(launch.totals->done)) {
     clear_next(launch, sequence);
     return;
   }
   const std::uint64_t met = now();
   if (threadIdx.x == 0) total = RawResult{};
   BlockTeam team;
-  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence, *counters,
-                             team, shared.inside, launch.counts_points)
+  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence,
+                             *launch.counters, team, shared.inside, launch.counts_points)
                 .run(),
             total);
-  if (threadIdx.x == 0) total.flood_ns = static_cast<std::uint32_t>(now() - met);
   __syncthreads();
-  send(total, answer, sequence);
+  send(word_of(total), now() - met, launch.answer, sequence);
   if (threadIdx.x == 0) {
-    totals->done = 0;
-    *counters = RefinedCounters{};
+    launch.totals->done = 0;
+    *launch.counters = RefinedCounters{};
   }
   clear_next(launch, sequence);
 }
 
 // One query by all blocks of a cooperative launch. Where the first step has found all (no far
-// pieces, and nobody asks for points), the last block to come sends the answer, and the others go.
+// pieces, and nobody asks for points), the last block to come sends the answer. Whether this block
+// is the last to be done.
 template <class Surface>
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
-             const __grid_constant__ PoseFrame frame, unsigned sphere_blocks, Totals* totals,
-             RefinedCounters* counters, Answer* answer, unsigned sequence) {
-  __shared__ BlockShared<Surface> shared;
-  __shared__ RawResult total;
-  const RawResult found = measure_shares(launch, frame, sphere_blocks, sequence, *counters, shared);
+__device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                            unsigned sequence, BlockShared<Surface>& shared) {
+  Totals* const totals = launch.totals;
+  const RawResult found = measure_shares(launch, frame, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   GridTeam team(&totals->arrived);
   Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
-                                   *counters, team, shared.inside, launch.counts_points);
-  const auto send_total = [&](std::uint64_t met) {
-    if (threadIdx.x == 0) {
-      total = totals->result;
-      total.flood_ns = static_cast<std::uint32_t>(now() - met);
-    }
-    __syncthreads();
-    send(total, answer, sequence);
-  };
+                                   *launch.counters, team, shared.inside, launch.counts_points);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
-  if (is_last && !inside.has_more()) send_total(met);
+  if (is_last) {
+    const std::uint32_t word = word_of(totals->result);  // read while it is seen that this is all
+    if (!inside.has_more()) send(word, now() - met, launch.answer, sequence);
+  }
   team.wait();
   met = now();
   const bool has_more = inside.has_more();
   if (has_more) add_block(inside.run(), totals->result);
   clear_next(launch, sequence);
-  if (!is_last_block(totals->done)) return;
-  if (has_more) send_total(met);
+  if (!is_last_block(totals->done)) return false;
+  if (has_more) send(word_of(totals->result), now() - met, launch.answer, sequence);
   __syncthreads();
   if (threadIdx.x == 0) {
     *totals = Totals{};
-    *counters = RefinedCounters{};
+    *launch.counters = RefinedCounters{};
+  }
+  return true;
+}
+
+template <class Surface>
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
+             const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ BlockShared<Surface> shared;
+  answer_pose(launch, frame, sequence, shared);
+}
+
+// One query after another (orders.h), until none comes.
+__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+    stand_by(const __grid_constant__ OrdersView view, unsigned first) {
+  using Launch = RefinedLaunch<DepthSurface>;
+  __shared__ BlockShared<DepthSurface> shared;
+  __shared__ Launch launch;
+  __shared__ Order order;
+  __shared__ PoseFrame frame;
+  Orders orders(view, first, order);
+  for (unsigned number = first;; ++number) {
+    orders.receive(number);
+    if (order.leaves != 0) return;
+    if (threadIdx.x == 0) frame.to_surface = order.to_surface;
+    copy_words(*static_cast<const Launch*>(order.launch), launch);
+    if (answer_pose(launch, frame, order.turn, shared)) orders.finish(number);
   }
 }
 
@@ -237,13 +259,16 @@ class RefinedMemory {
 
 class RefinedOnDevice : public MeasureOnDevice {
  public:
-  RefinedOnDevice(const ToolModel& tool, const Level& level, bool counts_points, int device)
+  RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
+                  int device)
       : MeasureOnDevice(
             tool, device,
-            std::min(blocks_that_fit(one_pose<DepthSurface>, kThreads, kBlocksPerProcessor),
-                     blocks_that_fit(one_pose<DiskSurface>, kThreads, kBlocksPerProcessor))),
+            std::min({blocks_that_fit(one_pose<DepthSurface>, kThreads, kBlocksPerProcessor),
+                      blocks_that_fit(one_pose<DiskSurface>, kThreads, kBlocksPerProcessor),
+                      blocks_that_fit(stand_by, kThreads, kBlocksPerProcessor)}),
+            options.standby_us),
         level_(tool, level),
-        counts_points_(counts_points),
+        counts_points_(options.counts_points),
         memory_(level_.view(), 1, blocks()),
         totals_(1),
         counters_(1) {
@@ -284,18 +309,40 @@ class RefinedOnDevice : public MeasureOnDevice {
                                   : SphereState::inside;
   }
 
+  // Of clouds that a camera has seen, whose points are not counted: orders say no more. Points
+  // alone are flooded, for which small levels have a kernel of their own.
+  Standing standing(Answer* answer) override {
+    if (!cloud().frame().is_organised || counts_points_) return {};
+    return {{reinterpret_cast<const void*>(stand_by), blocks(), kThreads},
+            arguments_on_device(answer)};
+  }
+  // They stay as long as a cloud's memory does.
+  const RefinedLaunch<DepthSurface>* arguments_on_device(Answer* answer) {
+    for (std::size_t k = 0; k < kClouds; ++k)
+      if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
+    const std::size_t k = next_cloud_++ % kClouds;
+    const RefinedLaunch<DepthSurface> arguments = arguments_of(cloud().depth_surface(), answer);
+    if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
+    check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
+    finish_transfers();
+    clouds_on_device_[k] = cloud().serial();
+    return arguments_.get() + k;
+  }
+
   template <class Surface>
-  void launch_on(const Surface& surface, const PoseFrame& frame, Answer* answer,
-                 unsigned sequence) {
-    RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(), memory_.space(),
-                                     counts_points_};
-    PoseFrame pose = frame;
-    Totals* totals = totals_.get();
-    RefinedCounters* counters = counters_.get();
+  RefinedLaunch<Surface> arguments_of(const Surface& surface, Answer* answer) const {
     // Few points lie in reach: they take less than a large level's spheres.
     unsigned sphere_blocks = blocks();
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
-    void* values[] = {&arguments, &pose, &sphere_blocks, &totals, &counters, &answer, &sequence};
+    return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
+            sphere_blocks, totals_.get(), counters_.get(),  answer};
+  }
+  template <class Surface>
+  void launch_on(const Surface& surface, const PoseFrame& frame, Answer* answer,
+                 unsigned sequence) {
+    RefinedLaunch<Surface> arguments = arguments_of(surface, answer);
+    PoseFrame pose = frame;
+    void* values[] = {&arguments, &pose, &sequence};
     if (!Surface::kTellsInside && is_small(level_.view())) {
       check(cudaLaunchKernel(one_pose_small, blocks(), kThreads, values, 0, stream()));
     } else {
@@ -319,14 +366,18 @@ class RefinedOnDevice : public MeasureOnDevice {
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
+  static constexpr std::size_t kClouds = 4;  // whose arguments are kept: frames come by turns
+  DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
+  std::uint64_t clouds_on_device_[kClouds] = {};
+  std::size_t next_cloud_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
-                                                    bool counts_points, int device) {
+                                                    const QueryOptions& options, int device) {
   const CurrentDevice current(device);
-  return std::make_unique<RefinedOnDevice>(tool, level, counts_points, device);
+  return std::make_unique<RefinedOnDevice>(tool, level, options, device);
 }
 
 }  // namespace vpm::cuda

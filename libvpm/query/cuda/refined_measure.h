@@ -5,6 +5,6 @@
 namespace vpm::cuda {
 
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
-                                                    bool counts_points, int device);
+                                                    const QueryOptions& options, int device);
 
 }  // namespace vpm::cuda

@@ -14,6 +14,12 @@ inline constexpr unsigned kThreads = 128, kBlocksPerProcessor = 3;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
 
+// What this thread has done or seen is seen by whoever sees what it does next, and the other way
+// round. For all of a block, between two of its barriers.
+__device__ inline void fence() {
+  ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
+}
+
 // Work dealt out to blocks: row k to part k % parts.
 struct Part {
   unsigned part = 0, parts = 1;
@@ -47,9 +53,9 @@ class GridTeam {
     __syncthreads();
     target_ += gridDim.x;
     if (threadIdx.x == 0) {
-      __threadfence();
+      fence();
       is_last = count().fetch_add(1, ::cuda::memory_order_relaxed) == target_ - 1;
-      __threadfence();
+      if (is_last) fence();
     }
     __syncthreads();
     return is_last;
@@ -58,7 +64,7 @@ class GridTeam {
     if (threadIdx.x == 0) {
       while (count().load(::cuda::memory_order_relaxed) < target_) {
       }
-      __threadfence();
+      fence();
     }
     __syncthreads();
   }

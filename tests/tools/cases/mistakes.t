@@ -99,6 +99,16 @@ $ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cu
 2> vpm-query: error: standard input, line 1: "time" must be a number of seconds
 [1]
 
+# A device stands by for single poses whose points nobody counts; elsewhere that changes nothing.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
+2> vpm-query: error: --standby-us waits for single poses of the refined measure; give --no-points too, and leave --batch, --measure paper and --coherent out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 1000001 --no-points
+2> vpm-query: error: --standby-us: 1000001 is not a whole number from 0 to 1000000 (see vpm-query --help)
+[2]
+$ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --no-points --standby-us $s | md5sum; done | uniq | wc -l
+1
+
 # Help that nobody can read.
 $ vpm-pack --help > /dev/full
 2> vpm-pack: error: cannot write to standard output

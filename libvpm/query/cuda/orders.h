@@ -1,0 +1,121 @@
+// How a kernel that stands by is told of the next pose, without a launch.
+//
+// The host writes an order into its own memory. A warp of the first block looks there and passes it
+// on to the other blocks in the device's memory; each word has the order's number above it, so that
+// none waits for another.
+#pragma once
+
+#include "libvpm/query/cuda/answer.h"
+#include "libvpm/query/cuda/views.h"
+
+namespace vpm::cuda {
+
+struct Order {
+  const void* launch = nullptr;  // the query's arguments, on the device
+  Pose to_surface;               // of PoseFrame
+  std::uint32_t turn = 0;        // of the query
+  std::uint32_t waits_us = 0;    // for the next order
+  std::uint32_t leaves = 0;      // not 0: instead of a query
+  std::uint32_t unused[3] = {};
+};
+
+// A word for each lane of a warp.
+struct OrderWords {
+  static constexpr unsigned kWords = 32;
+  static_assert(sizeof(Order) == kWords * sizeof(std::uint32_t));
+
+  std::uint64_t words[kWords] = {};
+};
+
+// What a kernel that stands by sees of its orders.
+struct OrdersView {
+  static constexpr unsigned kCopies = 4;  // so that not all blocks look at one place
+
+  const OrderWords* given = nullptr;  // by the host, in its memory
+  OrderWords* passed_on = nullptr;    // by the first block, kCopies
+  unsigned* finished = nullptr;       // the last order that all blocks have carried out
+  unsigned* left = nullptr;           // in the host's memory: the order at which the kernel left
+};
+
+class Orders {
+ public:
+  // `order`: in the block's shared memory.
+  __device__ Orders(const OrdersView& view, unsigned first, Order& order)
+      : view_(view), first_(first), order_(order) {}
+
+  // By all threads of all blocks: the order of this number, or one to leave if the host gives none
+  // in time. What was done before the host gave it, and for the order before, is seen then.
+  __device__ void receive(unsigned number) {
+    if (threadIdx.x < OrderWords::kWords) {
+      if (blockIdx.x == 0)
+        pass_on(number, wait_for_host(number));
+      else
+        take(wait_for_first_block(number));
+      if (threadIdx.x == 0) fence();
+    }
+    __syncthreads();
+  }
+  // By all threads of the block that is the last to be done with it.
+  __device__ void finish(unsigned number) {
+    if (threadIdx.x != 0) return;
+    fence();
+    *static_cast<volatile unsigned*>(view_.finished) = number;
+  }
+
+ private:
+  static constexpr std::uint64_t kFirstWait = 10'000'000;  // ns; the order was given already
+
+  // This lane's word of the order, when all have come or it is too late.
+  template <class IsLate>
+  __device__ static std::uint64_t wait(const OrderWords& words, unsigned number,
+                                       const IsLate& is_late) {
+    constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
+    for (;;) {
+      const std::uint64_t word =
+          *static_cast<const volatile std::uint64_t*>(&words.words[threadIdx.x]);
+      if (__all_sync(~0U, word >> 32 == number) != 0) return word;
+      if (__any_sync(~0U, is_late()) != 0)
+        return std::uint64_t{number} << 32 | (threadIdx.x == kLeaves ? 1 : 0);
+    }
+  }
+  __device__ std::uint64_t wait_for_first_block(unsigned number) const {
+    return wait(view_.passed_on[blockIdx.x % OrdersView::kCopies], number, [] { return false; });
+  }
+  __device__ std::uint64_t wait_for_host(unsigned number) const {
+    const std::uint64_t most =
+        number == first_ ? kFirstWait : std::uint64_t{order_.waits_us} * 1000;
+    while (number != first_ &&
+           *static_cast<const volatile unsigned*>(view_.finished) != number - 1) {
+    }
+    fence();
+    const std::uint64_t begin = now();
+    return wait(*view_.given, number, [&] { return now() - begin > most; });
+  }
+  __device__ void take(std::uint64_t word) {
+    __syncwarp();  // who has read the order before is done
+    reinterpret_cast<std::uint32_t*>(&order_)[threadIdx.x] = static_cast<std::uint32_t>(word);
+  }
+  __device__ void pass_on(unsigned number, std::uint64_t word) {
+    for (unsigned k = 0; k < OrdersView::kCopies; ++k)
+      *static_cast<volatile std::uint64_t*>(&view_.passed_on[k].words[threadIdx.x]) = word;
+    take(word);
+    __syncwarp();
+    if (order_.leaves != 0 && threadIdx.x == 0)
+      *static_cast<volatile unsigned*>(view_.left) = number;
+  }
+
+  const OrdersView& view_;
+  unsigned first_;
+  Order& order_;
+};
+
+// By all threads of a block, into its shared memory.
+template <class T>
+__device__ void copy_words(const T& from, T& to) {
+  static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
+  for (unsigned k = threadIdx.x; k < sizeof(T) / sizeof(std::uint64_t); k += blockDim.x)
+    reinterpret_cast<std::uint64_t*>(&to)[k] = reinterpret_cast<const std::uint64_t*>(&from)[k];
+  __syncthreads();
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,165 @@
+// Queries that a device stands by for give the bits of queries on the CPU, whatever comes between
+// them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::expect_equal;
+
+const Device kDevice{Device::Kind::cuda, 0};
+constexpr std::uint32_t kStandbyMicroseconds = 5000;
+constexpr auto kLonger = std::chrono::milliseconds(20);
+
+QueryOptions standing_by(std::uint32_t microseconds = kStandbyMicroseconds) {
+  return {.device = kDevice, .counts_points = false, .standby_us = microseconds};
+}
+
+// Into the middle of the scene and out again, turning.
+Pose pose_of(int k) {
+  const double turn = 0.05 * k;
+  return {rotation_from_quaternion({0, std::sin(turn), 0.1, std::cos(turn)}),
+          {0.002 * (k % 23), -0.001 * (k % 17), 0.8 + 0.02 * (k % 29)}};
+}
+
+class Standby : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  }
+
+  const Cloud seen_ = testing::see(synthetic::make_scene("block"));
+  const PreparedCloud cloud_{seen_};
+  const ToolModel tool_ = testing::lattice_cube(0.2, 9, 3);
+  Query on_cpu_{tool_, {.counts_points = false}};
+};
+
+TEST_F(Standby, GivesTheSameWithStates) {
+  Query query(tool_, standing_by());
+  std::uint32_t touched = 0;
+  for (int k = 0; k < 300; ++k) {
+    SCOPED_TRACE(k);
+    const Result expected = on_cpu_.run(cloud_, pose_of(k));
+    expect_equal(expected, query.run(cloud_, pose_of(k)));
+    if (k % 7 != 0) continue;
+    const auto states = on_cpu_.states(), states_there = query.states();
+    EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
+    touched += expected.boundary + expected.inside;
+  }
+  EXPECT_GT(touched, 1000U);
+}
+
+TEST_F(Standby, TakesToolsAndCloudsByTurns) {
+  const ToolModel large = testing::lattice_cube(0.25, 20, 1);
+  Query small_query(tool_, standing_by()), large_query(large, standing_by()),
+      large_on_cpu(large, {.counts_points = false});
+  std::vector<PreparedCloud> clouds;
+  for (const char* scene : {"wall", "groove", "block", "plate", "step", "ball"})
+    clouds.emplace_back(testing::see(synthetic::make_scene(scene)));
+  for (int k = 0; k < 120; ++k) {
+    SCOPED_TRACE(k);
+    const PreparedCloud& cloud = clouds[k * k % clouds.size()];
+    expect_equal(on_cpu_.run(cloud, pose_of(k)), small_query.run(cloud, pose_of(k)));
+    if (k % 3 == 0)
+      expect_equal(large_on_cpu.run(cloud, pose_of(k)), large_query.run(cloud, pose_of(k)));
+  }
+}
+
+TEST_F(Standby, LeavesWhenNoPoseComesAndIsBackForTheNext) {
+  Query query(tool_, standing_by());
+  for (int k = 0; k < 12; ++k) {
+    SCOPED_TRACE(k);
+    if (k % 4 == 3) std::this_thread::sleep_for(kLonger);
+    expect_equal(on_cpu_.run(cloud_, pose_of(k)), query.run(cloud_, pose_of(k)));
+  }
+}
+
+// As long as it takes from one pose to the next, so that it leaves just when the next one comes.
+TEST_F(Standby, LosesNoPoseThatComesAsItLeaves) {
+  using std::chrono::microseconds, std::chrono::steady_clock;
+  Query query(tool_, standing_by(30));
+  for (int k = 0; k < 3000; ++k) {
+    SCOPED_TRACE(k);
+    const auto next = steady_clock::now() + microseconds(20 + k % 25);
+    expect_equal(on_cpu_.run(cloud_, pose_of(k % 40)), query.run(cloud_, pose_of(k % 40)));
+    while (steady_clock::now() < next) {
+    }
+  }
+}
+
+TEST_F(Standby, MakesWayForWhatIsLaunched) {
+  Query query(tool_, standing_by());
+  QueryOptions counting_options = standing_by(), paper_options = standing_by();
+  counting_options.counts_points = true;
+  paper_options.measure = Measure::paper;
+  Query counting(tool_, counting_options), paper(tool_, paper_options), counting_on_cpu(tool_, {}),
+      paper_on_cpu(tool_, {.measure = Measure::paper, .counts_points = false});
+  const PreparedCloud points(without_camera(seen_));
+  std::vector<Pose> poses;
+  for (int k = 0; k < 200; ++k) poses.push_back(pose_of(k));
+  std::vector<Result> batch(poses.size());
+  for (int k = 0; k < 40; ++k) {
+    SCOPED_TRACE(k);
+    const Pose pose = pose_of(k);
+    expect_equal(on_cpu_.run(cloud_, pose), query.run(cloud_, pose));
+    if (k % 5 == 0) expect_equal(counting_on_cpu.run(cloud_, pose), counting.run(cloud_, pose));
+    if (k % 5 == 1) expect_equal(paper_on_cpu.run(cloud_, pose), paper.run(cloud_, pose));
+    if (k % 5 == 2) expect_equal(on_cpu_.run(points, pose), query.run(points, pose));
+    if (k % 10 == 3) {
+      query.run(cloud_, poses, batch);
+      expect_equal(on_cpu_.run(cloud_, poses[k]), batch[k]);
+    }
+    if (k % 10 == 8) Query(tool_, standing_by()).run(cloud_, pose);  // comes and goes
+  }
+}
+
+TEST_F(Standby, MakesWayForNewFrames) {
+  const Camera& camera = seen_.sensor->camera;
+  DepthFrames frames({camera.intrinsics, camera.width, camera.height, {}, {}, kDevice});
+  Query query(tool_, standing_by());
+  for (int f = 0; f < 12; ++f) {
+    std::vector<float> depth = seen_.sensor->depth.depth;
+    for (float& z : depth) z *= 1 + 0.01F * static_cast<float>(f % 5);
+    std::copy(depth.begin(), depth.end(), frames.metres().begin());
+    const DepthFrame frame = frames.prepare(camera.to_world);
+    for (int k = 0; k < 10; ++k) {
+      SCOPED_TRACE(10 * f + k);
+      expect_equal(on_cpu_.run(frame.cloud(), pose_of(k)), query.run(frame, pose_of(k)));
+    }
+  }
+}
+
+TEST_F(Standby, ServesSeveralThreads) {
+  constexpr int kPoses = 60;
+  std::vector<Result> expected;
+  for (int k = 0; k < kPoses; ++k) expected.push_back(on_cpu_.run(cloud_, pose_of(k)));
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 3; ++t) {
+    threads.emplace_back([&, t] {
+      Query query(tool_, standing_by(t == 2 ? 0 : kStandbyMicroseconds));
+      for (int k = 0; k < 5 * kPoses; ++k)
+        expect_equal(expected[k % kPoses], query.run(cloud_, pose_of(k % kPoses)));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
+// For compute-sanitizer.
+TEST_F(Standby, SmallQuery) {
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
+  Query query(tool, standing_by()), on_cpu(tool, {.counts_points = false});
+  for (int k = 0; k < 6; ++k)
+    expect_equal(on_cpu.run(cloud_, pose_of(4 * k)), query.run(cloud_, pose_of(4 * k)));
+}
+
+}  // namespace
+}  // namespace vpm
