@@ -36,13 +36,9 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-// Whether what cudaEventQuery and the like say is that the work is done. Forgets that it is not,
-// which would be taken for the error of a later launch.
+// Whether what cudaEventQuery and the like say is that the work is done.
 inline bool is_done(cudaError_t status) {
-  if (status == cudaErrorNotReady) {
-    cudaGetLastError();
-    return false;
-  }
+  if (status == cudaErrorNotReady) return false;
   check(status);
   return true;
 }
