@@ -20,9 +20,9 @@ struct QueryOptions {
                           // surface stays inside until it comes out; refined measure, on the CPU
   bool counts_points = true;  // false: no Result::points. The refined measure does without them:
                               // README.md has what that saves
-  // Of a device, the refined measure, images and points that are not counted: how long it stays
-  // ready for the next pose, which then needs no launch. It does nothing else meanwhile, for this
-  // process or others; README.md, "Standing by". Microseconds, at most kLongestStandby.
+  // Of a device, with the refined measure, in images, without counted points: how long it stays
+  // ready for the next pose, which then needs no launch, and does nothing else of this process
+  // meanwhile; README.md, "Standing by". Microseconds, at most kLongestStandby.
   std::uint32_t standby_us = 0;
   static constexpr std::uint32_t kLongestStandby = 1'000'000;
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4

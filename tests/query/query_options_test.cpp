@@ -34,9 +34,9 @@ TEST(QueryOptions, WithoutPointsEverythingElseStays) {
 
 TEST(QueryOptions, NoDeviceStandsByForLongerThanASecond) {
   const ToolModel tool = testing::lattice_cube(0.2, 2, 1);
-  EXPECT_NO_THROW(Query(tool, {.standby_us = QueryOptions::kLongestStandby}));
+  EXPECT_NO_THROW(const Query query(tool, {.standby_us = QueryOptions::kLongestStandby}));
   try {
-    Query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
+    const Query query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
     FAIL() << "stands by for too long";
   } catch (const Error& fault) {
     EXPECT_EQ(fault.kind(), ErrorKind::usage);

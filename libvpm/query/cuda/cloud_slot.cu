@@ -5,7 +5,6 @@
 #include "libvpm/core/lengths.h"
 #include "libvpm/query/cuda/cloud_settle.h"
 #include "libvpm/query/cuda/cloud_slot.h"
-#include "libvpm/query/cuda/standby.h"
 
 namespace vpm::cuda {
 namespace {
@@ -67,10 +66,11 @@ void CloudSlot::begin() {
     return;
   }
   cloud_.stand_at(camera().to_world);
-  dismiss_standby_for(ready_);
+  const OtherWork other;
   take(stream_.get());
   make(stream_.get());
   check(cudaEventRecord(ready_->get(), stream_.get()));
+  other.goes_on_until(ready_);
 }
 
 void CloudSlot::take(cudaStream_t stream) {
@@ -96,7 +96,7 @@ void CloudSlot::make(cudaStream_t stream, Vec3f* estimated) {
 std::vector<Vec3f> CloudSlot::estimate_normals() {
   const CurrentDevice current(options().device.first());
   const DeviceArray<Vec3f> estimated(pixels());
-  dismiss_standby();
+  const OtherWork other;
   take(stream_.get());
   make(stream_.get(), estimated.get());
   check(cudaStreamSynchronize(stream_.get()));

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/query/cuda/other_work.h"
 
 namespace vpm::cuda {
 
@@ -29,12 +30,17 @@ template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  explicit DeviceArray(std::size_t count) : count_(count) {
+  explicit DeviceArray(std::size_t count) : count_(count), device_(current_device()) {
+    const OtherWork other(device_);
     if (count > 0) check(cudaMalloc(&data_, count * sizeof(T)));
   }
   DeviceArray(const T* values, std::size_t count) : DeviceArray(count) { fill(values); }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
-  ~DeviceArray() { cudaFree(data_); }
+  ~DeviceArray() {
+    if (data_ == nullptr) return;
+    const OtherWork other(device_);
+    cudaFree(data_);
+  }
   DeviceArray(DeviceArray&& other) noexcept { swap(other); }
   DeviceArray& operator=(DeviceArray&& other) noexcept {
     swap(other);
@@ -50,6 +56,7 @@ class DeviceArray {
   }
   void clear() {
     if (count_ == 0) return;
+    const OtherWork other(device_);
     check(cudaMemset(data_, 0, count_ * sizeof(T)));
     finish_transfers();
   }
@@ -58,21 +65,27 @@ class DeviceArray {
   void swap(DeviceArray& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(count_, other.count_);
+    std::swap(device_, other.device_);
   }
   T* data_ = nullptr;
   std::size_t count_ = 0;
+  int device_ = 0;
 };
 
 // Values in the host's memory that the device reads and writes over the bus. Owns them.
 template <class T>
 class MappedArray {
  public:
-  explicit MappedArray(std::size_t count) : count_(count) {
+  explicit MappedArray(std::size_t count) : count_(count), owner_(current_device()) {
+    const OtherWork other(owner_);
     check(cudaHostAlloc(&host_, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable));
     check(cudaHostGetDevicePointer(&device_, host_, 0));
     for (std::size_t i = 0; i < count; ++i) host_[i] = T{};
   }
-  ~MappedArray() { cudaFreeHost(host_); }
+  ~MappedArray() {
+    const OtherWork other(owner_);
+    cudaFreeHost(host_);
+  }
   MappedArray(const MappedArray&) = delete;
   MappedArray& operator=(const MappedArray&) = delete;
 
@@ -84,6 +97,7 @@ class MappedArray {
   T* host_ = nullptr;
   T* device_ = nullptr;
   std::size_t count_ = 0;
+  int owner_ = 0;  // the device
 };
 
 }  // namespace vpm::cuda

@@ -41,8 +41,11 @@ std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const 
   const Device& device = options.device;
   const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
   std::vector<std::unique_ptr<DeviceMeasure>> measures;
-  for (int k = 0; k < count; ++k)
-    measures.push_back(make_on_one(tool, level, options, device.first() + k));
+  for (int k = 0; k < count; ++k) {
+    QueryOptions of_one = options;
+    if (k > 0) of_one.standby_us = 0;  // single poses go to the first
+    measures.push_back(make_on_one(tool, level, of_one, device.first() + k));
+  }
   if (measures.size() == 1) return std::move(measures.front());
   return std::make_unique<SpreadMeasure>(std::move(measures));
 }

@@ -44,30 +44,46 @@ Result MeasureOnDevice::ask(const Pose& pose) {
 }
 
 RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
-  ++sequence_;
-  // A new frame may not be ready: a stream waits for it.
-  if (standby_ && !has_new_frame()) {
-    const Standing standing = this->standing(answer_.device());
-    if (standing.launch != nullptr)
-      return standby_->ask(standing.kernel,
-                           {standing.launch, frame.to_surface, sequence_, standby_us_},
-                           *answer_.host(), sequence_);
+  const unsigned sequence = sequence_ + 1;
+  if (standby_ && is_frame_ready()) {  // otherwise a stream waits for it
+    if (const void* const launch = standing_launch(answer_.device())) {
+      end_launched();
+      const RawResult raw = standby_->ask({launch, frame.to_surface, sequence, standby_us_},
+                                          *answer_.host(), sequence);
+      sequence_ = sequence;
+      return raw;
+    }
   }
-  dismiss_standby();
+  const OtherWork other;
+  has_launched_ = true;
   wait_for_frame();
-  launch(frame, answer_.device(), sequence_);
-  return wait_for(*answer_.host(), sequence_, stream_.get(), [] {});
+  launch(frame, answer_.device(), sequence);
+  sequence_ = sequence;
+  return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
+}
+
+bool MeasureOnDevice::is_frame_ready() {
+  if (frame_ == nullptr || frame_->serial() == awaited_) return true;
+  if (!has_happened(frame_->ready())) return false;
+  awaited_ = frame_->serial();
+  return true;
+}
+
+void MeasureOnDevice::end_launched() {
+  if (!has_launched_) return;
+  check(cudaStreamSynchronize(stream_.get()));
+  has_launched_ = false;
 }
 
 void MeasureOnDevice::wait_for_frame() {
-  if (!has_new_frame()) return;
+  if (frame_ == nullptr || frame_->serial() == awaited_) return;
   check(cudaStreamWaitEvent(stream_.get(), frame_->ready().get()));
   awaited_ = frame_->serial();
 }
 
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
   if (!batch_) batch_ = std::make_unique<Batch>();
-  dismiss_standby();
+  const OtherWork other;
   wait_for_frame();
   for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
     const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);

@@ -13,14 +13,9 @@ namespace vpm::cuda {
 
 class MeasureOnDevice : public DeviceMeasure {
  public:
-  // The device must be the current one. `standby_us`: of QueryOptions.
-  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor,
-                  unsigned standby_us)
-      : device_(device),
-        tool_(tool),
-        blocks_(blocks_per_processor * processor_count()),
-        standby_us_(standby_us),
-        standby_(standby_us > 0 ? standby() : nullptr) {}
+  // The device must be the current one.
+  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor)
+      : device_(device), tool_(tool), blocks_(blocks_per_processor * processor_count()) {}
 
   Result run(const PreparedCloud& cloud, const Pose& pose) final;
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -34,13 +29,9 @@ class MeasureOnDevice : public DeviceMeasure {
  protected:
   // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
-  // The kernel that stands by for queries of the cloud, and its arguments on the device; none where
-  // each is launched.
-  struct Standing {
-    StandbyKernel kernel;
-    const void* launch = nullptr;
-  };
-  virtual Standing standing(Answer* /*answer*/) { return {}; }
+  // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
+  // is launched.
+  virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
   // Many, of poses and to results on the device.
   virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
   // No point further from the centre of mass matters.
@@ -48,6 +39,12 @@ class MeasureOnDevice : public DeviceMeasure {
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
+
+  // `waits_us` for each next pose.
+  void stand_by(std::shared_ptr<Standby> standby, std::uint32_t waits_us) {
+    standby_ = std::move(standby);
+    standby_us_ = waits_us;
+  }
 
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
@@ -71,8 +68,9 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
-  // Whether no query of this one has seen the frame yet, and before that.
-  bool has_new_frame() const { return frame_ != nullptr && frame_->serial() != awaited_; }
+  bool is_frame_ready();
+  // The kernel of the last launched query clears what it has noted after its answer.
+  void end_launched();
   void wait_for_frame();
   void ask(std::span<const Pose> poses, std::span<Result> results);
 
@@ -86,9 +84,10 @@ class MeasureOnDevice : public DeviceMeasure {
   std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
   std::uint64_t serial_ = 0;
   const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
-  std::uint64_t awaited_ = 0;         // the last frame that the stream has waited for
-  unsigned standby_us_;
+  std::uint64_t awaited_ = 0;  // the last frame that the stream has waited for, or that was ready
+  bool has_launched_ = false;  // a query that may not have ended
   std::shared_ptr<Standby> standby_;
+  std::uint32_t standby_us_ = 0;
   const DeviceCloud* cloud_ = nullptr;  // of the queries under way
   std::unique_ptr<Batch> batch_;
 };

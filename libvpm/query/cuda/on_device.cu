@@ -5,7 +5,6 @@
 #include <mutex>
 
 #include "libvpm/query/cuda/on_device.h"
-#include "libvpm/query/cuda/standby.h"
 #include "libvpm/query/measure_refined.h"
 
 namespace vpm::cuda {
@@ -264,8 +263,10 @@ std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {
   std::erase_if(copies, [](const auto& entry) { return entry.second.expired(); });
   std::weak_ptr<const DeviceCloud>& known = copies[{device, cloud.serial()}];
   std::shared_ptr<const DeviceCloud> copy = known.lock();
-  if (!copy) dismiss_standby();  // to make room may wait for all kernels
-  if (!copy) known = copy = std::make_shared<const DeviceCloud>(cloud);
+  if (!copy) {
+    const OtherWork other;
+    known = copy = std::make_shared<const DeviceCloud>(cloud);
+  }
   return copy;
 }
 

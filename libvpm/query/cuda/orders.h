@@ -44,7 +44,9 @@ class Orders {
       : view_(view), first_(first), order_(order) {}
 
   // By all threads of all blocks: the order of this number, or one to leave if the host gives none
-  // in time. What was done before the host gave it, and for the order before, is seen then.
+  // in time. What was done for the order before is seen then; so is what came to the device's
+  // memory by transfers and kernels that had ended when the host gave it, since nothing older is
+  // kept nearer than there.
   __device__ void receive(unsigned number) {
     if (threadIdx.x < OrderWords::kWords) {
       if (blockIdx.x == 0)

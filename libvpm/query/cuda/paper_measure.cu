@@ -116,7 +116,7 @@ class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
       : MeasureOnDevice(tool, device,
-                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor), 0),
+                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),
@@ -185,6 +185,7 @@ class PaperOnDevice : public MeasureOnDevice {
 std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
                                                   int device) {
   const CurrentDevice current(device);
+  const OtherWork other;
   return std::make_unique<PaperOnDevice>(tool, level, device);
 }
 

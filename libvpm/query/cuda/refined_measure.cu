@@ -148,7 +148,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 
 // One query after another (orders.h), until none comes.
 __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
-    stand_by(const __grid_constant__ OrdersView view, unsigned first) {
+    stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
   using Launch = RefinedLaunch<DepthSurface>;
   __shared__ BlockShared<DepthSurface> shared;
   __shared__ Launch launch;
@@ -265,8 +265,7 @@ class RefinedOnDevice : public MeasureOnDevice {
             tool, device,
             std::min({blocks_that_fit(one_pose<DepthSurface>, kThreads, kBlocksPerProcessor),
                       blocks_that_fit(one_pose<DiskSurface>, kThreads, kBlocksPerProcessor),
-                      blocks_that_fit(stand_by, kThreads, kBlocksPerProcessor)}),
-            options.standby_us),
+                      blocks_that_fit(stand_by_kernel, kThreads, kBlocksPerProcessor)})),
         level_(tool, level),
         counts_points_(options.counts_points),
         memory_(level_.view(), 1, blocks()),
@@ -274,6 +273,9 @@ class RefinedOnDevice : public MeasureOnDevice {
         counters_(1) {
     totals_.clear();
     counters_.clear();
+    if (options.standby_us > 0 && !counts_points_)  // orders say nothing of points
+      stand_by(standby({reinterpret_cast<const void*>(stand_by_kernel), blocks(), kThreads}),
+               options.standby_us);
   }
 
  private:
@@ -309,20 +311,16 @@ class RefinedOnDevice : public MeasureOnDevice {
                                   : SphereState::inside;
   }
 
-  // Of clouds that a camera has seen, whose points are not counted: orders say no more. Points
-  // alone are flooded, for which small levels have a kernel of their own.
-  Standing standing(Answer* answer) override {
-    if (!cloud().frame().is_organised || counts_points_) return {};
-    return {{reinterpret_cast<const void*>(stand_by), blocks(), kThreads},
-            arguments_on_device(answer)};
-  }
-  // They stay as long as a cloud's memory does.
-  const RefinedLaunch<DepthSurface>* arguments_on_device(Answer* answer) {
+  // Of clouds that a camera has seen. Points alone are flooded, for which small levels have a
+  // kernel of their own. The arguments of the last clouds are kept: frames come by turns.
+  const void* standing_launch(Answer* answer) override {
+    if (!cloud().frame().is_organised) return nullptr;
     for (std::size_t k = 0; k < kClouds; ++k)
       if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
+    if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
     const std::size_t k = next_cloud_++ % kClouds;
     const RefinedLaunch<DepthSurface> arguments = arguments_of(cloud().depth_surface(), answer);
-    if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
+    clouds_on_device_[k] = 0;
     check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
     finish_transfers();
     clouds_on_device_[k] = cloud().serial();
@@ -366,7 +364,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
-  static constexpr std::size_t kClouds = 4;  // whose arguments are kept: frames come by turns
+  static constexpr std::size_t kClouds = 4;  // whose arguments for standing_launch() are kept
   DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
   std::uint64_t clouds_on_device_[kClouds] = {};
   std::size_t next_cloud_ = 0;
@@ -377,6 +375,7 @@ class RefinedOnDevice : public MeasureOnDevice {
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
                                                     const QueryOptions& options, int device) {
   const CurrentDevice current(device);
+  const OtherWork other;
   return std::make_unique<RefinedOnDevice>(tool, level, options, device);
 }
 

@@ -1,5 +1,5 @@
 // A kernel that stays on a device after it has answered a query, and takes the next one without a
-// launch (orders.h). It fills the device meanwhile, so whatever else is to run there dismisses it.
+// launch (orders.h). It makes way for what else is to be done there (other_work.h).
 #pragma once
 
 #include <memory>
@@ -20,27 +20,30 @@ struct StandbyKernel {
 // Of one device, for all threads and queries of the process, one pose at a time.
 class Standby {
  public:
-  Standby();
+  explicit Standby(const StandbyKernel& kernel);
   ~Standby();
   Standby(const Standby&) = delete;
   Standby& operator=(const Standby&) = delete;
 
-  // One query: the kernel sends its result to `answer` as number `sequence`.
-  RawResult ask(const StandbyKernel& kernel, Order order, const Answer& answer, unsigned sequence);
-  // The kernel leaves, done with its last query when this returns.
-  void dismiss();
-  // The same; until the work is done, it leaves after each query.
-  void make_way_for(std::shared_ptr<const Event> work);
+  // One query: the kernel sends its result to `answer` as number `sequence`. What the query needs
+  // must be there, and what was launched for it before must have ended.
+  RawResult ask(Order order, const Answer& answer, unsigned sequence);
+
+  // Of OtherWork. When the first returns, the kernel is done with its last query.
+  void begin_other_work();
+  void end_other_work();
+  void make_way_until(std::shared_ptr<const Event> end);
 
  private:
   bool stands() const;
   bool has_left_at(unsigned number) const;
   void give(const Order& order);
   void give_leave();
-  void launch(const StandbyKernel& kernel, const Order& order);
-  bool is_device_busy();
+  void launch(const Order& order);
+  bool has_other_work();
 
   std::mutex mutex_;
+  StandbyKernel kernel_;
   Stream stream_;
   MappedArray<OrderWords> given_{1};
   MappedArray<unsigned> left_{1};
@@ -48,14 +51,12 @@ class Standby {
   DeviceArray<unsigned> finished_{1};
   unsigned number_ = 0;  // of the last order
   bool is_there_ = false;
-  std::vector<std::shared_ptr<const Event>> work_;
+  unsigned others_ = 0;  // that hold an OtherWork
+  std::vector<std::shared_ptr<const Event>> ends_;
 };
 
-// That of the current device.
-std::shared_ptr<Standby> standby();
-
-// The same, if any query of the process has one: to be called before anything else is launched.
-void dismiss_standby();
-void dismiss_standby_for(std::shared_ptr<const Event> work);
+// That of the current device, where the system lets a kernel stay as long as it likes; otherwise
+// null. All callers give the same kernel.
+std::shared_ptr<Standby> standby(const StandbyKernel& kernel);
 
 }  // namespace vpm::cuda
