@@ -1,4 +1,5 @@
-// Memory of a device, and of the host where a device can write. Errors become vpm::Error.
+// Memory of a device, and of the host where a device can write. Errors become vpm::Error. To take
+// it, clear it or give it back may wait for all kernels, so none stands by meanwhile.
 #pragma once
 
 #include <cuda_runtime.h>
