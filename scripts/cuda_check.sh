@@ -4,8 +4,8 @@
 # are like 1000,17000.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one, in batches and standing by; 4. ten thousand queries at each level, with
-# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches; 6. scripts/cuda_frames_check.sh, which writes
-# OUT_frames.json. Exit code 1 if anything differs.
+# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches;
+# 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)

@@ -114,8 +114,7 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.standby_us > 0 && (!a.no_points || a.batch > 1 || a.measure == "paper" || a.coherent))
     wrong(
         "--standby-us waits for single poses of the refined measure; give --no-points too, and "
-        "leave "
-        "--batch, --measure paper and --coherent out");
+        "leave --batch, --measure paper and --coherent out");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
