@@ -19,7 +19,7 @@ class DeviceMeasure {
  public:
   virtual ~DeviceMeasure() = default;
 
-  // One launch, one wait; allocates nothing after the first call on a cloud. Poses must be valid
+  // One launch at most, one wait; allocates nothing after the first call on a cloud. Poses must be valid
   // (query.h). Throw Error(unavailable) where the device fails.
   virtual Result run(const PreparedCloud& cloud, const Pose& pose) = 0;
 

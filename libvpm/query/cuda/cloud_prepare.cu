@@ -321,9 +321,8 @@ void take_image(const DepthSource& source, float* depth, float* inverse, std::si
 }
 
 Preparation preparation_of(const NormalOptions& options) {
-  int device = 0, most = 0;
-  check(cudaGetDevice(&device));
-  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+  int most = 0;
+  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, current_device()));
   const Choice choice = choose(options.method, options.window / 2);
   if (choice.bytes > static_cast<std::size_t>(most)) return {};
   if (choice.bytes > kSharedBytes)

@@ -134,7 +134,6 @@ unsigned CloudSlot::doubtful() const {
 
 void CloudSlot::wait() const {
   if (!is_plain_) return;
-  constexpr unsigned kLooksPerCheck = 1U << 16;  // whether the launch has failed
   for (unsigned looks = 1; !is_answered(); ++looks) {
     if (looks % kLooksPerCheck != 0) continue;
     if (is_done(cudaStreamQuery(stream_.get())) && !is_answered())

@@ -31,9 +31,11 @@ template <class T>
 class DeviceArray {
  public:
   DeviceArray() = default;
-  explicit DeviceArray(std::size_t count) : count_(count), device_(current_device()) {
+  explicit DeviceArray(std::size_t count) : count_(count) {
+    if (count == 0) return;
+    device_ = current_device();
     const OtherWork other(device_);
-    if (count > 0) check(cudaMalloc(&data_, count * sizeof(T)));
+    check(cudaMalloc(&data_, count * sizeof(T)));
   }
   DeviceArray(const T* values, std::size_t count) : DeviceArray(count) { fill(values); }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}

@@ -29,6 +29,7 @@ namespace {
 
 std::unique_ptr<DeviceMeasure> make_on_one(const ToolModel& tool, const Level& level,
                                            const QueryOptions& options, int device) {
+  const cuda::OtherWork other(device);  // kernels are loaded
   return options.measure == Measure::paper
              ? cuda::make_paper_measure(tool, level, device)
              : cuda::make_refined_measure(tool, level, options, device);

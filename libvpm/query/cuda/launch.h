@@ -55,9 +55,8 @@ inline double microseconds_between(const Event& begin, const Event& end) {
 
 // Of the current device.
 inline unsigned processor_count() {
-  int device = 0, count = 0;
-  check(cudaGetDevice(&device));
-  check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, device));
+  int count = 0;
+  check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, current_device()));
   return static_cast<unsigned>(count);
 }
 
@@ -80,12 +79,14 @@ inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_pr
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }
 
+// At the host's own memory, before the device is asked whether the launch has failed.
+inline constexpr unsigned kLooksPerCheck = 1U << 16;
+
 // Looks at the host's own memory until the device has written the whole answer there; that is
 // quicker than waiting for the stream. Calls meanwhile() between the looks.
 template <class Meanwhile>
 RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
                    const Meanwhile& meanwhile) {
-  constexpr unsigned kLooksPerCheck = 1U << 16;  // whether the launch has failed
   std::uint32_t words[Answer::kWords];
   unsigned looks = 0;
   for (unsigned k = 0; k < Answer::kWords;) {

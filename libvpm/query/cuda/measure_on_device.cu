@@ -63,7 +63,7 @@ RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
 }
 
 bool MeasureOnDevice::is_frame_ready() {
-  if (frame_ == nullptr || frame_->serial() == awaited_) return true;
+  if (!has_new_frame()) return true;
   if (!has_happened(frame_->ready())) return false;
   awaited_ = frame_->serial();
   return true;
@@ -76,7 +76,7 @@ void MeasureOnDevice::end_launched() {
 }
 
 void MeasureOnDevice::wait_for_frame() {
-  if (frame_ == nullptr || frame_->serial() == awaited_) return;
+  if (!has_new_frame()) return;
   check(cudaStreamWaitEvent(stream_.get(), frame_->ready().get()));
   awaited_ = frame_->serial();
 }

@@ -68,6 +68,7 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
+  bool has_new_frame() const { return frame_ != nullptr && frame_->serial() != awaited_; }
   bool is_frame_ready();
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();

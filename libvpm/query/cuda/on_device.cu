@@ -257,11 +257,9 @@ void DeviceCloud::copy_points(const PreparedCloud& cloud) {
 std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {
   static std::mutex mutex;
   static std::map<std::pair<int, std::uint64_t>, std::weak_ptr<const DeviceCloud>> copies;
-  int device = 0;
-  check(cudaGetDevice(&device));
   const std::lock_guard lock(mutex);
   std::erase_if(copies, [](const auto& entry) { return entry.second.expired(); });
-  std::weak_ptr<const DeviceCloud>& known = copies[{device, cloud.serial()}];
+  std::weak_ptr<const DeviceCloud>& known = copies[{current_device(), cloud.serial()}];
   std::shared_ptr<const DeviceCloud> copy = known.lock();
   if (!copy) {
     const OtherWork other;

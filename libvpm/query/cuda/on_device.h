@@ -13,8 +13,7 @@ namespace vpm::cuda {
 // Makes a device the current one of this thread for a scope.
 class CurrentDevice {
  public:
-  explicit CurrentDevice(int index) {
-    check(cudaGetDevice(&before_));
+  explicit CurrentDevice(int index) : before_(current_device()) {
     if (index != before_) check(cudaSetDevice(index));
   }
   ~CurrentDevice() { cudaSetDevice(before_); }

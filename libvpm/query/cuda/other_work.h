@@ -13,8 +13,8 @@ class Standby;
 int current_device();
 
 // While one is held, no kernel stands by on the device: those that are launched for queries leave
-// with the answer. To be held by whoever launches something else there, or calls
-// what waits for all kernels, until that is done. Costs next to nothing where no query stands by.
+// with the answer. To be held by whoever launches something else there, or calls what waits for all
+// kernels, until that is done. Costs next to nothing where no query stands by.
 class OtherWork {
  public:
   OtherWork();  // on the current device

@@ -185,7 +185,6 @@ class PaperOnDevice : public MeasureOnDevice {
 std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
                                                   int device) {
   const CurrentDevice current(device);
-  const OtherWork other;
   return std::make_unique<PaperOnDevice>(tool, level, device);
 }
 

@@ -375,7 +375,6 @@ class RefinedOnDevice : public MeasureOnDevice {
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
                                                     const QueryOptions& options, int device) {
   const CurrentDevice current(device);
-  const OtherWork other;
   return std::make_unique<RefinedOnDevice>(tool, level, options, device);
 }
 

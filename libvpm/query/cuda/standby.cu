@@ -75,7 +75,6 @@ void Standby::give_leave() {
   Order order;
   order.leaves = 1;
   give(order);
-  constexpr unsigned kLooksPerCheck = 1U << 16;
   for (unsigned looks = 1; !has_left_at(number_); ++looks)
     if (looks % kLooksPerCheck == 0 && cudaStreamQuery(stream_.get()) != cudaErrorNotReady) return;
 }

@@ -73,7 +73,7 @@ class GridTeam {
   using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
   __device__ Count count() const { return Count(*arrived_); }
 
-  unsigned* arrived_;  // 0 at the start of a launch
+  unsigned* arrived_;  // 0 at the start of a query
   unsigned target_ = 0;
 };
 
