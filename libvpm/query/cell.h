@@ -285,14 +285,12 @@ class CellMeasure {
     add_pushed(piece, shared.normal, result.sum);
   }
 
-  // Adds a block that a plane crosses.
-  VPM_HD void add_crossed(const CellBlock& block, const CrossingPlane& plane,
-                          const CrossedSums& sums, CellResult& result) const {
-    if (sums.is_cut) {
-      const Vec3 x = widen(block.center);
+  // Adds a block around a centre that a plane crosses.
+  VPM_HD void add_crossed(Vec3 center, const CrossingPlane& plane, const CrossedSums& sums,
+                          CellResult& result) const {
+    if (sums.is_cut)
       result.plane.add(plane.seen.normal,
-                       relative(to_surface_ * x - plane.distance(x) * plane.seen.normal));
-    }
+                       relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
     result.sum.add_moment(sums.weight, arm(sums.moment), plane.normal);
   }
   // Adds one block of a share that lies where the surface is one plane.
@@ -307,7 +305,7 @@ class CellMeasure {
     }
     const CrossedSums sums =
         Samples::crossed(plane, cell_.samples + block.begin, block.end - block.begin);
-    add_crossed(block, plane, sums, result);
+    add_crossed(widen(block.center), plane, sums, result);
   }
   VPM_HD const Surface& surface() const { return surface_; }
   VPM_HD const Pose& to_surface() const { return to_surface_; }

@@ -1,7 +1,6 @@
 #include "libvpm/query/cell_samples.h"
 
-#include <cstddef>
-#include <cstring>
+#include <iterator>
 
 #include "libvpm/core/vec3x4.h"
 #include "libvpm/core/vector_clones.h"
@@ -9,20 +8,25 @@
 namespace vpm {
 namespace {
 
-// The centre; in the last lane the radius, which nobody uses.
-[[gnu::always_inline]] inline Double4 center_of(const CellSample& sample) {
-  static_assert(offsetof(CellSample, center) == 0 && sizeof(CellSample) >= sizeof(Float4));
-  Float4 center;
-  std::memcpy(&center, &sample, sizeof center);
-  return widen(center);
+// A row in each lane.
+struct FourRows {
+  Double4 weight{};
+  Vec3x4 moment{Double4{}, Double4{}, Double4{}};
+};
+
+[[gnu::always_inline]] inline FourRows operator+(const FourRows& a, const FourRows& b) {
+  return {a.weight + b.weight, a.moment + b.moment};
+}
+// By halves.
+[[gnu::always_inline]] inline double sum(const Double4& rows) {
+  return (rows[0] + rows[2]) + (rows[1] + rows[3]);
 }
 
 }  // namespace
 
 VPM_VECTOR_CLONES
 CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples) {
-  CrossedSums sums;
-  Double4 moment{};
+  FourRows rows[kSumRows / kFour];
   Mask4 any_cut{};
   const std::size_t count = samples.size();
   for (std::size_t first = 0; first < count; first += kFour) {
@@ -35,15 +39,14 @@ CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample>
     if (!any(reached)) continue;
     any_cut |= is_cut;
     const Double4 fraction = fraction_of_cut_ball<Double4>(distance / radius);
-    const Double4 inside = reached ? (is_cut ? weight * fraction : weight) : Double4{};
-    for (std::size_t k = 0; k < kFour && first + k < count; ++k) {
-      sums.weight += inside[k];
-      moment += inside[k] * center_of(samples[first + k]);
-    }
+    Double4 inside = reached ? (is_cut ? weight * fraction : weight) : Double4{};
+    for (std::size_t k = count - first; k < kFour; ++k) inside[k] = 0;
+    FourRows& row = rows[first / kFour % std::size(rows)];
+    row = row + FourRows{inside, inside * center};
   }
-  sums.moment = {moment[0], moment[1], moment[2]};
-  sums.is_cut = any(any_cut);
-  return sums;
+  static_assert(std::size(rows) == 4);
+  const FourRows all = (rows[0] + rows[2]) + (rows[1] + rows[3]);
+  return {sum(all.weight), {sum(all.moment.x), sum(all.moment.y), sum(all.moment.z)}, any(any_cut)};
 }
 
 }  // namespace vpm

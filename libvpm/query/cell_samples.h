@@ -1,6 +1,8 @@
 // The samples of a cell's blocks, many at once: what SamplesInTurn adds, by vectors. On the host.
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 #include <type_traits>
 
@@ -14,12 +16,15 @@ CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample>
 
 // Reads the surface of a camera at four places by vectors, others one after the other.
 struct ReadTogether {
-  template <class Surface>
-  void operator()(const Surface& surface, const Vec3 (&places)[4], Reading (&readings)[4]) const {
-    if constexpr (std::is_same_v<Surface, DepthSurface>)
+  template <class Surface, class Take>
+  bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
+    if constexpr (std::is_same_v<Surface, DepthSurface>) {
+      Reading readings[4];
       read_four(surface, places, readings);
-    else
-      ReadInTurn{}(surface, places, readings);
+      return std::all_of(std::begin(readings), std::end(readings), take);
+    } else {
+      return ReadInTurn{}(surface, places, take);
+    }
   }
 };
 

@@ -25,12 +25,16 @@ struct CrossingPlane {
   }
 };
 
-// Of samples behind a plane, added in their order.
+// Of samples behind a plane.
 struct CrossedSums {
   double weight = 0;
   Vec3 moment;  // of each weight times its sample's centre
   bool is_cut = false;
 };
+// Samples are added in so many rows, sample k in row k % kSumRows, and these by halves: so lanes of
+// vectors, or threads, can add a row each.
+inline constexpr std::uint32_t kSumRows = 16;
+
 // The weight of a sample that lies behind a plane.
 VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane& plane,
                                    bool& is_cut) {
@@ -40,17 +44,27 @@ VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane
   is_cut = true;
   return sample.weight * ball_fraction_inside(distance / sample.radius);
 }
+// Adds what of a sample lies behind a plane to its row. Zeros too: a row that begins with 0 is
+// never -0, whoever adds it.
+VPM_HD inline void add_to_row(const CellSample& sample, const CrossingPlane& plane,
+                              CrossedSums& row, bool& is_cut) {
+  const double inside = weight_behind(sample, plane, is_cut);
+  row.weight += inside;
+  row.moment += inside * widen(sample.center);
+}
 // Of samples one after another.
 VPM_HD inline CrossedSums crossed_in_turn(const CrossingPlane& plane, const CellSample* samples,
                                           std::uint32_t count) {
-  CrossedSums sums;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const double inside = weight_behind(samples[k], plane, sums.is_cut);
-    if (inside == 0) continue;
-    sums.weight += inside;
-    sums.moment += inside * widen(samples[k].center);
+  CrossedSums rows[kSumRows];
+  for (std::uint32_t k = 0; k < count; ++k)
+    add_to_row(samples[k], plane, rows[k % kSumRows], rows[0].is_cut);
+  for (std::uint32_t half = kSumRows / 2; half > 0; half /= 2) {
+    for (std::uint32_t r = 0; r < half; ++r) {
+      rows[r].weight += rows[r + half].weight;
+      rows[r].moment += rows[r + half].moment;
+    }
   }
-  return sums;
+  return rows[0];
 }
 
 }  // namespace vpm

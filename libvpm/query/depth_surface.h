@@ -99,8 +99,10 @@ struct DepthSurface {
     return top + along_v * (bottom - top);
   }
 
-  // Inverse depth of the surface in the direction of x (x.z > 0).
-  VPM_HD Pixel look_up(Vec3 x) const {
+  // Inverse depth of the surface in the direction of x (x.z > 0). `also(u, v)` may read more at the
+  // nearest pixel: a device waits for all reads together.
+  template <class Also>
+  VPM_HD Pixel look_up(Vec3 x, const Also& also) const {
     const double per_depth = 1 / x.z;
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     const double up = u + 0.5, vp = v + 0.5;
@@ -113,7 +115,8 @@ struct DepthSurface {
     const double a = inverse_depth(u0, v0), b = inverse_depth(u1, v0);
     const double c = inverse_depth(u0, v1), d = inverse_depth(u1, v1);
     const std::int32_t nearest = vn * width + un;
-    const Vec3f normal = normals[nearest];  // all reads at once: a device waits for them together
+    const Vec3f normal = normals[nearest];
+    also(un, vn);
     if (!is_one_surface(a, b, c, d))
       return {vn == v0 ? (un == u0 ? a : b) : (un == u0 ? c : d), nearest, normal};
     const double fu = u < 0 ? 0 : u - u0, fv = v < 0 ? 0 : v - v0;
@@ -121,8 +124,12 @@ struct DepthSurface {
   }
 
   VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
+    return read_and(x, [](std::int32_t, std::int32_t) {});
+  }
+  template <class Also>
+  VPM_HD Reading read_and(Vec3 x, const Also& also) const {
     if (!(x.z >= kSmallestLength)) return {};  // squares of less would vanish
-    const Pixel pixel = look_up(x);
+    const Pixel pixel = look_up(x, also);
     if (!(pixel.inverse_depth > 0)) return {};
     Reading reading;
     reading.known = true;
@@ -157,15 +164,18 @@ struct DepthSurface {
   // a crease, where windows of normals hold both sides, those of one side lead.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
     Reading first = reading;
-    take_one_side(x, first);
+    const auto pixel_read = static_cast<std::int32_t>(reading.point);
+    take_one_side(x, neighbors_of(pixel_read % width, pixel_read / width), first);
     Vec3 foot = first.foot, normal = first.normal;
     double squared = squared_norm(x - foot);
     Vec3 target = x - first.distance * normal;
     const double pixel = foot.z / k.fx, near = kFootPixels * pixel;
     for (int step = 0; step < kFootSteps && squared_norm(target - foot) > near * near; ++step) {
-      Reading next = read(target);
+      Neighbors neighbors;
+      Reading next =
+          read_and(target, [&](std::int32_t u, std::int32_t v) { neighbors = neighbors_of(u, v); });
       if (!next.known) break;
-      take_one_side(x, next);
+      take_one_side(x, neighbors, next);
       const double next_squared = squared_norm(x - next.foot);
       if (next_squared < squared) {
         foot = next.foot;
@@ -196,6 +206,7 @@ struct DepthSurface {
     bool leaves_image = true;
     PixelRectangle pixels, tiles;  // that a place in the ball may touch; those of the tiles
     InverseDepthRange range;
+    float middle = 0;  // as measured, of the pixel in the middle
   };
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
@@ -204,17 +215,23 @@ struct DepthSurface {
   // The same of a ball that was looked at. Tiles show what lies beside it too: where they do not
   // decide, its pixels tell whether it is free.
   VPM_HD Side side_of(const Look& look, Vec3 center, double radius) const {
-    return look.side == Side::mixed && is_seen_past(look.pixels, center.z + radius, 0, 1)
+    const double farthest = center.z + radius;
+    return may_be_seen_past(look, farthest) && is_seen_past(look.pixels, farthest, 0, 1)
                ? Side::free
                : look.side;
   }
   static VPM_HD PixelRectangle pixels_of(const Look& look) { return look.pixels; }
-  // Whether none of these pixels, as measured, shows a surface nearer than `depth`; of their rows
-  // only the `first`, and every `step` after it. The middle is asked first, which mostly says no.
+  // Whether the pixels of a ball, as measured, may all show no surface nearer than `depth`. The
+  // middle mostly says no.
+  VPM_HD bool may_be_seen_past(const Look& look, double depth) const {
+    const PixelRectangle& p = look.pixels;
+    return look.side == Side::mixed &&
+           std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) <= kMostPixels &&
+           depth * look.middle < 1;
+  }
+  // Whether they do not; of their rows only the `first`, and every `step` after it.
   VPM_HD bool is_seen_past(const PixelRectangle& p, double depth, std::uint32_t first,
                            std::uint32_t step) const {
-    if (std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) > kMostPixels) return false;
-    if (!(depth * measured_at((p.u0 + p.u1) / 2, (p.v0 + p.v1) / 2) < 1)) return false;
     for (std::int32_t v = p.v0 + static_cast<std::int32_t>(first); v <= p.v1;
          v += static_cast<std::int32_t>(step)) {
       bool past = true;  // of a row at a time: reads that do not wait for each other
@@ -249,6 +266,8 @@ struct DepthSurface {
                    v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
                    u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
                    v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
+    const PixelRectangle& p = look.pixels;
+    look.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
     cover(look);
     if (farthest * look.range.high < 1) {
       look.side = Side::free;
@@ -307,9 +326,10 @@ struct DepthSurface {
   VPM_HD bool is_flat(const Look& look, const Reading& reading, double tolerance,
                       TangentPlane& plane) const {
     if (!reading.known) return false;
+    const CornerNormals corners = corner_normals(look);  // soon, though they may not be needed
     plane = {reading.normal, reading.foot};
     if (!shows(look, plane, tolerance)) return false;
-    plane.normal = mean_normal(look, reading.normal);
+    plane.normal = mean_normal(look, corners, reading.normal);
     return true;
   }
   // Whether the plane predicts the range of the ball's pixels.
@@ -342,14 +362,14 @@ struct DepthSurface {
     const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis)), other = cross(n, side);
     const Vec3 below = center - middle.distance * n;
     const Vec3 places[4] = {below + side, below - side, below + other, below - other};
-    Reading around[4];
-    read_all(*this, places, around);
     Vec3 direction = n, feet = middle.foot;
-    for (const Reading& reading : around) {
+    const auto take = [&](const Reading& reading) {
       if (!reading.known || dot(reading.normal, n) < kSmoothCosine) return false;
       direction += reading.normal;
       feet += reading.foot;
-    }
+      return true;
+    };
+    if (!read_all(*this, places, take)) return false;
     plane = {normalized_or_zero(direction), 0.2 * feet};
     return shows(look, plane, tolerance);
   }
@@ -371,32 +391,51 @@ struct DepthSurface {
     return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
   }
 
-  // The mean of the normal at a ball's middle and of four between it and the corners of its pixels,
-  // where they belong to one smooth surface: noise is averaged, and curvature cancels.
-  VPM_HD Vec3 mean_normal(const Look& look, Vec3 middle) const {
-    if (spans_few_pixels(look)) return middle;
+  // Normals between the middle of a ball and the corners of its pixels.
+  struct CornerNormals {
+    Vec3f at[4];
+  };
+  VPM_HD CornerNormals corner_normals(const Look& look) const {
     const PixelRectangle& p = look.pixels;
     const std::int32_t u = (p.u1 - p.u0) / 4, v = (p.v1 - p.v0) / 4;
     const std::int32_t above = (p.v0 + v) * width, below = (p.v1 - v) * width;
-    const std::int32_t corners[4] = {above + p.u0 + u, above + p.u1 - u, below + p.u0 + u,
-                                     below + p.u1 - u};
+    return {{normals[above + p.u0 + u], normals[above + p.u1 - u], normals[below + p.u0 + u],
+             normals[below + p.u1 - u]}};
+  }
+  // The mean of these and of the normal at the middle, where they belong to one smooth surface:
+  // noise is averaged, and curvature cancels.
+  VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const {
+    if (spans_few_pixels(look)) return middle;
     Vec3 sum = middle;
-    for (const std::int32_t i : corners) {
-      const Vec3 normal = widen(normals[i]);
+    for (const Vec3f& corner : corners.at) {
+      const Vec3 normal = widen(corner);
       if (dot(normal, middle) > kSmoothCosine) sum += normal;
     }
     return normalized_or_zero(sum);
   }
 
+  // Normals of the pixels kAcross to either side of one, where there are such.
+  struct Neighbors {
+    bool in_row = false, in_column = false;
+    Vec3f left, right, above, below;
+  };
+  VPM_HD Neighbors neighbors_of(std::int32_t u, std::int32_t v) const {
+    const bool in_row = u >= kAcross && u + kAcross < width;
+    const bool in_column = v >= kAcross && v + kAcross < height;
+    const std::int32_t i = v * width + u;
+    const std::int32_t aside = in_row ? kAcross : 0, down = in_column ? kAcross * width : 0;
+    return {in_row,           in_column, normals[i - aside], normals[i + aside], normals[i - down],
+            normals[i + down]};
+  }
+
   // The normal of what was read at x, where its pixel lies beside a crease: of that side of it on
   // whose tangent plane the foot lies.
-  VPM_HD void take_one_side(Vec3 x, Reading& reading) const {
-    const auto i = static_cast<std::int32_t>(reading.point);
-    const std::int32_t v = i / width, u = i - v * width;
-    const bool in_row = u >= kAcross && u + kAcross < width && holds_crease(i, 1, reading.normal),
+  VPM_HD void take_one_side(Vec3 x, const Neighbors& beside, Reading& reading) const {
+    const bool in_row = beside.in_row && holds_crease(beside.left, beside.right, reading.normal),
                in_column =
-                   v >= kAcross && v + kAcross < height && holds_crease(i, width, reading.normal);
+                   beside.in_column && holds_crease(beside.above, beside.below, reading.normal);
     if (!in_row && !in_column) return;
+    const auto i = static_cast<std::int32_t>(reading.point);
     const Vec3 foot = reading.foot;
     double least = HUGE_VAL;
     const auto consider = [&](std::int32_t j) {
@@ -412,11 +451,9 @@ struct DepthSurface {
       if (in_column) consider(i + side * width);
     }
   }
-  // Whether a crease passes between a pixel's neighbours on either side, and its normal is of
-  // neither.
-  VPM_HD bool holds_crease(std::int32_t i, std::int32_t step, Vec3 normal) const {
-    const Vec3 before = widen(normals[i - kAcross * step]),
-               after = widen(normals[i + kAcross * step]);
+  // Whether a crease passes between two neighbours of a pixel, and its normal is of neither.
+  static VPM_HD bool holds_crease(Vec3f one, Vec3f other, Vec3 normal) {
+    const Vec3 before = widen(one), after = widen(other);
     return dot(before, after) < kSmoothCosine && dot(before, normal) < kSameCosine &&
            dot(after, normal) < kSameCosine;
   }

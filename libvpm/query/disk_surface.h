@@ -126,6 +126,9 @@ struct DiskSurface {
   static VPM_HD PixelRectangle pixels_of(const Look&) {
     return {};
   }
+  VPM_HD bool may_be_seen_past(const Look&, double) const {
+    return false;
+  }
   VPM_HD bool is_seen_past(const PixelRectangle&, double, std::uint32_t, std::uint32_t) const {
     return false;
   }

@@ -30,12 +30,15 @@ struct Reading {
   std::uint32_t point = kNoPoint;  // the same, by index: a good place to begin the next search
 };
 
-// Reads a surface at several places, one after the other.
+// Reads a surface at several places, one after the other, as long as `take` says to go on. Whether
+// it has taken all.
 struct ReadInTurn {
-  template <class Surface, int kPlaces>
-  VPM_HD void operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
-                         Reading (&readings)[kPlaces]) const {
-    for (int k = 0; k < kPlaces; ++k) readings[k] = surface.read(places[k]);
+  template <class Surface, int kPlaces, class Take>
+  VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
+                         const Take& take) const {
+    for (const Vec3& place : places)
+      if (!take(surface.read(place))) return false;
+    return true;
   }
 };
 

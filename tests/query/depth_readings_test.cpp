@@ -78,14 +78,14 @@ void expect_same(const Reading& a, const Reading& b) {
 
 int known_of_four(const DepthSurface& surface, Numbers& numbers) {
   Vec3 places[4];
-  Reading together[4], one[4];
+  Reading together[4];
   for (Vec3& place : places) place = any_place(numbers);
   read_four(surface, places, together);
-  ReadInTurn{}(surface, places, one);
   int known = 0;
   for (int k = 0; k < 4; ++k) {
-    expect_same(together[k], one[k]);
-    known += one[k].known ? 1 : 0;
+    const Reading one = surface.read(places[k]);
+    expect_same(together[k], one);
+    known += one.known ? 1 : 0;
   }
   return known;
 }
@@ -333,6 +333,17 @@ TEST(CrossedSamples, AddUpTogetherAsInTurn) {
     expect_same(together.weight, in_turn.weight);
     expect_same(together.moment, in_turn.moment);
     EXPECT_EQ(together.is_cut, in_turn.is_cut);
+    double weight = 0;
+    Vec3 moment;
+    bool is_cut = false;
+    for (const CellSample& sample : samples) {
+      const double inside = weight_behind(sample, plane, is_cut);
+      weight += inside;
+      moment += inside * widen(sample.center);
+    }
+    EXPECT_NEAR(in_turn.weight, weight, 1e-13);
+    EXPECT_LE(norm(in_turn.moment - moment), 1e-14);
+    EXPECT_EQ(in_turn.is_cut, is_cut);
     cut += in_turn.is_cut ? 1 : 0;
     whole += !in_turn.is_cut && in_turn.weight > 0 ? 1 : 0;
   }

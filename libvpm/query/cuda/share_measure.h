@@ -1,12 +1,15 @@
 // The first step of a query: what each share is to the surface, and its sums.
 //
-// What a cluster of shares is to the surface is decided first, by a thread for each chunk of its
-// units, or by four where chunks are few: they read the surface at four places of a patch at once.
-// A unit (block of a share) of a patch is classified by one thread, others by four lanes, which
-// look at the balls of its share, the block and the sphere. What is to be measured is listed as
-// tasks in shared memory, and warps take these: a lane for each sample, or for each piece that is
-// taken whole. Where no flood decides what is inside, each thread adds up what it finds.
+// What a cluster of shares is to the surface is decided first, by one to four threads for each
+// chunk of its units, more where chunks are few: they read the surface at four places of a patch. A
+// unit (block of a share) of a patch is classified by one to four threads, which read its pixels,
+// others by four, which look at the balls of its share, the block and the sphere. What is to be
+// measured is listed as tasks in shared memory, and warps take these: a lane for each sample, for a
+// row of samples that a plane crosses, or for each piece that is taken whole. Where no flood
+// decides what is inside, each thread adds up what it finds.
 #pragma once
+
+#include <climits>
 
 #include "libvpm/query/cuda/share_tasks.h"
 #include "libvpm/query/cuda/shares.h"
@@ -14,23 +17,30 @@
 
 namespace vpm::cuda {
 
-// Reads a surface at four places by four lanes.
+// Reads a surface at four places by the lanes of a tile, up to four.
 struct ReadByLanes {
-  static constexpr unsigned kLanes = 4;
+  static constexpr unsigned kPlaces = 4;
   Tile lanes;
 
-  template <class Surface>
-  __device__ void operator()(const Surface& surface, const Vec3 (&places)[kLanes],
-                             Reading (&readings)[kLanes]) const {
-    const unsigned k = lanes.lane;
-    const Reading mine =
-        surface.read(k == 0 ? places[0] : (k == 1 ? places[1] : (k == 2 ? places[2] : places[3])));
-#pragma unroll
-    for (unsigned from = 0; from < kLanes; ++from) {
-      readings[from].known = lanes.from(static_cast<int>(mine.known), from) != 0;
-      readings[from].normal = lanes.from(mine.normal, from);
-      readings[from].foot = lanes.from(mine.foot, from);
+  template <class Surface, class Take>
+  __device__ bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
+                             const Take& take) const {
+    Reading mine;
+#pragma unroll 1
+    for (unsigned k = 0; k < kPlaces; ++k) {
+      const unsigned from = k % lanes.width, at = k + lanes.lane;
+      if (from == 0)
+        mine = surface.read(at == 0   ? places[0]
+                            : at == 1 ? places[1]
+                            : at == 2 ? places[2]
+                                      : places[3]);
+      Reading reading;
+      reading.known = lanes.from(static_cast<int>(mine.known), from) != 0;
+      reading.normal = lanes.from(mine.normal, from);
+      reading.foot = lanes.from(mine.foot, from);
+      if (!take(reading)) return false;
     }
+    return true;
   }
 };
 
@@ -55,18 +65,13 @@ class ShareMeasure {
   __device__ RawResult run() {
     if (kFloods && part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
     clear_lists();
-    const bool are_few =
-        level_.chunk_count <= kFewRounds * (blockDim.x / ReadByLanes::kLanes) * part_.parts;
-    const Tile lanes(are_few ? ReadByLanes::kLanes : 1);
-    const unsigned slot = threadIdx.x / lanes.width, slots = blockDim.x / lanes.width;
+    const Tile lanes(lanes_of_chunk());
+    // Neighbours go to different warps: they often differ in what takes long.
+    const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
+    const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
     for (unsigned first = part_.part; first < level_.chunk_count; first += slots * part_.parts) {
       const unsigned c = first + slot * part_.parts;
-      if (c < level_.chunk_count) {
-        if (are_few)
-          look_at(c, slot, lanes.leads(), ReadByLanes{lanes});
-        else
-          look_at(c, slot, true, ReadInTurn{});
-      }
+      if (c < level_.chunk_count) look_at(c, slot, lanes);
       __syncthreads();
       note_pushed();
       classify_seen();
@@ -82,8 +87,8 @@ class ShareMeasure {
  private:
   using Measure = CellMeasure<Surface>;
   static constexpr bool kFloods = !Surface::kTellsInside;
-  static constexpr unsigned kLanes = 4;      // of a unit in no patch
-  static constexpr unsigned kFewRounds = 2;  // of more, each lane looks at a chunk of its own
+  static constexpr unsigned kLanes = 4;        // of a unit in no patch
+  static constexpr unsigned kReadsOfLook = 4;  // of the surface take as long as the rest of a look
   // What a round adds to a list: a task of each unit in a patch, two of each other.
   static constexpr unsigned kTasksOfRound = kThreads;
   static_assert(2 * kThreads / kLanes <= kTasksOfRound && kTasksOfRound <= TaskLists::kTasks);
@@ -98,16 +103,26 @@ class ShareMeasure {
   __device__ void clear_seen() {
     if (threadIdx.x == 0) shared_.seen_count = shared_.crossed_count = shared_.pushed_count = 0;
   }
+  // More lanes have looked at a chunk sooner, fewer leave room for more chunks in a round.
+  __device__ unsigned lanes_of_chunk() const {
+    unsigned best = 1, least = UINT_MAX;
+    for (unsigned lanes = ReadByLanes::kPlaces; lanes > 0; lanes /= 2) {
+      const unsigned at_once = blockDim.x / lanes * part_.parts;
+      const unsigned rounds = (level_.chunk_count + at_once - 1) / at_once;
+      const unsigned reads = rounds * (kReadsOfLook + ReadByLanes::kPlaces / lanes);
+      if (reads < least) best = lanes, least = reads;
+    }
+    return best;
+  }
   // By all threads of a slot; one notes what they have seen.
-  template <class ReadAll>
-  __device__ void look_at(std::uint32_t c, unsigned slot, bool notes, const ReadAll& read_all) {
+  __device__ void look_at(std::uint32_t c, unsigned slot, const Tile& lanes) {
     const Chunk& chunk = level_.chunks[c];
     const Vec3 at = to_surface_ * chunk.ball.center;
     const auto look = surface_.look_at_ball(at, chunk.ball.radius);
     if (look.side == Side::free) return;
     CrossingPlane plane;
-    const Seen seen = what_is_seen(chunk.ball, look, at, read_all, plane);
-    if (!notes || seen == Seen::free) return;
+    const Seen seen = what_is_seen(chunk.ball, look, at, lanes, plane);
+    if (!lanes.leads() || seen == Seen::free) return;
     if (seen == Seen::pushed) {
       shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
       return;
@@ -124,9 +139,9 @@ class ShareMeasure {
   __device__ CrossingPlane& plane_of(unsigned slot) const {
     return space_.planes[part_.part * blockDim.x + slot];
   }
-  template <class Look, class ReadAll>
-  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at,
-                               const ReadAll& read_all, CrossingPlane& plane) {
+  template <class Look>
+  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at, const Tile& lanes,
+                               CrossingPlane& plane) {
     const bool patch = is_patch(ball.radius, level_.tool_reach.length);
     if (look.side == Side::uncut) {
       if (!patch) return Seen::uncut;
@@ -143,7 +158,7 @@ class ShareMeasure {
     }
     if (look.side == Side::mixed) {
       TangentPlane tangent;
-      if (!patch || !sees_patch(surface_, look, at, ball.radius, read_all, tangent))
+      if (!patch || !sees_patch(surface_, look, at, ball.radius, ReadByLanes{lanes}, tangent))
         return Seen::mixed;
       plane = {tangent, to_surface_};
       return Seen::crossed;
@@ -168,21 +183,49 @@ class ShareMeasure {
     }
   }
   // By rounds, before each of which the lists have room for its tasks: units of crossed patches by
-  // the first warps, a thread each, others by the next, kLanes each.
+  // the first warps, others by the rest. Neighbours go to different warps.
   __device__ void classify_seen() {
-    const unsigned crossed = shared_.crossed_count, lanes = kLanes * shared_.seen_count;
-    const unsigned others = (crossed + 31) / 32 * 32;  // the first of their threads
-    for (unsigned first = 0; first < others + lanes; first += blockDim.x) {
-      const unsigned thread = first + threadIdx.x;
-      if (thread < crossed) {
-        classify_crossed(shared_.seen[MeasureShared::kSeen - 1 - thread]);
-      } else if (thread >= others && thread - thread % 32 < others + lanes) {
-        const unsigned k = (thread - others) / kLanes;
-        const bool active = k < shared_.seen_count;
+    const unsigned crossed_count = shared_.crossed_count, count = shared_.seen_count;
+    const unsigned warps = idle_warps(), lanes = lanes_of_crossed(warps);
+    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+    for (unsigned crossed = 0, others = 0; crossed < crossed_count || others < count;) {
+      const unsigned first =
+          warps_for_crossed(warps, warps_of(crossed_count - crossed, lanes), count - others);
+      const unsigned rest = warps - first;
+      if (warp < first) {
+        const unsigned k = crossed + lane / lanes * first + warp;
+        if (k < crossed_count)
+          classify_crossed(shared_.seen[MeasureShared::kSeen - 1 - k], Tile(lanes));
+      } else if (warp < warps && others + warp - first < count) {
+        const unsigned k = others + lane / kLanes * rest + warp - first;
+        const bool active = k < count;
         classify(shared_.seen[active ? k : 0], active);
       }
+      crossed = min(crossed_count, crossed + first * (32 / lanes));
+      others = min(count, others + rest * (32 / kLanes));
       make_room();
     }
+  }
+  __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
+    return (units * lanes + 31) / 32;
+  }
+  // But for those that still deal with pushed patches.
+  __device__ unsigned idle_warps() const {
+    const unsigned warps = blockDim.x / 32;
+    return warps - min(warps_of(shared_.pushed_count, Chunk::kUnits), warps / 2);
+  }
+  // Of each unit in a crossed patch: as many as one round has.
+  __device__ unsigned lanes_of_crossed(unsigned warps) const {
+    const unsigned others = warps_of(shared_.seen_count, kLanes);
+    unsigned lanes = kLanes;
+    while (lanes > 1 && warps_of(shared_.crossed_count, lanes) + others > warps) lanes /= 2;
+    return lanes;
+  }
+  // Where these and other units are left, each has a warp at least, and half of those to spare.
+  __device__ static unsigned warps_for_crossed(unsigned warps, unsigned crossed, unsigned others) {
+    if (crossed == 0 || others == 0) return crossed == 0 ? 0 : warps;
+    const unsigned spare = warps - min(warps, crossed + warps_of(others, kLanes));
+    return min(crossed + spare / 2, warps - 1);
   }
   __device__ void make_room() {
     __syncthreads();
@@ -208,9 +251,10 @@ class ShareMeasure {
   }
 
   __device__ void classify(SeenUnit seen, bool active);
-  __device__ void classify_crossed(SeenUnit seen);
+  __device__ void classify_crossed(SeenUnit seen, const Tile& lanes);
   template <class Look>
-  __device__ bool is_seen_past(const Tile& lanes, Side side, const Look& look, double depth) const;
+  __device__ bool is_seen_past(const Tile& lanes, const Look& look, double depth) const;
+  __device__ bool is_free(const Tile& lanes, Vec3 center, double radius) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void note_behind(const Unit& unit, Vec3 normal);
@@ -231,8 +275,8 @@ class ShareMeasure {
   __device__ void add_piece(const Tile& tile, const Measure& measure, const Task& task,
                             std::uint32_t k, CellResult& result);
   __device__ static unsigned first_neighbor(const Tile& tile, bool shares);
-  __device__ void add_flat(const Tile& tile, const Measure& measure, const FlatBlock& flat,
-                           const Task& task, CellResult& result);
+  __device__ CellResult measure_flat(const Tile& tile, const FlatBlock& flat, const Task& task);
+  __device__ CellResult measure_pieces(const Tile& tile, const Task& task);
   __device__ void note_task(const Task& task, const CellResult& result);
   __device__ void count(std::uint32_t share, std::uint32_t bits);
 
@@ -264,7 +308,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   if (seen.side() == Side::mixed) {
     look = surface_.look_at_ball(at, ball.radius);
     own = look.side;
-    if (is_seen_past(lanes, own, look, at.z + ball.radius)) own = Side::free;
+    if (is_seen_past(lanes, look, at.z + ball.radius)) own = Side::free;
   }
   const auto side_of = [&](unsigned lane) {
     return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
@@ -323,11 +367,10 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
 // surface without pixels, what the look says stands.)
 template <class Surface>
 template <class Look>
-__device__ bool ShareMeasure<Surface>::is_seen_past(const Tile& lanes, Side side, const Look& look,
+__device__ bool ShareMeasure<Surface>::is_seen_past(const Tile& lanes, const Look& look,
                                                     double depth) const {
   constexpr unsigned kShare = Unit::of_share;
-  if (static_cast<Side>(lanes.from(static_cast<unsigned>(side), kShare)) != Side::mixed)
-    return false;
+  if (!lanes.from(surface_.may_be_seen_past(look, depth), kShare)) return false;
   const PixelRectangle of_share = lanes.from(Surface::pixels_of(look), kShare);
   const double farthest = lanes.from(depth, kShare);
   const bool past = surface_.is_seen_past(of_share, farthest, lanes.lane, lanes.width);
@@ -358,18 +401,29 @@ __device__ void ShareMeasure<Surface>::note_behind(const Unit& unit, Vec3 normal
   }
 }
 
-// One unit of a patch that a plane crosses.
+// Whether a ball is, its pixels read by all lanes.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen) {
+__device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
+                                               double radius) const {
+  const auto look = surface_.look_at_ball(center, radius);
+  const double farthest = center.z + radius;
+  if (!surface_.may_be_seen_past(look, farthest)) return look.side == Side::free;
+  return !lanes.any(
+      !surface_.is_seen_past(Surface::pixels_of(look), farthest, lanes.lane, lanes.width));
+}
+
+// One unit of a patch that a plane crosses, by all lanes of a tile.
+template <class Surface>
+__device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Tile& lanes) {
   const Unit& unit = level_.units[shared_.first_units[seen.slot()] + seen.unit()];
   const CrossingPlane plane = plane_of(seen.slot());
   const UnitBall share = unit.balls[Unit::of_share];
   const bool head = (unit.flags & Unit::is_head) != 0;
   const double distance = plane.distance(share.center);
   const Vec3 at = to_surface_ * share.center;
-  const bool free =
-      !(distance < share.radius) || (surface_.may_be_free(at, share.radius) &&
-                                     surface_.side_of_ball(at, share.radius) == Side::free);
+  const bool free = !(distance < share.radius) ||
+                    (surface_.may_be_free(at, share.radius) && is_free(lanes, at, share.radius));
+  if (!lanes.leads()) return;
   const bool behind = !free && distance <= -share.radius;
   if (head) {
     std::uint32_t word = 0;
@@ -430,7 +484,7 @@ __device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const Cros
     // Member by member: the whole would be stored byte by byte.
     FlatBlock& block = flat(list, lists_.add(list, task));
     block.plane = plane;
-    block.block = unit.block;
+    block.center = ball.center;
     return;
   }
   CellResult result;
@@ -465,21 +519,25 @@ __device__ void ShareMeasure<Surface>::measure_tasks() {
 template <class Surface>
 __device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, unsigned slot,
                                                const Task& task) {
+  const CellResult result = TaskLists::is_flat(list) ? measure_flat(tile, flat(list, slot), task)
+                                                     : measure_pieces(tile, task);
+  if (tile.leads()) note_task(task, result);
+}
+
+// The result is there for all threads of the tile.
+template <class Surface>
+__device__ CellResult ShareMeasure<Surface>::measure_pieces(const Tile& tile, const Task& task) {
   const std::uint32_t i = task.share;
   const Measure measure = measure_of(
       {.samples = level_.samples, .center = level_.centers[i], .reach = level_.reach[i]});
   CellResult result;
-  if (TaskLists::is_flat(list)) {
-    add_flat(tile, measure, flat(list, slot), task, result);
-  } else {
-    for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
-      add_piece(tile, measure, task, begin + tile.lane, result);
-    __syncwarp(tile.mask);
-    add_up(tile, result.sum);
-    if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
-    result.is_far = tile.any(result.is_far);
-  }
-  if (tile.leads()) note_task(task, result);
+  for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
+    add_piece(tile, measure, task, begin + tile.lane, result);
+  __syncwarp(tile.mask);
+  add_up(tile, result.sum);
+  if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
+  result.is_far = tile.any(result.is_far);
+  return result;
 }
 
 // What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
@@ -526,39 +584,30 @@ __device__ unsigned ShareMeasure<Surface>::first_neighbor(const Tile& tile, bool
   return shares ? begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1 : tile.lane;
 }
 
-// The weights of the samples by all threads, their sums in the samples' order by four. The result
-// is there for the first thread of the tile.
+// A row of samples by each thread; what the block needs is read before the first wait, a sample
+// before the one before it is added. The result is there for the first thread of the tile.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::add_flat(const Tile& tile, const Measure& measure,
-                                                const FlatBlock& flat, const Task& task,
-                                                CellResult& result) {
-  const unsigned slot = threadIdx.x - tile.lane;
-  bool is_cut = false;
-  double sum = 0;  // of this thread's row of terms
+__device__ CellResult ShareMeasure<Surface>::measure_flat(const Tile& tile, const FlatBlock& flat,
+                                                          const Task& task) {
+  const CrossingPlane plane = flat.plane;
+  const Vec3 center = flat.center, share = level_.centers[task.share];
+  const double reach = level_.reach[task.share];
+  const CellSample* const samples = level_.samples + task.begin;
+  CellSample next = samples[tile.lane < task.count ? tile.lane : 0];
+  CrossedSums row;
 #pragma unroll 1
-  for (std::uint32_t begin = 0; begin < task.count; begin += tile.width) {
-    const std::uint32_t k = begin + tile.lane;
-    const CellSample sample = level_.samples[task.begin + (k < task.count ? k : 0)];
-    const double inside = k < task.count ? weight_behind(sample, flat.plane, is_cut) : 0;
-    const Vec3 moment = inside != 0 ? inside * widen(sample.center) : Vec3{};
-    shared_.terms[0][slot + tile.lane] = inside;
-    shared_.terms[1][slot + tile.lane] = moment.x;
-    shared_.terms[2][slot + tile.lane] = moment.y;
-    shared_.terms[3][slot + tile.lane] = moment.z;
-    __syncwarp(tile.mask);
-    const unsigned count = min(tile.width, task.count - begin);
-    if (tile.lane < 4) {
-#pragma unroll 4
-      for (unsigned t = 0; t < count; ++t) sum += shared_.terms[tile.lane][slot + t];
-    }
-    __syncwarp(tile.mask);
+  for (std::uint32_t k = tile.lane; k < task.count;) {
+    const CellSample sample = next;
+    k += tile.width;
+    if (k < task.count) next = samples[k];
+    add_to_row(sample, plane, row, row.is_cut);
   }
-  is_cut = tile.any(is_cut);
-  const double sums[4] = {tile.from(sum, 0), tile.from(sum, 1), tile.from(sum, 2),
-                          tile.from(sum, 3)};
-  if (!tile.leads()) return;
-  measure.add_crossed(level_.blocks[flat.block], flat.plane,
-                      {sums[0], {sums[1], sums[2], sums[3]}, is_cut}, result);
+  __syncwarp(tile.mask);
+  add_up(tile, row);
+  CellResult result;
+  if (tile.leads())
+    measure_of({.center = share, .reach = reach}).add_crossed(center, plane, row, result);
+  return result;
 }
 
 // By one thread, what all threads of its tile have found.

@@ -21,15 +21,15 @@ struct Task {
 // Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
 struct TaskLists {
   enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
-  static constexpr unsigned kTasks = 352;  // room in a list
-  static constexpr unsigned kNarrow = 8, kWide = 32;
+  static constexpr unsigned kTasks = 352;                               // room in a list
+  static constexpr unsigned kNarrow = 8, kWide = 32, kFlat = kSumRows;  // lanes
 
   Task tasks[kLists][kTasks];
   unsigned counts[kLists];
   unsigned next_bundle;
 
   __device__ static unsigned width(unsigned list) {
-    return list == pieces ? 1 : list == samples_narrow || list == flat_narrow ? kNarrow : kWide;
+    return list == pieces ? 1 : list == samples_wide ? kWide : list == flat_wide ? kFlat : kNarrow;
   }
   __device__ static bool is_flat(unsigned list) { return list == flat_wide || list == flat_narrow; }
   __device__ unsigned add(unsigned list, const Task& task) {
@@ -75,7 +75,6 @@ struct MeasureShared {
   unsigned pushed_count;
   std::uint32_t first_units[kThreads];  // of the chunk at which a slot's threads have looked
   TaskLists lists;
-  double terms[4][kThreads];  // of sums in the samples' order
 };
 
 }  // namespace vpm::cuda

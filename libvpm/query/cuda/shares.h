@@ -61,7 +61,7 @@ struct ShareNotes {
 // The plane that crosses a flat block.
 struct FlatBlock {
   CrossingPlane plane;
-  std::uint32_t block = 0;
+  Vec3 center;
 };
 
 // A piece further behind the surface than the tool's reach, and what it adds where the plane of a

@@ -10,7 +10,7 @@ namespace vpm::cuda {
 
 // Threads of a block, and blocks of one multiprocessor that they leave room for. Registers are what
 // limits the refined measure.
-inline constexpr unsigned kThreads = 128, kBlocksPerProcessor = 3;
+inline constexpr unsigned kThreads = 128, kBlocksPerProcessor = 2;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
 
@@ -87,7 +87,14 @@ struct Tile {
     mask = (width == 32 ? ~0U : (1U << width) - 1) << first;
   }
   __device__ bool leads() const { return lane == 0; }
-  __device__ bool any(bool value) const { return __any_sync(mask, value) != 0; }
+  // By shuffles: votes of a warp's tiles would come one after another.
+  __device__ bool any(bool value) const {
+    unsigned found = value ? 1 : 0;
+#pragma unroll 1
+    for (unsigned other = width / 2; other > 0; other /= 2)
+      found |= __shfl_xor_sync(mask, found, static_cast<int>(other), static_cast<int>(width));
+    return found != 0;
+  }
   // A bit for each lane.
   __device__ unsigned which(bool value) const {
     return __ballot_sync(mask, value) >> (threadIdx.x % 32 - lane);
@@ -101,6 +108,10 @@ struct Tile {
   }
   __device__ PixelRectangle from(const PixelRectangle& r, unsigned source) const {
     return {from(r.u0, source), from(r.v0, source), from(r.u1, source), from(r.v1, source)};
+  }
+  // From the thread so many lanes on.
+  __device__ double from_next(double value, unsigned lanes) const {
+    return __shfl_down_sync(mask, value, lanes, static_cast<int>(width));
   }
   __device__ std::int64_t sum(std::int64_t value) const {
     for (unsigned other = width / 2; other > 0; other /= 2)
@@ -129,6 +140,17 @@ __device__ void add_up(const Tile& tile, Sum& sum) {
       terms[k] += __shfl_xor_sync(tile.mask, terms[k], static_cast<int>(other),
                                   static_cast<int>(tile.width));
   }
+}
+
+// Adds up the rows of a tile's threads, those that they do not have being 0. For its first thread.
+__device__ inline void add_up(const Tile& tile, CrossedSums& row) {
+#pragma unroll 1
+  for (unsigned half = tile.width / 2; half > 0; half /= 2) {
+    row.weight += tile.from_next(row.weight, half);
+    row.moment += Vec3{tile.from_next(row.moment.x, half), tile.from_next(row.moment.y, half),
+                       tile.from_next(row.moment.z, half)};
+  }
+  row.is_cut = tile.any(row.is_cut);
 }
 
 // Many threads may add to a sum at once.
