@@ -84,7 +84,8 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
       ->capture_default_str();
   app_.add_flag("--quiet", common_.quiet, "No notes and no progress; warnings and errors stay");
   app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
-  app_.add_flag("--force", common_.force, "Overwrite outputs whatever is there now, be it an input");
+  app_.add_flag("--force", common_.force,
+                "Overwrite outputs whatever is there now, be it an input");
 }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
