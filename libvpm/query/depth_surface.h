@@ -158,10 +158,10 @@ struct DepthSurface {
   }
 
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
-  // point. Starts from the point on x's ray (`reading` is that of x), steps to the foot on its
-  // tangent plane and, where that overshoots a crease, back by halves. A step that leads away
-  // without a crease has met noise: there the normals tell the direction, not single pixels. Beside
-  // a crease, where windows of normals hold both sides, those of one side lead.
+  // point. Starts from the point on x's ray (`reading` is that of x, and known), steps to the foot
+  // on its tangent plane and, where that overshoots a crease, back by halves. A step that leads
+  // away without a crease has met noise: there the normals tell the direction, not single pixels.
+  // Beside a crease, where windows of normals hold both sides, those of one side lead.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
     Reading first = reading;
     const auto pixel_read = static_cast<std::int32_t>(reading.point);
