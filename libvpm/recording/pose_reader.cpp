@@ -58,6 +58,10 @@ PoseReader::PoseReader(const std::string& path)
   if (!file_) refuse("cannot read " + path + ": " + std::strerror(errno));
 }
 
+void PoseReader::refuse_empty() const {
+  refuse(name_ + ": no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON");
+}
+
 std::optional<std::string> PoseReader::next_line() {
   for (std::string line; errno = 0, std::getline(stream_, line);) {
     ++line_;

@@ -30,6 +30,8 @@ class PoseReader {
   std::optional<double> time() const { return time_; }
   // Where the reader is, for messages.
   std::string place() const { return name_ + ", line " + std::to_string(line_); }
+  // Says that there is no pose.
+  [[noreturn]] void refuse_empty() const;
 
   // How far the worst rotation so far was from one before it was normalised.
   double largest_deviation() const { return largest_deviation_; }

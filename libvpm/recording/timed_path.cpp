@@ -20,7 +20,7 @@ TimedPath::TimedPath(PoseReader& reader) {
     if (!times_.empty() && times_.size() != poses_.size())
       refuse(reader.place() + ": either every pose has a time or none");
   }
-  if (poses_.empty()) refuse(reader.place() + ": no pose in it");
+  if (poses_.empty()) reader.refuse_empty();
 }
 
 Pose TimedPath::at(double time) const {

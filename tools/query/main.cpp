@@ -256,8 +256,8 @@ void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
     pose = path->pose(0);
   } else if (reader) {
     pose = reader->next();
+    if (!pose) reader->refuse_empty();
   }
-  if (!pose) refuse(a.poses + ": no pose in it");
   LevelQuery query(model, options, level_request(a), prepared, *pose);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   if (coupling) {

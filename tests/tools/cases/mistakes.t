@@ -52,6 +52,14 @@ $ echo '{"output": ""}' > empty.json; vpm-pack cube.off --spheres 3 --report - -
 2> vpm-pack: error: --output: its value is empty; give one, or leave the option out
 [2]
 
+# A file without poses.
+$ echo '# none' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
+2> vpm-query: error: standard input: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
+[1]
+$ echo '0 wall.png' > list.txt; : > none.txt; vpm-query --tool cube.vpmg --frames list.txt --trajectory none.txt
+2> vpm-query: error: none.txt: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
+[1]
+
 # Numbers that are none, or out of range.
 $ vpm-pack cube.off -o new.vpmp --spheres -5
 2> vpm-pack: error: --spheres: -5 is not a whole number from 1 to 4294967294 (see vpm-pack --help)
