@@ -164,8 +164,8 @@ struct DepthSurface {
   // Beside a crease, where windows of normals hold both sides, those of one side lead.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
     Reading first = reading;
-    const auto pixel_read = static_cast<std::int32_t>(reading.point);
-    take_one_side(x, neighbors_of(pixel_read % width, pixel_read / width), first);
+    const auto i = static_cast<std::int32_t>(reading.point);
+    take_one_side(x, neighbors_of(i % width, i / width), first);
     Vec3 foot = first.foot, normal = first.normal;
     double squared = squared_norm(x - foot);
     Vec3 target = x - first.distance * normal;
