@@ -4,15 +4,12 @@
 // chunk of its units, more where chunks are few: they read the surface at four places of a patch. A
 // unit (block of a share) of a patch is classified by one to four threads, which read its pixels,
 // others by four, which look at the balls of its share, the block and the sphere. What is to be
-// measured is listed as tasks in shared memory, and warps take these: a lane for each sample, for a
-// row of samples that a plane crosses, or for each piece that is taken whole. Where no flood
-// decides what is inside, each thread adds up what it finds.
+// measured is listed as tasks in shared memory (task_measure.h).
 #pragma once
 
 #include <climits>
 
-#include "libvpm/query/cuda/share_tasks.h"
-#include "libvpm/query/cuda/shares.h"
+#include "libvpm/query/cuda/task_measure.h"
 #include "libvpm/query/patch.h"
 
 namespace vpm::cuda {
@@ -59,12 +56,13 @@ class ShareMeasure {
         part_(part),
         counts_points_(counts_points),
         shared_(shared),
-        lists_(shared.lists) {}
+        tasks_(level, surface, to_surface, space, turn, counters, part, shared.lists) {}
 
   // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
   __device__ RawResult run() {
     if (kFloods && part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
-    clear_lists();
+    clear_seen();
+    tasks_.clear();
     const Tile lanes(lanes_of_chunk());
     // Neighbours go to different warps: they often differ in what takes long.
     const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
@@ -79,9 +77,8 @@ class ShareMeasure {
       clear_seen();
       __syncthreads();
     }
-    measure_tasks();
-    count_share(words_before_, bits_added_, found_);
-    return found_;
+    tasks_.measure();
+    return tasks_.found();
   }
 
  private:
@@ -92,14 +89,7 @@ class ShareMeasure {
   // What a round adds to a list: a task of each unit in a patch, two of each other.
   static constexpr unsigned kTasksOfRound = kThreads;
   static_assert(2 * kThreads / kLanes <= kTasksOfRound && kTasksOfRound <= TaskLists::kTasks);
-  // Neighbours are measured by lanes of one tile.
-  static_assert(TaskLists::kNarrow % kNeighborSamples == 0 &&
-                TaskLists::kWide % kNeighborSamples == 0);
 
-  __device__ void clear_lists() {
-    clear_seen();
-    clear_task_lists();
-  }
   __device__ void clear_seen() {
     if (threadIdx.x == 0) shared_.seen_count = shared_.crossed_count = shared_.pushed_count = 0;
   }
@@ -203,7 +193,7 @@ class ShareMeasure {
       }
       crossed = min(crossed_count, crossed + first * (32 / lanes));
       others = min(count, others + rest * (32 / kLanes));
-      make_room();
+      tasks_.make_room(kTasksOfRound);
     }
   }
   __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
@@ -227,58 +217,18 @@ class ShareMeasure {
     const unsigned spare = warps - min(warps, crossed + warps_of(others, kLanes));
     return min(crossed + spare / 2, warps - 1);
   }
-  __device__ void make_room() {
-    __syncthreads();
-    bool room = true;
-    for (unsigned k = 0; k < TaskLists::kLists; ++k)
-      room &= lists_.counts[k] + kTasksOfRound <= TaskLists::kTasks;
-    if (__syncthreads_and(room) != 0) return;
-    measure_tasks();
-    __syncthreads();
-    clear_task_lists();
-  }
-  __device__ void clear_task_lists() {
-    if (threadIdx.x < TaskLists::kLists) lists_.counts[threadIdx.x] = 0;
-    if (threadIdx.x == TaskLists::kLists) lists_.next_bundle = 0;
-    __syncthreads();
-  }
-  __device__ Measure measure_of(const CellView& view) const {
-    return {surface_, to_surface_, level_.tool_reach, view};
-  }
-  __device__ FlatBlock& flat(unsigned list, unsigned slot) const {
-    const unsigned row = 2 * part_.part + (list == TaskLists::flat_wide);
-    return space_.flats[row * TaskLists::kTasks + slot];
-  }
-
   __device__ void classify(SeenUnit seen, bool active);
   __device__ void classify_crossed(SeenUnit seen, const Tile& lanes);
   template <class Look>
-  __device__ bool is_seen_past(const Tile& lanes, const Look& look, double depth) const;
+  __device__ bool is_share_seen_past(const Tile& lanes, const Look& look, double depth) const;
+  __device__ bool is_seen_past(const Tile& lanes, const PixelRectangle& pixels,
+                               double depth) const {
+    return !lanes.any(!surface_.is_seen_past(pixels, depth, lanes.lane, lanes.width));
+  }
   __device__ bool is_free(const Tile& lanes, Vec3 center, double radius) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
-  __device__ void note_behind(const Unit& unit, Vec3 normal);
   __device__ void list_block(const Unit& unit, Side side);
-  __device__ void list_crossed(const Unit& unit, const CrossingPlane& plane);
-  __device__ void measure_tasks();
-  __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
-  __device__ SharePiece piece(Task::Form form, std::uint32_t k) const {
-    switch (form) {
-      case Task::samples:
-        return piece_of(level_.samples[k]);
-      case Task::whole_share:
-        return piece_of(level_.share_masses[k], level_.cell(k));
-      default:
-        return piece_of(level_.block_masses[k], level_.blocks[k]);
-    }
-  }
-  __device__ void add_piece(const Tile& tile, const Measure& measure, const Task& task,
-                            std::uint32_t k, CellResult& result);
-  __device__ static unsigned first_neighbor(const Tile& tile, bool shares);
-  __device__ CellResult measure_flat(const Tile& tile, const FlatBlock& flat, const Task& task);
-  __device__ CellResult measure_pieces(const Tile& tile, const Task& task);
-  __device__ void note_task(const Task& task, const CellResult& result);
-  __device__ void count(std::uint32_t share, std::uint32_t bits);
 
   const LevelView& level_;
   const Surface& surface_;
@@ -289,9 +239,7 @@ class ShareMeasure {
   Part part_;
   bool counts_points_;
   MeasureShared& shared_;
-  TaskLists& lists_;
-  RawResult found_;
-  std::uint32_t words_before_ = 0, bits_added_ = 0;  // of the share that was noted last
+  TaskMeasure<Surface> tasks_;
 };
 
 // By the lanes of each unit, all threads of a warp together; `active`: it is to be noted.
@@ -308,7 +256,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   if (seen.side() == Side::mixed) {
     look = surface_.look_at_ball(at, ball.radius);
     own = look.side;
-    if (is_seen_past(lanes, look, at.z + ball.radius)) own = Side::free;
+    if (is_share_seen_past(lanes, look, at.z + ball.radius)) own = Side::free;
   }
   const auto side_of = [&](unsigned lane) {
     return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
@@ -346,20 +294,20 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   if (lanes.lane != Unit::of_block) return;
   if (side == Side::mixed && (flags & Unit::has_block) != 0) {
     TangentPlane tangent;
-    const Measure measure = measure_of(
+    const Measure measure = tasks_.measure_of(
         {.center = unit.balls[Unit::of_share].center, .reach = unit.balls[Unit::of_share].radius});
     const bool is_flat =
         reads_block &&
         surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         measure.is_of_one_wall(at, ball.radius, tangent, look.point);
     if (is_flat)
-      list_crossed(unit, {tangent, to_surface_});
+      tasks_.add_crossed(unit, {tangent, to_surface_});
     else
       list_block(unit, look.side);
   } else if (whole && (flags & Unit::is_compact) != 0) {
-    if (head) lists_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
+    if (head) tasks_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
   } else if (whole && (flags & Unit::has_block) != 0) {
-    lists_.add(TaskLists::pieces, {unit.share, Task::whole_block, unit.block, 1});
+    tasks_.add(TaskLists::pieces, {unit.share, Task::whole_block, unit.block, 1});
   }
 }
 
@@ -367,14 +315,13 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
 // surface without pixels, what the look says stands.)
 template <class Surface>
 template <class Look>
-__device__ bool ShareMeasure<Surface>::is_seen_past(const Tile& lanes, const Look& look,
-                                                    double depth) const {
+__device__ bool ShareMeasure<Surface>::is_share_seen_past(const Tile& lanes, const Look& look,
+                                                          double depth) const {
   constexpr unsigned kShare = Unit::of_share;
   if (!lanes.from(surface_.may_be_seen_past(look, depth), kShare)) return false;
-  const PixelRectangle of_share = lanes.from(Surface::pixels_of(look), kShare);
+  const PixelRectangle pixels = lanes.from(Surface::pixels_of(look), kShare);
   const double farthest = lanes.from(depth, kShare);
-  const bool past = surface_.is_seen_past(of_share, farthest, lanes.lane, lanes.width);
-  return !lanes.any(!past) && lanes.lane == kShare;
+  return is_seen_past(lanes, pixels, farthest) && lanes.lane == kShare;
 }
 
 template <class Surface>
@@ -388,19 +335,6 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
   space_.parents[i + 1] = i + 1;
 }
 
-// A share wholly behind the surface of its patch.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::note_behind(const Unit& unit, Vec3 normal) {
-  ToolSum sum;
-  add_whole(level_.tool_reach, level_.share_masses[unit.share], normal, sum);
-  if (kFloods) {
-    notes_.sums[unit.share] = sum;
-  } else {
-    found_.sum.add(sum);
-    if (sum.volume.value != 0) count(unit.share, kCounted);
-  }
-}
-
 // Whether a ball is, its pixels read by all lanes.
 template <class Surface>
 __device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
@@ -408,8 +342,7 @@ __device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
   const auto look = surface_.look_at_ball(center, radius);
   const double farthest = center.z + radius;
   if (!surface_.may_be_seen_past(look, farthest)) return look.side == Side::free;
-  return !lanes.any(
-      !surface_.is_seen_past(Surface::pixels_of(look), farthest, lanes.lane, lanes.width));
+  return is_seen_past(lanes, Surface::pixels_of(look), farthest);
 }
 
 // One unit of a patch that a plane crosses, by all lanes of a tile.
@@ -428,7 +361,7 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
   if (head) {
     std::uint32_t word = 0;
     if (behind) {
-      note_behind(unit, plane.normal);
+      tasks_.note_behind(unit, plane.normal);
       if (kFloods) word = kPartial;
     }
     if (counts_points_) {
@@ -438,13 +371,13 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
     }
     note_share(unit, word, distance * distance);
   }
-  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) list_crossed(unit, plane);
+  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) tasks_.add_crossed(unit, plane);
 }
 
 // A share of a patch behind the surface.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal) {
-  note_behind(unit, normal);
+  tasks_.note_behind(unit, normal);
   if (!kFloods) return;
   const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
   note_share(unit, kWhole, squared_gap(surface_.read(at)));
@@ -455,185 +388,21 @@ template <class Surface>
 __device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Side side) {
   if (side == Side::free) return;
   if (side != Side::mixed) {
-    lists_.add(TaskLists::pieces, {unit.share, Task::block, unit.block, 1});
+    tasks_.add(TaskLists::pieces, {unit.share, Task::block, unit.block, 1});
     return;
   }
   const std::uint32_t begin = unit.begin, count = unit.end - begin;
   if (count <= TaskLists::kNarrow) {
-    lists_.add(TaskLists::samples_narrow, {unit.share, Task::samples, begin, count});
+    tasks_.add(TaskLists::samples_narrow, {unit.share, Task::samples, begin, count});
     return;
   }
   // Neighbours stay together.
   constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
   const std::uint32_t half =
       count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;
-  lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
+  tasks_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin, half});
   if (half < count)
-    lists_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
-}
-
-// Lists a block where the surface is one plane, if the plane crosses it.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::list_crossed(const Unit& unit, const CrossingPlane& plane) {
-  const UnitBall& ball = unit.balls[Unit::of_block];
-  const double distance = plane.distance(ball.center);
-  const Task task{unit.share, Task::samples, unit.begin, unit.end - unit.begin};
-  if (distance > -ball.radius && distance < ball.radius) {
-    const unsigned list =
-        task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    // Member by member: the whole would be stored byte by byte.
-    FlatBlock& block = flat(list, lists_.add(list, task));
-    block.plane = plane;
-    block.center = ball.center;
-    return;
-  }
-  CellResult result;
-  if (distance <= -ball.radius)
-    add_whole(level_.tool_reach, level_.block_masses[unit.block], plane.normal, result.sum);
-  note_task(task, result);
-}
-
-// Warps take bundles of tasks of one list, as many as have room in a warp; those that take longest
-// first.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::measure_tasks() {
-  for (;;) {
-    unsigned bundle = 0;
-    if (threadIdx.x % 32 == 0) bundle = atomicAdd(&lists_.next_bundle, 1U);
-    bundle = __shfl_sync(~0U, bundle, 0);
-    unsigned list = 0;
-    for (; list < TaskLists::kLists; ++list) {
-      const unsigned tasks = 32 / TaskLists::width(list);
-      const unsigned bundles = (lists_.counts[list] + tasks - 1) / tasks;
-      if (bundle < bundles) break;
-      bundle -= bundles;
-    }
-    if (list == TaskLists::kLists) return;
-    const Tile tile(TaskLists::width(list));
-    const unsigned slot = bundle * (32 / tile.width) + threadIdx.x % 32 / tile.width;
-    if (slot < lists_.counts[list]) measure(tile, list, slot, lists_.tasks[list][slot]);
-    __syncwarp();
-  }
-}
-
-template <class Surface>
-__device__ void ShareMeasure<Surface>::measure(const Tile& tile, unsigned list, unsigned slot,
-                                               const Task& task) {
-  const CellResult result = TaskLists::is_flat(list) ? measure_flat(tile, flat(list, slot), task)
-                                                     : measure_pieces(tile, task);
-  if (tile.leads()) note_task(task, result);
-}
-
-// The result is there for all threads of the tile.
-template <class Surface>
-__device__ CellResult ShareMeasure<Surface>::measure_pieces(const Tile& tile, const Task& task) {
-  const std::uint32_t i = task.share;
-  const Measure measure = measure_of(
-      {.samples = level_.samples, .center = level_.centers[i], .reach = level_.reach[i]});
-  CellResult result;
-  for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
-    add_piece(tile, measure, task, begin + tile.lane, result);
-  __syncwarp(tile.mask);
-  add_up(tile, result.sum);
-  if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
-  result.is_far = tile.any(result.is_far);
-  return result;
-}
-
-// What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
-// whole, to whole(). Far pieces are listed. By all threads of a tile.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::add_piece(const Tile& tile, const Measure& measure,
-                                                 const Task& task, std::uint32_t k,
-                                                 CellResult& result) {
-  const bool exists = k < task.count;
-  const SharePiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
-  const typename Measure::PieceLook look = measure.look_at(piece);
-  const bool inside = exists && look.is_inside, cut = Measure::is_cut(piece, look);
-  const bool shares =
-      exists && task.form == Task::samples && Measure::shares_direction(piece, look);
-  const unsigned first = Surface::kSearchesFoot ? first_neighbor(tile, shares) : tile.lane;
-  Vec3 normal;
-  if (inside && !cut && first == tile.lane) normal = measure.closest_normal(look);
-  if (Surface::kSearchesFoot) normal = tile.from(normal, first);
-  if (!inside) return;
-  result.is_far |= look.is_far;
-  if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
-  ToolSum sum;
-  if (cut)
-    measure.add_cut(piece, look, sum);
-  else
-    measure.add_behind(piece, look, normal, surface_, sum);
-  if (look.is_far) {
-    // Member by member: the whole would be stored byte by byte.
-    FarPiece& far = space_.far[atomicAdd(&counters_.far, 1U)];
-    far.at = look.x;
-    far.foot = look.reading.foot;
-    far.sum = sum;
-    far.share = task.share;
-    return;
-  }
-  result.sum.add(sum);
-}
-
-// The first lane of those that share a direction with this one; itself where it has its own.
-template <class Surface>
-__device__ unsigned ShareMeasure<Surface>::first_neighbor(const Tile& tile, bool shares) {
-  const unsigned begin = tile.lane / kNeighborSamples * kNeighborSamples;
-  const unsigned sharing = tile.which(shares) >> begin;
-  return shares ? begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1 : tile.lane;
-}
-
-// A row of samples by each thread; what the block needs is read before the first wait, a sample
-// before the one before it is added. The result is there for the first thread of the tile.
-template <class Surface>
-__device__ CellResult ShareMeasure<Surface>::measure_flat(const Tile& tile, const FlatBlock& flat,
-                                                          const Task& task) {
-  const CrossingPlane plane = flat.plane;
-  const Vec3 center = flat.center, share = level_.centers[task.share];
-  const double reach = level_.reach[task.share];
-  const CellSample* const samples = level_.samples + task.begin;
-  CellSample next = samples[tile.lane < task.count ? tile.lane : 0];
-  CrossedSums row;
-#pragma unroll 1
-  for (std::uint32_t k = tile.lane; k < task.count;) {
-    const CellSample sample = next;
-    k += tile.width;
-    if (k < task.count) next = samples[k];
-    add_to_row(sample, plane, row, row.is_cut);
-  }
-  __syncwarp(tile.mask);
-  add_up(tile, row);
-  CellResult result;
-  if (tile.leads())
-    measure_of({.center = share, .reach = reach}).add_crossed(center, plane, row, result);
-  return result;
-}
-
-// By one thread, what all threads of its tile have found.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::note_task(const Task& task, const CellResult& result) {
-  const std::uint32_t i = task.share;
-  const bool cut = result.plane.count > 0;
-  if (kFloods) {
-    const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
-    const std::uint32_t bits = (cut ? kCut | kSummed : 0) | (partial ? kPartial : 0);
-    if (bits != 0) atomicOr(&notes_.words[i], bits);
-    add_atomically(result.sum, notes_.sums[i]);
-  } else {
-    found_.sum.add(result.sum);
-    if (cut || result.sum.volume.value != 0) count(i, kCounted | (cut ? kCut : 0));
-  }
-  if (cut) add_atomically(result.plane, notes_.planes[i]);
-}
-
-// Notes that a share counts; others may do so too. What its word was is needed only when the next
-// one comes, so that nobody waits for it.
-template <class Surface>
-__device__ void ShareMeasure<Surface>::count(std::uint32_t share, std::uint32_t bits) {
-  count_share(words_before_, bits_added_, found_);
-  words_before_ = atomicOr(&notes_.words[share], bits);
-  bits_added_ = bits;
+    tasks_.add(TaskLists::samples_wide, {unit.share, Task::samples, begin + half, count - half});
 }
 
 }  // namespace vpm::cuda
