@@ -27,6 +27,12 @@
 
 namespace vpm {
 
+// How much of an image a device makes ready.
+enum class FrameMaking {
+  whole,     // all of it, begun by prepare(): well ahead of the first query, or for many tools
+  as_asked,  // what queries reach, begun by them: nothing is waited for that is not needed
+};
+
 struct DepthFrameOptions {
   Intrinsics intrinsics;                   // pixels
   std::uint32_t width = 0, height = 0;     // pixels
@@ -34,13 +40,14 @@ struct DepthFrameOptions {
   NormalOptions normals;
   Device device;  // that of the queries; others than it copy what the CPU prepares
   PointReading points = PointReading::settled;
+  FrameMaking making = FrameMaking::whole;  // of devices
 };
 
 class FrameSlot;  // frame_slot.h
 
 class DepthFrame {
  public:
-  // Pixels that have a normal. Waits for the preparation.
+  // Pixels that have a normal. Waits for the preparation, of all of the image.
   std::size_t points() const;
 
   // The frame as the CPU prepares it, when first asked for. Throws what PreparedCloud throws.

@@ -66,6 +66,27 @@ struct DepthSurface {
   const float* measured = nullptr;  // inverse depth before noise was taken out (settled_image.h):
                                     // what was seen to be free stays free
 
+  // Devices make only what queries ask for of some images: these pixels. A query that would read
+  // others notes it in `beyond` instead, and its answer means nothing. Null for whole images.
+  PixelRectangle made;
+  volatile std::uint32_t* beyond = nullptr;
+  double left = -0.5, top = -0.5, right = 0, bottom = 0;  // of the places to look up, in pixels
+
+  void set_size(std::int32_t new_width, std::int32_t new_height) {
+    width = new_width;
+    height = new_height;
+    restrict_to({0, 0, width - 1, height - 1}, nullptr);
+  }
+  // The pixels beside those of a place are read too, and neighbours kAcross further on.
+  VPM_HD void restrict_to(const PixelRectangle& part, volatile std::uint32_t* noted) {
+    made = part;
+    beyond = noted;
+    left = made.u0 > 0 ? made.u0 + kAcross : -0.5;
+    top = made.v0 > 0 ? made.v0 + kAcross : -0.5;
+    right = made.u1 < width - 1 ? made.u1 - kAcross + 0.5 : width;
+    bottom = made.v1 < height - 1 ? made.v1 - kAcross + 0.5 : height;
+  }
+
   struct Pixel {
     double inverse_depth = 0;  // 0: unknown
     std::int32_t nearest = 0;  // index of the nearest pixel
@@ -106,7 +127,10 @@ struct DepthSurface {
     const double per_depth = 1 / x.z;
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     const double up = u + 0.5, vp = v + 0.5;
-    if (!(u >= -0.5 && v >= -0.5 && up < width && vp < height)) return {};
+    if (!(u >= left && v >= top && up < right && vp < bottom)) {
+      if (beyond != nullptr && u >= -0.5 && v >= -0.5 && up < width && vp < height) *beyond = 1;
+      return {};
+    }
     // Not negative: what is cut off rounds to the nearest.
     const std::int32_t un = static_cast<std::int32_t>(up), vn = static_cast<std::int32_t>(vp);
     const std::int32_t u0 = u < 0 ? 0 : static_cast<std::int32_t>(u),
@@ -484,10 +508,11 @@ struct DepthSurface {
     // Always nine, some of them twice: loads that do not wait for each other, and no branch.
     for (std::int32_t i = 0; i < 9; ++i)
       take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
-    const std::int32_t right = ((u1 + 1) << level) - 1, bottom = ((v1 + 1) << level) - 1;
+    const std::int32_t u_end = (u1 + 1) << level, v_end = (v1 + 1) << level;
     look.range = all;
-    look.tiles = {u0 << level, v0 << level, right < width ? right : width - 1,
-                  bottom < height ? bottom : height - 1};
+    look.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
+                  (v_end < height ? v_end : height) - 1};
+    if (beyond != nullptr && !holds(made, look.tiles)) *beyond = 1;
   }
 };
 

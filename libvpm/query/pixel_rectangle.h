@@ -7,7 +7,13 @@ namespace vpm {
 
 struct PixelRectangle {
   std::int32_t u0 = 0, v0 = 0, u1 = -1, v1 = -1;  // inclusive; empty if u0 > u1
+
+  bool operator==(const PixelRectangle&) const = default;
 };
+
+VPM_HD constexpr bool holds(const PixelRectangle& all, const PixelRectangle& part) {
+  return part.u0 >= all.u0 && part.v0 >= all.v0 && part.u1 <= all.u1 && part.v1 <= all.v1;
+}
 
 // A point off its pixel by more than this would be missed by the search over pixels; float32
 // rounding and recovered intrinsics stay far below.

@@ -147,8 +147,7 @@ void SettledImage::read_rows(const SeenImage& seen, PointReading points, int beg
 DepthSurface SettledImage::surface(const Intrinsics& k) const {
   DepthSurface surface;
   surface.k = k;
-  surface.width = width_;
-  surface.height = height_;
+  surface.set_size(width_, height_);
   surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
   surface.normals = normals_.data();
   surface.measured = measured_.data();

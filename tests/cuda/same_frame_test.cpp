@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -255,6 +256,137 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   EXPECT_GT(boundary, 100U);
 }
 
+// Images of which only what poses reach is made, more as they go on, and then the rest.
+class AsAsked : public ::testing::TestWithParam<NormalMethod> {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  }
+
+  struct Seen {
+    unsigned touched = 0, whole = 0;  // poses that touched something; that had all of the image
+  };
+
+  // A frame for each few poses.
+  static Seen expect_same(const DepthImage& image, const ToolModel& tool, int window,
+                          const std::vector<Pose>& poses, std::size_t poses_per_frame,
+                          std::uint32_t standby_us) {
+    DepthFrameOptions options = options_of(image, {GetParam(), window});
+    options.making = FrameMaking::as_asked;
+    DepthFrames frames(options);
+    const Pose camera{testing::generic_rotation(), {0.3, -3, 2}};
+    const PreparedCloud cloud(make_cloud(
+        image, {options.intrinsics, image.width, image.height, camera}, options.normals));
+    Query on_cpu(tool, {.counts_points = false});
+    Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
+    Seen seen;
+    std::optional<DepthFrame> frame;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      SCOPED_TRACE("pose " + std::to_string(k));
+      if (k % poses_per_frame == 0) frame = frame_of(frames, image, camera);
+      const Pose pose = camera * poses[k];
+      const Result expected = on_cpu.run(cloud, pose);
+      expect_equal(expected, query.run(*frame, pose));
+      seen.whole += testing::is_whole_on_device(*frame) ? 1 : 0;
+      seen.touched += expected.boundary > 0 ? 1 : 0;
+    }
+    const auto memory = testing::memory_on_device(*frame);
+    EXPECT_TRUE(memory && testing::same_bits(*memory, testing::memory_of(cloud)));
+    EXPECT_EQ(frame->points(), cloud.positions().size());
+    return seen;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Methods, AsAsked,
+                         ::testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
+                         [](const auto& method) { return test::test_name(to_text(method.param)); });
+
+// About the surface, anywhere in the image and beside it, some of them nearer to the camera.
+std::vector<Pose> poses_over(const DepthImage& image, const Intrinsics& k, int count) {
+  std::mt19937 random(7);
+  std::vector<Pose> poses;
+  for (int n = 0; n < count; ++n) {
+    const double u = uniform(random, -0.1F, 1.1F) * static_cast<float>(image.width);
+    const double v = uniform(random, -0.1F, 1.1F) * static_cast<float>(image.height);
+    const double z =
+        uniform(random, 0, 1) < 0.9F ? uniform(random, 0.7F, 1.4F) : uniform(random, -0.1F, 0.3F);
+    const Vec3 at{(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
+    const double turn = n;
+    poses.push_back({rotation_from_quaternion({0, std::sin(turn), 0.1, std::cos(turn)}), at});
+  }
+  return poses;
+}
+
+TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
+  const ToolModel tools[] = {testing::lattice_cube(0.12, 9, 3), testing::lattice_cube(0.1, 3, 9),
+                             testing::lattice_cube(0.02, 4, 3), testing::lattice_cube(0.5, 6, 3)};
+  for (const auto& [name, depths] : kImages) {
+    SCOPED_TRACE(name);
+    const DepthImage image = image_of(depths, 451, 283);
+    const auto poses = poses_over(image, options_of(image, {}).intrinsics, 60);
+    for (const ToolModel& tool : tools) {
+      const Seen seen = expect_same(image, tool, 7, poses, 1, 0);
+      expect_same(image, tool, 9, poses, 5, 0);
+      expect_same(image, tool, 7, poses, 20, 2000);
+      std::printf("%-40s reach %.2f: %2u touched, %2u had all\n", name, tool.reach, seen.touched,
+                  seen.whole);
+      if (std::string(name) == "wall") {
+        EXPECT_GT(seen.touched, 10U);
+      }
+    }
+  }
+}
+
+// Two threads ask for different parts of one frame.
+TEST_P(AsAsked, ByManyAtOnce) {
+  const DepthImage image = image_of(wall(0.05F, 0.002F), 640, 480);
+  DepthFrameOptions options = options_of(image, {GetParam()});
+  options.making = FrameMaking::as_asked;
+  DepthFrames frames(options);
+  const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
+  const auto poses = poses_over(image, options.intrinsics, 40);
+  const PreparedCloud cloud(
+      make_cloud(image, {options.intrinsics, image.width, image.height, {}}, options.normals));
+  std::vector<Result> expected;
+  Query on_cpu(tool, {.counts_points = false});
+  for (const Pose& pose : poses) expected.push_back(on_cpu.run(cloud, pose));
+  for (int round = 0; round < 10; ++round) {
+    const DepthFrame frame = frame_of(frames, image, {});
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < 3; ++t) {
+      threads.emplace_back([&, t] {
+        Query query(tool,
+                    {.device = kDevice, .counts_points = false, .standby_us = t == 2 ? 2000U : 0U});
+        for (std::size_t k = t; k < poses.size(); k += 3)
+          expect_equal(expected[k], query.run(frame, poses[k]));
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(frame.points(), cloud.positions().size());
+  }
+}
+
+TEST_P(AsAsked, AllOfItWhereMoreIsAskedFor) {
+  const DepthImage image = image_of(wall(0.05F, 0.002F), 163, 97);
+  DepthFrameOptions options = options_of(image, {GetParam()});
+  options.making = FrameMaking::as_asked;
+  DepthFrames frames(options);
+  const ToolModel tool = testing::lattice_cube(0.02, 4, 3);
+  const Pose poses[] = {{{}, {0, 0, 0.95}}, {{}, {0.02, 0.01, 0.95}}};
+  const PreparedCloud cloud(
+      make_cloud(image, {options.intrinsics, image.width, image.height, {}}, options.normals));
+  Query on_cpu(tool, {}), counting(tool, {.device = kDevice}),
+      paper_on_cpu(tool, {.measure = Measure::paper}),
+      paper(tool, {.measure = Measure::paper, .device = kDevice}),
+      small(tool, {.device = kDevice, .counts_points = false});
+  expect_equal(on_cpu.run(cloud, poses[0]), counting.run(frame_of(frames, image, {}), poses[0]));
+  expect_equal(paper_on_cpu.run(cloud, poses[0]), paper.run(frame_of(frames, image, {}), poses[0]));
+  const DepthFrame frame = frame_of(frames, image, {});
+  Result results[2];
+  small.run(frame, poses[0]);
+  counting.run(frame, poses, results);
+  expect_equal(on_cpu.run(cloud, poses[1]), results[1]);
+}
+
 // Small enough for compute-sanitizer.
 TEST(FramesOnDevice, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
@@ -277,6 +409,17 @@ TEST(FramesOnDevice, SmallQuery) {
   const Result expected = Query(tool, {}).run(frame.cloud(), pose);
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
+
+  DepthFrameOptions as_asked = options_of(image, {});
+  as_asked.making = FrameMaking::as_asked;
+  DepthFrames parts(as_asked);
+  const DepthFrame part = frame_of(parts, image, {});
+  Query of_part(tool, {.device = kDevice, .counts_points = false});
+  for (const double x : {0.0, 0.0, 0.03, 0.06}) {
+    const Pose aside{pose.rotation, pose.translation + Vec3{x, 0, 0}};
+    expect_equal(Query(tool, {.counts_points = false}).run(frame.cloud(), aside),
+                 of_part.run(part, aside));
+  }
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace vpm::cuda {
 // Where the host looks for a result, in its own memory: the words of a RawResult, each with the
 // query's number above it. So no word must wait for another on its way over the bus.
 struct Answer {
-  static constexpr unsigned kWords = 18;
+  static constexpr unsigned kWords = 20;
   static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
 
   std::uint64_t words[kWords] = {};

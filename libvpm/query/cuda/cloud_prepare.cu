@@ -1,5 +1,7 @@
 #include <math_constants.h>
 
+#include <algorithm>
+
 #include "libvpm/query/cuda/cloud_normals.h"
 #include "libvpm/query/cuda/cloud_prepare.h"
 #include "libvpm/query/cuda/device_array.h"
@@ -57,6 +59,7 @@ class TileWork {
         arrays_(tile_, SharedArrays(shared)),
         normals_(recipe, {tile_, arrays_.inverse, arrays_.depth, arrays_.ray_x, arrays_.ray_y}) {}
 
+  __device__ __forceinline__ bool is_done() const { return tile_.is_made; }
   // Does not need the image.
   __device__ __forceinline__ void find_rays() const {
     const Intrinsics& k = recipe_.camera.intrinsics;
@@ -195,18 +198,10 @@ class TileWork {
   Normals normals_;
 };
 
+// By all threads of a block. `gated`: 0.
 template <class Normals, int Radius>
-__global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
-    prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
-                  CloudAnswer* answer, unsigned sequence) {
-  extern __shared__ double2 shared_memory[];
-  __shared__ unsigned gated, points, doubtful;
-  const TileWork<Normals, Radius> work(recipe, shared_memory);
-  if (threadIdx.x == 0) gated = points = doubtful = 0;
-  work.find_rays();
-#if __CUDA_ARCH__ >= 900
-  cudaGridDependencySynchronize();
-#endif
+__device__ __forceinline__ void make_tile(const TileWork<Normals, Radius>& work, unsigned& gated,
+                                          unsigned& points, unsigned& doubtful) {
   const bool has_holes = __syncthreads_or(work.load()) != 0;
   work.sum_columns();
   if (has_holes) work.close_once();
@@ -218,6 +213,19 @@ __global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
   work.place_points(points, doubtful);
   __syncthreads();
   work.write_points();
+}
+
+template <class Normals, int Radius>
+__global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
+    prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
+                  CloudAnswer* answer, unsigned sequence) {
+  extern __shared__ double2 shared_memory[];
+  __shared__ unsigned gated, points, doubtful;
+  const TileWork<Normals, Radius> work(recipe, shared_memory);
+  if (threadIdx.x == 0) gated = points = doubtful = 0;
+  work.find_rays();
+  wait_for_last();
+  if (!work.is_done()) make_tile(work, gated, points, doubtful);
   if (threadIdx.x != 0) return;
   if (points > 0) atomicAdd(&counters->points, points);
   if (doubtful > 0) atomicAdd(&counters->doubtful, doubtful);
@@ -228,13 +236,7 @@ __global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
   const volatile CloudCounters& all = *counters;
   *static_cast<volatile std::uint64_t*>(&answer->doubtful) = number | all.doubtful;
   *static_cast<volatile std::uint64_t*>(&answer->points) = number | all.points;
-  *counters = CloudCounters{};
-}
-
-__device__ void put(float* values, const float (&group)[kPixelsAtOnce]) {
-  auto* const four = reinterpret_cast<float4*>(values);
-  four[0] = {group[0], group[1], group[2], group[3]};
-  four[1] = {group[4], group[5], group[6], group[7]};
+  counters->done = 0;
 }
 
 // The coarse tiles begin with what adds nothing.
@@ -247,35 +249,66 @@ __device__ void clear_tiles(const CloudRoom& room, const Camera& camera, std::si
   }
 }
 
-__global__ void __launch_bounds__(kTileThreads)
-    take(const __grid_constant__ DepthSource source, float* depth, float* inverse,
-         std::size_t pixels, const __grid_constant__ CloudRoom room,
-         const __grid_constant__ Camera camera) {
-  const std::size_t group = std::size_t{blockIdx.x} * kTileThreads + threadIdx.x;
-  const std::size_t first = group * kPixelsAtOnce;
-  float z[kPixelsAtOnce], s[kPixelsAtOnce];
-  if (first < pixels) {
-    if (source.counts != nullptr) {
-      const uint4 words = *reinterpret_cast<const uint4*>(source.counts + first);
-      const unsigned pairs[] = {words.x, words.y, words.z, words.w};
-#pragma unroll
-      for (unsigned k = 0; k < kPixelsAtOnce; ++k) {
-        const unsigned count = (k % 2 == 0 ? pairs[k / 2] : pairs[k / 2] >> 16) & 0xffffU;
-        z[k] = usable_depth(depth_in_metres(count, source.counts_per_metre));
-      }
-    } else {
-      const auto* const four = reinterpret_cast<const float4*>(source.metres + first);
-      const float4 a = four[0], b = four[1];
-      const float metres[] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
-#pragma unroll
-      for (unsigned k = 0; k < kPixelsAtOnce; ++k) z[k] = usable_depth(metres[k]);
-    }
-#pragma unroll
-    for (unsigned k = 0; k < kPixelsAtOnce; ++k) s[k] = inverse_of_usable(z[k]);
-    put(depth + first, z);
-    put(inverse + first, s);
+constexpr unsigned kTakeThreads = 256;  // of a block
+
+// Which pixels are brought: those of `wanted`, row by row, that `taken` does not hold.
+struct ImagePart {
+  PixelRectangle wanted, taken;
+
+  // Groups of pixels that have some in a row; they go on from row to row, so some of them have
+  // pixels in two.
+  __host__ __device__ unsigned groups_per_row() const {
+    return static_cast<unsigned>(wanted.u1 - wanted.u0) / kPixelsAtOnce + 2;
   }
-  clear_tiles(room, camera, group, std::size_t{gridDim.x} * kTileThreads);
+  __host__ __device__ unsigned rows() const {
+    return static_cast<unsigned>(wanted.v1 - wanted.v0 + 1);
+  }
+  __device__ bool has_taken(std::int64_t u, std::int64_t v) const {
+    return v >= taken.v0 && v <= taken.v1 && u >= taken.u0 && u + kPixelsAtOnce - 1 <= taken.u1;
+  }
+};
+
+__device__ void take_group(const DepthSource& source, std::size_t first, float* depth,
+                           float* inverse) {
+  float2 metres;
+  if (source.counts != nullptr) {
+    const ushort2 counts = *reinterpret_cast<const ushort2*>(source.counts + first);
+    metres = {depth_in_metres(counts.x, source.counts_per_metre),
+              depth_in_metres(counts.y, source.counts_per_metre)};
+  } else {
+    metres = *reinterpret_cast<const float2*>(source.metres + first);
+  }
+  const float2 usable{usable_depth(metres.x), usable_depth(metres.y)};
+  *reinterpret_cast<float2*>(depth + first) = usable;
+  *reinterpret_cast<float2*>(inverse + first) = {inverse_of_usable(usable.x),
+                                                 inverse_of_usable(usable.y)};
+}
+
+__global__ void __launch_bounds__(kTakeThreads)
+    take(const __grid_constant__ DepthSource source, float* depth, float* inverse,
+         const __grid_constant__ ImagePart part, const __grid_constant__ Camera camera,
+         const __grid_constant__ CloudRoom room, CloudCounters* counters, bool is_first) {
+  const unsigned thread = blockIdx.x * kTakeThreads + threadIdx.x;
+  const unsigned row = thread / part.groups_per_row(), in_row = thread % part.groups_per_row();
+  if (row < part.rows()) {
+    const std::int64_t v = part.wanted.v0 + row, begin = v * camera.width;
+    const std::int64_t first = ((begin + part.wanted.u0) / kPixelsAtOnce + in_row) * kPixelsAtOnce;
+    if (first <= begin + part.wanted.u1 && !part.has_taken(first - begin, v))
+      take_group(source, static_cast<std::size_t>(first), depth, inverse);
+  }
+  if (!is_first) return;
+  clear_tiles(room, camera, thread, std::size_t{gridDim.x} * kTakeThreads);
+  if (thread == 0) counters->points = counters->doubtful = 0;
+}
+
+// The pixels of some tiles and of the margin that their normals are made of. Empty if there are no
+// tiles.
+PixelRectangle with_margin(const TileRectangle& tiles, const CloudRecipe& recipe) {
+  if (tiles.count() == 0) return {};
+  const int margin = TileFrame<0>::margin_of(recipe.window / 2);
+  return {std::max(tiles.u0 * kTileWidth - margin, 0), std::max(tiles.v0 * kTileHeight - margin, 0),
+          std::min(tiles.u1 * kTileWidth + margin, static_cast<int>(recipe.camera.width)) - 1,
+          std::min(tiles.v1 * kTileHeight + margin, static_cast<int>(recipe.camera.height)) - 1};
 }
 
 using Kernel = void (*)(CloudRecipe, CloudCounters*, CloudAnswer*, unsigned);
@@ -312,11 +345,12 @@ constexpr std::size_t kSharedBytes = 48 * 1024;
 
 }  // namespace
 
-void take_image(const DepthSource& source, float* depth, float* inverse, std::size_t pixels,
-                const CloudRoom& room, const Camera& camera, cudaStream_t stream) {
-  const std::size_t groups = (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce;
-  const auto blocks = static_cast<unsigned>((groups + kTileThreads - 1) / kTileThreads);
-  take<<<blocks, kTileThreads, 0, stream>>>(source, depth, inverse, pixels, room, camera);
+void take_image(const DepthSource& source, float* depth, float* inverse, const CloudRecipe& recipe,
+                CloudCounters* counters, cudaStream_t stream) {
+  const ImagePart part{with_margin(recipe.wanted, recipe), with_margin(recipe.made, recipe)};
+  const unsigned threads = part.rows() * part.groups_per_row();
+  take<<<(threads + kTakeThreads - 1) / kTakeThreads, kTakeThreads, 0, stream>>>(
+      source, depth, inverse, part, recipe.camera, recipe.room, counters, recipe.made.count() == 0);
   check(cudaGetLastError());
 }
 

@@ -21,19 +21,19 @@ struct CloudAnswer {
   std::uint64_t doubtful = 0;  // points that a PreparedCloud might refuse
 };
 
-// All 0 between launches: the last block clears them.
 struct CloudCounters {
   unsigned points = 0, doubtful = 0;
-  unsigned done = 0;  // blocks
+  unsigned done = 0;  // blocks of a launch; 0 between launches
 };
 
 // Pixels that one thread takes; images and what is made of them have room for the last thread's.
-inline constexpr unsigned kPixelsAtOnce = 8;
+inline constexpr unsigned kPixelsAtOnce = 2;
 
-// Brings the image to the device: depths and their inverses, as recipes want them. Clears what
-// settle_on_device() (cloud_settle.h) adds up in `room`.
-void take_image(const DepthSource& source, float* depth, float* inverse, std::size_t pixels,
-                const CloudRoom& room, const Camera& camera, cudaStream_t stream);
+// Brings the part of the image that the tiles of a recipe are made of to the device: depths and
+// their inverses, as recipes want them. With the first tiles of an image it clears what
+// settle_on_device() (cloud_settle.h) adds up, and the counters.
+void take_image(const DepthSource& source, float* depth, float* inverse, const CloudRecipe& recipe,
+                CloudCounters* counters, cudaStream_t stream);
 
 // What the current device can do with windows of this size.
 struct Preparation {
@@ -42,7 +42,8 @@ struct Preparation {
 };
 Preparation preparation_of(const NormalOptions& options);
 
-// After take_image() in the same stream. The answer comes when the last normal is known.
+// After take_image() in the same stream. The answer, of all tiles made so far, comes when the last
+// normal is known.
 void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream);

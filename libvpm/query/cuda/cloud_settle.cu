@@ -30,6 +30,8 @@ class SettleWork {
   __device__ SettleWork(const CloudRecipe& recipe, SharedTile& shared)
       : recipe_(recipe), tile_(recipe), shared_(shared) {}
 
+  __device__ bool is_done() const { return tile_.is_made; }
+
   // A row by each warp. Zeros outside of the image.
   __device__ void load() const {
     constexpr int kWarps = kTileThreads / 32;
@@ -162,9 +164,8 @@ __global__ void __launch_bounds__(kTileThreads)
     settle_cloud(const __grid_constant__ CloudRecipe recipe) {
   __shared__ SharedTile shared;
   const SettleWork work(recipe, shared);
-#if __CUDA_ARCH__ >= 900
-  cudaGridDependencySynchronize();
-#endif
+  wait_for_last();
+  if (work.is_done()) return;
   work.load();
   __syncthreads();
   if (recipe.points == PointReading::settled) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 #include "libvpm/core/lengths.h"
@@ -33,16 +32,25 @@ constexpr std::size_t whole_groups(std::size_t pixels) {
   return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
 }
 
-std::uint64_t next_serial() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
+// Those that hold some of these pixels.
+TileRectangle tiles_of(const PixelRectangle& pixels) {
+  if (pixels.u0 > pixels.u1 || pixels.v0 > pixels.v1) return {};
+  return {pixels.u0 / kTileWidth, pixels.v0 / kTileHeight, pixels.u1 / kTileWidth + 1,
+          pixels.v1 / kTileHeight + 1};
+}
+
+// The least that holds both.
+TileRectangle united(const TileRectangle& a, const TileRectangle& b) {
+  if (a.count() == 0) return b;
+  if (b.count() == 0) return a;
+  return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
 }
 
 }  // namespace
 
 CloudSlot::CloudSlot(const DepthFrameOptions& options)
     : FrameSlot(options),
-      image_(whole_groups(pixels()) * (image_bytes() / pixels()) / sizeof(uint4)),
+      image_(whole_groups(pixels()) * (image_bytes() / pixels())),
       depth_(whole_groups(pixels())),
       inverse_(whole_groups(pixels())),
       seen_(pixels()),
@@ -54,26 +62,48 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
 }
 
 CloudSlot::~CloudSlot() {
-  cudaStreamSynchronize(stream_.get());
+  cudaEventSynchronize(end_->get());
 }
 
 void CloudSlot::begin() {
   const CurrentDevice current(options().device.first());
   is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
-  serial_ = next_serial();
   if (!is_plain_) {
     cloud();  // refuses what is to be refused
     return;
   }
   cloud_.stand_at(camera().to_world);
-  const OtherWork other;
-  take(stream_.get());
-  make(stream_.get());
-  check(cudaEventRecord(ready_->get(), stream_.get()));
-  other.goes_on_until(ready_);
+  made_ = {};
+  is_there_ = true;
+  if (options().making == FrameMaking::whole) require_all();
 }
 
-void CloudSlot::take(cudaStream_t stream) {
+CloudSlot::Part CloudSlot::require_all() const {
+  return require(pixels_of(all_tiles()), stream_.get());
+}
+
+CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t stream) const {
+  const std::lock_guard lock(making_);
+  if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
+  const TileRectangle wanted = united(made_, tiles_of(pixels));
+  if (!(wanted == made_)) {
+    const OtherWork other;
+    take(wanted, stream);
+    make(wanted, stream);
+    check(cudaEventRecord(end_->get(), stream));
+    other.goes_on_until(end_);
+    made_ = wanted;
+    is_there_ = false;
+  }
+  return {pixels_of(made_), made_ == all_tiles(), is_there_};
+}
+
+bool CloudSlot::is_there() const {
+  is_there_ = is_there_ || has_happened(*end_);
+  return is_there_;
+}
+
+void CloudSlot::take(const TileRectangle& wanted, cudaStream_t stream) const {
   DepthSource source;
   if (options().counts_per_metre) {
     source.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
@@ -81,24 +111,52 @@ void CloudSlot::take(cudaStream_t stream) {
   } else {
     source.metres = reinterpret_cast<const float*>(image_.device());
   }
-  take_image(source, depth_.get(), inverse_.get(), pixels(), cloud_.room(), camera(), stream);
+  CloudRecipe normals = recipe();
+  normals.wanted = with_neighbors(wanted);
+  normals.made = with_neighbors(made_);
+  take_image(source, depth_.get(), inverse_.get(), normals, counters_.get(), stream);
 }
 
-void CloudSlot::make(cudaStream_t stream, Vec3f* estimated) {
-  CloudRecipe from_image = recipe();
-  from_image.room.estimated = estimated;
-  prepare_on_device(from_image, options().normals.method, preparation_, counters_.get(),
+// A tile is settled from what was prepared of it and of those around it.
+void CloudSlot::make(const TileRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
+  CloudRecipe normals = recipe();
+  normals.room.estimated = estimated;
+  normals.wanted = with_neighbors(wanted);
+  normals.made = with_neighbors(made_);
+  prepare_on_device(normals, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
-  settle_on_device(from_image, preparation_.overlaps, stream);
+  CloudRecipe surface = recipe();
+  surface.wanted = wanted;
+  surface.made = made_;
+  settle_on_device(surface, preparation_.overlaps, stream);
+}
+
+TileRectangle CloudSlot::all_tiles() const {
+  return tiles_of(
+      {0, 0, static_cast<int>(camera().width) - 1, static_cast<int>(camera().height) - 1});
+}
+
+TileRectangle CloudSlot::with_neighbors(const TileRectangle& tiles) const {
+  if (tiles.count() == 0) return {};
+  const TileRectangle all = all_tiles();
+  return {std::max(tiles.u0 - 1, 0), std::max(tiles.v0 - 1, 0), std::min(tiles.u1 + 1, all.u1),
+          std::min(tiles.v1 + 1, all.v1)};
+}
+
+PixelRectangle CloudSlot::pixels_of(const TileRectangle& tiles) const {
+  const DepthSurface& surface = cloud_.depth_surface();
+  return {tiles.u0 * kTileWidth, tiles.v0 * kTileHeight,
+          std::min(tiles.u1 * kTileWidth, surface.width) - 1,
+          std::min(tiles.v1 * kTileHeight, surface.height) - 1};
 }
 
 std::vector<Vec3f> CloudSlot::estimate_normals() {
   const CurrentDevice current(options().device.first());
   const DeviceArray<Vec3f> estimated(pixels());
   const OtherWork other;
-  take(stream_.get());
-  make(stream_.get(), estimated.get());
+  take(all_tiles(), stream_.get());
+  make(all_tiles(), stream_.get(), estimated.get());
   check(cudaStreamSynchronize(stream_.get()));
   std::vector<Vec3f> normals(pixels());
   check(cudaMemcpy(normals.data(), estimated.get(), normals.size() * sizeof(Vec3f),
@@ -123,25 +181,36 @@ CloudRecipe CloudSlot::recipe() const {
           cloud_.room()};
 }
 
-bool CloudSlot::is_answered() const {
+bool CloudSlot::is_answered(unsigned sequence) const {
   const auto* const answer = static_cast<const volatile CloudAnswer*>(answer_.host());
-  return answer->points >> 32 == sequence_ && answer->doubtful >> 32 == sequence_;
+  // Numbers begin anew some day.
+  const auto is_reached = [&](std::uint64_t word) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(word >> 32) - sequence) >= 0;
+  };
+  return is_reached(answer->points) && is_reached(answer->doubtful);
 }
 
 unsigned CloudSlot::doubtful() const {
   return static_cast<unsigned>(static_cast<const volatile CloudAnswer*>(answer_.host())->doubtful);
 }
 
+// For the parts that are wanted so far.
 void CloudSlot::wait() const {
   if (!is_plain_) return;
-  for (unsigned looks = 1; !is_answered(); ++looks) {
+  const unsigned sequence = [&] {
+    const std::lock_guard lock(making_);
+    return sequence_;
+  }();
+  for (unsigned looks = 1; !is_answered(sequence); ++looks) {
     if (looks % kLooksPerCheck != 0) continue;
-    if (is_done(cudaStreamQuery(stream_.get())) && !is_answered())
+    if (has_happened(*end_) && !is_answered(sequence))
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
   }
 }
 
 std::size_t CloudSlot::points() const {
+  const CurrentDevice current(options().device.first());
+  if (is_plain_) require_all();
   wait();
   if (!is_plain_ || !is_sound()) return cloud().positions().size();
   return static_cast<std::uint32_t>(

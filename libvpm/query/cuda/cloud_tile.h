@@ -11,6 +11,24 @@
 
 namespace vpm::cuda {
 
+inline constexpr int kTileWidth = 32, kTileHeight = 16, kTilePixels = kTileWidth * kTileHeight;
+inline constexpr unsigned kTileThreads = 256;
+// Coarser levels whose tiles lie whole in one tile of the kernel.
+inline constexpr int kTileLevels = 4;
+static_assert(kTileHeight == 1 << kTileLevels && kTileWidth % kTileHeight == 0);
+
+// Some of an image's tiles; those of u1 and v1 are no more among them.
+struct TileRectangle {
+  int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
+
+  __host__ __device__ int columns() const { return u1 - u0; }
+  __host__ __device__ int count() const { return columns() * (v1 - v0); }
+  __host__ __device__ bool holds(int u, int v) const {
+    return u >= u0 && u < u1 && v >= v0 && v < v1;
+  }
+  bool operator==(const TileRectangle&) const = default;
+};
+
 // An image and how its cloud is made.
 struct CloudRecipe {
   const float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
@@ -24,13 +42,8 @@ struct CloudRecipe {
   Vec3f* seen = nullptr;  // normals of the pixels, camera axes, turned back from the world's
   PointReading points = PointReading::settled;
   CloudRoom room;
+  TileRectangle wanted, made;  // a launch makes what is wanted and was not made before
 };
-
-inline constexpr int kTileWidth = 32, kTileHeight = 16, kTilePixels = kTileWidth * kTileHeight;
-inline constexpr unsigned kTileThreads = 256;
-// Coarser levels whose tiles lie whole in one tile of the kernel.
-inline constexpr int kTileLevels = 4;
-static_assert(kTileHeight == 1 << kTileLevels && kTileWidth % kTileHeight == 0);
 
 // Where a block's tile lies, and its image with a margin. `Radius`: of the windows; 0 if it is
 // known at run time only.
@@ -38,14 +51,18 @@ template <int Radius>
 class TileFrame {
  public:
   int u0, v0, width, height;  // width, height: of the image
+  bool is_made;               // before this launch
 
   __device__ explicit TileFrame(const CloudRecipe& recipe)
       : width(static_cast<int>(recipe.camera.width)),
         height(static_cast<int>(recipe.camera.height)),
         radius_(recipe.window / 2) {
-    const unsigned per_row = static_cast<unsigned>((width + kTileWidth - 1) / kTileWidth);
-    u0 = static_cast<int>(blockIdx.x % per_row) * kTileWidth;
-    v0 = static_cast<int>(blockIdx.x / per_row) * kTileHeight;
+    const auto per_row = static_cast<unsigned>(recipe.wanted.columns());
+    const int u = recipe.wanted.u0 + static_cast<int>(blockIdx.x % per_row);
+    const int v = recipe.wanted.v0 + static_cast<int>(blockIdx.x / per_row);
+    is_made = recipe.made.holds(u, v);
+    u0 = u * kTileWidth;
+    v0 = v * kTileHeight;
   }
   __host__ __device__ static constexpr int margin_of(int radius) {
     return radius > kFillPasses ? radius : kFillPasses;
@@ -99,17 +116,20 @@ class SharedArrays {
   unsigned char* next_;
 };
 
-// A block for each tile of the image. `overlaps`: it may be launched before what comes before it in
-// the stream is done, which it waits for itself.
+// Of a kernel that was launched before what comes before it in the stream is done: until all of
+// that is.
+__device__ __forceinline__ void wait_for_last() {
+#if __CUDA_ARCH__ >= 900
+  cudaGridDependencySynchronize();
+#endif
+}
+
+// A block for each tile that is wanted. `overlaps`: the kernel waits for the last one itself.
 template <class... Parameters, class... Arguments>
 void launch_over_tiles(const CloudRecipe& recipe, void (*kernel)(Parameters...), std::size_t shared,
                        bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
-  const auto tiles_along = [](std::uint32_t size, int tile) {
-    return (size + static_cast<unsigned>(tile) - 1) / static_cast<unsigned>(tile);
-  };
   cudaLaunchConfig_t launch{};
-  launch.gridDim =
-      tiles_along(recipe.camera.width, kTileWidth) * tiles_along(recipe.camera.height, kTileHeight);
+  launch.gridDim = static_cast<unsigned>(recipe.wanted.count());
   launch.blockDim = kTileThreads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;

@@ -38,14 +38,19 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
 
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
-  const RawResult raw = answer(frame);
+  if (frame_ != nullptr) part_ = frame_->require(pixels_read(frame), stream());
+  RawResult raw = answer(frame);
+  if (raw.beyond != 0) {
+    part_ = frame_->require(whole_image(), stream());
+    raw = answer(frame);
+  }
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
 }
 
 RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
   const unsigned sequence = sequence_ + 1;
-  if (standby_ && is_frame_ready()) {  // otherwise a stream waits for it
+  if (standby_ && part_.is_there) {  // otherwise the stream comes to it
     if (const void* const launch = standing_launch(answer_.device())) {
       end_launched();
       const RawResult raw = standby_->ask({launch, frame.to_surface, sequence, standby_us_},
@@ -56,17 +61,9 @@ RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
   }
   const OtherWork other;
   has_launched_ = true;
-  wait_for_frame();
   launch(frame, answer_.device(), sequence);
   sequence_ = sequence;
   return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
-}
-
-bool MeasureOnDevice::is_frame_ready() {
-  if (!has_new_frame()) return true;
-  if (!has_happened(frame_->ready())) return false;
-  awaited_ = frame_->serial();
-  return true;
 }
 
 void MeasureOnDevice::end_launched() {
@@ -75,16 +72,10 @@ void MeasureOnDevice::end_launched() {
   has_launched_ = false;
 }
 
-void MeasureOnDevice::wait_for_frame() {
-  if (!has_new_frame()) return;
-  check(cudaStreamWaitEvent(stream_.get(), frame_->ready().get()));
-  awaited_ = frame_->serial();
-}
-
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
   if (!batch_) batch_ = std::make_unique<Batch>();
   const OtherWork other;
-  wait_for_frame();
+  if (frame_ != nullptr) part_ = frame_->require(whole_image(), stream());
   for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
     const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
     check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
@@ -114,6 +105,7 @@ void MeasureOnDevice::bring(const PreparedCloud& cloud) {
     serial_ = cloud.serial();
   }
   frame_ = nullptr;
+  part_ = {};
   cloud_ = copy_.get();
 }
 

@@ -36,6 +36,9 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
   // No point further from the centre of mass matters.
   virtual double reach() const = 0;
+  // The pixels that one query reads of an image, as far as that is known beforehand; what more it
+  // asks for, it says (RawResult::beyond).
+  virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return whole_image(); }
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
@@ -48,6 +51,8 @@ class MeasureOnDevice : public DeviceMeasure {
 
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
+  // What there is of that cloud when the stream comes to the query.
+  const CloudSlot::Part& part() const { return part_; }
   // Of a launch that answers one query.
   unsigned blocks() const { return blocks_; }
   cudaStream_t stream() const { return stream_.get(); }
@@ -68,11 +73,11 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
-  bool has_new_frame() const { return frame_ != nullptr && frame_->serial() != awaited_; }
-  bool is_frame_ready();
+  PixelRectangle whole_image() const {
+    return {0, 0, cloud_->frame().width - 1, cloud_->frame().height - 1};
+  }
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();
-  void wait_for_frame();
   void ask(std::span<const Pose> poses, std::span<Result> results);
 
   int device_;
@@ -85,8 +90,8 @@ class MeasureOnDevice : public DeviceMeasure {
   std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
   std::uint64_t serial_ = 0;
   const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
-  std::uint64_t awaited_ = 0;  // the last frame that the stream has waited for, or that was ready
-  bool has_launched_ = false;  // a query that may not have ended
+  CloudSlot::Part part_;              // of that, what they may read
+  bool has_launched_ = false;         // a query that may not have ended
   std::shared_ptr<Standby> standby_;
   std::uint32_t standby_us_ = 0;
   const DeviceCloud* cloud_ = nullptr;  // of the queries under way

@@ -101,7 +101,8 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
       edges_(edges_of(level.graph)),
       edge_begin_(edge_begins(level.graph)) {
   std::vector<Chunk> chunks;
-  units_ = DeviceArray<Unit>(units_of(tool, level, clusters, chunks));
+  const std::vector<Unit> units = units_of(tool, level, clusters, chunks);
+  units_ = DeviceArray<Unit>(units);
   chunks_ = DeviceArray<Chunk>(chunks);
   view_.count = level.sphere_count;
   view_.chunks = chunks_.get();
@@ -126,6 +127,11 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.center_of_mass = tool.center_of_mass;
   view_.tool_reach = tool.reach;
   view_.spheres_reach = reach_of_spheres(tool, level);
+  for (const Chunk& chunk : chunks) looks_.add(chunk.ball.center, chunk.ball.radius);
+  for (const Unit& unit : units) {
+    for (const Unit::Ball ball : {Unit::of_share, Unit::of_block})
+      looks_.add(unit.balls[ball].center, unit.balls[ball].radius);
+  }
 }
 
 DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
@@ -140,8 +146,7 @@ DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
 DeviceCloud::DeviceCloud(const Camera& camera) {
   DepthSurface image;
   image.k = camera.intrinsics;
-  image.width = static_cast<std::int32_t>(camera.width);
-  image.height = static_cast<std::int32_t>(camera.height);
+  image.set_size(static_cast<std::int32_t>(camera.width), static_cast<std::int32_t>(camera.height));
   image.levels = 1;
   while (image.levels < DepthSurface::kMaxLevels &&
          ((std::max(image.width, image.height) - 1) >> (image.levels - 1)) > 0)

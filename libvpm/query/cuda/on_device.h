@@ -6,6 +6,7 @@
 #include "libvpm/query/cuda/cloud_room.h"
 #include "libvpm/query/cuda/device_array.h"
 #include "libvpm/query/cuda/views.h"
+#include "libvpm/query/image_part.h"
 #include "libvpm/query/prepared_cloud.h"
 
 namespace vpm::cuda {
@@ -32,6 +33,8 @@ class DeviceLevel {
   DeviceLevel(const ToolModel& tool, const Level& level)
       : DeviceLevel(tool, level, cluster_shares(tool, level)) {}
   const LevelView& view() const { return view_; }
+  // By queries that count no points.
+  const LookSizes& looks() const { return looks_; }
 
  private:
   DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters);
@@ -48,6 +51,7 @@ class DeviceLevel {
   DeviceArray<Edge> edges_;
   DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;
+  LookSizes looks_;
 };
 
 class DeviceCloud {

@@ -290,7 +290,7 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
     if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), frame, answer, sequence);
+      launch_on(surface_there(), frame, answer, sequence);
     else
       launch_on(cloud().disk_surface(), frame, answer, sequence);
   }
@@ -302,6 +302,11 @@ class RefinedOnDevice : public MeasureOnDevice {
       launch_on(cloud().disk_surface(), poses, count, results);
   }
   double reach() const override { return level_.view().spheres_reach; }
+  PixelRectangle pixels_read(const PoseFrame& frame) const override {
+    if (counts_points_) return MeasureOnDevice::pixels_read(frame);
+    return part_read(cloud().depth_surface(), frame.to_surface.translation, reach(),
+                     level_.looks().all());
+  }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().notes[sequence % 2].words;
   }
@@ -315,18 +320,25 @@ class RefinedOnDevice : public MeasureOnDevice {
   // kernel of their own. The arguments of the last clouds are kept: frames come by turns.
   const void* standing_launch(Answer* answer) override {
     if (!cloud().frame().is_organised) return nullptr;
+    const DepthSurface surface = surface_there();
+    const Known known{cloud().serial(), surface.made};
     for (std::size_t k = 0; k < kClouds; ++k)
-      if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
+      if (clouds_on_device_[k] == known) return arguments_.get() + k;
     if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
     const std::size_t k = next_cloud_++ % kClouds;
-    const RefinedLaunch<DepthSurface> arguments = arguments_of(cloud().depth_surface(), answer);
-    clouds_on_device_[k] = 0;
+    const RefinedLaunch<DepthSurface> arguments = arguments_of(surface, answer);
+    clouds_on_device_[k] = {};
     check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
     finish_transfers();
-    clouds_on_device_[k] = cloud().serial();
+    clouds_on_device_[k] = known;
     return arguments_.get() + k;
   }
 
+  DepthSurface surface_there() const {
+    DepthSurface surface = cloud().depth_surface();
+    if (!part().is_whole) surface.restrict_to(part().made, &totals_.get()->result.beyond);
+    return surface;
+  }
   template <class Surface>
   RefinedLaunch<Surface> arguments_of(const Surface& surface, Answer* answer) const {
     // Few points lie in reach: they take less than a large level's spheres.
@@ -364,9 +376,15 @@ class RefinedOnDevice : public MeasureOnDevice {
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
-  static constexpr std::size_t kClouds = 4;  // whose arguments for standing_launch() are kept
+  // A cloud whose arguments for standing_launch() are kept, and what was there of it.
+  struct Known {
+    std::uint64_t serial = 0;
+    PixelRectangle made;
+    bool operator==(const Known&) const = default;
+  };
+  static constexpr std::size_t kClouds = 4;
   DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
-  std::uint64_t clouds_on_device_[kClouds] = {};
+  Known clouds_on_device_[kClouds];
   std::size_t next_cloud_ = 0;
 };
 

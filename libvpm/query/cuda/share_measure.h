@@ -254,7 +254,8 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   decltype(surface_.look_at_ball(at, ball.radius)) look;
   Side own = look.side;
   if (seen.side() == Side::mixed) {
-    look = surface_.look_at_ball(at, ball.radius);
+    if (lanes.lane < Unit::of_sphere || counts_points_)  // spheres hold points
+      look = surface_.look_at_ball(at, ball.radius);
     own = look.side;
     if (is_share_seen_past(lanes, look, at.z + ball.radius)) own = Side::free;
   }

@@ -59,17 +59,20 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
     slots.push_back(std::make_unique<device::CloudSlot>(options));
     fill(*slots.back(), sensor.depth.depth);
   }
+  const device::TileRectangle all = slots[0]->all_tiles();
   const std::size_t bytes = slots[0]->image_bytes();
   const device::DeviceArray<std::byte> copy(bytes * kCopies);
   const double copying = time_of(stream.get(), [&](std::size_t k) {
     device::check(cudaMemcpyAsync(copy.get() + k * bytes, slots[k]->image(), bytes,
                                   cudaMemcpyHostToDevice, stream.get()));
   });
-  const double taking = time_of(stream.get(), [&](std::size_t k) { slots[k]->take(stream.get()); });
-  const double making = time_of(stream.get(), [&](std::size_t k) { slots[k]->make(stream.get()); });
+  const double taking =
+      time_of(stream.get(), [&](std::size_t k) { slots[k]->take(all, stream.get()); });
+  const double making =
+      time_of(stream.get(), [&](std::size_t k) { slots[k]->make(all, stream.get()); });
   const double both = time_of(stream.get(), [&](std::size_t k) {
-    slots[k]->take(stream.get());
-    slots[k]->make(stream.get());
+    slots[k]->take(all, stream.get());
+    slots[k]->make(all, stream.get());
   });
   return {{"method", to_text(method)},
           {"image", in_counts ? "counts" : "metres"},
