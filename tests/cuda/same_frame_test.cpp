@@ -327,10 +327,11 @@ TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
       const Seen seen = expect_same(image, tool, 7, poses, 1, 0);
       expect_same(image, tool, 9, poses, 5, 0);
       expect_same(image, tool, 7, poses, 20, 2000);
-      std::printf("%-40s reach %.2f: %2u touched, %2u had all\n", name, tool.reach, seen.touched,
-                  seen.whole);
-      if (std::string(name) == "wall") {
+      if (std::string(name) == "wall" && tool.reach > 0.05) {
         EXPECT_GT(seen.touched, 10U);
+      }
+      if (tool.reach < 0.2) {  // deep behind a wall the nearest place of it may be anywhere
+        EXPECT_LT(seen.whole, poses.size() / 2);
       }
     }
   }

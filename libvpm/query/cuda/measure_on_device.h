@@ -14,8 +14,7 @@ namespace vpm::cuda {
 class MeasureOnDevice : public DeviceMeasure {
  public:
   // The device must be the current one.
-  MeasureOnDevice(const ToolModel& tool, int device, unsigned blocks_per_processor)
-      : device_(device), tool_(tool), blocks_(blocks_per_processor * processor_count()) {}
+  MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
 
   Result run(const PreparedCloud& cloud, const Pose& pose) final;
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -53,8 +52,6 @@ class MeasureOnDevice : public DeviceMeasure {
   const DeviceCloud& cloud() const { return *cloud_; }
   // What there is of that cloud when the stream comes to the query.
   const CloudSlot::Part& part() const { return part_; }
-  // Of a launch that answers one query.
-  unsigned blocks() const { return blocks_; }
   cudaStream_t stream() const { return stream_.get(); }
 
  private:
@@ -82,7 +79,6 @@ class MeasureOnDevice : public DeviceMeasure {
 
   int device_;
   const ToolModel& tool_;
-  unsigned blocks_;
   Stream stream_;
   MappedArray<Answer> answer_{1};
   unsigned sequence_ = 0;

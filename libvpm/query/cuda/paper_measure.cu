@@ -115,8 +115,9 @@ std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
 class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
-      : MeasureOnDevice(tool, device,
-                        blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
+      : MeasureOnDevice(tool, device),
+        blocks_(blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor) *
+                processor_count()),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),
@@ -151,7 +152,7 @@ class PaperOnDevice : public MeasureOnDevice {
     Totals* totals = totals_.get();
     PaperCounters* counters = counters_.get();
     void* values[] = {&arguments, &pose, &totals, &counters, &answer, &sequence};
-    check(cudaLaunchCooperativeKernel(one_pose, blocks(), kPaperThreads, values, 0, stream()));
+    check(cudaLaunchCooperativeKernel(one_pose, blocks_, kPaperThreads, values, 0, stream()));
   }
   void launch(const Pose* poses, unsigned count, RawResult* results) override {
     if (!teams_) teams_ = std::make_unique<Teams>(level_.count);
@@ -171,6 +172,7 @@ class PaperOnDevice : public MeasureOnDevice {
                                            : SphereState::inside;
   }
 
+  unsigned blocks_;  // that answer one pose
   DeviceArray<Sphere> spheres_;
   DeviceArray<std::uint32_t> graph_begin_, neighbors_, hubs_, grid_begin_, grid_spheres_;
   PaperLevel level_;

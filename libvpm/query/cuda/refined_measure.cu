@@ -11,6 +11,11 @@
 namespace vpm::cuda {
 namespace {
 
+// Blocks of one multiprocessor. Two spill no registers where an image is read, and are sooner done
+// with a pose of up to some 50 000 spheres; three are, with more spheres, or among points.
+constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
+constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
+
 template <class Surface>
 struct RefinedLaunch {
   LevelView level;
@@ -41,7 +46,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.cut = first.cut + shares;
   space.far = first.far + team * level.piece_count;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
-  space.planes = first.planes + team * kThreads;
+  space.planes = first.planes + team * kBatchThreads;
   return space;
 }
 
@@ -79,7 +84,7 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
 }
 
 // One query; the last block to come floods alone. For levels of few shares.
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kThreads, kManyBlocks)
     one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
                    const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<DiskSurface> shared;
@@ -138,8 +143,8 @@ __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
   return true;
 }
 
-template <class Surface>
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+template <class Surface, unsigned kBlocks>
+__global__ void __launch_bounds__(kThreads, kBlocks)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
              const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
@@ -147,7 +152,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 }
 
 // One query after another (orders.h), until none comes.
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kThreads, kFewBlocks)
     stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
   using Launch = RefinedLaunch<DepthSurface>;
   __shared__ BlockShared<DepthSurface> shared;
@@ -166,7 +171,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 
 // Each block a query of its own, one after another.
 template <class Surface>
-__global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
+__global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     many_poses(const __grid_constant__ RefinedLaunch<Surface> launch,
                const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
                RawResult* results) {
@@ -208,7 +213,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerProcessor)
 // Memory of a number of teams, of one or more blocks each.
 class RefinedMemory {
  public:
-  RefinedMemory(const LevelView& level, std::size_t teams, std::size_t blocks)
+  RefinedMemory(const LevelView& level, std::size_t teams, std::size_t blocks, unsigned threads)
       : words_(2 * level.count * teams),
         points_(2 * level.count * teams),
         sums_(2 * level.count * teams),
@@ -218,7 +223,7 @@ class RefinedMemory {
         cut_(level.count * teams),
         far_(level.piece_count * teams),
         flats_(2 * TaskLists::kTasks * blocks),
-        patches_(kThreads * blocks) {
+        patches_(threads * blocks) {
     words_.clear();
     points_.clear();
     sums_.clear();
@@ -243,7 +248,7 @@ class RefinedMemory {
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
     return level.count * kOfShare + level.piece_count * sizeof(FarPiece) +
-           2 * TaskLists::kTasks * sizeof(FlatBlock) + kThreads * sizeof(CrossingPlane);
+           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(CrossingPlane);
   }
 
  private:
@@ -261,38 +266,59 @@ class RefinedOnDevice : public MeasureOnDevice {
  public:
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
-      : MeasureOnDevice(
-            tool, device,
-            std::min({blocks_that_fit(one_pose<DepthSurface>, kThreads, kBlocksPerProcessor),
-                      blocks_that_fit(one_pose<DiskSurface>, kThreads, kBlocksPerProcessor),
-                      blocks_that_fit(stand_by_kernel, kThreads, kBlocksPerProcessor)})),
+      : MeasureOnDevice(tool, device),
         level_(tool, level),
         counts_points_(options.counts_points),
-        memory_(level_.view(), 1, blocks()),
+        of_images_(kernel_of_images(level_.view())),
+        of_points_(kernel_of_points(level_.view())),
+        standing_by_(kernel_of(stand_by_kernel, kFewBlocks)),
+        memory_(level_.view(), 1,
+                std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
         totals_(1),
         counters_(1) {
     totals_.clear();
     counters_.clear();
     if (options.standby_us > 0 && !counts_points_)  // orders say nothing of points
-      stand_by(standby({reinterpret_cast<const void*>(stand_by_kernel), blocks(), kThreads}),
-               options.standby_us);
+      stand_by(standby({standing_by_.function, standing_by_.blocks, kThreads}), options.standby_us);
   }
 
  private:
+  // How one pose is answered.
+  struct PoseKernel {
+    const void* function = nullptr;
+    unsigned blocks = 0;
+    bool meets = true;  // its blocks do, so all of them must be there at once
+  };
+  template <class Kernel>
+  static PoseKernel kernel_of(Kernel* kernel, unsigned blocks, bool meets = true) {
+    return {reinterpret_cast<const void*>(kernel),
+            blocks_that_fit(kernel, kThreads, blocks) * processor_count(), meets};
+  }
+  static PoseKernel kernel_of_images(const LevelView& level) {
+    return level.count <= kSpheresOfFewBlocks
+               ? kernel_of(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
+               : kernel_of(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
+  }
+  // Points alone are flooded, for which small levels have a kernel of their own.
+  static PoseKernel kernel_of_points(const LevelView& level) {
+    return is_small(level) ? kernel_of(one_pose_small, kManyBlocks, false)
+                           : kernel_of(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
+  }
+
   // Teams that share the work of a batch.
   struct Teams {
     explicit Teams(const LevelView& level)
-        : count(teams_that_fit(RefinedMemory::bytes_of_team(level), kBlocksPerProcessor)),
-          memory(level, count, count) {}
+        : count(teams_that_fit(RefinedMemory::bytes_of_team(level), kBatchBlocks)),
+          memory(level, count, count, kBatchThreads) {}
     unsigned count;
     RefinedMemory memory;
   };
 
   void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
     if (cloud().frame().is_organised)
-      launch_on(surface_there(), frame, answer, sequence);
+      launch_on(surface_there(), of_images_, frame, answer, sequence);
     else
-      launch_on(cloud().disk_surface(), frame, answer, sequence);
+      launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
   }
   void launch(const Pose* poses, unsigned count, RawResult* results) override {
     if (!teams_) teams_ = std::make_unique<Teams>(level_.view());
@@ -316,8 +342,8 @@ class RefinedOnDevice : public MeasureOnDevice {
                                   : SphereState::inside;
   }
 
-  // Of clouds that a camera has seen. Points alone are flooded, for which small levels have a
-  // kernel of their own. The arguments of the last clouds are kept: frames come by turns.
+  // Of clouds that a camera has seen. The arguments of the last clouds are kept: frames come by
+  // turns.
   const void* standing_launch(Answer* answer) override {
     if (!cloud().frame().is_organised) return nullptr;
     const DepthSurface surface = surface_there();
@@ -326,7 +352,8 @@ class RefinedOnDevice : public MeasureOnDevice {
       if (clouds_on_device_[k] == known) return arguments_.get() + k;
     if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
     const std::size_t k = next_cloud_++ % kClouds;
-    const RefinedLaunch<DepthSurface> arguments = arguments_of(surface, answer);
+    const RefinedLaunch<DepthSurface> arguments =
+        arguments_of(surface, standing_by_.blocks, answer);
     clouds_on_device_[k] = {};
     check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
     finish_transfers();
@@ -340,38 +367,38 @@ class RefinedOnDevice : public MeasureOnDevice {
     return surface;
   }
   template <class Surface>
-  RefinedLaunch<Surface> arguments_of(const Surface& surface, Answer* answer) const {
+  RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
+                                      Answer* answer) const {
     // Few points lie in reach: they take less than a large level's spheres.
-    unsigned sphere_blocks = blocks();
+    unsigned sphere_blocks = blocks;
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
             sphere_blocks, totals_.get(), counters_.get(),  answer};
   }
   template <class Surface>
-  void launch_on(const Surface& surface, const PoseFrame& frame, Answer* answer,
-                 unsigned sequence) {
-    RefinedLaunch<Surface> arguments = arguments_of(surface, answer);
+  void launch_on(const Surface& surface, const PoseKernel& kernel, const PoseFrame& frame,
+                 Answer* answer, unsigned sequence) {
+    RefinedLaunch<Surface> arguments = arguments_of(surface, kernel.blocks, answer);
     PoseFrame pose = frame;
     void* values[] = {&arguments, &pose, &sequence};
-    if (!Surface::kTellsInside && is_small(level_.view())) {
-      check(cudaLaunchKernel(one_pose_small, blocks(), kThreads, values, 0, stream()));
-    } else {
-      check(
-          cudaLaunchCooperativeKernel(one_pose<Surface>, blocks(), kThreads, values, 0, stream()));
-    }
+    check(kernel.meets
+              ? cudaLaunchCooperativeKernel(kernel.function, kernel.blocks, kThreads, values, 0,
+                                            stream())
+              : cudaLaunchKernel(kernel.function, kernel.blocks, kThreads, values, 0, stream()));
   }
 
   template <class Surface>
   void launch_on(const Surface& surface, const Pose* poses, unsigned count, RawResult* results) {
     const RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(),
                                            teams_->memory.space(), counts_points_};
-    many_poses<Surface><<<std::min(teams_->count, count), kThreads, 0, stream()>>>(
+    many_poses<Surface><<<std::min(teams_->count, count), kBatchThreads, 0, stream()>>>(
         arguments, cloud().frame(), poses, count, results);
     check(cudaGetLastError());
   }
 
   DeviceLevel level_;
   bool counts_points_;
+  PoseKernel of_images_, of_points_, standing_by_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;

@@ -86,9 +86,9 @@ class ShareMeasure {
   static constexpr bool kFloods = !Surface::kTellsInside;
   static constexpr unsigned kLanes = 4;        // of a unit in no patch
   static constexpr unsigned kReadsOfLook = 4;  // of the surface take as long as the rest of a look
-  // What a round adds to a list: a task of each unit in a patch, two of each other.
-  static constexpr unsigned kTasksOfRound = kThreads;
-  static_assert(2 * kThreads / kLanes <= kTasksOfRound && kTasksOfRound <= TaskLists::kTasks);
+  // What a round adds to a list is at most a task of each thread: one of each unit in a patch, two
+  // of each other.
+  static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
 
   __device__ void clear_seen() {
     if (threadIdx.x == 0) shared_.seen_count = shared_.crossed_count = shared_.pushed_count = 0;
@@ -193,7 +193,7 @@ class ShareMeasure {
       }
       crossed = min(crossed_count, crossed + first * (32 / lanes));
       others = min(count, others + rest * (32 / kLanes));
-      tasks_.make_room(kTasksOfRound);
+      tasks_.make_room(blockDim.x);
     }
   }
   __device__ static unsigned warps_of(unsigned units, unsigned lanes) {

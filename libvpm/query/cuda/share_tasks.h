@@ -64,16 +64,17 @@ struct SeenUnit {
     return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
   }
 };
-static_assert(kThreads <= kMostThreads && kMostThreads <= 256 && Chunk::kUnits <= 8);
+inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;
+static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && Chunk::kUnits <= 8);
 
 // Memory that the threads of a block share.
 struct MeasureShared {
-  static constexpr unsigned kSeen = kThreads * Chunk::kUnits;
+  static constexpr unsigned kSeen = kMeasureThreads * Chunk::kUnits;
   SeenUnit seen[kSeen];  // in no patch from the front, in crossed patches from the end
   unsigned seen_count, crossed_count;
-  std::uint32_t pushed[kThreads];  // chunks
+  std::uint32_t pushed[kMeasureThreads];  // chunks
   unsigned pushed_count;
-  std::uint32_t first_units[kThreads];  // of the chunk at which a slot's threads have looked
+  std::uint32_t first_units[kMeasureThreads];  // of the chunk at which a slot's threads have looked
   TaskLists lists;
 };
 

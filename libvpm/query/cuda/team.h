@@ -8,9 +8,10 @@
 
 namespace vpm::cuda {
 
-// Threads of a block, and blocks of one multiprocessor that they leave room for. Registers are what
-// limits the refined measure.
-inline constexpr unsigned kThreads = 128, kBlocksPerProcessor = 2;
+// Threads of a block that deal with one pose together with others, and alone with one after
+// another. Registers are what limits the refined measure: fewer threads are sooner done with one
+// pose, more of them get through more poses.
+inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
 
