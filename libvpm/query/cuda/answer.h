@@ -3,18 +3,18 @@
 
 #include <cstddef>
 
+#include "libvpm/query/cuda/numbered_word.h"
 #include "libvpm/query/cuda/team.h"
 #include "libvpm/query/cuda/views.h"
 
 namespace vpm::cuda {
 
-// Where the host looks for a result, in its own memory: the words of a RawResult, each with the
-// query's number above it. So no word must wait for another on its way over the bus.
+// Where the host looks for a result, in its own memory: the words of a RawResult.
 struct Answer {
   static constexpr unsigned kWords = 20;
   static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
 
-  std::uint64_t words[kWords] = {};
+  NumberedWord words[kWords] = {};
 };
 
 // Nanoseconds of the device's clock, which all blocks share.
@@ -36,8 +36,8 @@ __device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* 
   constexpr unsigned kFlood = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t);
   const unsigned k = threadIdx.x;
   if (k < Answer::kWords)
-    *static_cast<volatile std::uint64_t*>(&answer->words[k]) =
-        std::uint64_t{sequence} << 32 | (k == kFlood ? static_cast<std::uint32_t>(flood_ns) : word);
+    put(numbered(sequence, k == kFlood ? static_cast<std::uint32_t>(flood_ns) : word),
+        answer->words[k]);
 }
 
 // Sums of one query over its blocks. All 0 between queries: the last block clears them.

@@ -232,10 +232,9 @@ __global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
   __threadfence();
   if (atomicAdd(&counters->done, 1U) != gridDim.x - 1) return;
   __threadfence();
-  const std::uint64_t number = std::uint64_t{sequence} << 32;
   const volatile CloudCounters& all = *counters;
-  *static_cast<volatile std::uint64_t*>(&answer->doubtful) = number | all.doubtful;
-  *static_cast<volatile std::uint64_t*>(&answer->points) = number | all.points;
+  put(numbered(sequence, all.doubtful), answer->doubtful);
+  put(numbered(sequence, all.points), answer->points);
   counters->done = 0;
 }
 
@@ -248,8 +247,6 @@ __device__ void clear_tiles(const CloudRoom& room, const Camera& camera, std::si
     for (std::size_t k = first; k < count; k += step) room.tiles[level][k] = {CUDART_INF_F, 0};
   }
 }
-
-constexpr unsigned kTakeThreads = 256;  // of a block
 
 // Which pixels are brought: those of `wanted`, row by row, that `taken` does not hold.
 struct ImagePart {
@@ -268,27 +265,41 @@ struct ImagePart {
   }
 };
 
-__device__ void take_group(const DepthSource& source, std::size_t first, float* depth,
-                           float* inverse) {
-  float2 metres;
-  if (source.counts != nullptr) {
-    const ushort2 counts = *reinterpret_cast<const ushort2*>(source.counts + first);
-    metres = {depth_in_metres(counts.x, source.counts_per_metre),
-              depth_in_metres(counts.y, source.counts_per_metre)};
-  } else {
-    metres = *reinterpret_cast<const float2*>(source.metres + first);
-  }
-  const float2 usable{usable_depth(metres.x), usable_depth(metres.y)};
-  *reinterpret_cast<float2*>(depth + first) = usable;
-  *reinterpret_cast<float2*>(inverse + first) = {inverse_of_usable(usable.x),
-                                                 inverse_of_usable(usable.y)};
+__device__ void put(float* values, const float (&group)[kPixelsAtOnce]) {
+  auto* const four = reinterpret_cast<float4*>(values);
+  four[0] = {group[0], group[1], group[2], group[3]};
+  four[1] = {group[4], group[5], group[6], group[7]};
 }
 
-__global__ void __launch_bounds__(kTakeThreads)
+__device__ void take_group(const DepthSource& source, std::size_t first, float* depth,
+                           float* inverse) {
+  float z[kPixelsAtOnce], s[kPixelsAtOnce];
+  if (source.counts != nullptr) {
+    const uint4 words = *reinterpret_cast<const uint4*>(source.counts + first);
+    const unsigned pairs[] = {words.x, words.y, words.z, words.w};
+#pragma unroll
+    for (unsigned k = 0; k < kPixelsAtOnce; ++k) {
+      const unsigned count = (k % 2 == 0 ? pairs[k / 2] : pairs[k / 2] >> 16) & 0xffffU;
+      z[k] = usable_depth(depth_in_metres(count, source.counts_per_metre));
+    }
+  } else {
+    const auto* const four = reinterpret_cast<const float4*>(source.metres + first);
+    const float4 a = four[0], b = four[1];
+    const float metres[] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
+#pragma unroll
+    for (unsigned k = 0; k < kPixelsAtOnce; ++k) z[k] = usable_depth(metres[k]);
+  }
+#pragma unroll
+  for (unsigned k = 0; k < kPixelsAtOnce; ++k) s[k] = inverse_of_usable(z[k]);
+  put(depth + first, z);
+  put(inverse + first, s);
+}
+
+__global__ void __launch_bounds__(kTileThreads)
     take(const __grid_constant__ DepthSource source, float* depth, float* inverse,
          const __grid_constant__ ImagePart part, const __grid_constant__ Camera camera,
          const __grid_constant__ CloudRoom room, CloudCounters* counters, bool is_first) {
-  const unsigned thread = blockIdx.x * kTakeThreads + threadIdx.x;
+  const unsigned thread = blockIdx.x * kTileThreads + threadIdx.x;
   const unsigned row = thread / part.groups_per_row(), in_row = thread % part.groups_per_row();
   if (row < part.rows()) {
     const std::int64_t v = part.wanted.v0 + row, begin = v * camera.width;
@@ -297,7 +308,7 @@ __global__ void __launch_bounds__(kTakeThreads)
       take_group(source, static_cast<std::size_t>(first), depth, inverse);
   }
   if (!is_first) return;
-  clear_tiles(room, camera, thread, std::size_t{gridDim.x} * kTakeThreads);
+  clear_tiles(room, camera, thread, std::size_t{gridDim.x} * kTileThreads);
   if (thread == 0) counters->points = counters->doubtful = 0;
 }
 
@@ -349,7 +360,7 @@ void take_image(const DepthSource& source, float* depth, float* inverse, const C
                 CloudCounters* counters, cudaStream_t stream) {
   const ImagePart part{with_margin(recipe.wanted, recipe), with_margin(recipe.made, recipe)};
   const unsigned threads = part.rows() * part.groups_per_row();
-  take<<<(threads + kTakeThreads - 1) / kTakeThreads, kTakeThreads, 0, stream>>>(
+  take<<<(threads + kTileThreads - 1) / kTileThreads, kTileThreads, 0, stream>>>(
       source, depth, inverse, part, recipe.camera, recipe.room, counters, recipe.made.count() == 0);
   check(cudaGetLastError());
 }

@@ -4,6 +4,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/cuda/cloud_tile.h"
+#include "libvpm/query/cuda/numbered_word.h"
 
 namespace vpm::cuda {
 
@@ -15,10 +16,10 @@ struct DepthSource {
   double counts_per_metre = 1;
 };
 
-// Where the host looks for what came of an image: each word has the image's number above it.
+// Where the host looks for what came of an image.
 struct CloudAnswer {
-  std::uint64_t points = 0;    // with a normal
-  std::uint64_t doubtful = 0;  // points that a PreparedCloud might refuse
+  NumberedWord points = 0;    // with a normal
+  NumberedWord doubtful = 0;  // points that a PreparedCloud might refuse
 };
 
 struct CloudCounters {
@@ -27,7 +28,7 @@ struct CloudCounters {
 };
 
 // Pixels that one thread takes; images and what is made of them have room for the last thread's.
-inline constexpr unsigned kPixelsAtOnce = 2;
+inline constexpr unsigned kPixelsAtOnce = 8;
 
 // Brings the part of the image that the tiles of a recipe are made of to the device: depths and
 // their inverses, as recipes want them. With the first tiles of an image it clears what

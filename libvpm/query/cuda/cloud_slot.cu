@@ -182,16 +182,15 @@ CloudRecipe CloudSlot::recipe() const {
 }
 
 bool CloudSlot::is_answered(unsigned sequence) const {
-  const auto* const answer = static_cast<const volatile CloudAnswer*>(answer_.host());
   // Numbers begin anew some day.
-  const auto is_reached = [&](std::uint64_t word) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(word >> 32) - sequence) >= 0;
+  const auto is_reached = [&](const NumberedWord& word) {
+    return static_cast<std::int32_t>(number_of(look_at(word)) - sequence) >= 0;
   };
-  return is_reached(answer->points) && is_reached(answer->doubtful);
+  return is_reached(answer_.host()->points) && is_reached(answer_.host()->doubtful);
 }
 
 unsigned CloudSlot::doubtful() const {
-  return static_cast<unsigned>(static_cast<const volatile CloudAnswer*>(answer_.host())->doubtful);
+  return value_of(look_at(answer_.host()->doubtful));
 }
 
 // For the parts that are wanted so far.
@@ -213,8 +212,7 @@ std::size_t CloudSlot::points() const {
   if (is_plain_) require_all();
   wait();
   if (!is_plain_ || !is_sound()) return cloud().positions().size();
-  return static_cast<std::uint32_t>(
-      static_cast<const volatile CloudAnswer*>(answer_.host())->points);
+  return value_of(look_at(answer_.host()->points));
 }
 
 }  // namespace vpm::cuda

@@ -90,9 +90,9 @@ RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
   std::uint32_t words[Answer::kWords];
   unsigned looks = 0;
   for (unsigned k = 0; k < Answer::kWords;) {
-    const std::uint64_t word = *static_cast<const volatile std::uint64_t*>(&answer.words[k]);
-    if (word >> 32 == sequence) {
-      words[k++] = static_cast<std::uint32_t>(word);
+    const NumberedWord word = look_at(answer.words[k]);
+    if (number_of(word) == sequence) {
+      words[k++] = value_of(word);
       continue;
     }
     meanwhile();

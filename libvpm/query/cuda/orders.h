@@ -1,8 +1,7 @@
 // How a kernel that stands by is told of the next pose, without a launch.
 //
 // The host writes an order into its own memory. A warp of the first block looks there and passes it
-// on to the other blocks in the device's memory; each word has the order's number above it, so that
-// none waits for another.
+// on to the other blocks in the device's memory.
 #pragma once
 
 #include "libvpm/query/cuda/answer.h"
@@ -24,7 +23,7 @@ struct OrderWords {
   static constexpr unsigned kWords = 32;
   static_assert(sizeof(Order) == kWords * sizeof(std::uint32_t));
 
-  std::uint64_t words[kWords] = {};
+  NumberedWord words[kWords] = {};
 };
 
 // What a kernel that stands by sees of its orders.
@@ -69,21 +68,19 @@ class Orders {
 
   // This lane's word of the order, when all have come or it is too late.
   template <class IsLate>
-  __device__ static std::uint64_t wait(const OrderWords& words, unsigned number,
-                                       const IsLate& is_late) {
+  __device__ static NumberedWord wait(const OrderWords& words, unsigned number,
+                                      const IsLate& is_late) {
     constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
     for (;;) {
-      const std::uint64_t word =
-          *static_cast<const volatile std::uint64_t*>(&words.words[threadIdx.x]);
-      if (__all_sync(~0U, word >> 32 == number) != 0) return word;
-      if (__any_sync(~0U, is_late()) != 0)
-        return std::uint64_t{number} << 32 | (threadIdx.x == kLeaves ? 1 : 0);
+      const NumberedWord word = look_at(words.words[threadIdx.x]);
+      if (__all_sync(~0U, number_of(word) == number) != 0) return word;
+      if (__any_sync(~0U, is_late()) != 0) return numbered(number, threadIdx.x == kLeaves ? 1 : 0);
     }
   }
-  __device__ std::uint64_t wait_for_first_block(unsigned number) const {
+  __device__ NumberedWord wait_for_first_block(unsigned number) const {
     return wait(view_.passed_on[blockIdx.x % OrdersView::kCopies], number, [] { return false; });
   }
-  __device__ std::uint64_t wait_for_host(unsigned number) const {
+  __device__ NumberedWord wait_for_host(unsigned number) const {
     const std::uint64_t most =
         number == first_ ? kFirstWait : std::uint64_t{order_.waits_us} * 1000;
     while (number != first_ &&
@@ -93,13 +90,13 @@ class Orders {
     const std::uint64_t begin = now();
     return wait(*view_.given, number, [&] { return now() - begin > most; });
   }
-  __device__ void take(std::uint64_t word) {
+  __device__ void take(NumberedWord word) {
     __syncwarp();  // who has read the order before is done
-    reinterpret_cast<std::uint32_t*>(&order_)[threadIdx.x] = static_cast<std::uint32_t>(word);
+    reinterpret_cast<std::uint32_t*>(&order_)[threadIdx.x] = value_of(word);
   }
-  __device__ void pass_on(unsigned number, std::uint64_t word) {
+  __device__ void pass_on(unsigned number, NumberedWord word) {
     for (unsigned k = 0; k < OrdersView::kCopies; ++k)
-      *static_cast<volatile std::uint64_t*>(&view_.passed_on[k].words[threadIdx.x]) = word;
+      put(word, view_.passed_on[k].words[threadIdx.x]);
     take(word);
     __syncwarp();
     if (order_.leaves != 0 && threadIdx.x == 0)

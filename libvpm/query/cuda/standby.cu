@@ -63,8 +63,7 @@ void Standby::give(const Order& order) {
   std::uint32_t words[OrderWords::kWords];
   std::memcpy(words, &order, sizeof(words));
   for (unsigned k = 0; k < OrderWords::kWords; ++k)
-    *static_cast<volatile std::uint64_t*>(&given_.host()->words[k]) =
-        std::uint64_t{number_} << 32 | words[k];
+    put(numbered(number_, words[k]), given_.host()->words[k]);
 }
 
 // Waits until it has left: then all that the last query has noted is cleared. What fails, whoever
