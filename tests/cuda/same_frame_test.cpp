@@ -70,13 +70,22 @@ DepthImage image_of(const Depths& depths, std::uint32_t width, std::uint32_t hei
   return image;
 }
 
-DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& normals) {
+DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& normals,
+                             FrameMaking making = FrameMaking::whole) {
   return {{525, 510, 0.5 * image.width - 0.7, 0.5 * image.height},
           image.width,
           image.height,
           {},
           normals,
-          kDevice};
+          kDevice,
+          PointReading::settled,
+          making};
+}
+
+PreparedCloud prepared(const DepthImage& image, const DepthFrameOptions& options,
+                       const Pose& camera) {
+  return PreparedCloud(
+      make_cloud(image, {options.intrinsics, image.width, image.height, camera}, options.normals));
 }
 
 DepthFrame frame_of(DepthFrames& frames, const DepthImage& image, const Pose& camera) {
@@ -97,8 +106,7 @@ void expect_same(const DepthImage& image, const NormalOptions& normals) {
     const DepthFrame frame = frame_of(frames, image, camera);
     const auto memory = testing::memory_on_device(frame);
     ASSERT_TRUE(memory);
-    const PreparedCloud cloud(
-        make_cloud(image, {options.intrinsics, image.width, image.height, camera}, normals));
+    const PreparedCloud cloud = prepared(image, options, camera);
     EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
     EXPECT_EQ(frame.points(), cloud.positions().size());
   }
@@ -168,8 +176,7 @@ TEST_P(SameFrame, OfCounts) {
     const DepthFrame frame = frames.prepare(kFarPose);
     const auto memory = testing::memory_on_device(frame);
     ASSERT_TRUE(memory);
-    const PreparedCloud cloud(make_cloud(
-        image, {options.intrinsics, image.width, image.height, kFarPose}, options.normals));
+    const PreparedCloud cloud = prepared(image, options, kFarPose);
     EXPECT_TRUE(testing::same_bits(*memory, testing::memory_of(cloud)));
   }
 }
@@ -200,8 +207,7 @@ TEST_P(SameFrame, OrTheSameRefusal) {
         Result at_host, at_device;
         const Pose pose{testing::generic_rotation(), {0, 0, 0.9}};
         try {
-          const PreparedCloud cloud(
-              make_cloud(image, {intrinsics, image.width, image.height, {}}, options.normals));
+          const PreparedCloud cloud = prepared(image, options, {});
           at_host = Query(tool, {}).run(cloud, pose);
         } catch (const Error& fault) {
           expected = fault.what();
@@ -271,12 +277,11 @@ class AsAsked : public ::testing::TestWithParam<NormalMethod> {
   static Seen expect_same(const DepthImage& image, const ToolModel& tool, int window,
                           const std::vector<Pose>& poses, std::size_t poses_per_frame,
                           std::uint32_t standby_us) {
-    DepthFrameOptions options = options_of(image, {GetParam(), window});
-    options.making = FrameMaking::as_asked;
+    const DepthFrameOptions options =
+        options_of(image, {GetParam(), window}, FrameMaking::as_asked);
     DepthFrames frames(options);
     const Pose camera{testing::generic_rotation(), {0.3, -3, 2}};
-    const PreparedCloud cloud(make_cloud(
-        image, {options.intrinsics, image.width, image.height, camera}, options.normals));
+    const PreparedCloud cloud = prepared(image, options, camera);
     Query on_cpu(tool, {.counts_points = false});
     Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
     Seen seen;
@@ -340,13 +345,11 @@ TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
 // Two threads ask for different parts of one frame.
 TEST_P(AsAsked, ByManyAtOnce) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 640, 480);
-  DepthFrameOptions options = options_of(image, {GetParam()});
-  options.making = FrameMaking::as_asked;
+  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
   DepthFrames frames(options);
   const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
   const auto poses = poses_over(image, options.intrinsics, 40);
-  const PreparedCloud cloud(
-      make_cloud(image, {options.intrinsics, image.width, image.height, {}}, options.normals));
+  const PreparedCloud cloud = prepared(image, options, {});
   std::vector<Result> expected;
   Query on_cpu(tool, {.counts_points = false});
   for (const Pose& pose : poses) expected.push_back(on_cpu.run(cloud, pose));
@@ -368,13 +371,11 @@ TEST_P(AsAsked, ByManyAtOnce) {
 
 TEST_P(AsAsked, AllOfItWhereMoreIsAskedFor) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 163, 97);
-  DepthFrameOptions options = options_of(image, {GetParam()});
-  options.making = FrameMaking::as_asked;
+  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
   DepthFrames frames(options);
   const ToolModel tool = testing::lattice_cube(0.02, 4, 3);
   const Pose poses[] = {{{}, {0, 0, 0.95}}, {{}, {0.02, 0.01, 0.95}}};
-  const PreparedCloud cloud(
-      make_cloud(image, {options.intrinsics, image.width, image.height, {}}, options.normals));
+  const PreparedCloud cloud = prepared(image, options, {});
   Query on_cpu(tool, {}), counting(tool, {.device = kDevice}),
       paper_on_cpu(tool, {.measure = Measure::paper}),
       paper(tool, {.measure = Measure::paper, .device = kDevice}),
@@ -411,9 +412,7 @@ TEST(FramesOnDevice, SmallQuery) {
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
 
-  DepthFrameOptions as_asked = options_of(image, {});
-  as_asked.making = FrameMaking::as_asked;
-  DepthFrames parts(as_asked);
+  DepthFrames parts(options_of(image, {}, FrameMaking::as_asked));
   const DepthFrame part = frame_of(parts, image, {});
   Query of_part(tool, {.device = kDevice, .counts_points = false});
   for (const double x : {0.0, 0.0, 0.03, 0.06}) {
