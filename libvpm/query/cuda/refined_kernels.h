@@ -1,0 +1,217 @@
+// The kernels of the refined measure: one pose by all blocks, launched or standing by, and many
+// poses by a block each. For refined_measure.cu.
+#pragma once
+
+#include <type_traits>
+
+#include "libvpm/query/cuda/answer.h"
+#include "libvpm/query/cuda/flood.h"
+#include "libvpm/query/cuda/orders.h"
+#include "libvpm/query/cuda/points.h"
+#include "libvpm/query/cuda/seen_shares.h"
+#include "libvpm/query/cuda/share_measure.h"
+
+namespace vpm::cuda {
+namespace {
+
+// Blocks of one multiprocessor. Two spill no registers where an image is read, and are sooner done
+// with a pose of up to some 50 000 spheres; three are, with more spheres, or among points.
+constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
+constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
+
+template <class Surface>
+struct RefinedLaunch {
+  LevelView level;
+  Surface surface;
+  PointsView points;
+  RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
+  bool counts_points = false;
+  // Of one pose: the blocks that deal with spheres, the others do with points; and what these add
+  // up.
+  unsigned sphere_blocks = 0;
+  Totals* totals = nullptr;
+  RefinedCounters* counters = nullptr;
+  Answer* answer = nullptr;
+};
+
+// The memory of one of several teams, each of one block.
+__device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& level,
+                                 std::size_t team) {
+  const std::size_t shares = team * level.count;
+  RefinedSpace space;
+  for (int turn = 0; turn < 2; ++turn) {
+    const ShareNotes& from = first.notes[turn];
+    space.notes[turn] = {from.words + shares, from.points + shares, from.sums + shares,
+                         from.planes + shares};
+  }
+  space.gaps = first.gaps + shares;
+  space.parents = first.parents + shares + team;
+  space.cut = first.cut + shares;
+  space.far = first.far + team * level.piece_count;
+  space.flats = first.flats + team * 2 * TaskLists::kTasks;
+  space.planes = first.planes + team * kBatchThreads;
+  return space;
+}
+
+// What decides which shares behind a surface are inside.
+template <class Surface, class Team>
+using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Team>, Flood<Team>>;
+
+// Memory of a block; the steps of a query follow each other.
+template <class Surface>
+union BlockShared {
+  MeasureShared measure;
+  typename Inside<Surface, BlockTeam>::Shared inside;
+};
+
+// The first step of one query by all blocks of a launch. Returns what this thread has added up.
+template <class Surface>
+__device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                                    unsigned turn, BlockShared<Surface>& shared) {
+  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  const Part of_points{blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks};
+  if (blockIdx.x >= launch.sphere_blocks) {
+    count_points(launch.level, launch.points, frame, of_points,
+                 launch.space.notes[turn % 2].points);
+    return {};
+  }
+  return ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
+                               *launch.counters, of_spheres, launch.counts_points, shared.measure)
+      .run();
+}
+
+// What the next query begins with, when nobody waits for this one any more.
+template <class Surface>
+__device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) {
+  launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
+}
+
+// One query; the last block to come floods alone. For levels of few shares.
+__global__ void __launch_bounds__(kThreads, kManyBlocks)
+    one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
+                   const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ BlockShared<DiskSurface> shared;
+  __shared__ RawResult total;
+  measure_shares(launch, frame, sequence, shared);
+  if (!is_last_block(launch.totals->done)) {
+    clear_next(launch, sequence);
+    return;
+  }
+  const std::uint64_t met = now();
+  if (threadIdx.x == 0) total = RawResult{};
+  BlockTeam team;
+  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence,
+                             *launch.counters, team, shared.inside, launch.counts_points)
+                .run(),
+            total);
+  __syncthreads();
+  send(word_of(total), now() - met, launch.answer, sequence);
+  if (threadIdx.x == 0) {
+    launch.totals->done = 0;
+    *launch.counters = RefinedCounters{};
+  }
+  clear_next(launch, sequence);
+}
+
+// One query by all blocks of a cooperative launch. Where the first step has found all (no far
+// pieces, and nobody asks for points), the last block to come sends the answer. Whether this block
+// is the last to be done.
+template <class Surface>
+__device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                            unsigned sequence, BlockShared<Surface>& shared) {
+  Totals* const totals = launch.totals;
+  const RawResult found = measure_shares(launch, frame, sequence, shared);
+  if (Surface::kTellsInside) add_block(found, totals->result);
+  GridTeam team(&totals->arrived);
+  Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
+                                   *launch.counters, team, shared.inside, launch.counts_points);
+  const bool is_last = team.arrive();
+  std::uint64_t met = now();
+  if (is_last) {
+    const std::uint32_t word = word_of(totals->result);  // read while it is seen that this is all
+    if (!inside.has_more()) send(word, now() - met, launch.answer, sequence);
+  }
+  team.wait();
+  met = now();
+  const bool has_more = inside.has_more();
+  if (has_more) add_block(inside.run(), totals->result);
+  clear_next(launch, sequence);
+  if (!is_last_block(totals->done)) return false;
+  if (has_more) send(word_of(totals->result), now() - met, launch.answer, sequence);
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    *totals = Totals{};
+    *launch.counters = RefinedCounters{};
+  }
+  return true;
+}
+
+template <class Surface, unsigned kBlocks>
+__global__ void __launch_bounds__(kThreads, kBlocks)
+    one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
+             const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ BlockShared<Surface> shared;
+  answer_pose(launch, frame, sequence, shared);
+}
+
+// One query after another (orders.h), until none comes.
+__global__ void __launch_bounds__(kThreads, kFewBlocks)
+    stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
+  using Launch = RefinedLaunch<DepthSurface>;
+  __shared__ BlockShared<DepthSurface> shared;
+  __shared__ Launch launch;
+  __shared__ Order order;
+  __shared__ PoseFrame frame;
+  Orders orders(view, first, order);
+  for (unsigned number = first;; ++number) {
+    orders.receive(number);
+    if (order.leaves != 0) return;
+    if (threadIdx.x == 0) frame.to_surface = order.to_surface;
+    copy_words(*static_cast<const Launch*>(order.launch), launch);
+    if (answer_pose(launch, frame, order.turn, shared)) orders.finish(number);
+  }
+}
+
+// Each block a query of its own, one after another.
+template <class Surface>
+__global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
+    many_poses(const __grid_constant__ RefinedLaunch<Surface> launch,
+               const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
+               RawResult* results) {
+  __shared__ BlockShared<Surface> shared;
+  __shared__ PoseFrame frame;
+  __shared__ RefinedCounters counters;
+  __shared__ RawResult total;
+  const LevelView& level = launch.level;
+  const RefinedSpace space = space_of(launch.space, level, blockIdx.x);
+  BlockTeam team;
+  unsigned turn = 0;
+  for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      frame = frame_of(poses[p], cloud, level.center_of_mass, level.spheres_reach);
+      counters = RefinedCounters{};
+      total = RawResult{};
+    }
+    __syncthreads();
+    if (launch.counts_points)
+      count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
+    const RawResult found =
+        ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
+                              launch.counts_points, shared.measure)
+            .run();
+    if (Surface::kTellsInside) add_block(found, total);
+    space.notes[(turn + 1) % 2].clear(level, {});
+    __syncthreads();
+    Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
+                                      shared.inside, launch.counts_points);
+    if (inside.has_more()) add_block(inside.run(), total);
+    __syncthreads();
+    if (threadIdx.x == 0) results[p] = total;
+  }
+  // The next launch begins with turn 0 again.
+  for (const ShareNotes& notes : space.notes) notes.clear(level, {});
+}
+
+}  // namespace
+}  // namespace vpm::cuda
