@@ -4,6 +4,7 @@
 #include "libvpm/core/lengths.h"
 #include "libvpm/query/cuda/cloud_settle.h"
 #include "libvpm/query/cuda/cloud_slot.h"
+#include "libvpm/query/cuda/cloud_take.h"
 
 namespace vpm::cuda {
 namespace {
