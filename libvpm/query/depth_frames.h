@@ -73,9 +73,9 @@ class DepthFrames {
   std::span<float> metres();
 
   // The frame of that image. On a device this only begins, if the options do not leave it to the
-  // queries, which wait there for its end. What PreparedCloud would refuse (of the image, as far as
-  // it is made, its size or the pose, which maps the camera's coordinates to the world's) is
-  // refused here or by the first query.
+  // queries, which wait there for its end. What PreparedCloud would refuse (of the image, its size
+  // or the pose, which maps the camera's coordinates to the world's) is refused here or by the
+  // first query; of an image made as asked, by the first one that reaches it, and all after it.
   DepthFrame prepare(const Pose& camera_to_world);
 
  private:

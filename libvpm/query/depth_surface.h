@@ -290,8 +290,6 @@ struct DepthSurface {
                    v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
                    u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
                    v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
-    const PixelRectangle& p = look.pixels;
-    look.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
     cover(look);
     if (farthest * look.range.high < 1) {
       look.side = Side::free;
@@ -319,6 +317,7 @@ struct DepthSurface {
   VPM_HD bool may_be_free(const Look& look, Vec3 center, double radius) const {
     return (center.z + radius) * look.range.low < 1 && may_be_free(center, radius);
   }
+  // Its pixel must be made.
   VPM_HD bool may_be_free(Vec3 center, double radius) const {
     if (!(center.z - radius > 0)) return true;
     const double per_depth = 1 / center.z;
@@ -490,7 +489,8 @@ struct DepthSurface {
     return std::fabs(dot(normal, place - unproject(k, i - v * width, v, 1 / per_depth)));
   }
 
-  // Takes the range of the look's pixels from at most 3 by 3 tiles.
+  // Takes the range of the look's pixels from at most 3 by 3 tiles; nothing where these are not
+  // made.
   VPM_HD void cover(Look& look) const {
     const PixelRectangle& p = look.pixels;
     int level = 0;
@@ -499,6 +499,14 @@ struct DepthSurface {
     const std::int32_t row = tiles_per_row(level);
     const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
     const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
+    const std::int32_t u_end = (u1 + 1) << level, v_end = (v1 + 1) << level;
+    look.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
+                  (v_end < height ? v_end : height) - 1};
+    if (beyond != nullptr && !holds(made, look.tiles)) {
+      *beyond = 1;
+      return;
+    }
+    look.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
     InverseDepthRange all = tiles[level][v0 * row + u0];
     const auto take = [&](std::int32_t u, std::int32_t v) {
       const InverseDepthRange tile = tiles[level][v * row + u];
@@ -508,11 +516,7 @@ struct DepthSurface {
     // Always nine, some of them twice: loads that do not wait for each other, and no branch.
     for (std::int32_t i = 0; i < 9; ++i)
       take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
-    const std::int32_t u_end = (u1 + 1) << level, v_end = (v1 + 1) << level;
     look.range = all;
-    look.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
-                  (v_end < height ? v_end : height) - 1};
-    if (beyond != nullptr && !holds(made, look.tiles)) *beyond = 1;
   }
 };
 

@@ -19,8 +19,8 @@ class DeviceMeasure {
  public:
   virtual ~DeviceMeasure() = default;
 
-  // One launch at most, one wait; allocates nothing after the first call on a cloud. Poses must be
-  // valid (query.h). Throw Error(unavailable) where the device fails.
+  // Of a prepared cloud, one launch at most and one wait; allocates nothing after the first call on
+  // a cloud. Poses must be valid (query.h). Throw Error(unavailable) where the device fails.
   virtual Result run(const PreparedCloud& cloud, const Pose& pose) = 0;
 
   // Results in the order of the poses; from any thread. Poses are cut into launches that fit the

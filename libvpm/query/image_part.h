@@ -55,8 +55,8 @@ inline PixelRectangle widened(const PixelRectangle& p, int margin, int tile,
 }  // namespace image_part
 
 // For looks and readings at places in a tool whose centre of mass lies at `center` (camera
-// coordinates). The search for the nearest place mostly stays among these; where it does not,
-// DepthSurface::beyond tells.
+// coordinates); every place in `reach` of it is among them. Looks at balls that leave that, and the
+// search for the nearest place, may lead out of the part: DepthSurface::beyond tells.
 inline PixelRectangle part_read(const DepthSurface& image, Vec3 center, double reach,
                                 std::span<const LooksOfSize> looks) {
   const auto pixels = [&](double radius) {
@@ -64,12 +64,14 @@ inline PixelRectangle part_read(const DepthSurface& image, Vec3 center, double r
   };
   const PixelRectangle tool = pixels(reach);
   if (tool.u0 > tool.u1 || tool.v0 > tool.v1) return {};
-  const double nearest = center.z - reach;
   const PixelRectangle all{0, 0, image.width - 1, image.height - 1};
-  if (!(nearest > 0)) return all;
-  const double slope = (std::max(std::fabs(center.x), std::fabs(center.y)) + reach) / nearest;
+  if (!(center.z - reach > 0)) return all;
   PixelRectangle part = image_part::widened(tool, DepthSurface::kAcross + 1, 1, image);
   for (const LooksOfSize& look : looks) {
+    const double nearest = center.z - look.reach;
+    if (!(nearest > 0)) return all;
+    const double slope =
+        (std::max(std::fabs(center.x), std::fabs(center.y)) + look.reach) / nearest;
     // Of look_at_ball(): its pixels to either side, of which some lie beside the ball's own. Of
     // these it takes tiles no wider than all of them.
     const double aside = std::max(image.k.fx, image.k.fy) * (look.radius / nearest);

@@ -29,7 +29,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
   frame.points();  // all of it
-  if (!slot.is_on_device() || !slot.is_sound()) return std::nullopt;
+  if (!slot.is_on_device() || !slot.is_sound(slot.require({}, nullptr))) return std::nullopt;
   cuda::check(cudaDeviceSynchronize());
   const cuda::PointsView& points = slot.device_cloud().points();
   const DepthSurface& surface = slot.device_cloud().depth_surface();

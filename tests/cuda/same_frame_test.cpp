@@ -369,6 +369,55 @@ TEST_P(AsAsked, ByManyAtOnce) {
   }
 }
 
+// The memory of a frame of which all is known but the surface, which is still being made.
+TEST_P(AsAsked, InMemoryThatIsUsedAgainAtOnce) {
+  const DepthImage image = image_of(wall(0.05F, 0.002F), 1024, 1024);
+  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
+  const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
+  const Pose pose{testing::generic_rotation(), {0, 0, 0.8}};
+  const ToolModel tool = testing::lattice_cube(0.3, 9, 3);
+  Query on_cpu(tool, {.counts_points = false}),
+      query(tool, {.device = kDevice, .counts_points = false});
+  Result expected[2];
+  for (int k = 0; k < 2; ++k)
+    expected[k] = on_cpu.run(prepared(image, options, cameras[k]), cameras[k] * pose);
+  EXPECT_GT(expected[0].boundary, 0U);
+  DepthFrames frames(options);
+  frame_of(frames, image, cameras[0]);
+  for (int round = 0; round < 20; ++round) {
+    frames.prepare(cameras[0]).points();
+    const DepthFrame frame = frames.prepare(cameras[1]);
+    expect_equal(expected[1], query.run(frame, cameras[1] * pose));
+  }
+}
+
+// What CPUs refuse is refused where it is reached, and the next frame has nothing to do with it.
+TEST_P(AsAsked, RefusedWhereItIsReached) {
+  const auto wild = [](auto, auto, auto& random) {
+    return std::ldexp(1.0F, static_cast<int>(random() % 150) - 75);
+  };
+  const DepthImage image = image_of(wild, 97, 61);
+  const DepthFrameOptions options = options_of(image, {GetParam(), 7, 0}, FrameMaking::as_asked);
+  const bool is_refused = GetParam() == NormalMethod::inverse_depth;
+  if (is_refused) {
+    EXPECT_THROW(prepared(image, options, {}), Error);
+  }
+  DepthFrames frames(options);
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
+  Query query(tool, {.device = kDevice, .counts_points = false});
+  for (int round = 0; round < 3; ++round) {
+    const DepthFrame frame = frame_of(frames, image, {});
+    EXPECT_EQ(query.run(frame, {{}, {40, 0, 1}}).boundary, 0U);
+    bool refused = false;
+    try {
+      query.run(frame, {{}, {0, 0, 0.9}});
+    } catch (const Error&) {
+      refused = true;
+    }
+    EXPECT_EQ(refused, is_refused);
+  }
+}
+
 TEST_P(AsAsked, AllOfItWhereMoreIsAskedFor) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 163, 97);
   const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);

@@ -115,6 +115,23 @@ TEST_P(ImagePart, NotesWhatWouldBeReadBeyondIt) {
   }
 }
 
+// Nothing is read there: these pixels cannot be.
+TEST_P(ImagePart, NotesLooksBeyondIt) {
+  volatile std::uint32_t beyond = 0;
+  DepthSurface part = whole_;
+  part.restrict_to({}, &beyond);
+  part.normals = nullptr;
+  part.measured = nullptr;
+  for (const InverseDepthRange*& tiles : part.tiles) tiles = nullptr;
+  const DepthSurface::Look look = part.look_at_ball({0, 0, 1}, 0.05);
+  EXPECT_EQ(beyond, 1U);
+  EXPECT_EQ(look.side, Side::free);
+  EXPECT_FALSE(part.read({0, 0, 1}).known);
+  beyond = 0;
+  EXPECT_EQ(part.look_at_ball({9, 0, 1}, 0.05).side, Side::free);  // beside the image
+  EXPECT_EQ(beyond, 0U);
+}
+
 TEST_P(ImagePart, MayReachTheRimOfTheImage) {
   volatile std::uint32_t beyond = 0;
   DepthSurface part = whole_;

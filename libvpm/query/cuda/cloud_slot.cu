@@ -47,6 +47,10 @@ TileRectangle united(const TileRectangle& a, const TileRectangle& b) {
   return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
 }
 
+Error lost() {
+  return Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
+}
+
 }  // namespace
 
 CloudSlot::CloudSlot(const DepthFrameOptions& options)
@@ -75,7 +79,7 @@ void CloudSlot::begin() {
   }
   cloud_.stand_at(camera().to_world);
   made_ = {};
-  is_there_ = true;
+  has_failed_ = false;
   if (options().making == FrameMaking::whole) require_all();
 }
 
@@ -85,18 +89,34 @@ CloudSlot::Part CloudSlot::require_all() const {
 
 CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t stream) const {
   const std::lock_guard lock(making_);
+  if (has_failed_) throw lost();
   if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
   const TileRectangle wanted = united(made_, tiles_of(pixels));
   if (!(wanted == made_)) {
     const OtherWork other;
+    launch(wanted, stream);
+    other.goes_on_until(end_);
+  }
+  return {pixels_of(made_), made_ == all_tiles(), is_there_, sequence_};
+}
+
+// What is launched has an end, even if the rest fails.
+void CloudSlot::launch(const TileRectangle& wanted, cudaStream_t stream) const {
+  const auto mark_end = [&] {
+    is_there_ = false;
+    return cudaEventRecord(end_->get(), stream);
+  };
+  has_failed_ = true;
+  try {
     take(wanted, stream);
     make(wanted, stream);
-    check(cudaEventRecord(end_->get(), stream));
-    other.goes_on_until(end_);
-    made_ = wanted;
-    is_there_ = false;
+  } catch (...) {
+    mark_end();
+    throw;
   }
-  return {pixels_of(made_), made_ == all_tiles(), is_there_};
+  check(mark_end());
+  has_failed_ = false;
+  made_ = wanted;
 }
 
 bool CloudSlot::is_there() const {
@@ -190,30 +210,27 @@ bool CloudSlot::is_answered(unsigned sequence) const {
   return is_reached(answer_.host()->points) && is_reached(answer_.host()->doubtful);
 }
 
-unsigned CloudSlot::doubtful() const {
-  return value_of(look_at(answer_.host()->doubtful));
+void CloudSlot::wait_for(unsigned sequence) const {
+  for (unsigned looks = 1; !is_answered(sequence); ++looks)
+    if (looks % kLooksPerCheck == 0 && has_happened(*end_) && !is_answered(sequence)) throw lost();
 }
 
-// For the parts that are wanted so far.
+// For all that was launched: the image is not read any more.
 void CloudSlot::wait() const {
-  if (!is_plain_) return;
-  const unsigned sequence = [&] {
-    const std::lock_guard lock(making_);
-    return sequence_;
-  }();
-  for (unsigned looks = 1; !is_answered(sequence); ++looks) {
-    if (looks % kLooksPerCheck != 0) continue;
-    if (has_happened(*end_) && !is_answered(sequence))
-      throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
-  }
+  if (is_plain_ && !has_failed_) wait_for(sequence_);
+}
+
+bool CloudSlot::is_sound(const Part& part) const {
+  const bool is_empty = part.made.u0 > part.made.u1;
+  if (is_empty) return true;  // answers are of other frames
+  wait_for(part.sequence);
+  return value_of(look_at(answer_.host()->doubtful)) == 0;
 }
 
 std::size_t CloudSlot::points() const {
   const CurrentDevice current(options().device.first());
-  if (is_plain_) require_all();
-  wait();
-  if (!is_plain_ || !is_sound()) return cloud().positions().size();
-  return value_of(look_at(answer_.host()->points));
+  if (is_plain_ && is_sound(require_all())) return value_of(look_at(answer_.host()->points));
+  return cloud().positions().size();
 }
 
 }  // namespace vpm::cuda

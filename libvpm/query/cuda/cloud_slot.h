@@ -24,18 +24,16 @@ class CloudSlot : public FrameSlot {
     PixelRectangle made;
     bool is_whole = true;
     bool is_there = true;  // its making has ended
+    unsigned sequence = 0;
   };
   // These pixels, and what was made before, for what is launched on the stream next. What was not
-  // made is launched there. From any thread.
+  // made is launched there. From any thread. Where a launch fails, the frame is lost.
   Part require(const PixelRectangle& pixels, cudaStream_t stream) const;
 
   // Whether the device makes the cloud. Otherwise the CPU does, since it might refuse something.
   bool is_on_device() const { return is_plain_; }
-  // Whether that has no point that the CPU might refuse. Waits for it.
-  bool is_sound() const {
-    wait();
-    return doubtful() == 0;
-  }
+  // Whether no point that the CPU might refuse was made so far. Waits for the part.
+  bool is_sound(const Part& part) const;
 
   const DeviceCloud& device_cloud() const { return cloud_; }
 
@@ -52,12 +50,13 @@ class CloudSlot : public FrameSlot {
 
  private:
   Part require_all() const;
+  void launch(const TileRectangle& wanted, cudaStream_t stream) const;
   bool is_there() const;
   CloudRecipe recipe() const;
   TileRectangle with_neighbors(const TileRectangle& tiles) const;
   PixelRectangle pixels_of(const TileRectangle& tiles) const;
   bool is_answered(unsigned sequence) const;
-  unsigned doubtful() const;
+  void wait_for(unsigned sequence) const;
 
   Stream stream_;
   MappedArray<std::byte> image_;
@@ -71,8 +70,9 @@ class CloudSlot : public FrameSlot {
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
   mutable std::mutex making_;                                                     // of what follows
   mutable TileRectangle made_;
-  mutable bool is_there_ = true;
-  mutable unsigned sequence_ = 0;
+  mutable bool is_there_ = true;     // what was launched in this memory has ended, of any frame
+  mutable bool has_failed_ = false;  // some of it was not launched
+  mutable unsigned sequence_ = 0;    // of the last making
 };
 
 }  // namespace vpm::cuda

@@ -21,7 +21,7 @@ Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
   const CurrentDevice current(device_);
   if (const CloudSlot* const slot = bring(frame)) {
     const Result result = ask(pose);
-    if (slot->is_sound()) return result;
+    if (slot->is_sound(part_)) return result;
   }
   return run(frame.cloud(), pose);
 }
@@ -31,7 +31,7 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
   const CurrentDevice current(device_);
   if (const CloudSlot* const slot = bring(frame)) {
     ask(poses, results);
-    if (slot->is_sound()) return;
+    if (slot->is_sound(part_)) return;
   }
   run(frame.cloud(), poses, results);
 }

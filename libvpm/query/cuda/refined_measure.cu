@@ -149,7 +149,8 @@ class RefinedOnDevice : public MeasureOnDevice {
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
-  // A cloud whose arguments for standing_launch() are kept, and what was there of it.
+  // A cloud whose arguments for standing_launch() are kept, and what was there of it. (Images made
+  // as asked seldom come again with the same part.)
   struct Known {
     std::uint64_t serial = 0;
     PixelRectangle made;
