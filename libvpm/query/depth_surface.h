@@ -186,41 +186,7 @@ struct DepthSurface {
   // on its tangent plane and, where that overshoots a crease, back by halves. A step that leads
   // away without a crease has met noise: there the normals tell the direction, not single pixels.
   // Beside a crease, where windows of normals hold both sides, those of one side lead.
-  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    Reading first = reading;
-    const auto i = static_cast<std::int32_t>(reading.point);
-    take_one_side(x, neighbors_of(i % width, i / width), first);
-    Vec3 foot = first.foot, normal = first.normal;
-    double squared = squared_norm(x - foot);
-    Vec3 target = x - first.distance * normal;
-    const double pixel = foot.z / k.fx, near = kFootPixels * pixel;
-    for (int step = 0; step < kFootSteps && squared_norm(target - foot) > near * near; ++step) {
-      Neighbors neighbors;
-      Reading next =
-          read_and(target, [&](std::int32_t u, std::int32_t v) { neighbors = neighbors_of(u, v); });
-      if (!next.known) break;
-      take_one_side(x, neighbors, next);
-      const double next_squared = squared_norm(x - next.foot);
-      if (next_squared < squared) {
-        foot = next.foot;
-        normal = next.normal;
-        squared = next_squared;
-        target = x - dot(normal, x - foot) * normal;
-      } else if (dot(normal, next.normal) > kSmoothCosine) {
-        return normalized_or_zero(normal + next.normal);
-      } else {
-        target = 0.5 * (foot + next.foot);
-      }
-    }
-    // Where the foot is not below x on its own tangent plane, it lies on a crease: there the
-    // gradient fans out.
-    const Vec3 towards = foot - x;
-    const double above = dot(normal, towards);
-    const double aside = squared_norm(towards - above * normal);
-    return above > 0 && aside <= (kCreasePixels * pixel) * (kCreasePixels * pixel)
-               ? normal
-               : normalized_or_zero(towards);
-  }
+  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const;
 
   // What the pixels of a ball tell: its side, and the range of inverse depth over the tiles that
   // cover them.
@@ -347,55 +313,16 @@ struct DepthSurface {
   }
   // The same of a look that may be flat, with the reading at the ball's centre.
   VPM_HD bool is_flat(const Look& look, const Reading& reading, double tolerance,
-                      TangentPlane& plane) const {
-    if (!reading.known) return false;
-    const CornerNormals corners = corner_normals(look);  // soon, though they may not be needed
-    plane = {reading.normal, reading.foot};
-    if (!shows(look, plane, tolerance)) return false;
-    plane.normal = mean_normal(look, corners, reading.normal);
-    return true;
-  }
+                      TangentPlane& plane) const;
   // Whether the plane predicts the range of the ball's pixels.
-  VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
-    if (spans_few_pixels(look)) return look.range.high - look.range.low <= kJump * look.range.high;
-    const double per_height = 1 / dot(plane.normal, plane.foot);
-    const double per_u = plane.normal.x * per_height / k.fx;
-    const double per_v = plane.normal.y * per_height / k.fy;
-    const PixelRectangle& t = look.tiles;
-    const double u = 0.5 * (t.u0 + t.u1) - k.cx, v = 0.5 * (t.v0 + t.v1) - k.cy;
-    const double middle = per_u * u + per_v * v + plane.normal.z * per_height;
-    const double spread =
-        0.5 * (std::fabs(per_u) * (t.u1 - t.u0) + std::fabs(per_v) * (t.v1 - t.v0));
-    const double allowed = tolerance / (plane.foot.z * plane.foot.z);
-    return std::fabs(middle - spread - look.range.low) <= allowed &&
-           std::fabs(middle + spread - look.range.high) <= allowed;
-  }
+  VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const;
 
   // The mean plane of the surface across a ball that was looked at, from readings at its middle and
   // at four places around it; false where they do not belong to one smooth surface, or the range of
   // the ball's pixels does not agree with the plane.
   template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
-                         const ReadAll& read_all, TangentPlane& plane) const {
-    if (!may_be_flat(look)) return false;
-    const Reading middle = read(center);
-    if (!middle.known) return false;
-    const Vec3 n = middle.normal;
-    const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis)), other = cross(n, side);
-    const Vec3 below = center - middle.distance * n;
-    const Vec3 places[4] = {below + side, below - side, below + other, below - other};
-    Vec3 direction = n, feet = middle.foot;
-    const auto take = [&](const Reading& reading) {
-      if (!reading.known || dot(reading.normal, n) < kSmoothCosine) return false;
-      direction += reading.normal;
-      feet += reading.foot;
-      return true;
-    };
-    if (!read_all(*this, places, take)) return false;
-    plane = {normalized_or_zero(direction), 0.2 * feet};
-    return shows(look, plane, tolerance);
-  }
+                         const ReadAll& read_all, TangentPlane& plane) const;
 
   // Bound of the distance from any place in a ball that was looked at to the foot of its reading.
   VPM_HD double largest_gap(const Look& look, Vec3 center, double radius) const {
@@ -418,76 +345,26 @@ struct DepthSurface {
   struct CornerNormals {
     Vec3f at[4];
   };
-  VPM_HD CornerNormals corner_normals(const Look& look) const {
-    const PixelRectangle& p = look.pixels;
-    const std::int32_t u = (p.u1 - p.u0) / 4, v = (p.v1 - p.v0) / 4;
-    const std::int32_t above = (p.v0 + v) * width, below = (p.v1 - v) * width;
-    return {{normals[above + p.u0 + u], normals[above + p.u1 - u], normals[below + p.u0 + u],
-             normals[below + p.u1 - u]}};
-  }
+  VPM_HD CornerNormals corner_normals(const Look& look) const;
   // The mean of these and of the normal at the middle, where they belong to one smooth surface:
   // noise is averaged, and curvature cancels.
-  VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const {
-    if (spans_few_pixels(look)) return middle;
-    Vec3 sum = middle;
-    for (const Vec3f& corner : corners.at) {
-      const Vec3 normal = widen(corner);
-      if (dot(normal, middle) > kSmoothCosine) sum += normal;
-    }
-    return normalized_or_zero(sum);
-  }
+  VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const;
 
   // Normals of the pixels kAcross to either side of one, where there are such.
   struct Neighbors {
     bool in_row = false, in_column = false;
     Vec3f left, right, above, below;
   };
-  VPM_HD Neighbors neighbors_of(std::int32_t u, std::int32_t v) const {
-    const bool in_row = u >= kAcross && u + kAcross < width;
-    const bool in_column = v >= kAcross && v + kAcross < height;
-    const std::int32_t i = v * width + u;
-    const std::int32_t aside = in_row ? kAcross : 0, down = in_column ? kAcross * width : 0;
-    return {in_row,           in_column, normals[i - aside], normals[i + aside], normals[i - down],
-            normals[i + down]};
-  }
+  VPM_HD Neighbors neighbors_of(std::int32_t u, std::int32_t v) const;
 
   // The normal of what was read at x, where its pixel lies beside a crease: of that side of it on
   // whose tangent plane the foot lies.
-  VPM_HD void take_one_side(Vec3 x, const Neighbors& beside, Reading& reading) const {
-    const bool in_row = beside.in_row && holds_crease(beside.left, beside.right, reading.normal),
-               in_column =
-                   beside.in_column && holds_crease(beside.above, beside.below, reading.normal);
-    if (!in_row && !in_column) return;
-    const auto i = static_cast<std::int32_t>(reading.point);
-    const Vec3 foot = reading.foot;
-    double least = HUGE_VAL;
-    const auto consider = [&](std::int32_t j) {
-      const Vec3 normal = widen(normals[j]);
-      const double off = off_plane(foot, j, normal);
-      if (!(off < least)) return;
-      least = off;
-      reading.normal = normal;
-      reading.distance = dot(normal, x - foot);
-    };
-    for (std::int32_t side = -kAcross; side <= kAcross; side += 2 * kAcross) {
-      if (in_row) consider(i + side);
-      if (in_column) consider(i + side * width);
-    }
-  }
+  VPM_HD void take_one_side(Vec3 x, const Neighbors& beside, Reading& reading) const;
   // Whether a crease passes between two neighbours of a pixel, and its normal is of neither.
-  static VPM_HD bool holds_crease(Vec3f one, Vec3f other, Vec3 normal) {
-    const Vec3 before = widen(one), after = widen(other);
-    return dot(before, after) < kSmoothCosine && dot(before, normal) < kSameCosine &&
-           dot(after, normal) < kSameCosine;
-  }
+  static VPM_HD bool holds_crease(Vec3f one, Vec3f other, Vec3 normal);
   // How far a place lies off the tangent plane of a pixel; without end where the pixel shows
   // another surface, or nothing.
-  VPM_HD double off_plane(Vec3 place, std::int32_t i, Vec3 normal) const {
-    const double per_depth = tiles[0][i].high;
-    if (!(dot(normal, place) < 0 && std::fabs(per_depth * place.z - 1) <= kJump)) return HUGE_VAL;
-    const std::int32_t v = i / width;
-    return std::fabs(dot(normal, place - unproject(k, i - v * width, v, 1 / per_depth)));
-  }
+  VPM_HD double off_plane(Vec3 place, std::int32_t i, Vec3 normal) const;
 
   // Takes the range of the look's pixels from at most 3 by 3 tiles; nothing where these are not
   // made.
@@ -521,3 +398,6 @@ struct DepthSurface {
 };
 
 }  // namespace vpm
+
+#include "libvpm/query/depth_nearest.h"  // define what is declared above
+#include "libvpm/query/depth_planes.h"
