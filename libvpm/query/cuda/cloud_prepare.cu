@@ -214,7 +214,7 @@ __device__ __forceinline__ void make_tile(const TileWork<Normals, Radius>& work,
 }
 
 template <class Normals, int Radius>
-__global__ void __launch_bounds__(kTileThreads, Normals::kMostBlocks)
+__global__ void __launch_bounds__(kTileThreads, blocks_for_tiles(Normals::kMostBlocks))
     prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
                   CloudAnswer* answer, unsigned sequence) {
   extern __shared__ double2 shared_memory[];

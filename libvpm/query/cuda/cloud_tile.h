@@ -13,6 +13,15 @@ namespace vpm::cuda {
 
 inline constexpr int kTileWidth = 32, kTileHeight = 16, kTilePixels = kTileWidth * kTileHeight;
 inline constexpr unsigned kTileThreads = 256;
+// Blocks of a multiprocessor: so many, if it has threads for them.
+VPM_HD constexpr int blocks_for_tiles(int wanted) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+  constexpr int kMost = 1024 / kTileThreads;
+  return wanted < kMost ? wanted : kMost;
+#else
+  return wanted;
+#endif
+}
 // Coarser levels whose tiles lie whole in one tile of the kernel.
 inline constexpr int kTileLevels = 4;
 static_assert(kTileHeight == 1 << kTileLevels && kTileWidth % kTileHeight == 0);
