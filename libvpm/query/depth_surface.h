@@ -75,7 +75,7 @@ struct DepthSurface {
   void set_size(std::int32_t new_width, std::int32_t new_height) {
     width = new_width;
     height = new_height;
-    restrict_to({0, 0, width - 1, height - 1}, nullptr);
+    restrict_to(whole_image(width, height), nullptr);
   }
   // The pixels beside those of a place are read too, and neighbours kAcross further on.
   VPM_HD void restrict_to(const PixelRectangle& part, volatile std::uint32_t* noted) {
@@ -236,7 +236,7 @@ struct DepthSurface {
     const double nearest = center.z - radius, farthest = center.z + radius;
     if (!(farthest > 0)) return look;
     look.side = Side::mixed;
-    look.pixels = {0, 0, width - 1, height - 1};
+    look.pixels = whole_image(width, height);
     if (!(nearest > 0)) return look;
     // |x'/z' - x/z| <= r (1 + |x|/z) / (z - r) for every x' in the ball.
     const double per_depth = 1 / center.z, per_nearest = radius / nearest;

@@ -23,36 +23,19 @@ class LookSizes {
   void add(Vec3 center, double radius) {
     if (!(radius > 0)) return;
     const int exponent = std::ilogb(radius);
-    const auto known = std::find_if(sizes_.begin(), sizes_.end(), [&](const LooksOfSize& size) {
-      return std::ilogb(size.radius) == exponent;
-    });
-    LooksOfSize& size = known != sizes_.end() ? *known : sizes_.emplace_back();
+    const auto known = std::find(exponents_.begin(), exponents_.end(), exponent);
+    const auto k = static_cast<std::size_t>(known - exponents_.begin());
+    if (known == exponents_.end()) exponents_.push_back(exponent), sizes_.emplace_back();
+    LooksOfSize& size = sizes_[k];
     size.radius = std::max(size.radius, radius);
     size.reach = std::max(size.reach, norm(center) + radius);
   }
   std::span<const LooksOfSize> all() const { return sizes_; }
 
  private:
+  std::vector<int> exponents_;  // of the radii
   std::vector<LooksOfSize> sizes_;
 };
-
-namespace image_part {
-
-inline PixelRectangle united(const PixelRectangle& a, const PixelRectangle& b) {
-  return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
-}
-
-// With a margin, to whole tiles of so many pixels.
-inline PixelRectangle widened(const PixelRectangle& p, int margin, int tile,
-                              const DepthSurface& image) {
-  const auto down = [&](std::int32_t first) { return std::max(first - margin, 0) / tile * tile; };
-  const auto up = [&](std::int32_t last, std::int32_t size) {
-    return std::min((std::min(last + margin, size) / tile + 1) * tile, size) - 1;
-  };
-  return {down(p.u0), down(p.v0), up(p.u1, image.width), up(p.v1, image.height)};
-}
-
-}  // namespace image_part
 
 // For looks and readings at places in a tool whose centre of mass lies at `center` (camera
 // coordinates); every place in `reach` of it is among them. Looks at balls that leave that, and the
@@ -63,10 +46,13 @@ inline PixelRectangle part_read(const DepthSurface& image, Vec3 center, double r
     return rectangle_of_ball(image.k, image.width, image.height, center, radius);
   };
   const PixelRectangle tool = pixels(reach);
-  if (tool.u0 > tool.u1 || tool.v0 > tool.v1) return {};
-  const PixelRectangle all{0, 0, image.width - 1, image.height - 1};
+  if (is_empty(tool)) return {};
+  const PixelRectangle all = whole_image(image.width, image.height);
   if (!(center.z - reach > 0)) return all;
-  PixelRectangle part = image_part::widened(tool, DepthSurface::kAcross + 1, 1, image);
+  const auto with_margin = [&](const PixelRectangle& r, int margin, int tile) {
+    return widened(r, margin, tile, tile, image.width, image.height);
+  };
+  PixelRectangle part = with_margin(tool, DepthSurface::kAcross + 1, 1);
   for (const LooksOfSize& look : looks) {
     const double nearest = center.z - look.reach;
     if (!(nearest > 0)) return all;
@@ -80,7 +66,7 @@ inline PixelRectangle part_read(const DepthSurface& image, Vec3 center, double r
     int tile = 1;
     while (2 * tile <= across) tile *= 2;
     const int margin = static_cast<int>(2 * aside * slope) + 1;
-    part = image_part::united(part, image_part::widened(pixels(look.reach), margin, tile, image));
+    part = united(part, with_margin(pixels(look.reach), margin, tile));
   }
   return part;
 }

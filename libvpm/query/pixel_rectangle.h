@@ -1,6 +1,8 @@
 // The pixels in which a camera sees a ball. One definition for host and device.
 #pragma once
 
+#include <algorithm>
+
 #include "libvpm/cloud/camera.h"
 
 namespace vpm {
@@ -11,8 +13,35 @@ struct PixelRectangle {
   bool operator==(const PixelRectangle&) const = default;
 };
 
+VPM_HD constexpr PixelRectangle whole_image(std::int32_t width, std::int32_t height) {
+  return {0, 0, width - 1, height - 1};
+}
+VPM_HD constexpr bool is_empty(const PixelRectangle& r) {
+  return r.u0 > r.u1 || r.v0 > r.v1;
+}
 VPM_HD constexpr bool holds(const PixelRectangle& all, const PixelRectangle& part) {
   return part.u0 >= all.u0 && part.v0 >= all.v0 && part.u1 <= all.u1 && part.v1 <= all.v1;
+}
+
+// The least that holds both.
+constexpr PixelRectangle united(const PixelRectangle& a, const PixelRectangle& b) {
+  if (is_empty(a)) return b;
+  if (is_empty(b)) return a;
+  return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
+}
+// With a margin, then to whole tiles of so many pixels, as far as the image goes. Nothing has none.
+constexpr PixelRectangle widened(const PixelRectangle& r, std::int32_t margin,
+                                 std::int32_t tile_width, std::int32_t tile_height,
+                                 std::int32_t width, std::int32_t height) {
+  if (is_empty(r)) return {};
+  const auto down = [&](std::int32_t first, std::int32_t tile) {
+    return std::max(first - margin, 0) / tile * tile;
+  };
+  const auto up = [&](std::int32_t last, std::int32_t tile, std::int32_t size) {
+    return std::min((std::min(last + margin, size) / tile + 1) * tile, size) - 1;
+  };
+  return {down(r.u0, tile_width), down(r.v0, tile_height), up(r.u1, tile_width, width),
+          up(r.v1, tile_height, height)};
 }
 
 // A point off its pixel by more than this would be missed by the search over pixels; float32
@@ -36,7 +65,7 @@ VPM_HD inline PixelRectangle rectangle_of_ball(const Intrinsics& k, std::int32_t
                                                std::int32_t height, Vec3 center, double radius) {
   const double nearest = center.z - radius, farthest = center.z + radius;
   if (!(farthest > 0)) return {};
-  if (!(nearest > 0)) return {0, 0, width - 1, height - 1};
+  if (!(nearest > 0)) return whole_image(width, height);
   PixelRectangle r;
   pixel_range(center.x - radius, center.x + radius, nearest, farthest, k.fx, k.cx, width, r.u0,
               r.u1);

@@ -90,7 +90,7 @@ TEST_P(ImagePart, HoldsAllLooksAndReadingsInTheTool) {
         EXPECT_TRUE(is_same(whole_.read(at), part.read(at)));
       }
       EXPECT_EQ(beyond, 0U);
-      parts += holds(made, {0, 0, whole_.width - 1, whole_.height - 1}) ? 0 : 1;
+      parts += holds(made, whole_image(whole_.width, whole_.height)) ? 0 : 1;
     }
   }
   EXPECT_GT(parts, 250);
@@ -163,7 +163,7 @@ TEST_P(ImagePart, OfToolsNotSeenOrAroundTheCamera) {
   const auto part_at = [&](Vec3 at) { return part_read(whole_, at, tool.reach, tool.looks.all()); };
   EXPECT_EQ(part_at({0, 0, -1}), PixelRectangle{});
   EXPECT_EQ(part_at({10, 0, 1}), PixelRectangle{});
-  EXPECT_EQ(part_at({0, 0, 0.05}), (PixelRectangle{0, 0, whole_.width - 1, whole_.height - 1}));
+  EXPECT_EQ(part_at({0, 0, 0.05}), whole_image(whole_.width, whole_.height));
 }
 
 }  // namespace

@@ -33,18 +33,10 @@ constexpr std::size_t whole_groups(std::size_t pixels) {
   return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
 }
 
-// Those that hold some of these pixels.
 TileRectangle tiles_of(const PixelRectangle& pixels) {
-  if (pixels.u0 > pixels.u1 || pixels.v0 > pixels.v1) return {};
+  if (is_empty(pixels)) return {};
   return {pixels.u0 / kTileWidth, pixels.v0 / kTileHeight, pixels.u1 / kTileWidth + 1,
           pixels.v1 / kTileHeight + 1};
-}
-
-// The least that holds both.
-TileRectangle united(const TileRectangle& a, const TileRectangle& b) {
-  if (a.count() == 0) return b;
-  if (b.count() == 0) return a;
-  return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
 }
 
 Error lost() {
@@ -84,24 +76,24 @@ void CloudSlot::begin() {
 }
 
 CloudSlot::Part CloudSlot::require_all() const {
-  return require(pixels_of(all_tiles()), stream_.get());
+  return require(whole(), stream_.get());
 }
 
 CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t stream) const {
   const std::lock_guard lock(making_);
   if (has_failed_) throw lost();
   if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
-  const TileRectangle wanted = united(made_, tiles_of(pixels));
+  const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
   if (!(wanted == made_)) {
     const OtherWork other;
     launch(wanted, stream);
     other.goes_on_until(end_);
   }
-  return {pixels_of(made_), made_ == all_tiles(), is_there_, sequence_};
+  return {made_, made_ == whole(), is_there_, sequence_};
 }
 
 // What is launched has an end, even if the rest fails.
-void CloudSlot::launch(const TileRectangle& wanted, cudaStream_t stream) const {
+void CloudSlot::launch(const PixelRectangle& wanted, cudaStream_t stream) const {
   const auto mark_end = [&] {
     is_there_ = false;
     return cudaEventRecord(end_->get(), stream);
@@ -124,7 +116,7 @@ bool CloudSlot::is_there() const {
   return is_there_;
 }
 
-void CloudSlot::take(const TileRectangle& wanted, cudaStream_t stream) const {
+void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
   DepthSource source;
   if (options().counts_per_metre) {
     source.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
@@ -132,52 +124,40 @@ void CloudSlot::take(const TileRectangle& wanted, cudaStream_t stream) const {
   } else {
     source.metres = reinterpret_cast<const float*>(image_.device());
   }
-  CloudRecipe normals = recipe();
-  normals.wanted = with_neighbors(wanted);
-  normals.made = with_neighbors(made_);
-  take_image(source, depth_.get(), inverse_.get(), normals, counters_.get(), stream);
+  take_image(source, depth_.get(), inverse_.get(), recipe(), with_neighbors(wanted),
+             with_neighbors(made_), counters_.get(), stream);
 }
 
 // A tile is settled from what was prepared of it and of those around it.
-void CloudSlot::make(const TileRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
-  CloudRecipe normals = recipe();
-  normals.room.estimated = estimated;
-  normals.wanted = with_neighbors(wanted);
-  normals.made = with_neighbors(made_);
-  prepare_on_device(normals, options().normals.method, preparation_, counters_.get(),
+void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
+  CloudRecipe recipe = this->recipe();
+  recipe.room.estimated = estimated;
+  recipe.wanted = tiles_of(with_neighbors(wanted));
+  recipe.made = tiles_of(with_neighbors(made_));
+  prepare_on_device(recipe, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
-  CloudRecipe surface = recipe();
-  surface.wanted = wanted;
-  surface.made = made_;
-  settle_on_device(surface, preparation_.overlaps, stream);
+  recipe.wanted = tiles_of(wanted);
+  recipe.made = tiles_of(made_);
+  settle_on_device(recipe, preparation_.overlaps, stream);
 }
 
-TileRectangle CloudSlot::all_tiles() const {
-  return tiles_of(
-      {0, 0, static_cast<int>(camera().width) - 1, static_cast<int>(camera().height) - 1});
-}
-
-TileRectangle CloudSlot::with_neighbors(const TileRectangle& tiles) const {
-  if (tiles.count() == 0) return {};
-  const TileRectangle all = all_tiles();
-  return {std::max(tiles.u0 - 1, 0), std::max(tiles.v0 - 1, 0), std::min(tiles.u1 + 1, all.u1),
-          std::min(tiles.v1 + 1, all.v1)};
-}
-
-PixelRectangle CloudSlot::pixels_of(const TileRectangle& tiles) const {
+PixelRectangle CloudSlot::whole() const {
   const DepthSurface& surface = cloud_.depth_surface();
-  return {tiles.u0 * kTileWidth, tiles.v0 * kTileHeight,
-          std::min(tiles.u1 * kTileWidth, surface.width) - 1,
-          std::min(tiles.v1 * kTileHeight, surface.height) - 1};
+  return whole_image(surface.width, surface.height);
+}
+
+PixelRectangle CloudSlot::in_whole_tiles(const PixelRectangle& pixels, int margin) const {
+  const DepthSurface& surface = cloud_.depth_surface();
+  return widened(pixels, margin, kTileWidth, kTileHeight, surface.width, surface.height);
 }
 
 std::vector<Vec3f> CloudSlot::estimate_normals() {
   const CurrentDevice current(options().device.first());
   const DeviceArray<Vec3f> estimated(pixels());
   const OtherWork other;
-  take(all_tiles(), stream_.get());
-  make(all_tiles(), stream_.get(), estimated.get());
+  take(whole(), stream_.get());
+  make(whole(), stream_.get(), estimated.get());
   check(cudaStreamSynchronize(stream_.get()));
   std::vector<Vec3f> normals(pixels());
   check(cudaMemcpy(normals.data(), estimated.get(), normals.size() * sizeof(Vec3f),
@@ -221,8 +201,7 @@ void CloudSlot::wait() const {
 }
 
 bool CloudSlot::is_sound(const Part& part) const {
-  const bool is_empty = part.made.u0 > part.made.u1;
-  if (is_empty) return true;  // answers are of other frames
+  if (is_empty(part.made)) return true;  // answers are of other frames
   wait_for(part.sequence);
   return value_of(look_at(answer_.host()->doubtful)) == 0;
 }

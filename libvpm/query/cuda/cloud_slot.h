@@ -40,21 +40,24 @@ class CloudSlot : public FrameSlot {
   // Of the image, in camera axes, whether the cloud can be made here or not.
   std::vector<Vec3f> estimate_normals();
 
-  // The two steps in which tiles are made, for those who time them.
-  void take(const TileRectangle& wanted, cudaStream_t stream) const;
-  void make(const TileRectangle& wanted, cudaStream_t stream, Vec3f* estimated = nullptr) const;
-  TileRectangle all_tiles() const;
+  // The two steps in which whole tiles are made, for those who time them.
+  void take(const PixelRectangle& wanted, cudaStream_t stream) const;
+  void make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated = nullptr) const;
+  PixelRectangle whole() const;
 
  protected:
   void begin() override;
 
  private:
   Part require_all() const;
-  void launch(const TileRectangle& wanted, cudaStream_t stream) const;
+  void launch(const PixelRectangle& wanted, cudaStream_t stream) const;
   bool is_there() const;
   CloudRecipe recipe() const;
-  TileRectangle with_neighbors(const TileRectangle& tiles) const;
-  PixelRectangle pixels_of(const TileRectangle& tiles) const;
+  PixelRectangle in_whole_tiles(const PixelRectangle& pixels, int margin = 0) const;
+  // Whole tiles, and those around them.
+  PixelRectangle with_neighbors(const PixelRectangle& tiles) const {
+    return in_whole_tiles(tiles, 1);
+  }
   bool is_answered(unsigned sequence) const;
   void wait_for(unsigned sequence) const;
 
@@ -69,7 +72,7 @@ class CloudSlot : public FrameSlot {
   bool is_plain_ = false;
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
   mutable std::mutex making_;                                                     // of what follows
-  mutable TileRectangle made_;
+  mutable PixelRectangle made_;                                                   // whole tiles
   mutable bool is_there_ = true;     // what was launched in this memory has ended, of any frame
   mutable bool has_failed_ = false;  // some of it was not launched
   mutable unsigned sequence_ = 0;    // of the last making

@@ -1,7 +1,5 @@
 #include <math_constants.h>
 
-#include <algorithm>
-
 #include "libvpm/query/cuda/cloud_take.h"
 
 namespace vpm::cuda {
@@ -81,24 +79,20 @@ __global__ void __launch_bounds__(kTileThreads)
   if (thread == 0) counters->points = counters->doubtful = 0;
 }
 
-// The pixels of some tiles and of the margin that their normals are made of. Empty if there are no
-// tiles.
-PixelRectangle with_margin(const TileRectangle& tiles, const CloudRecipe& recipe) {
-  if (tiles.count() == 0) return {};
-  const int margin = TileFrame<0>::margin_of(recipe.window / 2);
-  return {std::max(tiles.u0 * kTileWidth - margin, 0), std::max(tiles.v0 * kTileHeight - margin, 0),
-          std::min(tiles.u1 * kTileWidth + margin, static_cast<int>(recipe.camera.width)) - 1,
-          std::min(tiles.v1 * kTileHeight + margin, static_cast<int>(recipe.camera.height)) - 1};
-}
-
 }  // namespace
 
 void take_image(const DepthSource& source, float* depth, float* inverse, const CloudRecipe& recipe,
-                CloudCounters* counters, cudaStream_t stream) {
-  const ImagePart part{with_margin(recipe.wanted, recipe), with_margin(recipe.made, recipe)};
+                const PixelRectangle& wanted, const PixelRectangle& made, CloudCounters* counters,
+                cudaStream_t stream) {
+  const auto with_margin = [&](const PixelRectangle& pixels) {
+    return widened(pixels, TileFrame<0>::margin_of(recipe.window / 2), 1, 1,
+                   static_cast<std::int32_t>(recipe.camera.width),
+                   static_cast<std::int32_t>(recipe.camera.height));
+  };
+  const ImagePart part{with_margin(wanted), with_margin(made)};
   const unsigned threads = part.rows() * part.groups_per_row();
   take<<<(threads + kTileThreads - 1) / kTileThreads, kTileThreads, 0, stream>>>(
-      source, depth, inverse, part, recipe.camera, recipe.room, counters, recipe.made.count() == 0);
+      source, depth, inverse, part, recipe.camera, recipe.room, counters, is_empty(made));
   check(cudaGetLastError());
 }
 

@@ -16,10 +16,11 @@ struct DepthSource {
 // Pixels that one thread takes; images and what is made of them have room for the last thread's.
 inline constexpr unsigned kPixelsAtOnce = 8;
 
-// Brings the part of the image that the tiles of a recipe are made of to the device: depths and
-// their inverses, as recipes want them. With the first tiles of an image it clears what
-// settle_on_device() (cloud_settle.h) adds up, and the counters.
+// Brings the part of the image that the normals of `wanted` are made of to the device, but for what
+// those of `made` were made of: depths and their inverses, as recipes want them. With the first
+// part of an image it clears what settle_on_device() (cloud_settle.h) adds up, and the counters.
 void take_image(const DepthSource& source, float* depth, float* inverse, const CloudRecipe& recipe,
-                CloudCounters* counters, cudaStream_t stream);
+                const PixelRectangle& wanted, const PixelRectangle& made, CloudCounters* counters,
+                cudaStream_t stream);
 
 }  // namespace vpm::cuda

@@ -35,7 +35,6 @@ struct TileRectangle {
   __host__ __device__ bool holds(int u, int v) const {
     return u >= u0 && u < u1 && v >= v0 && v < v1;
   }
-  bool operator==(const TileRectangle&) const = default;
 };
 
 // An image and how its cloud is made.

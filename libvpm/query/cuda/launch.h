@@ -60,14 +60,14 @@ inline unsigned processor_count() {
   return static_cast<unsigned>(count);
 }
 
-// Of a kernel, how many blocks one multiprocessor of the current device holds at once, if so many
-// are wanted.
+// Of a kernel, how many blocks the current device holds at once, if so many are wanted of each
+// multiprocessor.
 template <class Kernel>
 unsigned blocks_that_fit(Kernel* kernel, unsigned threads, unsigned wanted) {
   int blocks = 0;
   check(
       cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, static_cast<int>(threads), 0));
-  return std::clamp(static_cast<unsigned>(blocks), 1U, wanted);
+  return std::clamp(static_cast<unsigned>(blocks), 1U, wanted) * processor_count();
 }
 
 // Blocks that fill the device, as far as their memory takes no more than a quarter of it.

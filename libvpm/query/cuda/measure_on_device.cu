@@ -41,7 +41,7 @@ Result MeasureOnDevice::ask(const Pose& pose) {
   if (frame_ != nullptr) part_ = frame_->require(pixels_read(frame), stream());
   RawResult raw = answer(frame);
   if (raw.beyond != 0) {
-    part_ = frame_->require(whole_image(), stream());
+    part_ = frame_->require(all_pixels(), stream());
     raw = answer(frame);
   }
   flood_microseconds_ = 1e-3 * raw.flood_ns;
@@ -75,7 +75,7 @@ void MeasureOnDevice::end_launched() {
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
   if (!batch_) batch_ = std::make_unique<Batch>();
   const OtherWork other;
-  if (frame_ != nullptr) part_ = frame_->require(whole_image(), stream());
+  if (frame_ != nullptr) part_ = frame_->require(all_pixels(), stream());
   for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
     const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
     check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),

@@ -37,7 +37,7 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual double reach() const = 0;
   // The pixels that one query reads of an image, as far as that is known beforehand; what more it
   // asks for, it says (RawResult::beyond).
-  virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return whole_image(); }
+  virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return all_pixels(); }
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
@@ -70,8 +70,8 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
-  PixelRectangle whole_image() const {
-    return {0, 0, cloud_->frame().width - 1, cloud_->frame().height - 1};
+  PixelRectangle all_pixels() const {
+    return whole_image(cloud_->frame().width, cloud_->frame().height);
   }
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();

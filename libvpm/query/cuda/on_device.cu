@@ -129,8 +129,9 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.spheres_reach = reach_of_spheres(tool, level);
   for (const Chunk& chunk : chunks) looks_.add(chunk.ball.center, chunk.ball.radius);
   for (const Unit& unit : units) {
-    for (const Unit::Ball ball : {Unit::of_share, Unit::of_block})
-      looks_.add(unit.balls[ball].center, unit.balls[ball].radius);
+    const UnitBall &share = unit.balls[Unit::of_share], &block = unit.balls[Unit::of_block];
+    if ((unit.flags & Unit::is_head) != 0) looks_.add(share.center, share.radius);
+    looks_.add(block.center, block.radius);
   }
 }
 

@@ -116,8 +116,7 @@ class PaperOnDevice : public MeasureOnDevice {
  public:
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
       : MeasureOnDevice(tool, device),
-        blocks_(blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor) *
-                processor_count()),
+        blocks_(blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
         spheres_(tool.spheres.data(), level.sphere_count),
         graph_begin_(level.graph.begin),
         neighbors_(level.graph.neighbors),

@@ -39,7 +39,7 @@ __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, dou
   const double reach_squared = reach * reach;
   const std::uint32_t lane = threadIdx.x % 32;
   const PixelRectangle r = frame.pixels;
-  if (r.u0 > r.u1 || r.v0 > r.v1) return;
+  if (is_empty(r)) return;
   const auto columns = static_cast<std::uint32_t>(r.u1 - r.u0 + 1);
   const std::uint32_t per_row = (columns + 31) / 32;
   const std::uint32_t count = per_row * static_cast<std::uint32_t>(r.v1 - r.v0 + 1);

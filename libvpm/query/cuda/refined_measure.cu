@@ -37,8 +37,8 @@ class RefinedOnDevice : public MeasureOnDevice {
   };
   template <class Kernel>
   static PoseKernel kernel_of(Kernel* kernel, unsigned blocks, bool meets = true) {
-    return {reinterpret_cast<const void*>(kernel),
-            blocks_that_fit(kernel, kThreads, blocks) * processor_count(), meets};
+    return {reinterpret_cast<const void*>(kernel), blocks_that_fit(kernel, kThreads, blocks),
+            meets};
   }
   static PoseKernel kernel_of_images(const LevelView& level) {
     return level.count <= kSpheresOfFewBlocks

@@ -59,7 +59,7 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
     slots.push_back(std::make_unique<device::CloudSlot>(options));
     fill(*slots.back(), sensor.depth.depth);
   }
-  const device::TileRectangle all = slots[0]->all_tiles();
+  const PixelRectangle all = slots[0]->whole();
   const std::size_t bytes = slots[0]->image_bytes();
   const device::DeviceArray<std::byte> copy(bytes * kCopies);
   const double copying = time_of(stream.get(), [&](std::size_t k) {
