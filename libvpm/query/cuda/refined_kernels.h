@@ -75,9 +75,9 @@ __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const 
                  launch.space.notes[turn % 2].points);
     return {};
   }
-  return ShareMeasure<Surface>(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                               *launch.counters, of_spheres, launch.counts_points, shared.measure)
-      .run();
+  const PoseWork<Surface> work(launch.level, launch.surface, frame.to_surface, launch.space, turn,
+                               *launch.counters, of_spheres);
+  return ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
 }
 
 // What the next query begins with, when nobody waits for this one any more.
@@ -196,10 +196,9 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     if (launch.counts_points)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
-    const RawResult found =
-        ShareMeasure<Surface>(level, launch.surface, frame.to_surface, space, turn, counters, {},
-                              launch.counts_points, shared.measure)
-            .run();
+    const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
+                                 {});
+    const RawResult found = ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();

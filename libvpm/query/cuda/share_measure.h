@@ -44,32 +44,22 @@ struct ReadByLanes {
 template <class Surface>
 class ShareMeasure {
  public:
-  __device__ ShareMeasure(const LevelView& level, const Surface& surface, const Pose& to_surface,
-                          const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
-                          Part part, bool counts_points, MeasureShared& shared)
-      : level_(level),
-        surface_(surface),
-        to_surface_(to_surface),
-        space_(space),
-        notes_(space.notes[turn % 2]),
-        counters_(counters),
-        part_(part),
-        counts_points_(counts_points),
-        shared_(shared),
-        tasks_(level, surface, to_surface, space, turn, counters, part, shared.lists) {}
+  __device__ ShareMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared)
+      : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
 
   // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
   __device__ RawResult run() {
-    if (kFloods && part_.part == 0 && threadIdx.x == 0) space_.parents[0] = 0;
+    if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
     const Tile lanes(lanes_of_chunk());
     // Neighbours go to different warps: they often differ in what takes long.
     const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
     const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
-    for (unsigned first = part_.part; first < level_.chunk_count; first += slots * part_.parts) {
-      const unsigned c = first + slot * part_.parts;
-      if (c < level_.chunk_count) look_at(c, slot, lanes);
+    for (unsigned first = work_.part.part; first < work_.level.chunk_count;
+         first += slots * work_.part.parts) {
+      const unsigned c = first + slot * work_.part.parts;
+      if (c < work_.level.chunk_count) look_at(c, slot, lanes);
       __syncthreads();
       note_pushed();
       classify_seen();
@@ -97,8 +87,8 @@ class ShareMeasure {
   __device__ unsigned lanes_of_chunk() const {
     unsigned best = 1, least = UINT_MAX;
     for (unsigned lanes = ReadByLanes::kPlaces; lanes > 0; lanes /= 2) {
-      const unsigned at_once = blockDim.x / lanes * part_.parts;
-      const unsigned rounds = (level_.chunk_count + at_once - 1) / at_once;
+      const unsigned at_once = blockDim.x / lanes * work_.part.parts;
+      const unsigned rounds = (work_.level.chunk_count + at_once - 1) / at_once;
       const unsigned reads = rounds * (kReadsOfLook + ReadByLanes::kPlaces / lanes);
       if (reads < least) best = lanes, least = reads;
     }
@@ -106,9 +96,9 @@ class ShareMeasure {
   }
   // By all threads of a slot; one notes what they have seen.
   __device__ void look_at(std::uint32_t c, unsigned slot, const Tile& lanes) {
-    const Chunk& chunk = level_.chunks[c];
-    const Vec3 at = to_surface_ * chunk.ball.center;
-    const auto look = surface_.look_at_ball(at, chunk.ball.radius);
+    const Chunk& chunk = work_.level.chunks[c];
+    const Vec3 at = work_.to_surface * chunk.ball.center;
+    const auto look = work_.surface.look_at_ball(at, chunk.ball.radius);
     if (look.side == Side::free) return;
     CrossingPlane plane;
     const Seen seen = what_is_seen(chunk.ball, look, at, lanes, plane);
@@ -127,15 +117,16 @@ class ShareMeasure {
     for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = SeenUnit::of(slot, u, seen);
   }
   __device__ CrossingPlane& plane_of(unsigned slot) const {
-    return space_.planes[part_.part * blockDim.x + slot];
+    return work_.space.planes[work_.part.part * blockDim.x + slot];
   }
   template <class Look>
   __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at, const Tile& lanes,
                                CrossingPlane& plane) {
-    const bool patch = is_patch(ball.radius, level_.tool_reach.length);
+    const bool patch = is_patch(ball.radius, work_.level.tool_reach.length);
     if (look.side == Side::uncut) {
       if (!patch) return Seen::uncut;
-      switch (open_patch(surface_, surface_.read(at), at, ball.radius, level_.tool_reach.length)) {
+      switch (open_patch(work_.surface, work_.surface.read(at), at, ball.radius,
+                         work_.level.tool_reach.length)) {
         case OpenPatch::free:
           return Seen::free;
         case OpenPatch::behind:
@@ -148,12 +139,12 @@ class ShareMeasure {
     }
     if (look.side == Side::mixed) {
       TangentPlane tangent;
-      if (!patch || !sees_patch(surface_, look, at, ball.radius, ReadByLanes{lanes}, tangent))
+      if (!patch || !sees_patch(work_.surface, look, at, ball.radius, ReadByLanes{lanes}, tangent))
         return Seen::mixed;
-      plane = {tangent, to_surface_};
+      plane = {tangent, work_.to_surface};
       return Seen::crossed;
     }
-    if (!(surface_.largest_gap(look, at, ball.radius) < level_.tool_reach.length))
+    if (!(work_.surface.largest_gap(look, at, ball.radius) < work_.level.tool_reach.length))
       return Seen::behind;
     return patch ? Seen::pushed : Seen::behind_near;
   }
@@ -163,12 +154,12 @@ class ShareMeasure {
     const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % Chunk::kUnits;
     for (unsigned k = thread / Chunk::kUnits; k < shared_.pushed_count;
          k += blockDim.x / Chunk::kUnits) {
-      const Chunk& chunk = level_.chunks[shared_.pushed[k]];
-      const Vec3 at = to_surface_ * chunk.ball.center;
-      const Vec3 normal =
-          transpose(to_surface_.rotation) * surface_.closest_normal(at, surface_.read(at));
+      const Chunk& chunk = work_.level.chunks[shared_.pushed[k]];
+      const Vec3 at = work_.to_surface * chunk.ball.center;
+      const Vec3 normal = transpose(work_.to_surface.rotation) *
+                          work_.surface.closest_normal(at, work_.surface.read(at));
       if (u >= chunk.end - chunk.begin) continue;
-      const Unit& unit = level_.units[chunk.begin + u];
+      const Unit& unit = work_.level.units[chunk.begin + u];
       if ((unit.flags & Unit::is_head) != 0) note_pushed(unit, normal);
     }
   }
@@ -223,20 +214,14 @@ class ShareMeasure {
   __device__ bool is_share_seen_past(const Tile& lanes, const Look& look, double depth) const;
   __device__ bool is_seen_past(const Tile& lanes, const PixelRectangle& pixels,
                                double depth) const {
-    return !lanes.any(!surface_.is_seen_past(pixels, depth, lanes.lane, lanes.width));
+    return !lanes.any(!work_.surface.is_seen_past(pixels, depth, lanes.lane, lanes.width));
   }
   __device__ bool is_free(const Tile& lanes, Vec3 center, double radius) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
   __device__ void list_block(const Unit& unit, Side side);
 
-  const LevelView& level_;
-  const Surface& surface_;
-  const Pose& to_surface_;
-  const RefinedSpace& space_;
-  const ShareNotes& notes_;
-  RefinedCounters& counters_;
-  Part part_;
+  const PoseWork<Surface>& work_;
   bool counts_points_;
   MeasureShared& shared_;
   TaskMeasure<Surface> tasks_;
@@ -246,16 +231,16 @@ class ShareMeasure {
 template <class Surface>
 __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const Tile lanes(kLanes);
-  const Unit& unit = level_.units[shared_.first_units[seen.slot()] + seen.unit()];
+  const Unit& unit = work_.level.units[shared_.first_units[seen.slot()] + seen.unit()];
   const UnitBall ball = unit.balls[min(lanes.lane, Unit::kBalls - 1U)];
   const std::uint32_t flags = unit.flags;
   const bool head = (flags & Unit::is_head) != 0;
-  const Vec3 at = to_surface_ * ball.center;
-  decltype(surface_.look_at_ball(at, ball.radius)) look;
+  const Vec3 at = work_.to_surface * ball.center;
+  decltype(work_.surface.look_at_ball(at, ball.radius)) look;
   Side own = look.side;
   if (seen.side() == Side::mixed) {
     if (lanes.lane < Unit::of_sphere || counts_points_)  // spheres hold points
-      look = surface_.look_at_ball(at, ball.radius);
+      look = work_.surface.look_at_ball(at, ball.radius);
     own = look.side;
     if (is_share_seen_past(lanes, look, at.z + ball.radius)) own = Side::free;
   }
@@ -268,16 +253,16 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   const bool reads_share = kFloods && lanes.lane == Unit::of_share && side != Side::free;
   const bool reads_block = lanes.lane == Unit::of_block && side == Side::mixed &&
                            (flags & Unit::has_block) != 0 && look.side == Side::mixed &&
-                           surface_.may_be_flat(look);
+                           work_.surface.may_be_flat(look);
   Reading reading;
-  if (reads_share || reads_block) reading = surface_.read(at, look.point);
+  if (reads_share || reads_block) reading = work_.surface.read(at, look.point);
 
   double gap = 0;
   bool hidden = false, whole = side == Side::behind;
   if (kFloods) {
     gap = squared_gap(reading);
     hidden = lanes.from(
-        seen.seen() != Seen::behind_near && is_hidden_share(gap, level_.tool_reach.length),
+        seen.seen() != Seen::behind_near && is_hidden_share(gap, work_.level.tool_reach.length),
         Unit::of_share);
     const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
     whole |= side == Side::uncut && behind;
@@ -288,7 +273,7 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
     if (side == Side::mixed && of_sphere == Side::mixed) word |= kCountsPoints;
     if ((whole || side == Side::mixed) && hidden) {
       word |= kHidden;
-      atomicAdd(&counters_.hidden, 1U);
+      atomicAdd(&work_.counters.hidden, 1U);
     }
     note_share(unit, word, gap);
   }
@@ -299,10 +284,10 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
         {.center = unit.balls[Unit::of_share].center, .reach = unit.balls[Unit::of_share].radius});
     const bool is_flat =
         reads_block &&
-        surface_.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
+        work_.surface.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
         measure.is_of_one_wall(at, ball.radius, tangent, look.point);
     if (is_flat)
-      tasks_.add_crossed(unit, {tangent, to_surface_});
+      tasks_.add_crossed(unit, {tangent, work_.to_surface});
     else
       list_block(unit, look.side);
   } else if (whole && (flags & Unit::is_compact) != 0) {
@@ -319,7 +304,7 @@ template <class Look>
 __device__ bool ShareMeasure<Surface>::is_share_seen_past(const Tile& lanes, const Look& look,
                                                           double depth) const {
   constexpr unsigned kShare = Unit::of_share;
-  if (!lanes.from(surface_.may_be_seen_past(look, depth), kShare)) return false;
+  if (!lanes.from(work_.surface.may_be_seen_past(look, depth), kShare)) return false;
   const PixelRectangle pixels = lanes.from(Surface::pixels_of(look), kShare);
   const double farthest = lanes.from(depth, kShare);
   return is_seen_past(lanes, pixels, farthest) && lanes.lane == kShare;
@@ -330,33 +315,33 @@ __device__ void ShareMeasure<Surface>::note_share(const Unit& unit, std::uint32_
                                                   double gap) {
   const std::uint32_t i = unit.share;
   if (!kFloods) word &= kCountsPoints;
-  if (word != 0) atomicOr(&notes_.words[i], word);
+  if (word != 0) atomicOr(&work_.notes.words[i], word);
   if (!kFloods) return;
-  space_.gaps[i] = gap;
-  space_.parents[i + 1] = i + 1;
+  work_.space.gaps[i] = gap;
+  work_.space.parents[i + 1] = i + 1;
 }
 
 // Whether a ball is, its pixels read by all lanes.
 template <class Surface>
 __device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
                                                double radius) const {
-  const auto look = surface_.look_at_ball(center, radius);
+  const auto look = work_.surface.look_at_ball(center, radius);
   const double farthest = center.z + radius;
-  if (!surface_.may_be_seen_past(look, farthest)) return look.side == Side::free;
+  if (!work_.surface.may_be_seen_past(look, farthest)) return look.side == Side::free;
   return is_seen_past(lanes, Surface::pixels_of(look), farthest);
 }
 
 // One unit of a patch that a plane crosses, by all lanes of a tile.
 template <class Surface>
 __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Tile& lanes) {
-  const Unit& unit = level_.units[shared_.first_units[seen.slot()] + seen.unit()];
+  const Unit& unit = work_.level.units[shared_.first_units[seen.slot()] + seen.unit()];
   const CrossingPlane plane = plane_of(seen.slot());
   const UnitBall share = unit.balls[Unit::of_share];
   const bool head = (unit.flags & Unit::is_head) != 0;
   const double distance = plane.distance(share.center);
-  const Vec3 at = to_surface_ * share.center;
-  const bool free = !(distance < share.radius) ||
-                    (surface_.may_be_free(at, share.radius) && is_free(lanes, at, share.radius));
+  const Vec3 at = work_.to_surface * share.center;
+  const bool free = !(distance < share.radius) || (work_.surface.may_be_free(at, share.radius) &&
+                                                   is_free(lanes, at, share.radius));
   if (!lanes.leads()) return;
   const bool behind = !free && distance <= -share.radius;
   if (head) {
@@ -367,7 +352,8 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
     }
     if (counts_points_) {
       const UnitBall& sphere = unit.balls[Unit::of_sphere];
-      if (surface_.look_at_ball(to_surface_ * sphere.center, sphere.radius).side == Side::mixed)
+      if (work_.surface.look_at_ball(work_.to_surface * sphere.center, sphere.radius).side ==
+          Side::mixed)
         word |= kCountsPoints;
     }
     note_share(unit, word, distance * distance);
@@ -380,8 +366,8 @@ template <class Surface>
 __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal) {
   tasks_.note_behind(unit, normal);
   if (!kFloods) return;
-  const Vec3 at = to_surface_ * unit.balls[Unit::of_share].center;
-  note_share(unit, kWhole, squared_gap(surface_.read(at)));
+  const Vec3 at = work_.to_surface * unit.balls[Unit::of_share].center;
+  note_share(unit, kWhole, squared_gap(work_.surface.read(at)));
 }
 
 // Lists a block of a mixed share.

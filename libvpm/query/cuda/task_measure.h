@@ -8,22 +8,36 @@
 
 namespace vpm::cuda {
 
+// What a block knows of the pose that it works at.
+template <class Surface>
+struct PoseWork {
+  const LevelView& level;
+  const Surface& surface;
+  const Pose& to_surface;
+  const RefinedSpace& space;
+  const ShareNotes& notes;  // of the pose, in that space
+  RefinedCounters& counters;
+  Part part;
+
+  __device__ PoseWork(const LevelView& of_level, const Surface& of_surface, const Pose& pose,
+                      const RefinedSpace& of_space, unsigned turn, RefinedCounters& of_counters,
+                      Part of_part)
+      : level(of_level),
+        surface(of_surface),
+        to_surface(pose),
+        space(of_space),
+        notes(of_space.notes[turn % 2]),
+        counters(of_counters),
+        part(of_part) {}
+};
+
 template <class Surface>
 class TaskMeasure {
  public:
   using Measure = CellMeasure<Surface>;
 
-  __device__ TaskMeasure(const LevelView& level, const Surface& surface, const Pose& to_surface,
-                         const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
-                         Part part, TaskLists& lists)
-      : level_(level),
-        surface_(surface),
-        to_surface_(to_surface),
-        space_(space),
-        notes_(space.notes[turn % 2]),
-        counters_(counters),
-        part_(part),
-        lists_(lists) {}
+  __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists)
+      : work_(work), lists_(lists) {}
 
   // By all threads of the block.
   __device__ void clear() {
@@ -54,7 +68,7 @@ class TaskMeasure {
   __device__ void add_crossed(const Unit& unit, const CrossingPlane& plane);
   __device__ void note_behind(const Unit& unit, Vec3 normal);
   __device__ Measure measure_of(const CellView& view) const {
-    return {surface_, to_surface_, level_.tool_reach, view};
+    return {work_.surface, work_.to_surface, work_.level.tool_reach, view};
   }
 
  private:
@@ -64,18 +78,18 @@ class TaskMeasure {
                 TaskLists::kWide % kNeighborSamples == 0);
 
   __device__ FlatBlock& flat(unsigned list, unsigned slot) const {
-    const unsigned row = 2 * part_.part + (list == TaskLists::flat_wide);
-    return space_.flats[row * TaskLists::kTasks + slot];
+    const unsigned row = 2 * work_.part.part + (list == TaskLists::flat_wide);
+    return work_.space.flats[row * TaskLists::kTasks + slot];
   }
   __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
   __device__ SharePiece piece(Task::Form form, std::uint32_t k) const {
     switch (form) {
       case Task::samples:
-        return piece_of(level_.samples[k]);
+        return piece_of(work_.level.samples[k]);
       case Task::whole_share:
-        return piece_of(level_.share_masses[k], level_.cell(k));
+        return piece_of(work_.level.share_masses[k], work_.level.cell(k));
       default:
-        return piece_of(level_.block_masses[k], level_.blocks[k]);
+        return piece_of(work_.level.block_masses[k], work_.level.blocks[k]);
     }
   }
   __device__ void add_piece(const Tile& tile, const Measure& measure, const Task& task,
@@ -86,13 +100,7 @@ class TaskMeasure {
   __device__ void note_task(const Task& task, const CellResult& result);
   __device__ void count(std::uint32_t share, std::uint32_t bits);
 
-  const LevelView& level_;
-  const Surface& surface_;
-  const Pose& to_surface_;
-  const RefinedSpace& space_;
-  const ShareNotes& notes_;
-  RefinedCounters& counters_;
-  Part part_;
+  const PoseWork<Surface>& work_;
   TaskLists& lists_;
   RawResult found_;
   std::uint32_t words_before_ = 0, bits_added_ = 0;  // of the share that was noted last
@@ -115,7 +123,8 @@ __device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const Crossi
   }
   CellResult result;
   if (distance <= -ball.radius)
-    add_whole(level_.tool_reach, level_.block_masses[unit.block], plane.normal, result.sum);
+    add_whole(work_.level.tool_reach, work_.level.block_masses[unit.block], plane.normal,
+              result.sum);
   note_task(task, result);
 }
 
@@ -123,9 +132,9 @@ __device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const Crossi
 template <class Surface>
 __device__ void TaskMeasure<Surface>::note_behind(const Unit& unit, Vec3 normal) {
   ToolSum sum;
-  add_whole(level_.tool_reach, level_.share_masses[unit.share], normal, sum);
+  add_whole(work_.level.tool_reach, work_.level.share_masses[unit.share], normal, sum);
   if (kFloods) {
-    notes_.sums[unit.share] = sum;
+    work_.notes.sums[unit.share] = sum;
   } else {
     found_.sum.add(sum);
     if (sum.volume.value != 0) count(unit.share, kCounted);
@@ -167,8 +176,9 @@ __device__ void TaskMeasure<Surface>::measure(const Tile& tile, unsigned list, u
 template <class Surface>
 __device__ CellResult TaskMeasure<Surface>::measure_pieces(const Tile& tile, const Task& task) {
   const std::uint32_t i = task.share;
-  const Measure measure = measure_of(
-      {.samples = level_.samples, .center = level_.centers[i], .reach = level_.reach[i]});
+  const Measure measure = measure_of({.samples = work_.level.samples,
+                                      .center = work_.level.centers[i],
+                                      .reach = work_.level.reach[i]});
   CellResult result;
   for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
     add_piece(tile, measure, task, begin + tile.lane, result);
@@ -202,10 +212,10 @@ __device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure&
   if (cut)
     measure.add_cut(piece, look, sum);
   else
-    measure.add_behind(piece, look, normal, surface_, sum);
+    measure.add_behind(piece, look, normal, work_.surface, sum);
   if (look.is_far) {
     // Member by member: the whole would be stored byte by byte.
-    FarPiece& far = space_.far[atomicAdd(&counters_.far, 1U)];
+    FarPiece& far = work_.space.far[atomicAdd(&work_.counters.far, 1U)];
     far.at = look.x;
     far.foot = look.reading.foot;
     far.sum = sum;
@@ -229,9 +239,9 @@ template <class Surface>
 __device__ CellResult TaskMeasure<Surface>::measure_flat(const Tile& tile, const FlatBlock& flat,
                                                          const Task& task) {
   const CrossingPlane plane = flat.plane;
-  const Vec3 center = flat.center, share = level_.centers[task.share];
-  const double reach = level_.reach[task.share];
-  const CellSample* const samples = level_.samples + task.begin;
+  const Vec3 center = flat.center, share = work_.level.centers[task.share];
+  const double reach = work_.level.reach[task.share];
+  const CellSample* const samples = work_.level.samples + task.begin;
   CellSample next = samples[tile.lane < task.count ? tile.lane : 0];
   CrossedSums row;
 #pragma unroll 1
@@ -257,13 +267,13 @@ __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResu
   if (kFloods) {
     const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
     const std::uint32_t bits = (cut ? kCut | kSummed : 0) | (partial ? kPartial : 0);
-    if (bits != 0) atomicOr(&notes_.words[i], bits);
-    add_atomically(result.sum, notes_.sums[i]);
+    if (bits != 0) atomicOr(&work_.notes.words[i], bits);
+    add_atomically(result.sum, work_.notes.sums[i]);
   } else {
     found_.sum.add(result.sum);
     if (cut || result.sum.volume.value != 0) count(i, kCounted | (cut ? kCut : 0));
   }
-  if (cut) add_atomically(result.plane, notes_.planes[i]);
+  if (cut) add_atomically(result.plane, work_.notes.planes[i]);
 }
 
 // Notes that a share counts; others may do so too. What its word was is needed only when the next
@@ -271,7 +281,7 @@ __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResu
 template <class Surface>
 __device__ void TaskMeasure<Surface>::count(std::uint32_t share, std::uint32_t bits) {
   count_share(words_before_, bits_added_, found_);
-  words_before_ = atomicOr(&notes_.words[share], bits);
+  words_before_ = atomicOr(&work_.notes.words[share], bits);
   bits_added_ = bits;
 }
 
