@@ -195,15 +195,16 @@ class CellMeasure {
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, const Near& near,
                   ToolSum& sum) const {
     if (is_cut(piece, look))
-      add_cut(piece, look, sum);
+      add_behind(part_behind(piece, look), look, look.reading.normal, near, sum);
     else
       add_behind(piece, look, closest_normal(look), near, sum);
   }
-  VPM_HD void add_cut(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
-    const double inside = surface_.fraction_inside(look.reading, look.x, piece.radius);
-    sum.add(piece.weight * inside, in_tool(look.reading.normal), arm(piece.at));
+  // What of a cut piece is behind the surface, at its middle still.
+  VPM_HD SharePiece part_behind(SharePiece piece, const PieceLook& look) const {
+    piece.weight *= surface_.fraction_inside(look.reading, look.x, piece.radius);
+    return piece;
   }
-  // The same of one that is not cut, where the way out of its middle is known.
+  // Adds what is behind the surface, where the way out of its middle is known.
   template <class Near>
   VPM_HD void add_behind(const SharePiece& piece, const PieceLook& look, Vec3 normal,
                          const Near& near, ToolSum& sum) const {

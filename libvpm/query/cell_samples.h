@@ -76,7 +76,7 @@ class SamplesTogether {
     const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
     if (!measure.note(piece, look, result)) return;
     if (!Measure::shares_direction(piece, look)) {
-      measure.add_cut(piece, look, result.sum);
+      measure.add_pushed(measure.part_behind(piece, look), look.reading.normal, result.sum);
       return;
     }
     if (neighbors_ != k / kNeighborSamples) {

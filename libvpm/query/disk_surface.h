@@ -203,6 +203,8 @@ struct DiskSurface {
   // Other walls are looked for so many radii aside, and as many further behind: at a body's end.
   static constexpr double kFurther = 0.85;
   static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
+  // What is nearest beyond a border is looked for again so many radii from it.
+  static constexpr double kBeyondBorder = 0.2;
   // The rim of a disk is so many sampling radii from its middle: no gaps are left between disks
   // that noise has moved.
   static constexpr double kRim = 3;
@@ -270,21 +272,37 @@ struct DiskSurface {
                across = cross(own.normal, side);
     const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
     double least = radius;
+    OtherWall wall;
     for (const Vec3 aside : asides) {
       const Vec3 place = x + kFurther * radius * (aside - own.normal);
-      const Reading there = near.read(place, point);
-      if (!(there.distance < 0)) continue;
-      const Vec3 normal = closest_normal(place, there);
-      if (dot(normal, own.normal) > unlike) continue;
-      const Vec3 between = own.normal - normal;
-      const double away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
-      if (!(away < least)) continue;
+      double away = 0;
+      if (!find_border(near, place, x, own, point, unlike, wall, away) || !(away < least)) continue;
       least = away > 0 ? away : 0;
-      other.normal = normal;
-      other.border.normal = normalized_or_zero(between);
-      other.border.foot = x - away * other.border.normal;
+      other = wall;
     }
+    if (!(least < radius)) return false;
+    // A wall that ends at a crease is nearest to a place behind that in another direction.
+    const Vec3 beyond = other.border.foot - kBeyondBorder * radius * other.border.normal;
+    if (!find_border(near, beyond, x, own, point, unlike, wall, least)) return true;
+    other = wall;
     return least < radius;
+  }
+  // Where it ends that `own` is nearer than the wall at a place, if this faces elsewhere: so far
+  // from x. Else changes nothing.
+  template <class Near>
+  VPM_HD bool find_border(const Near& near, Vec3 place, Vec3 x, const TangentPlane& own,
+                          std::uint32_t point, double unlike, OtherWall& other,
+                          double& away) const {
+    const Reading there = near.read(place, point);
+    if (!(there.distance < 0)) return false;
+    const Vec3 normal = closest_normal(place, there);
+    if (dot(normal, own.normal) > unlike) return false;
+    const Vec3 between = own.normal - normal;
+    away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
+    other.normal = normal;
+    other.border.normal = normalized_or_zero(between);
+    other.border.foot = x - away * other.border.normal;
+    return true;
   }
 
   // A coordinate axis that is far from a direction.

@@ -69,6 +69,37 @@ TEST(TwoWallsOfPoints, TheOtherOneIsFoundWhereABodyReachesIt) {
   }
 }
 
+// The riser of a step ends at the floor. Further down its foot is nearest, in another direction:
+// the border in a body above that is not told from there.
+TEST(TwoWallsOfPoints, TheBorderIsThatOfTheWallNotOfItsEnd) {
+  constexpr double kHeight = 0.05;
+  constexpr int kHalf = 60;
+  Cloud seen;
+  const auto add = [&](Vec3 place, Vec3 normal) {
+    seen.positions.push_back(narrow(place));
+    seen.normals.push_back(narrow(normal));
+    seen.radii.push_back(static_cast<float>(kSpacing));
+  };
+  for (int k = -kHalf; k <= kHalf; ++k) {
+    for (double along = 0.5 * kSpacing; along < 0.12; along += kSpacing) {
+      add({-along, kSpacing * k, 0}, {0, 0, 1});
+      add({along, kSpacing * k, -kHeight}, {0, 0, 1});
+      if (along < kHeight) add({0, kSpacing * k, -along}, {1, 0, 0});
+    }
+  }
+  const PreparedCloud cloud(seen);
+  const DiskSurface disks = cloud.disk_surface();
+  for (const double depth : {0.037, 0.041, 0.045}) {  // below the top, whose edge is nearer
+    const Vec3 at = Vec3{-depth - 0.002, 0.0007, -depth} - cloud.origin();
+    const Reading reading = disks.read(at);
+    OtherWall other;
+    ASSERT_TRUE(disks.find_other_wall(at, {reading.normal, reading.foot}, reading.point, 0.02,
+                                      kTwoWalls, other));
+    EXPECT_NEAR(other.border.distance(at), 0.002 * kSlope, 2e-4) << depth;
+    EXPECT_LT(angle(other.normal, {1, 0, 0}), 2 * kDegree) << depth;
+  }
+}
+
 TEST(TwoWallsOfPoints, OneWallHasNoOther) {
   for (const double bulge : {0.0, 3.0, -3.0}) {  // 1/m: flat, and a bowl and a hill
     Cloud seen = TwoWalls{true}.seen();
@@ -226,6 +257,20 @@ Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
   }
   constexpr double kCount = 1.0 * kPlaces * kPlaces * kPlaces;
   return {sum.force / kCount, sum.torque / kCount};
+}
+
+// One piece below the edge of a roof, cut by both walls: neither has it alone.
+TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
+  constexpr double kEdge = 0.012;
+  const TwoWalls roof{true};
+  const PreparedCloud cloud(roof.seen());
+  const ToolModel piece = testing::lattice_cube(kEdge, 1, 1);
+  Query query(piece, {});
+  for (const double x : {-0.001, 0.0, 0.0015}) {
+    const Pose pose{{}, {x, 0.0013, -0.004}};
+    const Vec3 force = query.run(cloud, pose).wrench.force;
+    EXPECT_LT(angle(force, true_force(roof, kEdge, pose).force), 9 * kDegree) << x;
+  }
 }
 
 // A cube of 27 shares, of which most reach both walls: pushed whole to the nearest one, the force's

@@ -209,10 +209,8 @@ __device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure&
   result.is_far |= look.is_far;
   if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
   ToolSum sum;
-  if (cut)
-    measure.add_cut(piece, look, sum);
-  else
-    measure.add_behind(piece, look, normal, work_.surface, sum);
+  measure.add_behind(cut ? measure.part_behind(piece, look) : piece, look,
+                     cut ? look.reading.normal : normal, work_.surface, sum);
   if (look.is_far) {
     // Member by member: the whole would be stored byte by byte.
     FarPiece& far = work_.space.far[atomicAdd(&work_.counters.far, 1U)];
