@@ -1,7 +1,10 @@
 // What disks know of a second plane close by, found for the leaves of a cloud side by side.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/disk_windows.h"
