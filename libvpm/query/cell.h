@@ -7,6 +7,7 @@
 
 #include "libvpm/query/contact_plane.h"
 #include "libvpm/query/crossing_plane.h"
+#include "libvpm/query/shadows.h"
 #include "libvpm/query/share_piece.h"
 #include "libvpm/query/tool_sum.h"
 
@@ -15,16 +16,18 @@ namespace vpm {
 struct CellResult {
   ToolSum sum;                     // tool axes, arms about the centre of mass
   ContactPlane plane;              // plane.count > 0: the surface cuts the cell
-  bool is_far = false;             // a piece is further behind the surface than the tool's reach
+  bool is_far = false;             // a piece is: see CellMeasure::is_far
   std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
 };
 
 // The tool's reach, and its inverse, which scales arms.
 struct ToolReach {
   double length = 0, inverse = 0;  // m, 1/m
+  double shadow = 0;               // m: so far behind what a camera has seen nothing is far
 
   ToolReach() = default;
-  VPM_HD ToolReach(double reach) : length(reach), inverse(1 / reach) {}
+  ToolReach(double reach, Shadows shadows)
+      : length(reach), inverse(1 / reach), shadow(shadows == Shadows::solid ? HUGE_VAL : reach) {}
 };
 
 // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
@@ -157,15 +160,17 @@ class CellMeasure {
     }
   }
 
-  // Whether a place at this signed distance is further behind the surface than the tool's reach.
-  VPM_HD bool is_far(double distance) const { return distance < -tool_reach_.length; }
+  // Whether a place is so far behind the surface that it is inside only if something else says so.
+  VPM_HD bool is_far(double signed_distance) const {
+    return signed_distance < -(Surface::kTellsInside ? tool_reach_.shadow : tool_reach_.length);
+  }
 
   // One piece as the surface shows it.
   struct PieceLook {
     Vec3 x;
     Reading reading;
     bool is_inside = false;  // a part of it at least; the rest is said of such only
-    bool is_far = false;     // further behind the surface than the tool's reach
+    bool is_far = false;
   };
   VPM_HD PieceLook look_at(const SharePiece& piece, std::uint32_t point = kNoPoint) const {
     return look_at(piece, point, surface_);

@@ -19,7 +19,7 @@ using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, Sh
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
     : tool_(tool),
-      reach_(tool.reach),
+      reach_(tool.reach, options.shadows),
       counts_points_(options.counts_points),
       level_(tool, level),
       shares_(level_) {

@@ -17,7 +17,7 @@ namespace vpm {
 
 class RefinedMeasure {
  public:
-  // Of the options, those that speak of coherent poses and of points.
+  // Of the options, those that speak of coherent poses, of points and of shadows.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
   // With one thread, allocates nothing after the first call.

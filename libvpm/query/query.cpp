@@ -39,6 +39,10 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
                 "coherent poses are a matter of the refined measure on the CPU; leave the other "
                 "measure or device out");
   }
+  if (options.shadows == Shadows::solid && options.measure == Measure::paper) {
+    throw Error(ErrorKind::usage,
+                "solid shadows are a matter of the refined measure; leave the other measure out");
+  }
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);
   } else if (options.measure == Measure::paper) {
@@ -50,6 +54,7 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
 
 Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
   check_pose(pose);
+  check_cloud(cloud);
   Result result;
   if (device_) {
     result = device_->run(cloud, pose);
@@ -68,6 +73,14 @@ Result Query::run(const DepthFrame& frame, const Pose& pose) {
   Result result = device_->run_frame(frame, pose);
   finish(result);
   return result;
+}
+
+void Query::check_cloud(const PreparedCloud& cloud) const {
+  if (options_.shadows == Shadows::solid && !cloud.is_organised()) {
+    throw Error(ErrorKind::usage,
+                "of points without a camera nobody knows what they hide: solid shadows need a "
+                "cloud that keeps its depth image");
+  }
 }
 
 void Query::forget() {
@@ -99,6 +112,7 @@ void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
 
 void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
                 std::span<Result> results) {
+  check_cloud(cloud);
   run_batch(&cloud, poses, results, [&] { device_->run(cloud, poses, results); });
 }
 

@@ -28,13 +28,14 @@ namespace vpm {
 class Query {
  public:
   // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
-  // model has no such level, coherence is asked of another measure or device, the stiffness is not
-  // positive or so large that forces overflow, or a device is to stand by for too long. The model
-  // must be one that validate() of tool_model.h accepts.
+  // model has no such level, coherence is asked of another measure or device, or solid shadows of
+  // another measure, the stiffness is not positive or so large that forces overflow, or a device is
+  // to stand by for too long. The model must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
-  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin.
+  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin;
+  // Error(usage) where shadows are asked to be solid of points without a camera.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   // The results of many poses, in their order: the bits of one by one, but a device takes thousands
@@ -54,6 +55,7 @@ class Query {
   std::span<const SphereState> states() const;
 
  private:
+  void check_cloud(const PreparedCloud& cloud) const;
   template <class OnDevice>
   void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses, std::span<Result> results,
                  const OnDevice& on_device);

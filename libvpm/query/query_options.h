@@ -5,6 +5,7 @@
 
 #include "libvpm/query/device.h"
 #include "libvpm/query/result.h"
+#include "libvpm/query/shadows.h"
 
 namespace vpm {
 
@@ -25,7 +26,8 @@ struct QueryOptions {
   // meanwhile; README.md, "Standing by". Microseconds, at most kLongestStandby.
   std::uint32_t standby_us = 0;
   static constexpr std::uint32_t kLongestStandby = 1'000'000;
-  double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  Shadows shadows = Shadows::near;  // solid: refined measure, in images
+  double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 }  // namespace vpm

@@ -40,7 +40,7 @@ struct LevelView {
   const Sphere* spheres;
   const double* reach;
   Vec3 center_of_mass;
-  double tool_reach;
+  ToolReach tool_reach;
 
   VPM_HD CellView cell(std::uint32_t i) const {
     return {blocks,
@@ -61,7 +61,7 @@ VPM_HD CellAnswer answer(const Surface& surface, const Pose& to_surface, const L
   const CellResult result = measure.run(SamplesInTurn{});
   const CutShare own{result.plane, to_surface * view.center, view.reach};
   const auto vouches = [&](Vec3 x, Vec3 foot) {
-    return own.vouches_for(x, foot, level.tool_reach);
+    return own.vouches_for(x, foot, level.tool_reach.length);
   };
   return {surface.side_of_ball(to_surface * view.center, view.reach), result,
           measure.whole(vouches)};
@@ -88,8 +88,14 @@ std::vector<CellAnswer> launch(const Surface& surface, const Pose& to_surface,
   constexpr unsigned kThreads = 64;
   measure_cells<<<(level.sphere_count + kThreads - 1) / kThreads, kThreads>>>(
       surface, to_surface,
-      LevelView{blocks.get(), masses.get(), samples.get(), block_begin.get(), spheres.get(),
-                reach.get(), tool.center_of_mass, tool.reach},
+      LevelView{blocks.get(),
+                masses.get(),
+                samples.get(),
+                block_begin.get(),
+                spheres.get(),
+                reach.get(),
+                tool.center_of_mass,
+                {tool.reach, Shadows::near}},
       level.sphere_count, device_answers.get());
   check(cudaGetLastError());
   check(cudaMemcpy(answers.data(), device_answers.get(), answers.size() * sizeof(CellAnswer),
@@ -107,9 +113,10 @@ bool has_device() {
 std::vector<CellAnswer> cells_on_host(const PreparedCloud& cloud, const ToolModel& tool,
                                       const Level& level, const Pose& to_surface) {
   const std::vector<BlockMass> masses = block_masses(level);
-  const LevelView view{level.blocks.data(),      masses.data(),       level.samples.data(),
-                       level.block_begin.data(), tool.spheres.data(), level.share_reach.data(),
-                       tool.center_of_mass,      tool.reach};
+  const LevelView view{level.blocks.data(),  masses.data(),
+                       level.samples.data(), level.block_begin.data(),
+                       tool.spheres.data(),  level.share_reach.data(),
+                       tool.center_of_mass,  {tool.reach, Shadows::near}};
   std::vector<CellAnswer> answers;
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
     answers.push_back(cloud.is_organised() ? answer(cloud.depth_surface(), to_surface, view, i)

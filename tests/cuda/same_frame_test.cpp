@@ -276,14 +276,16 @@ class AsAsked : public ::testing::TestWithParam<NormalMethod> {
   // A frame for each few poses.
   static Seen expect_same(const DepthImage& image, const ToolModel& tool, int window,
                           const std::vector<Pose>& poses, std::size_t poses_per_frame,
-                          std::uint32_t standby_us) {
+                          std::uint32_t standby_us, Shadows shadows = Shadows::near) {
     const DepthFrameOptions options =
         options_of(image, {GetParam(), window}, FrameMaking::as_asked);
     DepthFrames frames(options);
     const Pose camera{testing::generic_rotation(), {0.3, -3, 2}};
     const PreparedCloud cloud = prepared(image, options, camera);
-    Query on_cpu(tool, {.counts_points = false});
-    Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
+    Query on_cpu(tool, {.counts_points = false, .shadows = shadows});
+    Query query(
+        tool,
+        {.device = kDevice, .counts_points = false, .standby_us = standby_us, .shadows = shadows});
     Seen seen;
     std::optional<DepthFrame> frame;
     for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -332,6 +334,8 @@ TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
       const Seen seen = expect_same(image, tool, 7, poses, 1, 0);
       expect_same(image, tool, 9, poses, 5, 0);
       expect_same(image, tool, 7, poses, 20, 2000);
+      expect_same(image, tool, 7, poses, 5, 0, Shadows::solid);
+      expect_same(image, tool, 7, poses, 20, 2000, Shadows::solid);
       if (std::string(name) == "wall" && tool.reach > 0.05) {
         EXPECT_GT(seen.touched, 10U);
       }

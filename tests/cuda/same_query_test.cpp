@@ -196,6 +196,43 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   }
 }
 
+TEST(SolidShadowsOnDevice, GiveTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  constexpr std::uint32_t kStandbyMicroseconds = 2000;
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("block")));
+  int hidden = 0;
+  for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.1, 4, 6),
+                                testing::lattice_cube(0.25, 20, 1)}) {
+    QueryOptions options;
+    options.counts_points = false;
+    Query near(tool, options);
+    options.shadows = Shadows::solid;
+    Query on_cpu(tool, options);
+    options.device = {Device::Kind::cuda, 0};
+    Query on_device(tool, options);
+    options.standby_us = kStandbyMicroseconds;
+    Query standing_by(tool, options);
+    std::vector<Pose> poses;
+    std::vector<Result> expected;
+    for (int k = 0; k < 100; ++k) {
+      SCOPED_TRACE(k);
+      poses.push_back(pose_of(k));
+      poses.back().translation.z += 0.003 * k;
+      expected.push_back(on_cpu.run(cloud, poses.back()));
+      expect_equal(expected.back(), on_device.run(cloud, poses.back()));
+      expect_equal(expected.back(), standing_by.run(cloud, poses.back()));
+      hidden += near.run(cloud, poses.back()).volume < 0.5 * expected.back().volume;
+    }
+    std::vector<Result> batch(poses.size());
+    on_device.run(cloud, poses, batch);
+    for (std::size_t k = 0; k < batch.size(); ++k) {
+      SCOPED_TRACE(k);
+      expect_equal(expected[k], batch[k]);
+    }
+  }
+  EXPECT_GT(hidden, 30);
+}
+
 // More poses than one device takes at a time.
 TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
   if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";

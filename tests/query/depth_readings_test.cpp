@@ -192,7 +192,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
     // Shares of two blocks.
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
-          surface_, to_surface, tool.reach,
+          surface_, to_surface, ToolReach{tool.reach, Shadows::near},
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
                    level.block_begin[i + 2], tool.spheres[i].center, 2 * level.share_reach[i]});
       expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
@@ -229,7 +229,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
                           {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
     for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
       const CellMeasure measure(
-          surface_, to_surface, tool.reach,
+          surface_, to_surface, ToolReach{tool.reach, Shadows::near},
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
                    level.block_begin[i + 1], tool.spheres[i].center, level.share_reach[i]});
       const CellBlock& block = level.blocks[level.block_begin[i]];

@@ -38,8 +38,9 @@ Count counted(const PackedSolid& tool, const Pose& pose, const CloudSensor& sens
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses) {
   const PreparedCloud prepared(cloud);
-  Query queries[2] = {Query(tool.model, {.measure = Measure::refined, .level = level}),
-                      Query(tool.model, {.measure = Measure::paper, .level = level})};
+  Query solid(tool.model, {.level = level, .shadows = Shadows::solid}),
+      near(tool.model, {.level = level}),
+      paper(tool.model, {.measure = Measure::paper, .level = level});
   FrameResult result;
   result.frame = name;
   const int tries = 20 * poses;
@@ -48,19 +49,16 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
     const Count count = counted(tool, pose, *cloud.sensor);
     if (!(count.behind > 0 && count.behind < kShallow)) continue;
     ++result.poses;
-    double volume[2];
-    for (const Measure measure : {Measure::refined, Measure::paper}) {
-      const auto m = static_cast<std::size_t>(measure);
-      volume[m] = queries[m].run(prepared, pose).volume_fraction;
-      result.difference[m].add(std::abs(volume[m] - count.behind));
-    }
-    result.beyond += std::abs(volume[0] - count.behind) > kFrameBound;
-    const double known = volume_error(volume[0], count.behind, {.inside = count.shadow});
-    result.without_shadows.add(known);
-    result.beyond_without_shadows += known > kFrameBound;
-    result.counted_in_free_space +=
-        counted_in_free_space(tool.model, queries[0].level(), pose, cloud.sensor->depth,
-                              cloud.sensor->camera, queries[0].states());
+    const auto volume = [&](Query& query) { return query.run(prepared, pose).volume_fraction; };
+    const double volume_near = volume(near);
+    result.near.add(std::abs(volume_near - count.behind));
+    result.without_shadows.add(volume_error(volume_near, count.behind, {.inside = count.shadow}));
+    result.solid.add(std::abs(volume(solid) - count.behind));
+    result.paper.add(std::abs(volume(paper) - count.behind));
+    for (const Query* query : {&near, &solid})
+      result.counted_in_free_space +=
+          counted_in_free_space(tool.model, query->level(), pose, cloud.sensor->depth,
+                                cloud.sensor->camera, query->states());
   }
   return result;
 }

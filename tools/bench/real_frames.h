@@ -10,19 +10,27 @@
 
 namespace vpm::bench {
 
-// The count takes the shadow of an object for its inside, so it is compared where it says less than
-// this part of the tool; and also without the places in a shadow: those further behind the surface
-// than the tool's reach may count or not.
-inline constexpr double kShallow = 0.1;
+// The count takes the shadow of an object for its inside, as Shadows::solid does. Of Shadows::near
+// it is compared without the places in a shadow, too: those further behind the surface than the
+// tool's reach may count or not.
+inline constexpr double kShallow = 0.1;  // of the tool: poses of which it says more are left out
 inline constexpr double kFrameBound = 0.05;  // of the tool
 
 struct FrameResult {
   std::string frame;
   int poses = 0;
-  MeanAndWorst difference[2];    // |volume - count| of Measure::refined, Measure::paper
-  MeanAndWorst without_shadows;  // of refined, where the places in shadows may count or not
-  int beyond = 0, beyond_without_shadows = 0;  // poses of refined with more than kFrameBound
-  int counted_in_free_space = 0;               // spheres of refined, over all poses
+  // |volume - count|, and how many poses have more than kFrameBound.
+  struct Difference {
+    MeanAndWorst all;
+    int beyond = 0;
+    void add(double difference) {
+      all.add(difference);
+      beyond += difference > kFrameBound;
+    }
+  };
+  Difference solid, near, paper;  // Measure::refined with both kinds of shadows, Measure::paper
+  Difference without_shadows;     // of near, where the places in shadows may count or not
+  int counted_in_free_space = 0;  // spheres of solid and near, over all poses
 };
 
 // The recordings of `folder` (depth/ with the names below) that are there and that this build can

@@ -23,7 +23,8 @@ namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string tool, cloud, pose, poses, measure = "refined", output = "-", spheres_out, stats;
+  std::string tool, cloud, pose, poses, measure = "refined", shadows = "near", output = "-",
+                                        spheres_out, stats;
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
@@ -55,6 +56,11 @@ void declare(CLI::App& app, Arguments& a) {
                "Use the finest level without spheres that the cloud's points cannot resolve");
   app.add_option("--stiffness", a.stiffness,
                  "N/m^3: scales force and torque; 1 leaves them in m^3 and m^4")
+      ->capture_default_str();
+  app.add_option("--shadows", a.shadows,
+                 "What counts of places that a depth image does not show: those near behind what "
+                 "it shows, or all: solid")
+      ->check(CLI::IsMember({"near", "solid"}))
       ->capture_default_str();
   app.add_flag(
       "--coherent", a.coherent,
@@ -312,6 +318,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
   options.level = model.level(a.level).sphere_count;
   options.stiffness = a.stiffness;
+  options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
   options.counts_points = !a.no_points;
   options.standby_us = a.standby_us;

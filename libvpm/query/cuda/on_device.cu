@@ -87,7 +87,8 @@ double reach_of_spheres(const ToolModel& tool, const Level& level) {
   return kRounding * reach;
 }
 
-DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters)
+DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
+                         const ShareClusters& clusters)
     : spheres_(tool.spheres.data(), level.sphere_count),
       centers_(centers_of(tool, level)),
       reach_(level.share_reach),
@@ -125,7 +126,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, const ShareC
   view_.grid.begin = grid_begin_.get();
   view_.grid.spheres = grid_spheres_.get();
   view_.center_of_mass = tool.center_of_mass;
-  view_.tool_reach = tool.reach;
+  view_.tool_reach = reach;
   view_.spheres_reach = reach_of_spheres(tool, level);
   for (const Chunk& chunk : chunks) looks_.add(chunk.ball.center, chunk.ball.radius);
   for (const Unit& unit : units) {

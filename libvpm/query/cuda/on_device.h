@@ -30,14 +30,15 @@ double reach_of_spheres(const ToolModel& tool, const Level& level);
 
 class DeviceLevel {
  public:
-  DeviceLevel(const ToolModel& tool, const Level& level)
-      : DeviceLevel(tool, level, cluster_shares(tool, level)) {}
+  DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows)
+      : DeviceLevel(tool, level, {tool.reach, shadows}, cluster_shares(tool, level)) {}
   const LevelView& view() const { return view_; }
   // By queries that count no points.
   const LookSizes& looks() const { return looks_; }
 
  private:
-  DeviceLevel(const ToolModel& tool, const Level& level, const ShareClusters& clusters);
+  DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
+              const ShareClusters& clusters);
 
   DeviceArray<Sphere> spheres_;
   DeviceArray<Vec3> centers_;

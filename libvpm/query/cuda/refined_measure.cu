@@ -13,7 +13,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
       : MeasureOnDevice(tool, device),
-        level_(tool, level),
+        level_(tool, level, options.shadows),
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),

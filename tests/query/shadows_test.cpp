@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "libvpm/core/error.h"
+#include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+using testing::generic_rotation;
+using testing::lattice_cube;
+using testing::see;
+
+constexpr double kEdge = 0.2;
+
+QueryOptions solid() {
+  QueryOptions options;
+  options.shadows = Shadows::solid;
+  return options;
+}
+
+// The scene "block": its front is 0.2 m wide at z = 1, and the wall behind it stands at z = 1.5.
+bool is_behind_what_is_seen(Vec3 x) {
+  return x.z > 1.5 || (x.z > 1 && std::abs(x.x) < 0.1 * x.z && std::abs(x.y) < 0.1 * x.z);
+}
+
+double part_behind_what_is_seen(const Pose& pose) {
+  constexpr int kPlaces = 40;
+  int behind = 0;
+  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
+    const auto at = [](int n) { return kEdge * ((n % kPlaces + 0.5) / kPlaces - 0.5); };
+    behind +=
+        is_behind_what_is_seen(pose * Vec3{at(k), at(k / kPlaces), at(k / (kPlaces * kPlaces))});
+  }
+  return behind / std::pow(kPlaces, 3);
+}
+
+TEST(SolidShadows, CountAllThatIsBehindTheImage) {
+  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const ToolModel tool = lattice_cube(kEdge, 10, 3);
+  Query query(tool, solid()), near(tool, {});
+  int hidden = 0;
+  for (int k = 0; k < 300; ++k) {
+    // Through the block, its shadow, the gap beside it and the wall.
+    const Pose pose{generic_rotation(), {0.004 * (k % 75), 0.01, 0.95 + 0.15 * (k / 75)}};
+    const Result r = query.run(cloud, pose);
+    const double expected = part_behind_what_is_seen(pose);
+    EXPECT_NEAR(r.volume_fraction, expected, 0.015) << k;  // a pixel is 2 mm wide
+    EXPECT_LE(near.run(cloud, pose).volume, r.volume) << k;
+    hidden += near.run(cloud, pose).volume_fraction < expected - 0.2;
+  }
+  EXPECT_GT(hidden, 50);
+}
+
+// Deep behind the front all is pushed back to it, or out at the nearest side.
+TEST(SolidShadows, PushToTheNearestPlaceThatIsSeen) {
+  const PreparedCloud cloud(see(synthetic::make_scene("block")));
+  const ToolModel tool = lattice_cube(0.05, 6, 3);
+  const Result r = Query(tool, solid()).run(cloud, {generic_rotation(), {0.002, -0.003, 1.09}});
+  EXPECT_NEAR(r.volume_fraction, 1, 1e-9);
+  EXPECT_GT(dot(normalized_or_zero(r.wrench.force), Vec3{0, 0, -1}), std::cos(0.02));
+}
+
+// To the bit: what hides nothing is no shadow.
+TEST(SolidShadows, ChangeNothingNearTheSurface) {
+  for (const char* scene : {"wall", "groove", "plate", "block"}) {
+    const PreparedCloud cloud(see(synthetic::make_scene(scene)));
+    const ToolModel tool = lattice_cube(kEdge, 8, 3);
+    Query query(tool, solid()), near(tool, {});
+    int contacts = 0;
+    for (int k = 0; k < 40; ++k) {
+      const Pose pose{generic_rotation(), {0.003 * k, 0.01, 0.8 + 0.006 * k}};
+      const Result r = query.run(cloud, pose);
+      contacts += r.boundary > 0;
+      testing::expect_equal(near.run(cloud, pose), r);
+    }
+    EXPECT_GT(contacts, 10) << scene;
+  }
+}
+
+TEST(SolidShadows, NeedNoMemoryOfPosesBefore) {
+  const PreparedCloud cloud(see(synthetic::make_scene("wall")));
+  const ToolModel tool = lattice_cube(kEdge, 6, 2);
+  QueryOptions options = solid();
+  Query alone(tool, options);
+  options.coherent = true;
+  Query query(tool, options);
+  for (int k = 0; k <= 40; ++k) {
+    const Pose pose{generic_rotation(), {0.01, 0, 0.85 + 0.02 * k}};
+    const Result r = alone.run(cloud, pose);
+    testing::expect_equal(r, query.run(cloud, pose));
+    if (pose.translation.z > 1.2) {
+      EXPECT_NEAR(r.volume_fraction, 1, 1e-9) << k;
+    }
+  }
+}
+
+TEST(SolidShadows, AreRefusedWhereTheyMeanNothing) {
+  const ToolModel tool = lattice_cube(kEdge, 2, 2);
+  const PreparedCloud cloud(without_camera(see(synthetic::make_scene("wall"))));
+  Query query(tool, solid());
+  EXPECT_THROW(query.run(cloud, Pose{}), Error);
+  std::vector<Result> results(1);
+  EXPECT_THROW(query.run(cloud, std::vector<Pose>(1), results), Error);
+
+  QueryOptions options = solid();
+  options.measure = Measure::paper;
+  EXPECT_THROW(Query(tool, options), Error);
+}
+
+}  // namespace
+}  // namespace vpm
