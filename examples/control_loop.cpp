@@ -28,8 +28,8 @@
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/query.h"
+#include "libvpm/surface/depth_frames.h"
 
 namespace {
 

@@ -13,7 +13,7 @@ python3 "$repository/scripts/single_precision/to_single.py" "$repository" "$work
 from=$work/libvpm_single
 sources=("$from"/core/{parallel,parallel_region,pose}.cpp "$from"/cloud/{cloud,kd_tree,padded_image,scattered_points}.cpp
   "$from"/model/{tool_model,tool_model_check}.cpp)
-for source in "$from"/query/*.cpp; do
+for source in "$from"/{device,surface,query}/*.cpp; do
   case $(basename "$source") in depth_frames.cpp | frame_preparation.cpp | frame_slot_unavailable.cpp) ;; *) sources+=("$source") ;; esac
 done
 c++ -std=c++20 -O3 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -w -DVPM_VERSION='"single"' \

@@ -8,9 +8,9 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/query/ball_fraction.h"
-#include "libvpm/query/depth_surface.h"
 #include "libvpm/query/patch.h"
+#include "libvpm/surface/ball_fraction.h"
+#include "libvpm/surface/depth_surface.h"
 
 namespace vpm {
 namespace {

@@ -10,7 +10,7 @@
 #include "libvpm/import/pcd.h"
 #include "libvpm/import/pinhole_fit.h"
 #include "libvpm/import/ply_points.h"
-#include "libvpm/query/depth_frames.h"
+#include "libvpm/surface/depth_frames.h"
 
 namespace vpm {
 namespace {

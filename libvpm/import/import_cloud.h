@@ -9,7 +9,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/query/device.h"
+#include "libvpm/device/device.h"
 
 namespace vpm {
 

@@ -3,8 +3,8 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/ball_fraction.h"
-#include "libvpm/query/surface.h"
+#include "libvpm/surface/ball_fraction.h"
+#include "libvpm/surface/surface.h"
 
 namespace vpm {
 

@@ -1,7 +1,7 @@
 #include "libvpm/query/depth_readings.h"
 
 #include "libvpm/core/vector_clones.h"
-#include "libvpm/query/depth_lanes.h"
+#include "libvpm/surface/depth_lanes.h"
 
 namespace vpm {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/depth_surface.h"
+#include "libvpm/surface/depth_surface.h"
 
 namespace vpm {
 

@@ -7,10 +7,10 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/depth_frames.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
+#include "libvpm/surface/depth_frames.h"
+#include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm {
 

@@ -7,11 +7,11 @@
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/pose_memory.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
 #include "libvpm/query/share_states.h"
 #include "libvpm/query/spatial_level.h"
+#include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm {
 

@@ -5,10 +5,15 @@
 
 #include <cstdint>
 
-#include "libvpm/query/ball_fraction.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/query/tool_sum.h"
 
 namespace vpm {
+
+// Volume of the cap of height `height` (0..2) of the unit ball. Kaluschke et al. 2017, section 4.
+VPM_HD constexpr double unit_cap_volume(double height) {
+  return kPi * height * height * (3 - height) / 3;
+}
 
 // Steps 2 and 3: sums over the points in a sphere, in fixed point. Terms are local to the sphere:
 // |terms| <= 4 pi / 3 < 8, so that 2^kPointBits points stay below 2^(3 + 24 + 36) = 2^63.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "libvpm/query/contact_plane.h"
-#include "libvpm/query/surface.h"
+#include "libvpm/surface/surface.h"
 
 namespace vpm {
 

@@ -5,7 +5,7 @@
 
 #include "libvpm/query/contact_plane.h"
 #include "libvpm/query/share_clusters.h"
-#include "libvpm/query/surface.h"
+#include "libvpm/surface/surface.h"
 
 namespace vpm {
 

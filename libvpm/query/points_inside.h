@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/sphere_location.h"
+#include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm {
 

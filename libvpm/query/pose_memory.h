@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/query/surface.h"
+#include "libvpm/surface/surface.h"
 
 namespace vpm {
 

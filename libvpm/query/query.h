@@ -17,11 +17,11 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/query/depth_frames.h"
 #include "libvpm/query/device_measure.h"
 #include "libvpm/query/measure_paper.h"
 #include "libvpm/query/measure_refined.h"
 #include "libvpm/query/query_options.h"
+#include "libvpm/surface/depth_frames.h"
 
 namespace vpm {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "libvpm/query/device.h"
+#include "libvpm/device/device.h"
 #include "libvpm/query/result.h"
 #include "libvpm/query/shadows.h"
 

@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/query/depth_frames.h"
-#include "libvpm/query/frame_preparation.h"
 #include "libvpm/recording/frame_schedule.h"
+#include "libvpm/surface/depth_frames.h"
+#include "libvpm/surface/frame_preparation.h"
 
 namespace vpm {
 

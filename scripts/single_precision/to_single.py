@@ -4,7 +4,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ("core", "cloud", "file", "model", "query")
+FOLDERS = ("core", "file", "model", "cloud", "device", "surface", "query")
 KEPT = {"lanes.h"}  # vectors of both kinds of numbers
 NUMBER = re.compile(r"(?<![\w.])((?:\d+\.\d*|\.\d+)(?:e[+-]?\d+)?|\d+e[+-]?\d+|0x[0-9a-fA-F.]+p[+-]?\d+)(?![\w.])")
 # Margins above what arithmetic rounds by, for double; in float they would vanish.

@@ -6,7 +6,7 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/cell.h"
-#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm::testing {
 

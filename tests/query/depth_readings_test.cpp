@@ -9,8 +9,8 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/cell_samples.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/share_clusters.h"
+#include "libvpm/surface/prepared_cloud.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "libvpm/query/patch.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query.h"
+#include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {

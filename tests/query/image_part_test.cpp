@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/query.h"
+#include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {

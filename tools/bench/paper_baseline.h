@@ -12,8 +12,8 @@
 
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/prepared_cloud.h"
 #include "libvpm/query/result.h"
+#include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm::bench {
 

@@ -5,8 +5,8 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/query/frame_preparation.h"
 #include "libvpm/query/query.h"
+#include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"

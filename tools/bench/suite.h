@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "libvpm/query/device.h"
+#include "libvpm/device/device.h"
 #include "tools/bench/report.h"
 
 namespace vpm::bench {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/query/prepared_cloud.h"
+#include "libvpm/surface/prepared_cloud.h"
 #include "libvpm/synthetic/scenes.h"
 
 namespace vpm::bench {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/device/device.h"
 #include "libvpm/file/container.h"
-#include "libvpm/query/device.h"
 
 namespace vpm::tools {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "libvpm/query/cuda/numbered_word.h"
+#include "libvpm/device/cuda/numbered_word.h"
 #include "libvpm/query/cuda/team.h"
 #include "libvpm/query/cuda/views.h"
 

@@ -1,29 +1,11 @@
 #include <algorithm>
 
-#include "libvpm/query/cuda/device_array.h"
+#include "libvpm/device/cuda/device_array.h"
 #include "libvpm/query/cuda/paper_measure.h"
 #include "libvpm/query/cuda/refined_measure.h"
 #include "libvpm/query/spread_measure.h"
 
 namespace vpm {
-
-int cuda_device_count() {
-  int count = 0;
-  return cudaGetDeviceCount(&count) == cudaSuccess ? count : 0;
-}
-
-bool is_built_with_cuda() {
-  return true;
-}
-
-std::string cuda_device_name(int index) {
-  cudaDeviceProp properties;
-  int driver = 0;
-  cuda::check(cudaGetDeviceProperties(&properties, index));
-  cuda::check(cudaDriverGetVersion(&driver));
-  return std::string(properties.name) + ", driver for CUDA " + std::to_string(driver / 1000) + "." +
-         std::to_string(driver % 1000 / 10);
-}
 
 namespace {
 

@@ -1,57 +1,13 @@
-// Streams, events, sizes of launches, and waiting for answers.
+// Sizes of launches, and waiting for answers.
 #pragma once
 
 #include <algorithm>
 #include <cstring>
 
+#include "libvpm/device/cuda/stream.h"
 #include "libvpm/query/cuda/answer.h"
-#include "libvpm/query/cuda/device_array.h"
-#include "libvpm/query/cuda/team.h"
 
 namespace vpm::cuda {
-
-class Stream {
- public:
-  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
-  ~Stream() { cudaStreamDestroy(stream_); }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  cudaStream_t get() const { return stream_; }
-
- private:
-  cudaStream_t stream_ = nullptr;
-};
-
-class Event {
- public:
-  explicit Event(unsigned flags = cudaEventDefault) {
-    check(cudaEventCreateWithFlags(&event_, flags));
-  }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  cudaEvent_t get() const { return event_; }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
-
-// Whether what cudaEventQuery and the like say is that the work is done.
-inline bool is_done(cudaError_t status) {
-  if (status == cudaErrorNotReady) return false;
-  check(status);
-  return true;
-}
-inline bool has_happened(const Event& event) {
-  return is_done(cudaEventQuery(event.get()));
-}
-
-// By the device's clock; of events that have happened.
-inline double microseconds_between(const Event& begin, const Event& end) {
-  float milliseconds = 0;
-  check(cudaEventElapsedTime(&milliseconds, begin.get(), end.get()));
-  return 1e3 * static_cast<double>(milliseconds);
-}
 
 // Of the current device.
 inline unsigned processor_count() {
@@ -78,9 +34,6 @@ inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_pr
   const std::size_t wanted = std::size_t{blocks_per_processor} * processor_count();
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }
-
-// At the host's own memory, before the device is asked whether the launch has failed.
-inline constexpr unsigned kLooksPerCheck = 1U << 16;
 
 // Looks at the host's own memory until the device has written the whole answer there; that is
 // quicker than waiting for the stream. Calls meanwhile() between the looks.

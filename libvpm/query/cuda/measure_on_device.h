@@ -3,11 +3,10 @@
 
 #include <memory>
 
-#include "libvpm/query/cuda/cloud_slot.h"
 #include "libvpm/query/cuda/launch.h"
-#include "libvpm/query/cuda/on_device.h"
 #include "libvpm/query/cuda/standby.h"
 #include "libvpm/query/device_measure.h"
+#include "libvpm/surface/cuda/cloud_slot.h"
 
 namespace vpm::cuda {
 

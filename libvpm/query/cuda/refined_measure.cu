@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "libvpm/query/cuda/device_level.h"
 #include "libvpm/query/cuda/measure_on_device.h"
 #include "libvpm/query/cuda/refined_kernels.h"
 #include "libvpm/query/cuda/refined_measure.h"

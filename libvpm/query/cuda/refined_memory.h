@@ -1,6 +1,6 @@
 #pragma once
 
-#include "libvpm/query/cuda/device_array.h"
+#include "libvpm/device/cuda/device_array.h"
 #include "libvpm/query/cuda/share_tasks.h"
 #include "libvpm/query/cuda/shares.h"
 

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cstring>
-#include <map>
 
-#include "libvpm/query/cuda/other_work.h"
 #include "libvpm/query/cuda/standby.h"
 
 namespace vpm::cuda {
@@ -94,32 +92,6 @@ void Standby::launch(const Order& order) {
 
 namespace {
 
-struct Registry {
-  std::mutex mutex;
-  std::map<int, std::weak_ptr<Standby>> of_devices;
-
-  // Null where there is none.
-  std::shared_ptr<Standby> known(int device) {
-    const std::lock_guard lock(mutex);
-    const auto found = of_devices.find(device);
-    return found == of_devices.end() ? nullptr : found->second.lock();
-  }
-  // The same, or this one from now on.
-  std::shared_ptr<Standby> known_or(int device, std::shared_ptr<Standby> made) {
-    const std::lock_guard lock(mutex);
-    std::weak_ptr<Standby>& one = of_devices[device];
-    if (std::shared_ptr<Standby> there = one.lock()) return there;
-    one = made;
-    return made;
-  }
-};
-
-// Not destroyed: memory of the device may be given back after it.
-Registry& registry() {
-  static Registry* const all = new Registry;
-  return *all;
-}
-
 // A display's watchdog ends kernels that stay.
 bool may_stay(int device) {
   int has_watchdog = 0;
@@ -129,31 +101,12 @@ bool may_stay(int device) {
 
 }  // namespace
 
-int current_device() {
-  int device = 0;
-  check(cudaGetDevice(&device));
-  return device;
-}
-
 std::shared_ptr<Standby> standby(const StandbyKernel& kernel) {
   const int device = current_device();
   if (!may_stay(device)) return nullptr;
-  if (std::shared_ptr<Standby> there = registry().known(device)) return there;
-  return registry().known_or(device, std::make_shared<Standby>(kernel));
-}
-
-OtherWork::OtherWork() : OtherWork(current_device()) {}
-
-OtherWork::OtherWork(int device) : standby_(registry().known(device)) {
-  if (standby_) standby_->begin_other_work();
-}
-
-OtherWork::~OtherWork() {
-  if (standby_) standby_->end_other_work();
-}
-
-void OtherWork::goes_on_until(std::shared_ptr<const Event> end) const {
-  if (standby_) standby_->make_way_until(std::move(end));
+  std::shared_ptr<StandingKernel> there = standing_kernel(device);
+  if (!there) there = standing_kernel_or(device, std::make_shared<Standby>(kernel));
+  return std::static_pointer_cast<Standby>(there);  // no other kind stands by
 }
 
 }  // namespace vpm::cuda

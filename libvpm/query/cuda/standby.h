@@ -1,11 +1,13 @@
 // A kernel that stays on a device after it has answered a query, and takes the next one without a
-// launch (orders.h). It makes way for what else is to be done there (other_work.h).
+// launch (orders.h). It makes way for what else is to be done there (device/cuda/other_work.h).
 #pragma once
 
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "libvpm/device/cuda/device_array.h"
+#include "libvpm/device/cuda/other_work.h"
 #include "libvpm/query/cuda/launch.h"
 #include "libvpm/query/cuda/orders.h"
 
@@ -18,10 +20,10 @@ struct StandbyKernel {
 };
 
 // Of one device, for all threads and queries of the process, one pose at a time.
-class Standby {
+class Standby : public StandingKernel {
  public:
   explicit Standby(const StandbyKernel& kernel);
-  ~Standby();
+  ~Standby() override;
   Standby(const Standby&) = delete;
   Standby& operator=(const Standby&) = delete;
 
@@ -29,10 +31,9 @@ class Standby {
   // must be there, and what was launched for it before must have ended.
   RawResult ask(Order order, const Answer& answer, unsigned sequence);
 
-  // Of OtherWork. When the first returns, the kernel is done with its last query.
-  void begin_other_work();
-  void end_other_work();
-  void make_way_until(std::shared_ptr<const Event> end);
+  void begin_other_work() override;
+  void end_other_work() override;
+  void make_way_until(std::shared_ptr<const Event> end) override;
 
  private:
   bool stands() const;

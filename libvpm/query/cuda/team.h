@@ -4,7 +4,7 @@
 #include <cuda/atomic>
 
 #include "libvpm/query/cell.h"
-#include "libvpm/query/pixel_rectangle.h"
+#include "libvpm/surface/pixel_rectangle.h"
 
 namespace vpm::cuda {
 

@@ -1,14 +1,15 @@
-// What kernels see of a tool, a cloud and a pose: plain pointers and numbers.
+// What kernels see of a tool and a pose: plain pointers and numbers.
 #pragma once
 
 #include <cstdint>
 
 #include "libvpm/query/cell.h"
-#include "libvpm/query/depth_surface.h"
-#include "libvpm/query/disk_surface.h"
-#include "libvpm/query/pixel_rectangle.h"
 #include "libvpm/query/share_clusters.h"
 #include "libvpm/query/sphere_location.h"
+#include "libvpm/surface/cuda/cloud_views.h"
+#include "libvpm/surface/depth_surface.h"
+#include "libvpm/surface/disk_surface.h"
+#include "libvpm/surface/pixel_rectangle.h"
 
 namespace vpm::cuda {
 
@@ -68,25 +69,6 @@ struct LevelView {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
             centers[i], reach[i]};
   }
-};
-
-// The points of a cloud, about its origin: those of an image by pixel (NaN where there is none),
-// others in the order of the leaves of their hierarchy.
-struct PointsView {
-  const Vec3f* positions = nullptr;
-  const Vec3f* normals = nullptr;
-  std::uint32_t count = 0;
-  std::int32_t width = 0;  // > 0: of the image
-  PointTree tree;          // otherwise
-};
-
-// Everything of a cloud that poses are combined with.
-struct CloudFrame {
-  bool is_organised = false;
-  Vec3 origin;
-  Pose camera_to_world;
-  Intrinsics intrinsics;
-  std::int32_t width = 0, height = 0;
 };
 
 // A pose, as the parts of a query need it.

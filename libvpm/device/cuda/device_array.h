@@ -1,0 +1,97 @@
+// Memory of a device, and of the host where a device can write. To take it, clear it or give it
+// back may wait for all kernels, so none stands by meanwhile.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "libvpm/device/cuda/current_device.h"
+#include "libvpm/device/cuda/other_work.h"
+
+namespace vpm::cuda {
+
+// Waits for what copies and clears have only begun: they belong to the default stream, for which
+// the streams of queries (launch.h) do not wait.
+inline void finish_transfers() {
+  check(cudaStreamSynchronize(cudaStreamLegacy));
+}
+
+// Values on the device, there when a constructor, fill() or clear() returns. Owns them.
+template <class T>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  explicit DeviceArray(std::size_t count) : count_(count) {
+    if (count == 0) return;
+    device_ = current_device();
+    const OtherWork other(device_);
+    check(cudaMalloc(&data_, count * sizeof(T)));
+  }
+  DeviceArray(const T* values, std::size_t count) : DeviceArray(count) { fill(values); }
+  explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
+  ~DeviceArray() {
+    if (data_ == nullptr) return;
+    const OtherWork other(device_);
+    cudaFree(data_);
+  }
+  DeviceArray(DeviceArray&& other) noexcept { swap(other); }
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  T* get() const { return data_; }
+  std::size_t size() const { return count_; }
+  void fill(const T* values) {
+    if (count_ == 0) return;
+    check(cudaMemcpy(data_, values, count_ * sizeof(T), cudaMemcpyHostToDevice));
+    finish_transfers();
+  }
+  void clear() {
+    if (count_ == 0) return;
+    const OtherWork other(device_);
+    check(cudaMemset(data_, 0, count_ * sizeof(T)));
+    finish_transfers();
+  }
+
+ private:
+  void swap(DeviceArray& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(count_, other.count_);
+    std::swap(device_, other.device_);
+  }
+  T* data_ = nullptr;
+  std::size_t count_ = 0;
+  int device_ = 0;
+};
+
+// Values in the host's memory that the device reads and writes over the bus. Owns them.
+template <class T>
+class MappedArray {
+ public:
+  explicit MappedArray(std::size_t count) : count_(count), owner_(current_device()) {
+    const OtherWork other(owner_);
+    check(cudaHostAlloc(&host_, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable));
+    check(cudaHostGetDevicePointer(&device_, host_, 0));
+    for (std::size_t i = 0; i < count; ++i) host_[i] = T{};
+  }
+  ~MappedArray() {
+    const OtherWork other(owner_);
+    cudaFreeHost(host_);
+  }
+  MappedArray(const MappedArray&) = delete;
+  MappedArray& operator=(const MappedArray&) = delete;
+
+  T* host() const { return host_; }
+  T* device() const { return device_; }
+  std::size_t size() const { return count_; }
+
+ private:
+  T* host_ = nullptr;
+  T* device_ = nullptr;
+  std::size_t count_ = 0;
+  int owner_ = 0;  // the device
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,18 @@
+// What takes the place of cuda/ in a build without CUDA.
+#include "libvpm/device/device.h"
+
+namespace vpm {
+
+int cuda_device_count() {
+  return 0;
+}
+
+bool is_built_with_cuda() {
+  return false;
+}
+
+std::string cuda_device_name(int) {
+  return {};
+}
+
+}  // namespace vpm

@@ -1,0 +1,233 @@
+#include <algorithm>
+#include <cstring>
+
+#include "libvpm/core/lengths.h"
+#include "libvpm/surface/cuda/cloud_settle.h"
+#include "libvpm/surface/cuda/cloud_slot.h"
+#include "libvpm/surface/cuda/cloud_take.h"
+
+namespace vpm::cuda {
+namespace {
+
+// Bounds within which float positions of usable depths are finite and lie on the rays of their
+// pixels, their disks are finite, and a cloud has no more points than a PreparedCloud takes: with
+// rays `longest` times as long as deep, a position errs by less than 2^-22 of its length.
+bool is_plain(const Camera& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  const double x = std::max(std::abs(k.cx), std::abs(camera.width - 1 - k.cx)) / k.fx;
+  const double y = std::max(std::abs(k.cy), std::abs(camera.height - 1 - k.cy)) / k.fy;
+  const double longest = std::sqrt(x * x + y * y + 1);
+  constexpr double kLongest = 0x1p10, kWidestPixel = 0x1p10, kError = 0x1p-21;
+  return std::size_t{camera.width} * camera.height <= PreparedCloud::kMaxPoints &&
+         std::max(camera.width, camera.height) <= DepthSurface::kMostPixelsASide &&
+         longest <= kLongest && 1 / k.fx <= kWidestPixel && 1 / k.fy <= kWidestPixel &&
+         std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
+}
+
+// As validate() and PreparedCloud ask of a camera.
+bool is_sound_pose(const Pose& pose) {
+  return is_rotation(pose.rotation, kCameraRotationTolerance) && is_in_range(pose.translation);
+}
+
+constexpr std::size_t whole_groups(std::size_t pixels) {
+  return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
+}
+
+TileRectangle tiles_of(const PixelRectangle& pixels) {
+  if (is_empty(pixels)) return {};
+  return {pixels.u0 / kTileWidth, pixels.v0 / kTileHeight, pixels.u1 / kTileWidth + 1,
+          pixels.v1 / kTileHeight + 1};
+}
+
+Error lost() {
+  return Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
+}
+
+}  // namespace
+
+CloudSlot::CloudSlot(const DepthFrameOptions& options)
+    : FrameSlot(options),
+      image_(whole_groups(pixels()) * (image_bytes() / pixels())),
+      depth_(whole_groups(pixels())),
+      inverse_(whole_groups(pixels())),
+      seen_(pixels()),
+      cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
+      counters_(1),
+      answer_(1),
+      preparation_(preparation_of(options.normals)) {
+  counters_.clear();
+}
+
+CloudSlot::~CloudSlot() {
+  cudaEventSynchronize(end_->get());
+}
+
+void CloudSlot::begin() {
+  const CurrentDevice current(options().device.first());
+  is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
+  if (!is_plain_) {
+    cloud();  // refuses what is to be refused
+    return;
+  }
+  cloud_.stand_at(camera().to_world);
+  made_ = {};
+  has_failed_ = false;
+  if (options().making == FrameMaking::whole) require_all();
+}
+
+CloudSlot::Part CloudSlot::require_all() const {
+  return require(whole(), stream_.get());
+}
+
+CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t stream) const {
+  const std::lock_guard lock(making_);
+  if (has_failed_) throw lost();
+  if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
+  const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
+  if (!(wanted == made_)) {
+    const OtherWork other;
+    launch(wanted, stream);
+    other.goes_on_until(end_);
+  }
+  return {made_, made_ == whole(), is_there_, sequence_};
+}
+
+// What is launched has an end, even if the rest fails.
+void CloudSlot::launch(const PixelRectangle& wanted, cudaStream_t stream) const {
+  const auto mark_end = [&] {
+    is_there_ = false;
+    return cudaEventRecord(end_->get(), stream);
+  };
+  has_failed_ = true;
+  try {
+    take(wanted, stream);
+    make(wanted, stream);
+  } catch (...) {
+    mark_end();
+    throw;
+  }
+  check(mark_end());
+  has_failed_ = false;
+  made_ = wanted;
+}
+
+bool CloudSlot::is_there() const {
+  is_there_ = is_there_ || has_happened(*end_);
+  return is_there_;
+}
+
+void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
+  DepthSource source;
+  if (options().counts_per_metre) {
+    source.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
+    source.counts_per_metre = *options().counts_per_metre;
+  } else {
+    source.metres = reinterpret_cast<const float*>(image_.device());
+  }
+  take_image(source, depth_.get(), inverse_.get(), recipe(), with_neighbors(wanted),
+             with_neighbors(made_), counters_.get(), stream);
+}
+
+// A tile is settled from what was prepared of it and of those around it.
+void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
+  CloudRecipe recipe = this->recipe();
+  recipe.room.estimated = estimated;
+  recipe.wanted = tiles_of(with_neighbors(wanted));
+  recipe.made = tiles_of(with_neighbors(made_));
+  prepare_on_device(recipe, options().normals.method, preparation_, counters_.get(),
+                    answer_.device(), sequence_ + 1, stream);
+  ++sequence_;  // now that it will be answered
+  recipe.wanted = tiles_of(wanted);
+  recipe.made = tiles_of(made_);
+  settle_on_device(recipe, preparation_.overlaps, stream);
+}
+
+PixelRectangle CloudSlot::whole() const {
+  const DepthSurface& surface = cloud_.depth_surface();
+  return whole_image(surface.width, surface.height);
+}
+
+PixelRectangle CloudSlot::in_whole_tiles(const PixelRectangle& pixels, int margin) const {
+  const DepthSurface& surface = cloud_.depth_surface();
+  return widened(pixels, margin, kTileWidth, kTileHeight, surface.width, surface.height);
+}
+
+std::vector<Vec3f> CloudSlot::estimate_normals() {
+  const CurrentDevice current(options().device.first());
+  const DeviceArray<Vec3f> estimated(pixels());
+  const OtherWork other;
+  take(whole(), stream_.get());
+  make(whole(), stream_.get(), estimated.get());
+  check(cudaStreamSynchronize(stream_.get()));
+  std::vector<Vec3f> normals(pixels());
+  check(cudaMemcpy(normals.data(), estimated.get(), normals.size() * sizeof(Vec3f),
+                   cudaMemcpyDeviceToHost));
+  return normals;
+}
+
+CloudRecipe CloudSlot::recipe() const {
+  const DepthFrameOptions& o = options();
+  const Pose& to_world = camera().to_world;
+  return {depth_.get(),
+          inverse_.get(),
+          camera(),
+          relative_to(to_world, {{}, to_world.translation}).rotation,
+          1 / o.intrinsics.fx,
+          1 / o.intrinsics.fy,
+          o.normals.window,
+          EdgeGate(o.normals, o.intrinsics),
+          WholeWindow(o.normals.window),
+          seen_.get(),
+          o.points,
+          cloud_.room()};
+}
+
+bool CloudSlot::is_answered(unsigned sequence) const {
+  // Numbers begin anew some day.
+  const auto is_reached = [&](const NumberedWord& word) {
+    return static_cast<std::int32_t>(number_of(look_at(word)) - sequence) >= 0;
+  };
+  return is_reached(answer_.host()->points) && is_reached(answer_.host()->doubtful);
+}
+
+void CloudSlot::wait_for(unsigned sequence) const {
+  for (unsigned looks = 1; !is_answered(sequence); ++looks)
+    if (looks % kLooksPerCheck == 0 && has_happened(*end_) && !is_answered(sequence)) throw lost();
+}
+
+// For all that was launched: the image is not read any more.
+void CloudSlot::wait() const {
+  if (is_plain_ && !has_failed_) wait_for(sequence_);
+}
+
+bool CloudSlot::is_sound(const Part& part) const {
+  if (is_empty(part.made)) return true;  // answers are of other frames
+  wait_for(part.sequence);
+  return value_of(look_at(answer_.host()->doubtful)) == 0;
+}
+
+std::size_t CloudSlot::points() const {
+  const CurrentDevice current(options().device.first());
+  if (is_plain_ && is_sound(require_all())) return value_of(look_at(answer_.host()->points));
+  return cloud().positions().size();
+}
+
+}  // namespace vpm::cuda
+
+namespace vpm {
+
+std::vector<Vec3f> estimate_on_device(const DepthImage& depth, const Intrinsics& intrinsics,
+                                      const NormalOptions& options, const Device& device) {
+  const cuda::CurrentDevice current(device.first());
+  if (!cuda::preparation_of(options).fits) return estimate_normals(depth, intrinsics, options);
+  cuda::CloudSlot slot({intrinsics, depth.width, depth.height, std::nullopt, options, device});
+  std::memcpy(slot.image(), depth.depth.data(), slot.image_bytes());
+  return slot.estimate_normals();
+}
+
+std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options) {
+  const cuda::CurrentDevice current(options.device.first());
+  return std::make_shared<cuda::CloudSlot>(options);
+}
+
+}  // namespace vpm

@@ -1,0 +1,82 @@
+// A depth frame whose cloud lies on a device.
+#pragma once
+
+#include <mutex>
+
+#include "libvpm/device/cuda/other_work.h"
+#include "libvpm/device/cuda/stream.h"
+#include "libvpm/surface/cuda/cloud_prepare.h"
+#include "libvpm/surface/cuda/device_cloud.h"
+#include "libvpm/surface/frame_slot.h"
+
+namespace vpm::cuda {
+
+class CloudSlot : public FrameSlot {
+ public:
+  explicit CloudSlot(const DepthFrameOptions& options);
+  ~CloudSlot() override;
+
+  std::byte* image() override { return image_.host(); }
+  void wait() const override;
+  std::size_t points() const override;
+
+  // What a query may read.
+  struct Part {
+    PixelRectangle made;
+    bool is_whole = true;
+    bool is_there = true;  // its making has ended
+    unsigned sequence = 0;
+  };
+  // These pixels, and what was made before, for what is launched on the stream next. What was not
+  // made is launched there. From any thread. Where a launch fails, the frame is lost.
+  Part require(const PixelRectangle& pixels, cudaStream_t stream) const;
+
+  // Whether the device makes the cloud. Otherwise the CPU does, since it might refuse something.
+  bool is_on_device() const { return is_plain_; }
+  // Whether no point that the CPU might refuse was made so far. Waits for the part.
+  bool is_sound(const Part& part) const;
+
+  const DeviceCloud& device_cloud() const { return cloud_; }
+
+  // Of the image, in camera axes, whether the cloud can be made here or not.
+  std::vector<Vec3f> estimate_normals();
+
+  // The two steps in which whole tiles are made, for those who time them.
+  void take(const PixelRectangle& wanted, cudaStream_t stream) const;
+  void make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated = nullptr) const;
+  PixelRectangle whole() const;
+
+ protected:
+  void begin() override;
+
+ private:
+  Part require_all() const;
+  void launch(const PixelRectangle& wanted, cudaStream_t stream) const;
+  bool is_there() const;
+  CloudRecipe recipe() const;
+  PixelRectangle in_whole_tiles(const PixelRectangle& pixels, int margin = 0) const;
+  // Whole tiles, and those around them.
+  PixelRectangle with_neighbors(const PixelRectangle& tiles) const {
+    return in_whole_tiles(tiles, 1);
+  }
+  bool is_answered(unsigned sequence) const;
+  void wait_for(unsigned sequence) const;
+
+  Stream stream_;
+  MappedArray<std::byte> image_;
+  DeviceArray<float> depth_, inverse_;
+  DeviceArray<Vec3f> seen_;
+  DeviceCloud cloud_;
+  DeviceArray<CloudCounters> counters_;
+  MappedArray<CloudAnswer> answer_;
+  Preparation preparation_;
+  bool is_plain_ = false;
+  std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
+  mutable std::mutex making_;                                                     // of what follows
+  mutable PixelRectangle made_;                                                   // whole tiles
+  mutable bool is_there_ = true;     // what was launched in this memory has ended, of any frame
+  mutable bool has_failed_ = false;  // some of it was not launched
+  mutable unsigned sequence_ = 0;    // of the last making
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,15 @@
+#include "libvpm/core/error.h"
+#include "libvpm/surface/frame_slot.h"
+
+namespace vpm {
+
+std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions&) {
+  throw Error(ErrorKind::unavailable, "this build has no CUDA");
+}
+
+std::vector<Vec3f> estimate_on_device(const DepthImage&, const Intrinsics&, const NormalOptions&,
+                                      const Device&) {
+  throw Error(ErrorKind::unavailable, "this build has no CUDA");
+}
+
+}  // namespace vpm

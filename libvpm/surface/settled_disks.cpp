@@ -1,0 +1,173 @@
+#include "libvpm/surface/settled_disks.h"
+
+#include <utility>
+
+#include "libvpm/surface/second_planes.h"
+#include "libvpm/surface/smoothed_disks.h"
+
+namespace vpm {
+namespace {
+
+constexpr double kOnePlane = 2;      // radii: disks of one plane are no further from it
+constexpr double kApart = 2;         // radii: from either side's plane to the other's middle
+constexpr double kFurther = 2;       // wide windows, where one shows no smooth disk
+constexpr double kExplained = 0.85;  // share of the points about a crease that lie on it
+
+// At a crease the normal was estimated across both its sides, and is that of neither. What is on no
+// plane of two that smooth disks show is left as it is: it may be small, and no crease.
+class CreaseSettling {
+ public:
+  CreaseSettling(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
+                 SettledDisks& result)
+      : windows_(windows), kinds_(kinds), result_(result) {}
+
+  // Reads what became of smooth disks, and writes only others.
+  void run() {
+    for_leaves(windows_, result_, [&](const DiskLeaf& leaf, LeafWork& work) {
+      std::vector<SmoothDisk> disks;
+      for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+        if (is_smooth(kinds_[i])) continue;
+        gather_smooth_about(i, disks);
+        if (disks.empty()) continue;
+        if (kinds_[i] == DiskKind::outlier)
+          join(nearest_of(disks, windows_.disk(i).place), i);
+        else
+          settle_at_crease(i, disks, work);
+      }
+    });
+  }
+
+ private:
+  // A smooth disk near a place.
+  struct SmoothDisk {
+    std::uint32_t index;
+    Disk disk;
+    double height;  // of the place above it
+  };
+
+  void settle_at_crease(std::uint32_t i, const std::vector<SmoothDisk>& disks, LeafWork& work) {
+    const Vec3 place = windows_.disk(i).place;
+    const SmoothDisk* const own = best_of(disks, nullptr);
+    const SmoothDisk* const other = best_of(disks, own);
+    if (other == nullptr || std::fabs(own->height) > kWindow * windows_.radius(i)) return;
+    const double tolerance = kOnePlane * windows_.radius(i);
+    const MeanPlane first = mean_about(own->disk, disks, place, tolerance);
+    const auto second =
+        second_plane({first.place, first.normal}, mean_about(other->disk, disks, place, tolerance),
+                     kApart * windows_.radius(i));
+    if (!second || !explains(first, *second, i)) return;
+    set(i, first);
+    work.found.push_back({i, *second});
+  }
+  void set(std::uint32_t i, const MeanPlane& plane) {
+    result_.feet[i] = narrow(plane.foot);
+    result_.normals[i] = narrow(plane.normal);
+  }
+
+  // An outlier becomes another of the disk that is nearest: on a plane that is seen elsewhere it
+  // would continue a wall where there is none. Not where it is further away than that disk's own
+  // windows reach: it may be seen more sparsely.
+  void join(std::uint32_t nearest, std::uint32_t i) {
+    const double reach = kFurther * kWide * windows_.radius(nearest);
+    const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
+    if (squared_norm(away) > reach * reach) return;
+    result_.feet[i] = result_.feet[nearest];
+    result_.normals[i] = result_.normals[nearest];
+    result_.second_of[i] = result_.second_of[nearest];
+  }
+  static std::uint32_t nearest_of(const std::vector<SmoothDisk>& disks, Vec3 place) {
+    const auto rank = [&](const SmoothDisk& d) {
+      return std::make_pair(squared_norm(d.disk.place - place), d.index);
+    };
+    return std::min_element(disks.begin(), disks.end(),
+                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); })
+        ->index;
+  }
+
+  // Returns false if there are too many disks.
+  bool gather_smooth(Vec3 center, double reach, std::uint32_t most,
+                     std::vector<SmoothDisk>& disks) const {
+    disks.clear();
+    return windows_.for_disks_near(center, reach, most, [&](std::uint32_t j) {
+      if (!is_smooth(kinds_[j])) return;
+      const Disk settled{widen(result_.feet[j]), widen(result_.normals[j])};
+      disks.push_back({j, settled, dot(settled.normal, center - settled.place)});
+    });
+  }
+
+  void gather_smooth_about(std::uint32_t i, std::vector<SmoothDisk>& disks) const {
+    const Vec3 place = windows_.disk(i).place;
+    double reach = windows_.wide_window(i);
+    DiskWindows::halve_until(reach,
+                             [&](double r) { return gather_smooth(place, r, kMostInWide, disks); });
+    if (disks.empty()) gather_smooth(place, kFurther * reach, 4 * kMostInWide, disks);
+  }
+
+  // The one on whose plane the place lies best; if `other` is given, of those that face elsewhere.
+  static const SmoothDisk* best_of(const std::vector<SmoothDisk>& disks, const SmoothDisk* other) {
+    const SmoothDisk* best = nullptr;
+    for (const SmoothDisk& d : disks) {
+      if (other != nullptr) {
+        const double cosine = dot(d.disk.normal, other->disk.normal);
+        if (cosine >= kAlike || cosine <= kOpposite) continue;
+      }
+      const double off = std::fabs(d.height);
+      if (best == nullptr || off < std::fabs(best->height) ||
+          (off == std::fabs(best->height) && d.index < best->index))
+        best = &d;
+    }
+    return best;
+  }
+  // The mean of the disks that lie on the same plane as one of them.
+  static MeanPlane mean_about(const Disk& one, const std::vector<SmoothDisk>& disks, Vec3 place,
+                              double tolerance) {
+    PlaneSum sum;
+    for (const SmoothDisk& d : disks) {
+      if (dot(d.disk.normal, one.normal) >= kAlike &&
+          std::fabs(dot(one.normal, d.disk.place - one.place)) <= tolerance)
+        sum.add(d.disk, place);
+    }
+    return {sum, place};
+  }
+
+  // Whether most points about a disk lie on what two planes enclose.
+  bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i) const {
+    const Vec3 normal = widen(second.normal), foot = widen(second.foot);
+    const double near = kOnePlane * windows_.radius(i);
+    std::uint32_t on = 0, all = 0;
+    const auto count = [&](std::uint32_t j) {
+      const Disk other = windows_.disk(j);
+      const double a = dot(first.normal, other.place - first.foot),
+                   b = dot(normal, other.place - foot);
+      ++all;
+      on += std::fabs(second.is_convex ? std::max(a, b) : std::min(a, b)) <= near;
+    };
+    windows_.for_disks_near(windows_.disk(i).place, windows_.window(i, windows_.leaf_of(i)),
+                            kMostInWide, count);
+    return on >= kExplained * all;
+  }
+
+  const DiskWindows& windows_;
+  const std::vector<DiskKind>& kinds_;
+  SettledDisks& result_;
+};
+
+}  // namespace
+
+SettledDisks as_measured(const DiskSurface& measured) {
+  const std::uint32_t count = measured.feet.count;
+  return {{measured.feet.points, measured.feet.points + count},
+          {measured.normals, measured.normals + count},
+          std::vector<std::uint32_t>(count, kNoPoint),
+          {}};
+}
+
+SettledDisks settle(const DiskSurface& measured, std::span<const float> radii) {
+  SettledDisks result = as_measured(measured);
+  const DiskWindows windows(measured, radii);
+  const std::vector<DiskKind> kinds = smooth(windows, result);
+  CreaseSettling(windows, kinds, result).run();
+  return result;
+}
+
+}  // namespace vpm
