@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
+#include "libvpm/query/cut_shares.h"
 #include "libvpm/query/pose_memory.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
@@ -35,13 +36,14 @@ class RefinedMeasure {
   template <class Surface>
   void run_on(const Surface& surface, const Pose& to_world, const PreparedCloud& cloud,
               const Pose& pose, ToolSum& sum, Result& result);
-  // Cut shares, and those that `inside` has taken; returns how many of these count.
+  // Cut shares, and those that `inside` has taken; returns how many of these count. Those that do
+  // not become free: they were hidden, not inside.
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       ParallelRegion& region, ToolSum& sum);
+                       const CutShares& cut, ParallelRegion& region, ToolSum& sum);
   template <class Surface, class Inside>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                 std::uint32_t row) const;
+                 std::uint32_t row, NearestCut& nearest) const;
   template <class Surface, class Inside>
   void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                 Inside& inside);

@@ -44,10 +44,8 @@ class SeenShares {
     }
   }
 
-  // Whether a place of a share is inside, though far behind the surface.
-  bool vouches_for(std::uint32_t row, Vec3 x, Vec3 foot) const {
-    return cut_.are_none() ? has_stayed(row)
-                           : cut_.nearest_to(row).vouches_for(x, foot, reach_.length);
+  Voucher voucher(std::uint32_t row, NearestCut& nearest) const {
+    return {nearest, row, reach_.length, has_stayed(row)};
   }
 
   // What to remember of shares that count: not those of which all that is known is that something

@@ -63,9 +63,9 @@ class ShareFlood {
     }
   }
 
-  // Whether a place of a share that the flood has taken is inside, though far behind the surface.
-  bool vouches_for(std::uint32_t row, Vec3 x, Vec3 foot) const {
-    return cut_.are_none() || cut_.nearest_to(row).vouches_for(x, foot, reach_.length);
+  // Of a share that the flood has taken.
+  Voucher voucher(std::uint32_t row, NearestCut& nearest) const {
+    return {nearest, row, reach_.length, true};
   }
   // What to remember: all that counts (as SeenShares).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
@@ -95,6 +95,7 @@ class ShareFlood {
       part.end = begin = k + 1 < count ? first_of_patch(chunk * kRowsOfChunk) : level_.size();
       part.front.clear();
       part.leaving.clear();
+      part.last_cut = kNoRow;
       part.left.clear();
     }
   }
@@ -152,7 +153,7 @@ class ShareFlood {
       for (const std::uint32_t j : level_.neighbors(i)) {
         if (!part.owns(j))
           part.leaving.push_back({i, j});
-        else if (is_passable(j))
+        else if (is_passable(part, j))
           take(part, j);
       }
     }
@@ -161,7 +162,7 @@ class ShareFlood {
   void step(FloodPart& part, std::uint32_t from, std::uint32_t to) {
     if (!part.owns(to)) {
       part.leaving.push_back({from, to});
-    } else if (is_passable(to) && (states_.cells[from] != Cell::cut || enters(from, to))) {
+    } else if (is_passable(part, to) && (states_.cells[from] != Cell::cut || enters(from, to))) {
       take(part, to);
     }
   }
@@ -187,11 +188,11 @@ class ShareFlood {
     return next;
   }
 
-  bool is_passable(std::uint32_t j) {
+  bool is_passable(FloodPart& part, std::uint32_t j) {
     Passage& passage = states_.passages[j];
     if (passage == Passage::closed || passage == Passage::taken) return false;
     if (passage == Passage::middle) decide_patch(level_.root(j));
-    if (passage == Passage::unknown) passage = find_passage(j);
+    if (passage == Passage::unknown) passage = find_passage(part, j);
     return passage != Passage::closed;
   }
 
@@ -212,7 +213,7 @@ class ShareFlood {
     }
   }
 
-  Passage find_passage(std::uint32_t j) {
+  Passage find_passage(FloodPart& part, std::uint32_t j) {
     const Vec3 at = center(j);
     const Reading reading = surface_.read(at);
     if (states_.cells[j] == Cell::open) {
@@ -221,7 +222,8 @@ class ShareFlood {
     }
     states_.squared_gaps[j] = squared_gap(reading);
     if (!is_hidden_share(states_.squared_gaps[j], reach_.length)) return Passage::open;
-    return cut_.nearest_to(j).height(at) < 0 ? Passage::open : Passage::closed;
+    part.last_cut = cut_.nearest_to(j, part.last_cut);
+    return cut_.at(part.last_cut).height(at) < 0 ? Passage::open : Passage::closed;
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {

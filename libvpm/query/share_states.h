@@ -32,6 +32,8 @@ enum class Passage : std::uint8_t {
   near,    // open: no place of its cluster is further behind the surface than the tool's reach
 };
 
+inline constexpr std::uint32_t kNoRow = UINT32_MAX;
+
 // Where one thread floods: the rows from `begin` to `end`.
 struct FloodPart {
   struct Step {
@@ -43,6 +45,14 @@ struct FloodPart {
   std::uint32_t begin = 0, end = 0;
   std::vector<std::uint32_t> front;  // taken, but not yet left
   std::vector<Step> leaving, left;   // to rows of other parts, in this round and in the last
+  std::uint32_t last_cut = kNoRow;   // nearest to the row that was asked for last, of this run
+};
+
+// A cluster with shares that the surface cuts, which lie side by side in ShareStates::cut.
+struct CutCluster {
+  Vec3 center;  // about the tool's centre of mass
+  double reach;
+  std::uint32_t begin, end;
 };
 
 // Calls visit(row) for the rows from `begin` to `end` in this state, ascending.
@@ -67,6 +77,7 @@ struct ShareStates {
         planes(level.roots().size()),
         parts(1) {
     cut.reserve(level.size());
+    cut_clusters.reserve(level.roots().size());
     parts[0].front.reserve(level.size());
   }
 
@@ -87,7 +98,8 @@ struct ShareStates {
   std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
   // Of each root that is a patch; of one behind the surface, the normal only.
   std::vector<CrossingPlane> planes;
-  std::vector<std::uint32_t> cut;   // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<CutCluster> cut_clusters;
   std::vector<std::uint32_t> work;  // of the flood, estimated, in chunks of rows
   // As many as ever flooded side by side; those from `part_count` on are not in use.
   std::vector<FloodPart> parts;
