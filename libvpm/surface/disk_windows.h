@@ -77,6 +77,9 @@ class DiskWindows {
     return measured_.feet.for_leaves_in_ball(
         center, reach * reach, [&](std::uint32_t begin, std::uint32_t) { return visit(begin); });
   }
+  std::uint32_t nearest_marked(Vec3 x, const PointMarks& marks) const {
+    return measured_.feet.nearest_marked(x, marks);
+  }
   bool gather(Vec3 center, double reach, std::uint32_t most, std::vector<Disk>& disks) const {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
@@ -85,7 +88,7 @@ class DiskWindows {
   template <class Gathers>
   static bool halve_until(double& reach, const Gathers& gathers) {
     bool all = gathers(reach);
-    for (int k = 0; !all && k < kHalvings; ++k) all = gathers(reach *= 0.5);
+    for (int k = 0; !all && reach > 0 && k < kHalvings; ++k) all = gathers(reach *= 0.5);
     return all;
   }
 

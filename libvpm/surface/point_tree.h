@@ -100,6 +100,12 @@ struct PointRadii {
   const float* of_nodes = nullptr;
 };
 
+// Points that have a mark, and nodes that hold some. A view, for the host.
+struct PointMarks {
+  const float* of_points = nullptr;  // more than 0: has one
+  const float* of_nodes = nullptr;
+};
+
 // Nodes of a tree that hold all points near a place: where searches begin, so that what is
 // elsewhere costs nothing. For the host.
 struct TreeEntry {
@@ -191,6 +197,14 @@ struct PointTree {
     return best.point;
   }
 
+  // The point nearest to x among those with a mark; kNoPoint where there is none.
+  std::uint32_t nearest_marked(Vec3 x, const PointMarks& marks) const {
+    if (count == 0) return kNoPoint;
+    Nearest best;
+    search<OneByOne>(x, Marked{marks}, best);
+    return best.point;
+  }
+
   // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
   // false, and returns what it said last.
   template <class Visit>
@@ -234,6 +248,13 @@ struct PointTree {
     static double within(const PointTree&) { return 0; }
     VPM_HD bool takes_node(std::uint32_t, double) const { return true; }
     VPM_HD bool takes_point(std::uint32_t, double) const { return true; }
+  };
+  struct Marked {
+    PointMarks marks;
+
+    static double within(const PointTree&) { return HUGE_VAL; }  // the nearest may be anywhere
+    bool takes_node(std::uint32_t node, double) const { return marks.of_nodes[node] > 0; }
+    bool takes_point(std::uint32_t i, double) const { return marks.of_points[i] > 0; }
   };
   struct TouchingBall {
     double radius;

@@ -35,6 +35,11 @@ void check_extent(const Cloud& cloud) {
   if (!is_in_range(cloud.origin) ||
       (cloud.sensor && !is_in_range(cloud.sensor->camera.to_world.translation)))
     refuse("the cloud's origin or its camera is further than 2^100 m from the world's origin");
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_in_range(widen(cloud.positions[i])))
+      refuse("point " + std::to_string(i) +
+             " of the cloud is further than 2^100 m from its origin");
+  }
   constexpr std::uint64_t kMaxPixels = std::numeric_limits<std::int32_t>::max();
   if (!cloud.sensor) return;
   const auto& [intrinsics, width, height, to_world] = cloud.sensor->camera;
@@ -62,16 +67,16 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
   if (cloud.sensor) {
     take_image(cloud, points);
   } else {
-    order_in_space(cloud);
-    largest_radii_ = largest_in_nodes(radii_);
+    std::vector<float> radii = order_in_space(cloud);
     boxes_ = boxes_of(positions_);
     const DiskSurface measured{point_tree(), normals_.data()};
     if (points == PointReading::settled) {
-      disks_ = settle(measured, radii_);
+      disks_ = settle(measured, std::move(radii));
       foot_boxes_ = boxes_of(disks_.feet);
     } else {
-      disks_ = as_measured(measured);
+      disks_ = as_measured(measured, std::move(radii));
     }
+    largest_radii_ = largest_in_nodes(disks_.radii);
     cones_ = cones_of(disk_surface());
   }
 }
@@ -132,7 +137,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud, SeenImage& seen) {
   std::partial_sum(pixel_begin_.begin(), pixel_begin_.end(), pixel_begin_.begin());
 }
 
-void PreparedCloud::order_in_space(const Cloud& cloud) {
+std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
   struct Placed {  // side by side, so that the sort does not fetch places from all over the cloud
     Vec3f at;
     std::uint32_t index;
@@ -154,8 +159,10 @@ void PreparedCloud::order_in_space(const Cloud& cloud) {
   }
   order_by_leaves(cloud.positions, order);
   take_in_order(cloud, order);
-  radii_.reserve(order.size());
-  for (const std::uint32_t i : order) radii_.push_back(cloud.radii[i]);
+  std::vector<float> radii;
+  radii.reserve(order.size());
+  for (const std::uint32_t i : order) radii.push_back(cloud.radii[i]);
+  return radii;
 }
 
 void PreparedCloud::take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order) {
@@ -181,7 +188,7 @@ DiskSurface PreparedCloud::disk_surface() const {
           disks_.normals.data(),
           disks_.second_of.data(),
           disks_.seconds.data(),
-          {radii_.data(), largest_radii_.data()},
+          {disks_.radii.data(), largest_radii_.data()},
           {cones_.data()}};
 }
 

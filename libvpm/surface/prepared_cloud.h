@@ -25,11 +25,10 @@ class PreparedCloud {
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
 
   // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536 a
-  // side, an origin or camera beyond kLargestLength, or what validate(cloud) refuses. Depths
-  // outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured. From a depth image,
-  // FramePreparation (frame_preparation.h) is quicker. To settle 300 000 points takes one core a
-  // millisecond where a camera saw them, otherwise a quarter of a second, with noise at grazing
-  // angles one.
+  // side, an origin, a camera or a point beyond kLargestLength, or what validate(cloud)
+  // refuses. Depths outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured. From
+  // a depth image, FramePreparation (frame_preparation.h) is quicker. To settle 300 000 points
+  // takes one core a millisecond where a camera saw them, otherwise a second or two (README.md).
   explicit PreparedCloud(const Cloud& cloud, PointReading points = PointReading::settled);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud
@@ -70,7 +69,7 @@ class PreparedCloud {
   void take_image(const Cloud& cloud, PointReading points);
   // Notes the pixels' normals in `seen`, which has the image's size.
   void order_by_pixel(const Cloud& cloud, SeenImage& seen);
-  void order_in_space(const Cloud& cloud);
+  std::vector<float> order_in_space(const Cloud& cloud);  // returns the sampling radii
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
 
   PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
@@ -85,9 +84,9 @@ class PreparedCloud {
   std::vector<std::uint32_t> pixel_begin_;
   SettledImage image_;
 
-  std::vector<BoxQuad> boxes_;  // of the positions
-  std::vector<float> radii_, largest_radii_;
-  std::vector<BoxQuad> foot_boxes_;  // of the disks' feet; none where those are the positions
+  std::vector<BoxQuad> boxes_;        // of the positions
+  std::vector<float> largest_radii_;  // of the disks in each node of their tree
+  std::vector<BoxQuad> foot_boxes_;   // of the disks' feet; none where those are the positions
   SettledDisks disks_;
   std::vector<ConeQuad> cones_;  // of the disks
 };

@@ -22,11 +22,18 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
+// Sides of a plate no thicker than this part of what they lie apart sideways lie on one another.
+inline constexpr double kNoThickness = 1e-6;
+
 // What two planes enclose, if each lies behind the other, or in front of it, by this much at least.
+// Two that lie on one another, back to back, are a sheet: both its sides were seen to be free.
 inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlane& second,
                                                double apart) {
   const Vec3 across = second.place - first.place;
   const double ahead = dot(first.normal, across), back = -dot(second.normal, across);
+  const double none = kNoThickness * norm(across);
+  const bool is_sheet = apart == 0 && std::max(std::fabs(ahead), std::fabs(back)) <= none;
+  if (is_sheet) return SecondPlane{narrow(second.normal), narrow(second.foot), true};
   if (!(ahead * back > 0 && std::min(std::fabs(ahead), std::fabs(back)) >= apart))
     return std::nullopt;
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};

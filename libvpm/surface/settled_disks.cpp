@@ -19,7 +19,11 @@ class CreaseSettling {
  public:
   CreaseSettling(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
                  SettledDisks& result)
-      : windows_(windows), kinds_(kinds), result_(result) {}
+      : windows_(windows), kinds_(kinds), result_(result) {
+    smooth_.reserve(kinds.size());
+    for (const DiskKind kind : kinds) smooth_.push_back(is_smooth(kind) ? 1.0F : 0.0F);
+    nodes_with_smooth_ = largest_in_nodes(smooth_);
+  }
 
   // Reads what became of smooth disks, and writes only others.
   void run() {
@@ -27,12 +31,16 @@ class CreaseSettling {
       std::vector<SmoothDisk> disks;
       for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
         if (is_smooth(kinds_[i])) continue;
-        gather_smooth_about(i, disks);
-        if (disks.empty()) continue;
-        if (kinds_[i] == DiskKind::outlier)
-          join(nearest_of(disks, windows_.disk(i).place), i);
-        else
-          settle_at_crease(i, disks, work);
+        const std::uint32_t nearest = windows_.nearest_marked(
+            windows_.disk(i).place, {smooth_.data(), nodes_with_smooth_.data()});
+        if (nearest == kNoPoint) return;
+        if (kinds_[i] == DiskKind::stray ||
+            (kinds_[i] == DiskKind::outlier && is_near(nearest, i))) {
+          join(nearest, i);
+        } else if (kinds_[i] == DiskKind::bent && is_within_reach(nearest, i)) {
+          gather_smooth_about(i, disks);
+          if (!disks.empty()) settle_at_crease(i, disks, work);
+        }
       }
     });
   }
@@ -64,24 +72,19 @@ class CreaseSettling {
     result_.normals[i] = narrow(plane.normal);
   }
 
-  // An outlier becomes another of the disk that is nearest: on a plane that is seen elsewhere it
-  // would continue a wall where there is none. Not where it is further away than that disk's own
-  // windows reach: it may be seen more sparsely.
+  // An outlier becomes another of the smooth disk that is nearest: on a plane that is seen
+  // elsewhere it would continue a wall where there is none.
   void join(std::uint32_t nearest, std::uint32_t i) {
-    const double reach = kFurther * kWide * windows_.radius(nearest);
-    const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
-    if (squared_norm(away) > reach * reach) return;
     result_.feet[i] = result_.feet[nearest];
     result_.normals[i] = result_.normals[nearest];
     result_.second_of[i] = result_.second_of[nearest];
+    result_.radii[i] = result_.radii[nearest];
   }
-  static std::uint32_t nearest_of(const std::vector<SmoothDisk>& disks, Vec3 place) {
-    const auto rank = [&](const SmoothDisk& d) {
-      return std::make_pair(squared_norm(d.disk.place - place), d.index);
-    };
-    return std::min_element(disks.begin(), disks.end(),
-                            [&](const auto& a, const auto& b) { return rank(a) < rank(b); })
-        ->index;
+  // Not further away than that disk's own windows reach: what is may be small, seen by few points.
+  bool is_near(std::uint32_t nearest, std::uint32_t i) const {
+    const double reach = kFurther * kWide * windows_.radius(nearest);
+    const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
+    return squared_norm(away) <= reach * reach;
   }
 
   // Returns false if there are too many disks.
@@ -95,6 +98,11 @@ class CreaseSettling {
     });
   }
 
+  // Whether gather_smooth_about() may find any: it goes through all that is near.
+  bool is_within_reach(std::uint32_t nearest, std::uint32_t i) const {
+    const double reach = kFurther * windows_.wide_window(i);
+    return squared_norm(windows_.disk(nearest).place - windows_.disk(i).place) <= reach * reach;
+  }
   void gather_smooth_about(std::uint32_t i, std::vector<SmoothDisk>& disks) const {
     const Vec3 place = windows_.disk(i).place;
     double reach = windows_.wide_window(i);
@@ -150,21 +158,24 @@ class CreaseSettling {
   const DiskWindows& windows_;
   const std::vector<DiskKind>& kinds_;
   SettledDisks& result_;
+  std::vector<float> smooth_, nodes_with_smooth_;  // 1 or 0; PointMarks
 };
 
 }  // namespace
 
-SettledDisks as_measured(const DiskSurface& measured) {
+SettledDisks as_measured(const DiskSurface& measured, std::vector<float> radii) {
   const std::uint32_t count = measured.feet.count;
   return {{measured.feet.points, measured.feet.points + count},
           {measured.normals, measured.normals + count},
           std::vector<std::uint32_t>(count, kNoPoint),
+          std::move(radii),
           {}};
 }
 
-SettledDisks settle(const DiskSurface& measured, std::span<const float> radii) {
-  SettledDisks result = as_measured(measured);
-  const DiskWindows windows(measured, radii);
+SettledDisks settle(const DiskSurface& measured, std::vector<float> radii) {
+  const std::vector<float> as_given = radii;
+  SettledDisks result = as_measured(measured, std::move(radii));
+  const DiskWindows windows(measured, as_given);
   const std::vector<DiskKind> kinds = smooth(windows, result);
   CreaseSettling(windows, kinds, result).run();
   return result;

@@ -12,14 +12,15 @@ namespace vpm {
 struct SettledDisks {
   std::vector<Vec3f> feet, normals;      // of each disk
   std::vector<std::uint32_t> second_of;  // of each disk: index into seconds, or kNoPoint
+  std::vector<float> radii;              // of each disk: of sampling
   std::vector<SecondPlane> seconds;
 };
 
 // `measured`: the points as they are, with boxes about them; `radii`: their sampling radii. The
 // same for any number of threads.
-SettledDisks settle(const DiskSurface& measured, std::span<const float> radii);
+SettledDisks settle(const DiskSurface& measured, std::vector<float> radii);
 
 // The points themselves, in the same form.
-SettledDisks as_measured(const DiskSurface& measured);
+SettledDisks as_measured(const DiskSurface& measured, std::vector<float> radii);
 
 }  // namespace vpm

@@ -1,16 +1,30 @@
 #include "libvpm/surface/smoothed_disks.h"
 
+#include <optional>
+
 #include "libvpm/surface/second_planes.h"
 
 namespace vpm {
 namespace {
 
 constexpr std::uint32_t kFewOpposite = 5;
-constexpr std::uint32_t kFewTogether = 4;  // fewer are outliers even where nothing is unlike them
-constexpr double kStandsOff = 2;           // radii, from those about it
+constexpr double kStandsOff = 2;  // radii, from those about it
+// Fewer alike, twice as far too, make an outlier: the second where others are unlike it.
+constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 // Of those alike.
 constexpr double kUnlikeOfSmooth = 0.1;
 constexpr double kUnlikeOfCalm = 0.02;  // so few are noise
+
+bool is_among_its_like(const Neighborhood& around) {
+  return around.unlike <= kUnlikeOfSmooth * around.alike;
+}
+
+DiskKind kind_of(const Neighborhood& around) {
+  const bool is_smooth = is_among_its_like(around);
+  if (around.alike < kFewTogether) return DiskKind::stray;
+  if (is_smooth) return DiskKind::smooth;
+  return around.alike < kFewAlike ? DiskKind::outlier : DiskKind::bent;
+}
 
 class Smoothing {
  public:
@@ -78,40 +92,35 @@ class Smoothing {
         leaf, work.near, [&](std::uint32_t i) { return windows_.disk(i); },
         [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
           const bool is_usual = around.count() <= kMostInWindow && around.alike >= kFewAlike;
-          const Neighborhood all = is_usual ? around : look_further(i, own);
-          settle(i, own.disk, all);
-          is_calm &= all.alike > 0 && all.unlike <= kUnlikeOfCalm * all.alike;
+          const auto all = is_usual ? around : look_further(i, own);
+          if (all && all->alike > 0) set(i, own.disk, *all);
+          kinds_[i] = all ? kind_of(*all) : DiskKind::outlier;
+          is_calm &= is_smooth(kinds_[i]) && all->unlike <= kUnlikeOfCalm * all->alike;
         });
     is_calm_[leaf.begin / PointTree::kLeafSize] = is_calm;
   }
 
-  // Of a disk that has few neighbours, or many. Nothing of one that stands off from others, alone.
-  Neighborhood look_further(std::uint32_t i, const DiskInBall& one) const {
+  // Of a disk that has few neighbours, or many: nothing is known of one among too many. Nothing is
+  // about one that stands off from others, alone.
+  std::optional<Neighborhood> look_further(std::uint32_t i, const DiskInBall& one) const {
     std::vector<Disk> near;
-    Neighborhood found[4];
-    DiskInBall four[4] = {one, one, one, one};
-    double& reach = four[0].reach;
+    double reach = one.reach;
     const auto gathers = [&](double r) {
       return windows_.gather(one.disk.place, r, kMostInWindow, near);
     };
-    if (!DiskWindows::halve_until(reach, gathers)) return {};
-    look_around(near, four, found);
-    if (found[0].alike >= kFewAlike) return found[0];
-    if (!windows_.gather(one.disk.place, reach *= 2, kMostInWide, near)) return found[0];
-    look_around(near, four, found);
+    if (!DiskWindows::halve_until(reach, gathers)) return std::nullopt;
+    const Neighborhood around = look_around_one(near, {one.disk, reach});
+    if (around.alike >= kFewAlike) return around;
+    if (!windows_.gather(one.disk.place, 2 * reach, kMostInWide, near)) return around;
+    const Neighborhood further = look_around_one(near, {one.disk, 2 * reach});
     const double furthest = kStandsOff * windows_.radius(i);
-    return std::fabs(found[0].height) <= furthest * found[0].alike ? found[0] : Neighborhood{};
+    return std::fabs(further.height) <= furthest * further.alike ? further : Neighborhood{};
   }
-
-  void settle(std::uint32_t i, const Disk& own, const Neighborhood& around) {
-    if (around.alike == 0) return;
-    set(i, own, around);
-    const bool is_smooth = is_among_its_like(around);
-    if (around.alike < (is_smooth ? kFewTogether : kFewAlike)) return;
-    kinds_[i] = is_smooth ? DiskKind::smooth : DiskKind::bent;
-  }
-  static bool is_among_its_like(const Neighborhood& around) {
-    return around.unlike <= kUnlikeOfSmooth * around.alike;
+  static Neighborhood look_around_one(std::span<const Disk> near, const DiskInBall& one) {
+    const DiskInBall four[4] = {one, one, one, one};
+    Neighborhood found[4];
+    look_around(near, four, found);
+    return found[0];
   }
 
   // Whether hardly any were found about a leaf that face elsewhere.
@@ -126,7 +135,8 @@ class Smoothing {
   // that way. The mean about it tells.
   void find_clear(const DiskLeaf& leaf, LeafWork& work) {
     if (is_calm_about(leaf)) {
-      for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) kinds_[i] = DiskKind::clear;
+      for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
+        kinds_[i] = DiskKind::clear;  // all smooth
       return;
     }
     is_beside_[leaf.begin / PointTree::kLeafSize] = 1;

@@ -10,16 +10,15 @@
 namespace vpm {
 
 enum class DiskKind : std::uint8_t {
-  outlier,
-  bent,    // others about it face elsewhere: at a crease, or on what is as small as the window
-  smooth,  // few of those about it do
-  clear,   // and few face elsewhere than the mean about it does, which knows less of noise
+  stray,    // hardly any are like it: of no surface that the cloud shows
+  outlier,  // few are, and others about it face elsewhere
+  bent,     // others about it face elsewhere: at a crease, or on what is as small as the window
+  smooth,   // few of those about it do
+  clear,    // and few face elsewhere than the mean about it does, which knows less of noise
 };
 inline bool is_smooth(DiskKind kind) {
   return kind >= DiskKind::smooth;
 }
-
-inline constexpr std::uint32_t kFewAlike = 10;  // fewer, twice as far too, are an outlier's
 
 // Smooths the disks in `result`, which are as measured, and says of which kind each is. Those that
 // face each other from the sides of a plate or a slot learn of each other's planes.

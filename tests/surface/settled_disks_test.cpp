@@ -232,6 +232,21 @@ TEST(SettledDisks, ThinPlatesKeepTheirSides) {
 
 // What is opposite is told by both sides as they are when noise has been taken from them: points
 // that it has moved beyond the other side do not make a slot of the plate.
+TEST(SettledDisks, SheetsWithoutThicknessHoldNothing) {
+  for (const double offset : {0.0, 0.4 * kSpacing}) {  // of the lattice of one side
+    const PreparedCloud cloud(over_square([&](double x, double y, Cloud& sheet) {
+      add_point({x, y, 0}, {0, 0, 1}, sheet);
+      add_point({x + offset, y - offset, 0}, {0, 0, -1}, sheet);
+    }));
+    const DiskSurface disks = cloud.disk_surface();
+    for (const double z : {-0.01, -0.001, 0.0, 0.001, 0.01}) {
+      const Vec3 x{0.003, -0.007, z};
+      const Reading reading = disks.read(x);
+      EXPECT_LT(disks.fraction_inside(reading, x, 0.002), 1e-6) << offset << ' ' << z;
+    }
+  }
+}
+
 TEST(SettledDisks, ThinPlatesAreNoSlots) {
   constexpr double kHalf = 0.002;
   const PreparedCloud cloud(plate(kHalf, 0.002));
@@ -317,6 +332,41 @@ void expect_same(const SettledDisks& a, const SettledDisks& b, float scale = 1) 
     ASSERT_EQ(a.seconds[k].normal, b.seconds[k].normal);
     ASSERT_EQ(scaled(a.seconds[k].foot), b.seconds[k].foot);
     ASSERT_EQ(a.seconds[k].is_convex, b.seconds[k].is_convex);
+  }
+}
+
+// One to three points that lie together far before a wall, where nothing else is.
+TEST(SettledDisks, StraysJoinTheNearestDisk) {
+  for (const int strays : {1, 2, 3}) {
+    for (const double height : {0.007, 0.014, 0.021, 0.03}) {
+      Cloud cloud = noisy_wall(0.0002, 0.02);
+      for (int k = 0; k < strays; ++k)
+        add_point({0.0003 * k, 0.0004, height}, {0.1 * k, 0.2, 1}, cloud);
+      const PreparedCloud prepared(cloud);
+      for (std::size_t i = 0; i < prepared.positions().size(); ++i) {
+        EXPECT_LT(std::fabs(widen(prepared.disks().feet[i]).z), 0.001)
+            << strays << " at " << height << " m";
+        if (prepared.positions()[i].z > 0.005F) {
+          const Vec3 aside = widen(prepared.disks().feet[i]) - widen(prepared.positions()[i]);
+          EXPECT_LT(std::hypot(aside.x, aside.y), kSpacing);
+        }
+      }
+    }
+  }
+}
+
+// A disk wider than its spacing sees more of them than are looked at.
+TEST(SettledDisks, StraysOfDenseCloudsJoinTheNearestDisk) {
+  Cloud cloud = noisy_wall(0, 0);
+  std::fill(cloud.radii.begin(), cloud.radii.end(), static_cast<float>(5 * kSpacing));
+  add_point({0.0111, -0.0123, 0.1}, {0, 0.1, 1}, cloud);
+  cloud.radii.back() = static_cast<float>(5 * kSpacing);
+  const PreparedCloud prepared(cloud);
+  for (std::size_t i = 0; i < prepared.positions().size(); ++i) {
+    if (prepared.positions()[i].z < 0.05F) continue;
+    const Vec3 foot = widen(prepared.disks().feet[i]);
+    EXPECT_LT(std::hypot(foot.x - 0.0111, foot.y + 0.0123), kSpacing);
+    EXPECT_LT(std::fabs(foot.z), 0.001);
   }
 }
 
