@@ -1,6 +1,7 @@
 // Pinhole camera: x right, y down, z forward; pixel centres at integer coordinates.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "libvpm/core/pose.h"
@@ -10,6 +11,14 @@ namespace vpm {
 struct Intrinsics {
   double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels
 };
+
+// Whether they can be computed with: finite, focal lengths positive, none beyond this many pixels,
+// which is far beyond any image.
+inline constexpr double kLargestIntrinsics = 0x1p40;
+inline bool are_sound(const Intrinsics& k) {
+  return k.fx > 0 && k.fy > 0 && k.fx <= kLargestIntrinsics && k.fy <= kLargestIntrinsics &&
+         std::abs(k.cx) <= kLargestIntrinsics && std::abs(k.cy) <= kLargestIntrinsics;
+}
 
 struct Camera {
   Intrinsics intrinsics;

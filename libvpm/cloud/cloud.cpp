@@ -21,9 +21,10 @@ Cloud without_camera(Cloud cloud) {
 
 void validate(const Camera& camera, const std::string& name) {
   const Intrinsics& k = camera.intrinsics;
-  if (!(k.fx > 0 && k.fy > 0) || !std::isfinite(k.fx) || !std::isfinite(k.fy) ||
-      !std::isfinite(k.cx) || !std::isfinite(k.cy))
-    refuse(name + ": the camera's intrinsics are not finite, or a focal length is not positive");
+  if (!are_sound(k))
+    refuse(name +
+           ": the camera's intrinsics are not finite or beyond 2^40 pixels, or a focal length "
+           "is not positive");
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (pixels == 0 || pixels > std::numeric_limits<std::uint32_t>::max())
     refuse(name + ": the camera's image is empty or has more than 2^32 - 1 pixels");

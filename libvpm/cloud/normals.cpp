@@ -69,11 +69,10 @@ void check_normal_options(const NormalOptions& options) {
 }
 
 void check_intrinsics(const Intrinsics& k) {
-  const bool finite =
-      std::isfinite(k.fx) && std::isfinite(k.fy) && std::isfinite(k.cx) && std::isfinite(k.cy);
-  if (!(finite && k.fx > 0 && k.fy > 0)) {
+  if (!are_sound(k)) {
     throw Error(ErrorKind::usage,
-                "intrinsics: fx,fy,cx,cy must be finite, fx and fy greater than 0 (pixels)");
+                "intrinsics: fx,fy,cx,cy must be finite and within 2^40, fx and fy greater than 0 "
+                "(pixels)");
   }
 }
 

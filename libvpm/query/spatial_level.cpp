@@ -6,7 +6,8 @@ namespace {
 constexpr std::uint32_t kFewShares = 8;  // are looked at one by one
 constexpr std::size_t kGroupClusters = 8;
 constexpr double kGroupReach = 2.5 * kPatchReach;  // of the tool's
-// A group's ball holds those of its clusters, however their projections are rounded.
+// A group's ball holds the shares of its clusters, though not the clusters' own balls, however
+// their projections are rounded.
 constexpr double kGroupRounding = 1 + 1e-9;
 
 }  // namespace

@@ -34,7 +34,7 @@ struct ToolSum {
 
   // In world axes; `rotation` takes the axes of the terms there.
   VPM_HD void write(const ToolModel& tool, const Rotation& rotation, Result& result) const {
-    result.volume_fraction = volume.real();
+    result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // of shares that sum to 1
     result.volume = tool.volume * result.volume_fraction;
     result.wrench.force =
         tool.volume * (rotation * Vec3{force[0].real(), force[1].real(), force[2].real()});

@@ -245,7 +245,8 @@ struct DepthSurface {
     const double v = k.fy * y + k.cy, spread_v = k.fy * (per_nearest * (1 + std::fabs(y)));
     const double u_low = u - spread_u, u_high = u + spread_u;
     const double v_low = v - spread_v, v_high = v + spread_v;
-    if (u_high < -0.5 || v_high < -0.5 || u_low >= width - 0.5 || v_low >= height - 0.5) {
+    // Nor what overflows.
+    if (!(u_high >= -0.5 && v_high >= -0.5 && u_low < width - 0.5 && v_low < height - 0.5)) {
       look.side = Side::free;
       return look;
     }

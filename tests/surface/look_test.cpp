@@ -71,6 +71,15 @@ TEST_P(LookAtABall, SaysOfTheBallsInItWhatALookAtThemDoes) {
   EXPECT_GT(none_free, 10000);
 }
 
+TEST(Look, OverflowsNowhere) {
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  DepthSurface surface = cloud.depth_surface();
+  surface.k.fx = surface.k.fy = 1e300;
+  for (const Vec3 center :
+       {Vec3{1e20, 0, 0.3}, Vec3{-1e20, 1e20, 0.3}, Vec3{0, 0, 1e-300}, Vec3{1e30, 1e30, 1e-290}})
+    EXPECT_EQ(surface.look_at_ball(center, 1e-301).side, Side::free);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, LookAtABall, ::testing::Values("wall", "step", "inverted-ball"),
                          [](const auto& variant) { return test::test_name(variant.param); });
 

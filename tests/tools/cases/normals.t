@@ -37,7 +37,7 @@ $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5
 2> vpm-normals: error: --intrinsics: At least 4 required but received 3 (see vpm-normals --help)
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 0,60,31.5,23.5
-2> vpm-normals: error: intrinsics: fx,fy,cx,cy must be finite, fx and fy greater than 0 (pixels)
+2> vpm-normals: error: intrinsics: fx,fy,cx,cy must be finite and within 2^40, fx and fy greater than 0 (pixels)
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5,23.5 --window 8
 2> vpm-normals: error: normals: the window must be odd and between 3 and 31 pixels, not 8
