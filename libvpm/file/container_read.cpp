@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
@@ -119,6 +122,7 @@ void Reader::parse_directory(std::uint64_t chunk_count, std::uint64_t header_siz
   if (header_.value("unit", nlohmann::json()) != "m")
     refuse_file("the header's unit is not \"m\"; vpm files are in metres");
 
+  std::set<std::pair<std::string, std::uint32_t>> known;
   std::size_t end = sizeof(Preamble) + table_size + header_size;
   for (std::uint64_t k = 0; k < chunk_count; ++k) {
     ChunkEntry entry;
@@ -134,7 +138,8 @@ void Reader::parse_directory(std::uint64_t chunk_count, std::uint64_t header_siz
     const std::span<const std::byte> data = all.subspan(entry.offset, entry.size);
     if (checksum(data) != entry.checksum || !is_zero(all.subspan(end, entry.offset - end)))
       refuse_file(chunk + " is damaged (checksum)" + kAgain);
-    if (has(id, entry.index)) refuse_file(chunk + " is there twice" + kAgain);
+    if (!known.emplace(std::string(entry.id, sizeof(entry.id)), entry.index).second)
+      refuse_file(chunk + " is there twice" + kAgain);
     entries_.push_back({id, entry.index, entry.element_size, data});
     end = entry.offset + entry.size;
   }

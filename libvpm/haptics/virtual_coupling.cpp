@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 #include "libvpm/haptics/rotation_vector.h"
 
 namespace vpm {
@@ -12,6 +13,13 @@ namespace {
 void check_positive(double value, const char* name) {
   if (!(value > 0 && std::isfinite(value)))
     throw Error(ErrorKind::usage, std::string("coupling: ") + name + " must be a positive number");
+}
+
+// N or N m: beyond, squares and products with lengths would overflow.
+constexpr double kLargestContact = 0x1p200;
+bool is_within(Vec3 v) {
+  return std::abs(v.x) <= kLargestContact && std::abs(v.y) <= kLargestContact &&
+         std::abs(v.z) <= kLargestContact;
 }
 
 // One direction of motion, linear or angular: the implicit step of inertia, spring and damper.
@@ -76,6 +84,19 @@ double VirtualCoupling::stored() const {
 }
 
 Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
+  if (!is_rotation(device.rotation, kRotationRounding) || !is_in_range(device.translation))
+    refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
+  if (!(is_within(contact.force) && is_within(contact.torque)))
+    refuse("coupling: the contact's force or torque is not finite, or absurdly large");
+  VirtualCoupling next = *this;
+  const Wrench felt = next.step(device, contact);
+  if (!is_finite(felt.force) || !is_finite(felt.torque) || !is_in_range(next.tool_.translation))
+    refuse("coupling: the contact pushes the tool out of all bounds; is its stiffness stable?");
+  *this = next;
+  return felt;
+}
+
+Wrench VirtualCoupling::step(const Pose& device, const Wrench& contact) {
   const CouplingParameters& p = parameters_;
   const double step = 1 / p.rate, squared_gyration = p.gyration * p.gyration;
   const Pose held{device.rotation, device * center_of_mass_};

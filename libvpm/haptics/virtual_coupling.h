@@ -63,13 +63,16 @@ class VirtualCoupling {
 
   // One step of 1 / rate: the device moves to `device`, while `contact` (N, N m about the centre of
   // mass), the measure's at tool(), pushes the tool. Returns what the user feels: force and torque
-  // on the device, the torque about the tool's centre of mass as the device holds it.
+  // on the device, the torque about the tool's centre of mass as the device holds it. Throws
+  // Error(refused) for a pose or a contact that is not finite or not rigid, and where the tool
+  // would leave all bounds; nothing has changed then, so the next step may go on.
   Wrench advance(const Pose& device, const Wrench& contact);
 
   const CouplingEnergy& energy() const { return energy_; }
 
  private:
   double stored() const;
+  Wrench step(const Pose& device, const Wrench& contact);
 
   CouplingParameters parameters_;
   Vec3 center_of_mass_;

@@ -90,9 +90,10 @@ FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule
                      const ImportOptions& options, PointReading points)
     : recording_(recording),
       schedule_(recording, schedule),
-      cloud_(std::make_unique<PreparedCloud>(Cloud{})),
-      thread_([this, copy = schedule_, options, points] { prepare_all(copy, options, points); }) {
+      cloud_(std::make_unique<PreparedCloud>(Cloud{})) {
+  const FrameSchedule all = schedule_;
   next_ = schedule_.next();
+  thread_ = std::thread([this, all, options, points] { prepare_all(all, options, points); });
 }
 
 FrameFeed::~FrameFeed() {

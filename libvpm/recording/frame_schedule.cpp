@@ -34,6 +34,10 @@ FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& 
   if (options.repeat && !(lasts * options.rate >= 1))
     refuse("frames that all come within one step cannot be repeated");
   time_ = turn_time_ = recording.frames.front().time;
+  if (!options.repeat) return;
+  // Whole rounds that are over when the first step begins show nothing.
+  const double round = 2 * lasts, before = options.start - options.latency - time_;
+  if (before > 2 * round) time_ = turn_time_ += round * (std::floor(before / round) - 1);
 }
 
 double FrameSchedule::step_of_next() const {

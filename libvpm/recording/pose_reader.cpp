@@ -6,9 +6,11 @@
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/lengths.h"
 
 namespace vpm {
 namespace {
@@ -16,14 +18,28 @@ namespace {
 constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
 
 constexpr const char* kBlank = " \t\r";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some editors write first
 
 bool is_json(const std::string& line) {
   const std::size_t first = line.find_first_not_of(kBlank);
   return first != std::string::npos && (line[first] == '{' || line[first] == '[');
 }
 
+void refuse_empty_cells(const std::string& line) {
+  if (line.find(',') == std::string::npos) return;
+  std::size_t cell = 1;
+  for (std::size_t begin = 0; begin <= line.size(); ++cell) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    if (line.find_first_not_of(kBlank, begin) >= end)
+      refuse("number " + std::to_string(cell) + " is missing: nothing stands between the commas");
+    begin = end + 1;
+  }
+}
+
+// Between blanks, or single commas.
 std::vector<double> numbers_of(const std::string& line) {
   constexpr const char* kBetween = " \t\r,";
+  refuse_empty_cells(line);
   std::vector<double> numbers;
   for (std::size_t at = line.find_first_not_of(kBetween); at != std::string::npos;) {
     const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
@@ -64,7 +80,7 @@ void PoseReader::refuse_empty() const {
 
 std::optional<std::string> PoseReader::next_line() {
   for (std::string line; errno = 0, std::getline(stream_, line);) {
-    ++line_;
+    if (++line_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
     if (!is_json(line)) line.resize(std::min(line.find('#'), line.size()));
     if (line.find_first_not_of(kBlank) != std::string::npos) return line;
   }
@@ -131,7 +147,8 @@ Pose PoseReader::from_numbers(std::vector<double> n) {
            " numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, "
            "row by row)");
   }
-  if (!is_finite(pose.translation)) refuse("pose: the translation is not finite");
+  if (!is_in_range(pose.translation))
+    refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
   largest_deviation_ = std::max(largest_deviation_, deviation);
   return pose;
 }

@@ -41,7 +41,8 @@ void read_list(const fs::path& list, Recording& recording) {
       const auto entry = entry_of(line);
       if (!entry) continue;
       const fs::path path = list.parent_path() / entry->second;
-      if (fs::exists(path)) {
+      std::error_code unknown;
+      if (fs::exists(path, unknown) || unknown) {
         recording.frames.push_back({entry->first, path.string(), {}, false});
       } else {
         ++recording.missing;
@@ -65,10 +66,17 @@ std::string stem_of(const fs::path& path) {
   return name.substr(0, name.find('.'));
 }
 
+// Not a folder, nor what one waits for, like a pipe. What is broken is said when it is read.
+bool may_be_read(const fs::directory_entry& entry) {
+  std::error_code unknown;
+  const fs::file_type type = entry.status(unknown).type();
+  return type == fs::file_type::regular || type == fs::file_type::not_found || unknown;
+}
+
 std::vector<fs::path> files_of(const fs::path& folder) {
   std::vector<fs::path> files, depth;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!is_frame(entry.path()) || entry.is_directory()) continue;
+    if (!is_frame(entry.path()) || !may_be_read(entry)) continue;
     files.push_back(entry.path());
     if (entry.path().filename().string().find("depth") != std::string::npos)
       depth.push_back(entry.path());
@@ -164,6 +172,9 @@ void place_by_path(const std::string& name, Recording& recording) {
 
 fs::path pose_beside(const RecordedFrame& frame) {
   const fs::path path(frame.path);
+  fs::path whole = path.parent_path() / (path.stem().string() + ".pose.txt");
+  std::error_code unknown;
+  if (time_in(path) || fs::exists(whole, unknown)) return whole;
   return path.parent_path() / (stem_of(path) + ".pose.txt");
 }
 
@@ -188,7 +199,8 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
   } else if (options.camera) {
     for (RecordedFrame& frame : recording.frames) frame.camera = options.camera;
   } else if (std::any_of(frames.begin(), frames.end(), [](const RecordedFrame& frame) {
-               return fs::exists(pose_beside(frame));
+               std::error_code unknown;
+               return fs::exists(pose_beside(frame), unknown);
              })) {
     place_by_files(recording);
   } else if (recording.has_clock && fs::is_regular_file(folder / "groundtruth.txt")) {

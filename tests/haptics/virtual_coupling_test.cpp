@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "libvpm/core/error.h"
@@ -142,6 +143,25 @@ TEST(VirtualCoupling, RefusesWhatIsNoCoupling) {
   wrong = parameters();
   wrong.rate = std::nan("");
   EXPECT_THROW(VirtualCoupling(wrong, {}, {}), Error);
+}
+
+// One bad sample of a device's driver, or of a measure, must not be the end.
+TEST(VirtualCoupling, GoesOnAfterASampleThatIsRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = HUGE_VAL;
+  VirtualCoupling coupling(parameters(), {0.01, 0, 0}, at({0, 0, 0})), other = coupling;
+  for (int k = 0; k < 100; ++k) {
+    for (const double bad : {kNan, kInf, 1e300, -1e61}) {
+      EXPECT_THROW(coupling.advance(wander(0.001 * k), {{}, {bad, 0, 0}}), Error);
+      EXPECT_THROW(coupling.advance(wander(0.001 * k), {{0, bad, 0}, {}}), Error);
+      EXPECT_THROW(coupling.advance(at({bad, 0, 0}), {}), Error);
+    }
+    Pose sheared = wander(0.001 * k);
+    sheared.rotation.row0.x += 0.1;
+    EXPECT_THROW(coupling.advance(sheared, {}), Error);
+    const Wrench felt = coupling.advance(wander(0.001 * k), {});
+    EXPECT_EQ(felt.force, other.advance(wander(0.001 * k), {}).force);
+    EXPECT_EQ(coupling.energy().supplied, other.energy().supplied);
+  }
 }
 
 TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {

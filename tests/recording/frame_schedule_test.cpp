@@ -83,6 +83,21 @@ TEST(FrameSchedule, RepeatsBackAndForth) {
   EXPECT_THROW(FrameSchedule(short_one, {1000, 10, 0, 0, true}), Error);
 }
 
+TEST(FrameSchedule, RoundsThatAreOverBeforeItBeginsAreLeftOut) {
+  const Recording recording = frames_at({0, 0.25, 0.5});
+  for (const double start : {7.0, 1024.0, 1e6}) {  // whole rounds, of a second
+    const std::vector<FrameChange> late = changes_of(recording, {8, 32, start, 0, true});
+    ASSERT_FALSE(late.empty());
+    EXPECT_LT(late[0].frames.size(), 20U);
+    const std::vector<FrameChange> early = changes_of(recording, {8, 32, 1, 0, true});
+    ASSERT_EQ(late.size(), early.size());
+    for (std::size_t k = 0; k < late.size(); ++k) {
+      EXPECT_EQ(late[k].step, early[k].step);
+      EXPECT_EQ(late[k].frames.back(), early[k].frames.back());
+    }
+  }
+}
+
 TEST(FrameSchedule, AFrameAfterALongGapIsLate) {
   Recording recording = frames_at({0, 0.03, 0.06, 0.12, 0.15});
   std::vector<bool> late;

@@ -82,6 +82,25 @@ TEST_F(ARecording, LosesOnlyFramesWithoutAPoseOfTheirCamera) {
   EXPECT_EQ(r.frames[3].camera->translation, (Vec3{5, 0, 0}));
 }
 
+TEST_F(ARecording, OfTimesInNamesHasAPoseForEach) {
+  const std::pair<const char*, const char*> frames[] = {
+      {"12.100", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"},
+      {"12.600", "1 0 0 6\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"},
+      {"13.100", "1 0 0 7\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"}};
+  for (const auto& [name, pose] : frames) {
+    write(std::string(name) + ".png");
+    write(std::string(name) + ".pose.txt", pose);
+  }
+  write("12.pose.txt", kIdentity);  // of another frame
+  Recording r = read();
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_TRUE(r.frames[k].camera) << k;
+    EXPECT_EQ(r.frames[k].camera->translation.x, 5.0 + static_cast<double>(k));
+  }
+  std::filesystem::remove(path("12.600.pose.txt"));
+  EXPECT_TRUE(read().frames[1].is_lost);
+}
+
 TEST_F(ARecording, TakesTheCamerasPathAtTheFramesTimes) {
   write("depth.txt", "1 a.png\n1.5 a.png\n2.01 a.png\n3 a.png\n");
   write("a.png");
