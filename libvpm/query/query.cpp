@@ -76,10 +76,10 @@ Result Query::run(const DepthFrame& frame, const Pose& pose) {
 }
 
 void Query::check_cloud(const PreparedCloud& cloud) const {
-  if (options_.shadows == Shadows::solid && !cloud.is_organised()) {
-    throw Error(ErrorKind::usage,
-                "of points without a camera nobody knows what they hide: solid shadows need a "
-                "cloud that keeps its depth image");
+  if (options_.shadows == Shadows::solid && !cloud.is_organised() && !cloud.positions().empty()) {
+    refuse(
+        "of points without a camera nobody knows what they hide: solid shadows need a cloud that "
+        "keeps its depth image");
   }
 }
 

@@ -34,8 +34,8 @@ class Query {
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
-  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin;
-  // Error(usage) where shadows are asked to be solid of points without a camera.
+  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin, and
+  // where shadows are to be solid of points without a camera.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   // The results of many poses, in their order: the bits of one by one, but a device takes thousands

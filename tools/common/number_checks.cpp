@@ -16,6 +16,11 @@ std::optional<Number> number_of(const std::string& text) {
   return value;
 }
 
+// CLI11 would take the number for an octal one.
+bool has_leading_zero(const std::string& text) {
+  return text.size() > 1 && text[0] == '0' && text.find_first_not_of("0123456789") == text.npos;
+}
+
 std::string words_of(double value) {
   std::ostringstream words;
   words << value;
@@ -43,6 +48,7 @@ NumberCheck number_in(double low, double high) {
 NumberCheck whole_number_in(long long low, long long high) {
   return [low, high](const std::string& text) -> std::string {
     const std::optional<long long> value = number_of<long long>(text);
+    if (has_leading_zero(text)) return text + " begins with a zero; write it without";
     if (value && *value >= low && *value <= high) return {};
     return text + " is not a whole number from " + std::to_string(low) + " to " +
            std::to_string(high);

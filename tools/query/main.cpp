@@ -1,6 +1,7 @@
 // vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out.
 
 #include <chrono>
+#include <limits>
 #include <optional>
 
 #include "libvpm/cloud/cloud_file.h"
@@ -29,7 +30,7 @@ struct Arguments {
   std::string max_error;
   std::optional<double> deadline_us;
   bool for_scene = false, coherent = false, no_points = false, raw_points = false;
-  double stiffness = 1;
+  std::optional<double> stiffness;
   std::string coupling;
   std::size_t batch = 1;
   std::uint32_t standby_us = 0;
@@ -45,6 +46,7 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::IsMember({"refined", "paper"}))
       ->capture_default_str();
   app.add_option("--level", a.level, "Spheres to use: one of the model's levels; 0 is the finest")
+      ->check(whole_number_in(0, std::numeric_limits<std::uint32_t>::max()))
       ->capture_default_str();
   app.add_option("--max-error", a.max_error,
                  "Use the coarsest level with at most this error by its calibration: 0.5% or "
@@ -55,8 +57,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--for-scene", a.for_scene,
                "Use the finest level without spheres that the cloud's points cannot resolve");
   app.add_option("--stiffness", a.stiffness,
-                 "N/m^3: scales force and torque; 1 leaves them in m^3 and m^4")
-      ->capture_default_str();
+                 "N/m^3: scales force and torque; without, or 1, they are in m^3 and m^4");
   app.add_option("--shadows", a.shadows,
                  "What counts of places that a depth image does not show: those near behind what "
                  "it shows, or all: solid")
@@ -109,7 +110,7 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong(
         "--level, --max-error and --for-scene choose the level: give one of them; --deadline-us "
         "goes with the last two only");
-  if (!a.coupling.empty() && ((a.poses.empty() && !replays) || a.stiffness == 1))
+  if (!a.coupling.empty() && ((a.poses.empty() && !replays) || !a.stiffness))
     wrong(
         "--coupling needs the device's path (--poses) and what the scene's volume weighs "
         "(--stiffness in N/m^3)");
@@ -267,7 +268,7 @@ void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
   LevelQuery query(model, options, level_request(a), prepared, *pose);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   if (coupling) {
-    say_limits(tool, *coupling, model, a.stiffness);
+    say_limits(tool, *coupling, model, options.stiffness);
     run.coupled(query, VirtualCoupling(*coupling, model.center_of_mass, *pose), *path);
   } else {
     run.all(query, pose, reader, a.batch, options.measure);
@@ -297,7 +298,7 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
-    say_limits(tool, *parameters, model, a.stiffness);
+    say_limits(tool, *parameters, model, options.stiffness);
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   ResultSink sink(a.output);
@@ -317,7 +318,7 @@ void run(const Tool& tool, const Arguments& a) {
   QueryOptions options;
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
   options.level = model.level(a.level).sphere_count;
-  options.stiffness = a.stiffness;
+  options.stiffness = a.stiffness.value_or(1);
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
   options.counts_points = !a.no_points;

@@ -107,6 +107,20 @@ $ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cu
 2> vpm-query: error: standard input, line 1: "time" must be a number of seconds
 [1]
 
+# Nothing is shifted into an empty cell, a zero in front makes no octal number, a byte order mark is none.
+$ for p in '0,0,,0.95,0,0,0,1' ',0,0.95,0,0,0,1' '0,0,0.95,0,0,0,1,'; do echo "$p" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
+2> vpm-query: error: standard input, line 1: number 3 is missing: nothing stands between the commas
+2> vpm-query: error: standard input, line 1: number 1 is missing: nothing stands between the commas
+2> vpm-query: error: standard input, line 1: number 8 is missing: nothing stands between the commas
+[1]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --level 010
+2> vpm-query: error: --level: 010 begins with a zero; write it without (see vpm-query --help)
+[2]
+$ printf '\xEF\xBB\xBF0 0 0.95 0 0 0 1\n' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | cmp - <(echo '0, 0, 0.95, 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -)
+$ echo '1e300 0 0 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
+2> vpm-query: error: standard input, line 1: pose: the translation is not finite, or further than 2^100 m from the origin
+[1]
+
 # A device stands by for single poses whose points nobody counts; elsewhere that changes nothing.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
 2> vpm-query: error: --standby-us waits for single poses of the refined measure; give --no-points too, and leave --batch, --measure paper and --coherent out

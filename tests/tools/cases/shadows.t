@@ -18,10 +18,14 @@ $ mkdir frames && cp wall.png frames/0.png && vpm-query --tool cube.vpmg --frame
 $ printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' 'property float nx' 'property float ny' 'property float nz' end_header '0 0 1 0 0 -1' '0 1 1 0 0 -1' '1 0 1 0 0 -1' > points.ply && vpm-normals points.ply -o points.vpmc --quiet
 $ vpm-query --tool cube.vpmg --cloud points.vpmc --poses deep.txt --shadows solid
 2> vpm-query: error: of points without a camera nobody knows what they hide: solid shadows need a cloud that keeps its depth image
-[2]
+[1]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --shadows solid --measure paper
 2> vpm-query: error: solid shadows are a matter of the refined measure; leave the other measure out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --shadows all
 2> vpm-query: error: --shadows: all not in {near,solid} (see vpm-query --help)
 [2]
+
+# Before the first good frame there is nothing.
+$ mkdir late && cp wall.png late/1.png && truncate -s 60 late/1.png && cp wall.png late/2.png && vpm-query --tool cube.vpmg --frames late --trajectory deep.txt --rate 1 --frame-rate 1 --intrinsics 60,60,31.5,23.5 --shadows solid 2>/dev/null | python3 -c "import json, sys; print([round(json.loads(l)['volume_fraction'], 2) for l in sys.stdin])"
+[0.0, 0.75, 1.0, 1.0]
