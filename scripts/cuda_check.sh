@@ -11,7 +11,7 @@ bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failed=0
-verdict() { if "$@" >"$work/log" 2>&1; then echo pass; else failed=1; tail -20 "$work/log" >&2; echo FAIL; fi; }
+verdict() { if "$@" >"$work/log" 2>&1; then echo pass; else tail -20 "$work/log" >&2; echo FAIL; fi; }
 
 tests=$(verdict "$bundle/bin/cuda_tests" --gtest_brief=1)
 sanitizers=()
@@ -70,4 +70,5 @@ for r in report["batch"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON
 "$(dirname "$0")/cuda_frames_check.sh" "$bundle" "${out%.json}_frames.json" "$tool" "$cloud" "$levels" "$commit" || failed=1
+[[ "$tests ${sanitizers[*]} ${same[*]}" != *FAIL* ]] || failed=1
 exit $failed
