@@ -126,10 +126,12 @@ Vec3 GapSegments::half_extent(const GapSegment& segment) const {
 GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double spacing) {
   const LineLattice lattice = make_line_lattice(solid, spacing);
   const LatticeRows rows(lattice, solid, bvh.spheres());
+  // Where lines are further apart, since there would be too many, pieces are as long.
+  const double length = std::max({spacing, lattice.du, lattice.dv});
   std::vector<std::vector<GapSegment>> of_row(lattice.rows);
   parallel_for(lattice.rows, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
-      of_row[row] = RowCutter(lattice, bvh, spacing, static_cast<std::uint32_t>(row)).cut(rows);
+      of_row[row] = RowCutter(lattice, bvh, length, static_cast<std::uint32_t>(row)).cut(rows);
     }
   });
   GapSegments gap{lattice.axis, lattice.dv, lattice.du, {}};

@@ -9,7 +9,8 @@ namespace vpm {
 namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
-// Bounds the memory of a lattice whatever the solid's shape: lines over its projection.
+// Bounds the memory of a lattice whatever the solid's shape: lines over its projection, and rows and
+// columns of them.
 constexpr double kMostLines = 4194304;
 
 // The area that the solid shows along x, y and z, counting hidden layers too.
@@ -86,7 +87,7 @@ LineLattice make_line_lattice(const Solid& solid, double spacing) {
     high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
   }
   const auto cells = [&](double extent) {
-    return static_cast<std::uint32_t>(std::ceil(std::max(extent / spacing, 1.0)));
+    return static_cast<std::uint32_t>(std::ceil(std::clamp(extent / spacing, 1.0, kMostLines)));
   };
   const std::uint32_t across = cells(high.x - low.x);
   lattice.columns = across + 1;  // the shift from row to row pushes one half out at either end

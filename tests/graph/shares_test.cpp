@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "libvpm/core/error.h"
+#include "libvpm/graph/line_lattice.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/graph/test_packing.h"
@@ -127,6 +128,21 @@ TEST(Shares, ThinSheetsAndNeedlesAreFound) {
                             synthetic::make_box(1e-3, 1, 1)}) {
     const Shares shares = shares_of(thin, {{{0, 0, 0}, 4e-4}});
     EXPECT_LT(std::abs(shares.quality.volume_error), 1e-3);
+  }
+}
+
+// A vertex absurdly far away, as in a damaged file, must not fill all memory with lines.
+TEST(LineLattice, IsNoLargerThanMemoryWhateverTheSolid) {
+  constexpr std::uint32_t kMost = 4194304 + 1;
+  for (const double far : {1e3, 1e9, 1e30}) {
+    for (std::size_t k = 0; k < 8; ++k) {
+      Solid solid = synthetic::make_cube(0.2);
+      solid.vertices[k].x *= far;
+      const LineLattice lattice = make_line_lattice(solid, 1e-3);
+      EXPECT_LE(lattice.rows, kMost);
+      EXPECT_LE(lattice.columns, kMost);
+      EXPECT_GT(std::min(lattice.rows, lattice.columns), 0U);
+    }
   }
 }
 
