@@ -3,6 +3,7 @@
 
 #include "libvpm/core/error.h"
 #include "tools/bench/suite.h"
+#include "tools/common/number_checks.h"
 #include "tools/common/tool.h"
 
 int main(int argc, char** argv) {
@@ -10,6 +11,7 @@ int main(int argc, char** argv) {
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
   std::string suite, folder = "bench-output", meshes, data;
   bool quick = false, all = false, baseline = false;
+  std::uint64_t noise_seed = vpm::bench::SuiteOptions::kUsualNoise;
   tool.app().add_option("suite", suite, vpm::bench::suite_names());
   tool.app()
       .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
@@ -24,6 +26,10 @@ int main(int argc, char** argv) {
       "--data", data,
       "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; replay: or "
       "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
+  tool.app()
+      .add_option("--noise-seed", noise_seed, "accuracy: which sample of the noise")
+      ->check(vpm::tools::whole_number_in(0, 1 << 30))
+      ->capture_default_str();
   tool.app().add_flag("--baseline", baseline,
                       "scaling: beside the measure as printed, by the algorithm as printed");
   tool.app()
@@ -37,10 +43,13 @@ int main(int argc, char** argv) {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(
         suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,
-                baseline, asks_device ? tool.device() : vpm::Device{}});
+                baseline, noise_seed, asks_device ? tool.device() : vpm::Device{}});
     vpm::bench::write(report,
                       "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
                           (baseline ? " --baseline" : "") +
+                          (noise_seed == vpm::bench::SuiteOptions::kUsualNoise
+                               ? ""
+                               : " --noise-seed " + std::to_string(noise_seed)) +
                           (meshes.empty() ? "" : " --meshes MESHES") +
                           (data.empty() ? "" : " --data DATA"),
                       folder);

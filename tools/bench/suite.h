@@ -1,6 +1,7 @@
 // The suites of vpm-bench.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -18,7 +19,9 @@ struct SuiteOptions {
   std::string data = {};    // accuracy --all, timing: folder of recorded depth images; replay:
                             // likewise, or a recording; empty: none
   bool baseline = false;    // scaling: the measure as printed beside it
-  Device device = {};       // a CUDA device where the suite takes one
+  static constexpr std::uint64_t kUsualNoise = 1;
+  std::uint64_t noise_seed = kUsualNoise;  // accuracy: which sample of the noise
+  Device device = {};                      // a CUDA device where the suite takes one
 };
 
 // "accuracy, extremes, ...": all suites, or those that take a CUDA device.

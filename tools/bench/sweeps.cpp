@@ -43,7 +43,8 @@ std::vector<SweepCase> all_cases() {
   return cases;
 }
 
-Sweeps::Sweeps(ToolOf tool, Report& report) : tool_(std::move(tool)), report_(report) {
+Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Report& report)
+    : tool_(std::move(tool)), noise_seed_(noise_seed), report_(report) {
   report_.table.columns = {
       "group",    "shape",       "scene",   "noise",         "measure",       "pose",
       "z",        "volume_true", "volume",  "force_true_x",  "force_true_y",  "force_true_z",
@@ -55,7 +56,7 @@ const View& Sweeps::view(const synthetic::Scene& scene, CloudKind kind, Noise no
   const std::array<std::string, 3> key{scene.name, bench::to_text(kind), bench::to_text(noise)};
   const auto found = views_.find(key);
   if (found != views_.end()) return found->second;
-  return views_.try_emplace(key, make_view(scene, kind, noise)).first->second;
+  return views_.try_emplace(key, make_view(scene, kind, noise, noise_seed_)).first->second;
 }
 
 std::vector<Unseen> Sweeps::unseen_along(const PackedSolid& tool, const std::vector<Pose>& poses,

@@ -38,7 +38,7 @@ struct SweepSettings {
 class Sweeps {
  public:
   using ToolOf = std::function<const PackedSolid&(const std::string& shape)>;
-  Sweeps(ToolOf tool, Report& report);
+  Sweeps(ToolOf tool, std::uint64_t noise_seed, Report& report);
 
   void run(const SweepCase& c, const SweepSettings& settings);
 
@@ -60,6 +60,7 @@ class Sweeps {
                 const std::vector<Result>& measured);
 
   ToolOf tool_;
+  std::uint64_t noise_seed_;
   Report& report_;
   std::map<std::array<std::string, 3>, View> views_;
   std::map<Key, GroupErrors> groups_;

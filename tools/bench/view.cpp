@@ -38,13 +38,14 @@ std::string to_text(Noise noise) {
   return noise == Noise::none ? "none" : "kinect";
 }
 
-View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise) {
+View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise,
+               std::uint64_t noise_seed) {
   const std::vector<Camera> cameras = cameras_of(scene, kind);
   Cloud points;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     const DepthImage depth = noise == Noise::none ? synthetic::render(*scene.surface, cameras[k])
                                                   : synthetic::render_with_kinect_noise(
-                                                        *scene.surface, cameras[k], kNoiseSeed + k);
+                                                        *scene.surface, cameras[k], noise_seed + k);
     const Cloud seen = make_cloud(depth, cameras[k], NormalOptions{});
     if (kind == CloudKind::camera) return {cameras, PreparedCloud(seen)};
     append(seen, points);

@@ -26,6 +26,7 @@ struct View {
 };
 
 // Normals are estimated from the images, noisy or not, with the default options.
-View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise);
+View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise,
+               std::uint64_t noise_seed);
 
 }  // namespace vpm::bench
