@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 
 python3 "$repository/scripts/single_precision/to_single.py" "$repository" "$work"
 from=$work/libvpm_single
-sources=("$from"/core/{parallel,parallel_region,pose}.cpp "$from"/cloud/{cloud,kd_tree,padded_image,scattered_points}.cpp
+sources=("$from"/core/{parallel,parallel_region,pose}.cpp "$from"/cloud/{cloud,kd_tree,padded_image,row_bands,scattered_points}.cpp
   "$from"/model/{tool_model,tool_model_check}.cpp)
 for source in "$from"/{device,surface,query}/*.cpp; do
   case $(basename "$source") in depth_frames.cpp | frame_preparation.cpp | frame_slot_unavailable.cpp) ;; *) sources+=("$source") ;; esac
