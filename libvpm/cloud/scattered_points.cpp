@@ -40,6 +40,22 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
+// A point that is far from all others (a value that stands for nothing) would take the last digits
+// of their places.
+void refuse_rounded_places(const Cloud& cloud, const std::string& name) {
+  constexpr double kMostRounding = 1.0 / 16;  // of the sampling radius
+  float farthest = 0;
+  for (const Vec3f& p : cloud.positions)
+    farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * farthest;
+  if (rounding <= kMostRounding * median(cloud.radii)) return;
+  std::ostringstream metres;
+  metres << rounding;
+  refuse(name + ": its points are too far apart: float32 rounds their places by up to " +
+         metres.str() +
+         " m, too much for their spacing; leave out those that are far from the others");
+}
+
 }  // namespace
 
 std::vector<float> sampling_radii(const std::vector<Vec3f>& positions) {
@@ -66,26 +82,6 @@ std::vector<float> sampling_radii(const std::vector<Vec3f>& positions) {
   });
   return radii;
 }
-
-namespace {
-
-// A point that is far from all others (a value that stands for nothing) would take the last digits
-// of their places.
-void refuse_rounded_places(const Cloud& cloud, const std::string& name) {
-  constexpr double kMostRounding = 1.0 / 16;  // of the sampling radius
-  float farthest = 0;
-  for (const Vec3f& p : cloud.positions)
-    farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * farthest;
-  if (rounding <= kMostRounding * median(cloud.radii)) return;
-  std::ostringstream metres;
-  metres << rounding;
-  refuse(name + ": its points are too far apart: float32 rounds their places by up to " +
-         metres.str() +
-         " m, too much for their spacing; leave out those that are far from the others");
-}
-
-}  // namespace
 
 Cloud cloud_of_scattered_points(const std::vector<Vec3>& positions,
                                 const std::vector<Vec3>& normals, const Pose& to_world,

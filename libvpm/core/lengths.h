@@ -12,10 +12,13 @@ namespace vpm {
 // times the visible universe.
 inline constexpr double kSmallestLength = 0x1p-100, kLargestLength = 0x1p100;
 
-// Whether a place is finite and no coordinate beyond kLargestLength.
+// Whether a vector is finite and no coordinate beyond a bound.
+inline bool is_within(Vec3 v, double most) {
+  return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
+}
+// The same of a place, and kLargestLength.
 inline bool is_in_range(Vec3 p) {
-  return std::abs(p.x) <= kLargestLength && std::abs(p.y) <= kLargestLength &&
-         std::abs(p.z) <= kLargestLength;
+  return is_within(p, kLargestLength);
 }
 
 }  // namespace vpm

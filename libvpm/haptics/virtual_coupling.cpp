@@ -17,10 +17,6 @@ void check_positive(double value, const char* name) {
 
 // N or N m: beyond, squares and products with lengths would overflow.
 constexpr double kLargestContact = 0x1p200;
-bool is_within(Vec3 v) {
-  return std::abs(v.x) <= kLargestContact && std::abs(v.y) <= kLargestContact &&
-         std::abs(v.z) <= kLargestContact;
-}
 
 // One direction of motion, linear or angular: the implicit step of inertia, spring and damper.
 struct Axis {
@@ -86,7 +82,7 @@ double VirtualCoupling::stored() const {
 Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
   if (!is_rotation(device.rotation, kRotationRounding) || !is_in_range(device.translation))
     refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
-  if (!(is_within(contact.force) && is_within(contact.torque)))
+  if (!(is_within(contact.force, kLargestContact) && is_within(contact.torque, kLargestContact)))
     refuse("coupling: the contact's force or torque is not finite, or absurdly large");
   VirtualCoupling next = *this;
   const Wrench felt = next.step(device, contact);

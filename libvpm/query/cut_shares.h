@@ -1,7 +1,6 @@
 // The shares that the surface cuts, and what their planes say of places far behind it.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -42,19 +41,20 @@ class CutShares {
   CutShare at(std::uint32_t cut) const {
     return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center, level_.reach(cut)};
   }
-  // The row of the cut share that is nearest, by the spheres' centres; equal distances go to the
-  // sphere with the smaller index. There must be some. A row that is thought to be near, kNoRow
-  // where none is, makes it quick and does not change the result.
-  std::uint32_t nearest_to(std::uint32_t row, std::uint32_t near = kNoRow) const {
+  // The nearest one, by the spheres' centres; equal distances go to the sphere with the smaller
+  // index. There must be some. `last`: the row of the one that was nearest to another share, kNoRow
+  // where none was asked for; one close by makes it quick, and none changes the result.
+  CutShare nearest_to(std::uint32_t row, std::uint32_t& last) const {
     const Vec3 from = level_.cell(row).center;
     Nearest nearest(tool_.spheres[level_.sphere(row)].center);
-    consider(near != kNoRow ? near : states_.cut[nearest_cluster(from).begin], nearest);
+    consider(last != kNoRow ? last : states_.cut.front(), nearest);
     for (const CutCluster& cluster : states_.cut_clusters) {
       const double reach = kRounding * (std::sqrt(nearest.squared) + cluster.reach) + rounding_;
       if (squared_norm(cluster.center - from) > reach * reach) continue;
       for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) consider(states_.cut[k], nearest);
     }
-    return nearest.row;
+    last = nearest.row;
+    return at(last);
   }
 
  private:
@@ -76,13 +76,6 @@ class CutShares {
     nearest.sphere = sphere;
     nearest.row = row;
   }
-  const CutCluster& nearest_cluster(Vec3 from) const {
-    const auto squared = [&](const CutCluster& c) { return squared_norm(c.center - from); };
-    return *std::min_element(
-        states_.cut_clusters.begin(), states_.cut_clusters.end(),
-        [&](const CutCluster& a, const CutCluster& b) { return squared(a) < squared(b); });
-  }
-
   const ToolModel& tool_;
   const SpatialLevel& level_;
   const Pose& to_surface_;
@@ -92,42 +85,33 @@ class CutShares {
   double rounding_;  // m
 };
 
-// The cut shares that are nearest to shares which lie near each other.
-class NearestCut {
- public:
-  explicit NearestCut(const CutShares& cut) : cut_(cut) {}
-
-  const CutShares& all() const { return cut_; }
-  CutShare to(std::uint32_t row) {
-    last_ = cut_.nearest_to(row, last_);
-    return cut_.at(last_);
-  }
-
- private:
-  const CutShares& cut_;
-  std::uint32_t last_ = kNoRow;
-};
-
 // What says whether places of one share are inside, though far behind the surface: the plane of the
 // nearest cut share, or, where the surface cuts none, what is known of the share.
 class Voucher {
  public:
-  Voucher(NearestCut& nearest, std::uint32_t row, double reach, bool where_nothing_is_cut)
-      : nearest_(nearest), row_(row), reach_(reach), where_nothing_is_cut_(where_nothing_is_cut) {}
+  // `last_cut`: as CutShares::nearest_to().
+  Voucher(const CutShares& cut, std::uint32_t row, double reach, bool where_nothing_is_cut,
+          std::uint32_t& last_cut)
+      : cut_(cut),
+        row_(row),
+        reach_(reach),
+        where_nothing_is_cut_(where_nothing_is_cut),
+        last_cut_(last_cut) {}
 
   // Of a place at x, behind the surface's place `foot`.
   bool operator()(Vec3 x, Vec3 foot) {
-    if (nearest_.all().are_none()) return where_nothing_is_cut_;
-    if (!cut_) cut_ = nearest_.to(row_);
-    return cut_->vouches_for(x, foot, reach_);
+    if (cut_.are_none()) return where_nothing_is_cut_;
+    if (!nearest_) nearest_ = cut_.nearest_to(row_, last_cut_);
+    return nearest_->vouches_for(x, foot, reach_);
   }
 
  private:
-  NearestCut& nearest_;
+  const CutShares& cut_;
   std::uint32_t row_;
   double reach_;
   bool where_nothing_is_cut_;
-  std::optional<CutShare> cut_;  // when first asked for
+  std::uint32_t& last_cut_;
+  std::optional<CutShare> nearest_;  // when first asked for
 };
 
 }  // namespace vpm

@@ -57,25 +57,24 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   inside.run(region);
   if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
-  result.inside = add_up(surface, to_surface, inside, cut, region, sum);
+  result.inside = add_up(surface, to_surface, inside, region, sum);
   if (memory_) remember(surface, to_surface, to_world, inside);
 }
 
 template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
-                                     const Inside& inside, const CutShares& cut,
-                                     ParallelRegion& region, ToolSum& sum) {
+                                     const Inside& inside, ParallelRegion& region, ToolSum& sum) {
   constexpr std::size_t kGrain = 512;
   std::mutex adding;
   std::uint32_t all = 0;
   region.loop(level_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
-    NearestCut nearest(cut);
+    std::uint32_t last_cut = kNoRow;
     std::uint32_t count = 0;
     for_rows_in(Cell::cut, shares_.cells, begin, end,
                 [&](std::uint32_t i) { of_all.add(shares_.results[i].sum); });
     for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
-      const ToolSum part = sum_of(surface, to_surface, inside, i, nearest);
+      const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
       of_all.add(part);
       if (part.volume.value != 0)
         ++count;
@@ -91,7 +90,7 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
 
 template <class Surface, class Inside>
 ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                               std::uint32_t row, NearestCut& nearest) const {
+                               std::uint32_t row, std::uint32_t& last_cut) const {
   ToolSum sum;
   if (shares_.cells[row] == Cell::pushed) {
     add_whole(reach_, level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
@@ -101,7 +100,7 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
   if (partial && !shares_.results[row].is_far) return shares_.results[row].sum;
   const CellView view = level_.cell(row);
   const CellMeasure measure(surface, to_surface, reach_, view);
-  Voucher voucher = inside.voucher(row, nearest);
+  Voucher voucher = inside.voucher(row, last_cut);
   const auto vouches = [&](Vec3 x, Vec3 foot) { return voucher(x, foot); };
   if (partial) {
     sum = shares_.results[row].sum;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
-#include "libvpm/query/cut_shares.h"
 #include "libvpm/query/pose_memory.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
@@ -40,10 +39,10 @@ class RefinedMeasure {
   // not become free: they were hidden, not inside.
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       const CutShares& cut, ParallelRegion& region, ToolSum& sum);
+                       ParallelRegion& region, ToolSum& sum);
   template <class Surface, class Inside>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                 std::uint32_t row, NearestCut& nearest) const;
+                 std::uint32_t row, std::uint32_t& last_cut) const;
   template <class Surface, class Inside>
   void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                 Inside& inside);

@@ -44,8 +44,8 @@ class SeenShares {
     }
   }
 
-  Voucher voucher(std::uint32_t row, NearestCut& nearest) const {
-    return {nearest, row, reach_.length, has_stayed(row)};
+  Voucher voucher(std::uint32_t row, std::uint32_t& last_cut) const {
+    return {cut_, row, reach_.length, has_stayed(row), last_cut};
   }
 
   // What to remember of shares that count: not those of which all that is known is that something

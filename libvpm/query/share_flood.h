@@ -64,8 +64,8 @@ class ShareFlood {
   }
 
   // Of a share that the flood has taken.
-  Voucher voucher(std::uint32_t row, NearestCut& nearest) const {
-    return {nearest, row, reach_.length, true};
+  Voucher voucher(std::uint32_t row, std::uint32_t& last_cut) const {
+    return {cut_, row, reach_.length, true, last_cut};
   }
   // What to remember: all that counts (as SeenShares).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
@@ -222,8 +222,7 @@ class ShareFlood {
     }
     states_.squared_gaps[j] = squared_gap(reading);
     if (!is_hidden_share(states_.squared_gaps[j], reach_.length)) return Passage::open;
-    part.last_cut = cut_.nearest_to(j, part.last_cut);
-    return cut_.at(part.last_cut).height(at) < 0 ? Passage::open : Passage::closed;
+    return cut_.nearest_to(j, part.last_cut).height(at) < 0 ? Passage::open : Passage::closed;
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {

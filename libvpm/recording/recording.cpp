@@ -14,6 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Also of links in a circle, which exists() would throw for: file_type::none.
+fs::file_status status_of(const fs::path& path) {
+  std::error_code unknown;
+  return fs::status(path, unknown);
+}
+
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   TextCursor cursor(text);
@@ -41,8 +47,7 @@ void read_list(const fs::path& list, Recording& recording) {
       const auto entry = entry_of(line);
       if (!entry) continue;
       const fs::path path = list.parent_path() / entry->second;
-      std::error_code unknown;
-      if (fs::exists(path, unknown) || unknown) {
+      if (status_of(path).type() != fs::file_type::not_found) {
         recording.frames.push_back({entry->first, path.string(), {}, false});
       } else {
         ++recording.missing;
@@ -68,9 +73,9 @@ std::string stem_of(const fs::path& path) {
 
 // Not a folder, nor what one waits for, like a pipe. What is broken is said when it is read.
 bool may_be_read(const fs::directory_entry& entry) {
-  std::error_code unknown;
-  const fs::file_type type = entry.status(unknown).type();
-  return type == fs::file_type::regular || type == fs::file_type::not_found || unknown;
+  const fs::file_type type = status_of(entry.path()).type();
+  return type == fs::file_type::regular || type == fs::file_type::not_found ||
+         type == fs::file_type::none || type == fs::file_type::unknown;
 }
 
 std::vector<fs::path> files_of(const fs::path& folder) {
@@ -173,8 +178,7 @@ void place_by_path(const std::string& name, Recording& recording) {
 fs::path pose_beside(const RecordedFrame& frame) {
   const fs::path path(frame.path);
   fs::path whole = path.parent_path() / (path.stem().string() + ".pose.txt");
-  std::error_code unknown;
-  if (time_in(path) || fs::exists(whole, unknown)) return whole;
+  if (time_in(path) || fs::exists(status_of(whole))) return whole;
   return path.parent_path() / (stem_of(path) + ".pose.txt");
 }
 
@@ -199,8 +203,7 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
   } else if (options.camera) {
     for (RecordedFrame& frame : recording.frames) frame.camera = options.camera;
   } else if (std::any_of(frames.begin(), frames.end(), [](const RecordedFrame& frame) {
-               std::error_code unknown;
-               return fs::exists(pose_beside(frame), unknown);
+               return fs::exists(status_of(pose_beside(frame)));
              })) {
     place_by_files(recording);
   } else if (recording.has_clock && fs::is_regular_file(folder / "groundtruth.txt")) {

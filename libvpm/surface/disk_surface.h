@@ -32,7 +32,7 @@ struct DiskSurface {
   const Vec3f* normals = nullptr;
   const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
   const SecondPlane* seconds = nullptr;
-  PointRadii radii{};
+  PointNumbers radii{};
   NormalCones cones{};
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.

@@ -77,7 +77,7 @@ class DiskWindows {
     return measured_.feet.for_leaves_in_ball(
         center, reach * reach, [&](std::uint32_t begin, std::uint32_t) { return visit(begin); });
   }
-  std::uint32_t nearest_marked(Vec3 x, const PointMarks& marks) const {
+  std::uint32_t nearest_marked(Vec3 x, const PointNumbers& marks) const {
     return measured_.feet.nearest_marked(x, marks);
   }
   bool gather(Vec3 center, double reach, std::uint32_t most, std::vector<Disk>& disks) const {

@@ -94,15 +94,10 @@ class NodeStack {
   int size_ = 0;
 };
 
-// Radii of points, each the middle of a ball, and the largest in each node of their tree. A view.
-struct PointRadii {
+// A number of each point, like the radius of a ball about it, and the largest in each node of their
+// tree. A view.
+struct PointNumbers {
   const float* of_points = nullptr;
-  const float* of_nodes = nullptr;
-};
-
-// Points that have a mark, and nodes that hold some. A view, for the host.
-struct PointMarks {
-  const float* of_points = nullptr;  // more than 0: has one
   const float* of_nodes = nullptr;
 };
 
@@ -185,7 +180,7 @@ struct PointTree {
   }
 
   // The point nearest to x among those whose balls touch a ball about x; kNoPoint if none does.
-  VPM_HD std::uint32_t nearest_touching(Vec3 x, double radius, const PointRadii& radii) const {
+  VPM_HD std::uint32_t nearest_touching(Vec3 x, double radius, const PointNumbers& radii) const {
     if (count == 0) return kNoPoint;
     Nearest best;
     const TouchingBall touching{radius, radii};
@@ -197,8 +192,9 @@ struct PointTree {
     return best.point;
   }
 
-  // The point nearest to x among those with a mark; kNoPoint where there is none.
-  std::uint32_t nearest_marked(Vec3 x, const PointMarks& marks) const {
+  // The point nearest to x among those with a mark, a number above 0; kNoPoint where there is none.
+  // On the host.
+  std::uint32_t nearest_marked(Vec3 x, const PointNumbers& marks) const {
     if (count == 0) return kNoPoint;
     Nearest best;
     search<OneByOne>(x, Marked{marks}, best);
@@ -250,7 +246,7 @@ struct PointTree {
     VPM_HD bool takes_point(std::uint32_t, double) const { return true; }
   };
   struct Marked {
-    PointMarks marks;
+    PointNumbers marks;
 
     static double within(const PointTree&) { return HUGE_VAL; }  // the nearest may be anywhere
     bool takes_node(std::uint32_t node, double) const { return marks.of_nodes[node] > 0; }
@@ -258,7 +254,7 @@ struct PointTree {
   };
   struct TouchingBall {
     double radius;
-    PointRadii radii;
+    PointNumbers radii;
 
     double within(const PointTree& tree) const {
       const float* const of_nodes = radii.of_nodes;
@@ -391,7 +387,7 @@ std::uint32_t leaves_for(std::size_t points);
 // The boxes of a tree of points in the order of order_by_leaves (leaf_order.h).
 std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points);
 
-// PointRadii::of_nodes.
+// PointNumbers::of_nodes.
 std::vector<float> largest_in_nodes(std::span<const float> radii);
 
 }  // namespace vpm

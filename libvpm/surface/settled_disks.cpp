@@ -158,7 +158,7 @@ class CreaseSettling {
   const DiskWindows& windows_;
   const std::vector<DiskKind>& kinds_;
   SettledDisks& result_;
-  std::vector<float> smooth_, nodes_with_smooth_;  // 1 or 0; PointMarks
+  std::vector<float> smooth_, nodes_with_smooth_;  // PointNumbers: 1 or 0
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kFewOpposite = 5;
 constexpr double kStandsOff = 2;  // radii, from those about it
-// Fewer alike, twice as far too, make an outlier: the second where others are unlike it.
+// Fewer alike, twice as far too, make a stray, and an outlier where others are unlike it.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
 // Of those alike.
 constexpr double kUnlikeOfSmooth = 0.1;

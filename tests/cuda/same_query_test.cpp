@@ -28,6 +28,17 @@ Pose pose_of(int k) {
            0.8 + 0.45 * fraction(0.569840)}};
 }
 
+// Where there are more poses than results, they begin again.
+void expect_same_batch(Query& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
+                       const std::vector<Result>& expected) {
+  std::vector<Result> batch(poses.size());
+  query.run(cloud, poses, batch);
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    SCOPED_TRACE(k);
+    expect_equal(expected[k % expected.size()], batch[k]);
+  }
+}
+
 using SceneCase = std::tuple<const char*, bool, Measure>;  // with camera
 
 std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
@@ -75,12 +86,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
     }
     // More than a device takes at a time, so that memory is used again.
     for (int k = kPoses; k < 16 * kPoses; ++k) poses.push_back(poses[k % kPoses]);
-    std::vector<Result> batch(poses.size());
-    on_device.run(cloud, poses, batch);
-    for (std::size_t k = 0; k < batch.size(); ++k) {
-      SCOPED_TRACE(k);
-      expect_equal(expected[k % kPoses], batch[k]);
-    }
+    expect_same_batch(on_device, cloud, poses, expected);
   }
   EXPECT_GT(boundary, 1000U);
   EXPECT_GT(inside, 1000U);
@@ -185,14 +191,13 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
     options.device = {Device::Kind::cuda, 0};
     Query on_device(tool, options);
     std::vector<Pose> poses;
-    std::vector<Result> expected, batch(4);
+    std::vector<Result> expected;
     for (int k = 0; k < 4; ++k) {
       poses.push_back(pose_of(7 * k + 5));
       expected.push_back(on_cpu.run(cloud, poses.back()));
       expect_equal(expected.back(), on_device.run(cloud, poses.back()));
     }
-    on_device.run(cloud, poses, batch);
-    for (int k = 0; k < 4; ++k) expect_equal(expected[k], batch[k]);
+    expect_same_batch(on_device, cloud, poses, expected);
   }
 }
 
@@ -223,12 +228,7 @@ TEST(SolidShadowsOnDevice, GiveTheSame) {
       expect_equal(expected.back(), standing_by.run(cloud, poses.back()));
       hidden += near.run(cloud, poses.back()).volume < 0.5 * expected.back().volume;
     }
-    std::vector<Result> batch(poses.size());
-    on_device.run(cloud, poses, batch);
-    for (std::size_t k = 0; k < batch.size(); ++k) {
-      SCOPED_TRACE(k);
-      expect_equal(expected[k], batch[k]);
-    }
+    expect_same_batch(on_device, cloud, poses, expected);
   }
   EXPECT_GT(hidden, 30);
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 
@@ -38,8 +39,11 @@ TEST(CutShares, FindTheNearest) {
       cut.list();
       for (std::uint32_t row = 0; row < level.size(); ++row) {
         const std::uint32_t expected = nearest_of_all(tool, level, states.cut, row);
-        EXPECT_EQ(cut.nearest_to(row), expected);
-        EXPECT_EQ(cut.nearest_to(row, states.cut[random() % states.cut.size()]), expected);
+        for (std::uint32_t last : {kNoRow, states.cut[random() % states.cut.size()]}) {
+          const CutShare nearest = cut.nearest_to(row, last);
+          EXPECT_EQ(last, expected);
+          EXPECT_EQ(nearest.center, cut.at(expected).center);
+        }
       }
     }
   }

@@ -85,6 +85,15 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
   return model;
 }
 
+std::vector<Vec3> places_in_cube(double edge, int per_edge) {
+  std::vector<Vec3> places;
+  for (int k = 0; k < per_edge * per_edge * per_edge; ++k) {
+    const auto at = [&](int n) { return edge * ((n % per_edge + 0.5) / per_edge - 0.5); };
+    places.push_back({at(k), at(k / per_edge), at(k / (per_edge * per_edge))});
+  }
+  return places;
+}
+
 Cloud see(const synthetic::Scene& scene) {
   const DepthImage depth = synthetic::render(*scene.surface, scene.camera);
   std::vector<Vec3f> normals(depth.depth.size());

@@ -11,6 +11,9 @@ namespace vpm::testing {
 // Edge length `edge`, centred at the origin, `spheres` per edge, `samples` per edge of each share.
 ToolModel lattice_cube(double edge, std::uint32_t spheres, std::uint32_t samples);
 
+// Places in such a cube, `per_edge` along each edge.
+std::vector<Vec3> places_in_cube(double edge, int per_edge);
+
 // What the camera of a scene sees, with the surface's own normals.
 Cloud see(const synthetic::Scene& scene);
 

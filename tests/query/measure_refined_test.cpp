@@ -160,12 +160,7 @@ double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, doubl
 TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
-  std::vector<Vec3> places;
-  constexpr int kPlaces = 40;
-  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
-    const auto at = [](int n) { return kEdge * ((n % kPlaces + 0.5) / kPlaces - 0.5); };
-    places.push_back({at(k), at(k / kPlaces), at(k / (kPlaces * kPlaces))});
-  }
+  const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
   for (const double z : {0.98, 1.0, 1.18, 1.23}) {
     Query query(tool, {});
     double before = 0, expected_before = 0, most = 0;

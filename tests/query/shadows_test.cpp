@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -28,27 +29,24 @@ bool is_behind_what_is_seen(Vec3 x) {
   return x.z > 1.5 || (x.z > 1 && std::abs(x.x) < 0.1 * x.z && std::abs(x.y) < 0.1 * x.z);
 }
 
-double part_behind_what_is_seen(const Pose& pose) {
-  constexpr int kPlaces = 40;
-  int behind = 0;
-  for (int k = 0; k < kPlaces * kPlaces * kPlaces; ++k) {
-    const auto at = [](int n) { return kEdge * ((n % kPlaces + 0.5) / kPlaces - 0.5); };
-    behind +=
-        is_behind_what_is_seen(pose * Vec3{at(k), at(k / kPlaces), at(k / (kPlaces * kPlaces))});
-  }
-  return behind / std::pow(kPlaces, 3);
+double part_behind_what_is_seen(const std::vector<Vec3>& places, const Pose& pose) {
+  const auto count = std::count_if(places.begin(), places.end(), [&](const Vec3& place) {
+    return is_behind_what_is_seen(pose * place);
+  });
+  return static_cast<double>(count) / static_cast<double>(places.size());
 }
 
 TEST(SolidShadows, CountAllThatIsBehindTheImage) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
+  const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
   Query query(tool, solid()), near(tool, {});
   int hidden = 0;
   for (int k = 0; k < 300; ++k) {
     // Through the block, its shadow, the gap beside it and the wall.
     const Pose pose{generic_rotation(), {0.004 * (k % 75), 0.01, 0.95 + 0.15 * (k / 75)}};
     const Result r = query.run(cloud, pose);
-    const double expected = part_behind_what_is_seen(pose);
+    const double expected = part_behind_what_is_seen(places, pose);
     EXPECT_NEAR(r.volume_fraction, expected, 0.015) << k;  // a pixel is 2 mm wide
     EXPECT_LE(near.run(cloud, pose).volume, r.volume) << k;
     hidden += near.run(cloud, pose).volume_fraction < expected - 0.2;

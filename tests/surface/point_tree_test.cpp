@@ -141,7 +141,7 @@ TEST_P(TreeOf, FindsTheSameFromNearby) {
   for (std::size_t i = 0; i < ordered.points.size(); ++i)
     radii.push_back(static_cast<float>(0.02 * (at(random) + 1)));
   const std::vector<float> largest = largest_in_nodes(radii);
-  const PointRadii balls{radii.data(), largest.data()};
+  const PointNumbers balls{radii.data(), largest.data()};
   const PointTree whole = ordered.tree();
   const auto listed = [](const PointTree& tree, Vec3 center, double radius) {
     std::vector<std::uint32_t> visited;

@@ -168,9 +168,8 @@ class Accuracy {
   void run_frames() {
     constexpr int kPoses = 500;
     report_.summary +=
-        "\nRecorded images, shallow poses: difference from the count of what is behind the image, "
-        "% "
-        "of the tool;\nshadows solid, near, near without places in shadows, and paper\n"
+        "\nRecorded images, shallow poses: difference from the count of what is behind the image,\n"
+        "% of the tool; shadows solid, near, near without places in shadows, and paper\n"
         "frame                                    poses   mean   worst  > 5 %   mean   worst  > 5 %"
         "   mean   worst  > 5 %   in free space   paper mean   worst\n";
     int counted = 0;

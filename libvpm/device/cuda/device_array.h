@@ -12,7 +12,7 @@
 namespace vpm::cuda {
 
 // Waits for what copies and clears have only begun: they belong to the default stream, for which
-// the streams of queries (launch.h) do not wait.
+// other streams (stream.h) do not wait.
 inline void finish_transfers() {
   check(cudaStreamSynchronize(cudaStreamLegacy));
 }
