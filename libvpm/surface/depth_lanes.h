@@ -67,8 +67,9 @@ class DepthLanes {
     Double4 squared = squared_norm(x - foot);
     Vec3x4 target = x - reading.distance * normal;
     const Double4 pixel = foot.z / surface_.k.fx, near = DepthSurface::kFootPixels * pixel;
-    Mask4 searches = ~Mask4{}, has_met_noise{};
-    Vec3x4 mean = normal;  // of the normals, where noise was met
+    Mask4 searches = ~Mask4{}, has_met_noise{}, has_met_groove{};
+    Vec3x4 mean = normal;      // of the normals, where noise was met
+    Vec3x4 below_it = normal;  // where a groove was
     for (int step = 0; step < DepthSurface::kFootSteps; ++step) {
       searches &= squared_norm(target - foot) > near * near;
       if (!any(searches)) break;
@@ -82,6 +83,12 @@ class DepthLanes {
       mean = choose(is_noise, normal + next.normal, mean);
       has_met_noise |= is_noise;
       searches &= ~is_noise;
+      const Mask4 is_groove = searches & ~is_closer & meet_above(x, normal, foot, next);
+      if (any(is_groove)) {
+        below_it = choose(is_groove, below_groove(x, normal, foot, next), below_it);
+        has_met_groove |= is_groove;
+        searches &= ~is_groove;
+      }
       target = (Double4{} + 0.5) * (foot + next.foot);
       foot = choose(is_closer, next.foot, foot);
       normal = choose(is_closer, next.normal, normal);
@@ -93,7 +100,9 @@ class DepthLanes {
     const Double4 squared_aside = squared_norm(towards - above * normal);
     const Double4 crease = DepthSurface::kCreasePixels * pixel;
     const Mask4 is_foot = (above > 0) & (squared_aside <= crease * crease) & ~has_met_noise;
-    return choose(is_foot, normal, normalized_or_zero(choose(has_met_noise, mean, towards)));
+    const Vec3x4 direction =
+        choose(is_foot, normal, normalized_or_zero(choose(has_met_noise, mean, towards)));
+    return choose(has_met_groove, below_it, direction);
   }
 
  private:
@@ -166,6 +175,21 @@ class DepthLanes {
     return n.exist & (dot(n.normals[0], n.normals[1]) < DepthSurface::kSmoothCosine) &
            (dot(n.normals[0], normal) < DepthSurface::kSameCosine) &
            (dot(n.normals[1], normal) < DepthSurface::kSameCosine);
+  }
+
+  // DepthSurface::meet_above and normal_below_groove, of the plane of a foot and that of a reading.
+  [[gnu::always_inline]] static Mask4 meet_above(const Vec3x4& x, const Vec3x4& normal,
+                                                 const Vec3x4& foot, const LaneReading& other) {
+    return (dot(normal, other.foot - foot) > 0) & (dot(other.normal, foot - other.foot) > 0) &
+           (dot(normal, x - foot) < 0) & (dot(other.normal, x - other.foot) < 0);
+  }
+  [[gnu::always_inline]] static Vec3x4 below_groove(const Vec3x4& x, const Vec3x4& normal,
+                                                    const Vec3x4& foot, const LaneReading& other) {
+    const Double4 a = dot(normal, x - foot), b = dot(other.normal, x - other.foot),
+                  cosine = dot(normal, other.normal);
+    const Double4 along_one = b * cosine - a, along_other = a * cosine - b;
+    const Vec3x4 to_crease = normalized_or_zero(along_one * normal + along_other * other.normal);
+    return choose(along_one <= 0, other.normal, choose(along_other <= 0, normal, to_crease));
   }
 
   [[gnu::always_inline]] void take_one_side(const Vec3x4& x, LaneReading& reading) const {

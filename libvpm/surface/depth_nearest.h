@@ -27,6 +27,9 @@ VPM_HD inline Vec3 DepthSurface::closest_normal(Vec3 x, const Reading& reading) 
       target = x - dot(normal, x - foot) * normal;
     } else if (dot(normal, next.normal) > kSmoothCosine) {
       return normalized_or_zero(normal + next.normal);
+    } else if (const TangentPlane one{normal, foot}, other{next.normal, next.foot};
+               meet_above(x, one, other)) {
+      return normal_below_groove(x, one, other);
     } else {
       target = 0.5 * (foot + next.foot);
     }

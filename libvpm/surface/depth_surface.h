@@ -183,9 +183,10 @@ struct DepthSurface {
 
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
   // point. Starts from the point on x's ray (`reading` is that of x, and known), steps to the foot
-  // on its tangent plane and, where that overshoots a crease, back by halves. A step that leads
-  // away without a crease has met noise: there the normals tell the direction, not single pixels.
-  // Beside a crease, where windows of normals hold both sides, those of one side lead.
+  // on its tangent plane and, where that overshoots a crease, back by halves; where it is the
+  // bottom of a groove that it overshoots, its walls tell the direction. A step that leads away
+  // without a crease has met noise: there the normals tell the direction, not single pixels. Beside
+  // a crease, where windows of normals hold both sides, those of one side lead.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const;
 
   // What the pixels of a ball tell: its side, and the range of inverse depth over the tiles that
@@ -350,6 +351,12 @@ struct DepthSurface {
   // The mean of these and of the normal at the middle, where they belong to one smooth surface:
   // noise is averaged, and curvature cancels.
   VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const;
+
+  // Whether two walls, each seen at its plane's foot, enclose a groove above a place behind both.
+  static VPM_HD bool meet_above(Vec3 x, const TangentPlane& one, const TangentPlane& other) {
+    return one.distance(other.foot) > 0 && other.distance(one.foot) > 0 && one.distance(x) < 0 &&
+           other.distance(x) < 0;
+  }
 
   // Normals of the pixels kAcross to either side of one, where there are such.
   struct Neighbors {

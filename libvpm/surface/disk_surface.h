@@ -74,8 +74,13 @@ struct DiskSurface {
   // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
   // sides of a groove, towards these, or their crease.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    if (knows_second(reading.point) && !second_at(reading.point).is_convex)
-      return normal_below_groove(x, reading, second_at(reading.point).plane());
+    if (knows_second(reading.point) && !second_at(reading.point).is_convex) {
+      const TangentPlane own = plane_of(reading.point), other = second_at(reading.point).plane();
+      const bool below_both = own.distance(x) < 0 && other.distance(x) < 0;
+      return below_both && dot(own.normal, other.normal) > kSlot
+                 ? normal_below_groove(x, own, other)
+                 : reading.normal;
+    }
     const Vec3 towards = reading.foot - x;
     const double height = dot(reading.normal, towards);
     const Vec3 aside = towards - height * reading.normal;
@@ -209,19 +214,6 @@ struct DiskSurface {
   // that noise has moved.
   static constexpr double kRim = 3;
   static constexpr double kSlot = -0.8;  // cosine between the sides of a slot, at most
-
-  // Of the solid behind either of two planes, for a place behind both: the normal of that which is
-  // nearest where the other does not hide its foot, or the direction to where they meet.
-  VPM_HD Vec3 normal_below_groove(Vec3 x, const Reading& reading, const TangentPlane& other) const {
-    const TangentPlane own = plane_of(reading.point);
-    const double a = own.distance(x), b = other.distance(x);
-    const double cosine = dot(own.normal, other.normal);
-    if (!(a < 0 && b < 0 && cosine > kSlot)) return reading.normal;
-    const double along_own = b * cosine - a, along_other = a * cosine - b;
-    if (along_own <= 0) return other.normal;
-    if (along_other <= 0) return own.normal;
-    return normalized_or_zero(along_own * own.normal + along_other * other.normal);
-  }
 
   template <class Distances>
   VPM_HD bool face_one_way_by(Vec3 center, double radius, Vec3 n, double least) const {

@@ -152,6 +152,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   seen_.resize(depth.width, depth.height);
   cloud.image_.resize(depth.width, depth.height);
   static_assert(SettledImage::kReach <= FollowingRows::kMostReach);
+  marking_.start(static_cast<int>(height), SeenImage::kReachOfMarks);
   settling_.start(static_cast<int>(height), SettledImage::kReach);
   for_bands(static_cast<int>(height), [&](int begin, int end) {
     images_.take_rows(depth, options_, begin, end);
@@ -180,6 +181,10 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
                     positions, normals, pixel_begin);
       else
         std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
+      // What is settled reads marks, between bands too: of two threads the one that came first
+      // there has marked its rows before it came here.
+      if (points_ == PointReading::settled)
+        marking_.made(v, [&](int first, int last) { seen_.mark_rows(first, last); });
       settling_.made(
           v, [&](int first, int last) { cloud.image_.read_rows(seen_, points_, first, last); });
     }

@@ -29,7 +29,7 @@ class FramePreparation {
   PointReading points_;
   NormalImages images_;
   SeenImage seen_;
-  FollowingRows settling_;
+  FollowingRows marking_, settling_;
   std::vector<double> rays_;               // x / z of each column
   std::vector<std::uint32_t> row_points_;  // of each row
 };

@@ -90,8 +90,10 @@ void PreparedCloud::take_image(const Cloud& cloud, PointReading points) {
   close_holes(seen.inverse);
   order_by_pixel(cloud, seen);
   image_.resize(depth.width, depth.height);
-  for_bands(seen.inverse.height,
-            [&](int begin, int end) { image_.read_rows(seen, points, begin, end); });
+  const int height = seen.inverse.height;
+  if (points == PointReading::settled)
+    for_bands(height, [&](int begin, int end) { seen.mark_rows(begin, end); });
+  for_bands(height, [&](int begin, int end) { image_.read_rows(seen, points, begin, end); });
   image_.finish();
 }
 

@@ -63,22 +63,38 @@ struct Tile {
   VectorTile normals;  // before they are made of unit length
 };
 
+// Of an image of normals and one of inverse depths, the pixels from (u, v) on.
+class SeenFrom {
+ public:
+  [[gnu::always_inline]] SeenFrom(const SeenImage& seen, const PaddedImage& inverse, int u, int v)
+      : stride_(static_cast<std::ptrdiff_t>(inverse.stride)),
+        inverse_(inverse.at(u, v)),
+        x_(seen.x.at(u, v)),
+        y_(seen.y.at(u, v)),
+        z_(seen.z.at(u, v)) {}
+
+  // So far aside.
+  [[gnu::always_inline]] SeenPixel<Floats> operator()(int du, int dv) const {
+    const std::ptrdiff_t at = dv * stride_ + du;
+    return {load<Floats>(inverse_ + at), load<Floats>(x_ + at), load<Floats>(y_ + at),
+            load<Floats>(z_ + at)};
+  }
+
+ private:
+  std::ptrdiff_t stride_;
+  const float *inverse_, *x_, *y_, *z_;
+};
+
 // Pixel u of row v and those to its right; `columns` has them from column i on.
 [[gnu::always_inline]] inline void settle_tile(const SeenImage& seen, int u, int v,
                                                const ColumnSums& columns, int i, Tile& tile) {
-  const auto stride = static_cast<std::ptrdiff_t>(seen.inverse.stride);
   for (int k = 0; k < kTile; k += kLanes) {
-    const float *inverse = seen.inverse.at(u + k, v), *x = seen.x.at(u + k, v),
-                *y = seen.y.at(u + k, v), *z = seen.z.at(u + k, v);
-    const auto pixel = settled_pixel<Floats>([&](int du, int dv) __attribute__((always_inline)) {
-      const std::ptrdiff_t at = dv * stride + du;
-      return SeenPixel<Floats>{load<Floats>(inverse + at), load<Floats>(x + at),
-                               load<Floats>(y + at), load<Floats>(z + at)};
-    });
-    store(pixel.inverse_depth(columns.windows_at(i + k)), tile.inverse + k);
-    store(pixel.x(), tile.normals.x + k);
-    store(pixel.y(), tile.normals.y + k);
-    store(pixel.z(), tile.normals.z + k);
+    const SeenFrom pixels(seen, seen.marked, u + k, v);
+    const NormalSum<Floats> normal = settled_normal<Floats>(pixels);
+    store(settled_inverse_depth(pixels(0, 0), columns.windows_at(i + k)), tile.inverse + k);
+    store(normal.x, tile.normals.x + k);
+    store(normal.y, tile.normals.y + k);
+    store(normal.z, tile.normals.z + k);
   }
 }
 
@@ -89,6 +105,18 @@ struct Tile {
     unit.x[i] = x * scale, unit.y[i] = y * scale, unit.z[i] = z * scale;
   }
   return unit;
+}
+
+VPM_VECTOR_CLONES
+void mark_row(const SeenImage& seen, int v, float* marks) {
+  for (int first = 0; first < seen.inverse.width; first += kTile) {
+    float tile[kTile];
+    for (int k = 0; k < kTile; k += kLanes) {
+      const SeenFrom pixels(seen, seen.inverse, first + k, v);
+      store(marked(pixels(0, 0).inverse, is_clear<Floats>(pixels)), tile + k);
+    }
+    std::copy_n(tile, std::min(kTile, seen.inverse.width - first), marks + first);
+  }
 }
 
 VPM_VECTOR_CLONES
@@ -119,14 +147,18 @@ void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* no
 }  // namespace
 
 void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
-  for (PaddedImage* image : {&inverse, &x, &y, &z})
-    image->resize(width, height, SettledImage::kReach);
+  for (PaddedImage* image : {&inverse, &x, &y, &z, &marked})
+    image->resize(width, height, kSettledReach);
 }
 
 void SeenImage::set_normal(int u, int v, Vec3f normal) {
   *x.at(u, v) = normal.x;
   *y.at(u, v) = normal.y;
   *z.at(u, v) = normal.z;
+}
+
+void SeenImage::mark_rows(int begin, int end) {
+  for (int v = begin; v < end; ++v) mark_row(*this, v, marked.at(0, v));
 }
 
 void SettledImage::resize(std::uint32_t width, std::uint32_t height) {

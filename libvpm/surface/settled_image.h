@@ -1,10 +1,10 @@
 // A camera's surface as queries read it: freed of most of its noise. Once per frame.
 //
-// A pixel's normal becomes the mean of its own and those of eight pixels around it that show the
-// same smooth surface; where all of them do, and all its window is one surface, its inverse depth
-// becomes that of a paraboloid fitted to the window, among those of the pixels beside it. Beside
-// creases and steps depths stay as they were measured. README.md has the reasons and what they
-// gain.
+// A pixel's normal becomes the mean of its own and those of sixteen pixels around it that show the
+// same smooth surface, and no crease beside it; where its own window is one surface, its inverse
+// depth becomes that of a paraboloid fitted to the window, among those of the pixels beside it.
+// Beside creases and steps depths stay as they were measured. README.md has the reasons and what
+// they gain.
 #pragma once
 
 #include <vector>
@@ -19,21 +19,28 @@ namespace vpm {
 
 // What was seen at each pixel.
 struct SeenImage {
+  // Rows above and below its own by which a pixel is marked.
+  static constexpr int kReachOfMarks = kSettledRadius;
+
   PaddedImage inverse;  // depths, without holes that are to be closed
   PaddedImage x, y, z;  // normal in camera axes, zero where there is none
+  PaddedImage marked;   // the first one, negative where the pixel is not clear (settled_pixel.h)
 
   void resize(std::uint32_t width, std::uint32_t height);
   void set_normal(int u, int v, Vec3f normal);
+  // Of rows [begin, end); threads may mark different ones.
+  void mark_rows(int begin, int end);
 };
 
 class SettledImage {
  public:
-  // How far above and below its own row a pixel reads what was seen.
-  static constexpr int kReach = kSettledAcross > kSettledRadius ? kSettledAcross : kSettledRadius;
+  // Rows above and below its own that decide what a pixel is settled to, by their marks too.
+  static constexpr int kReach = kSettledReach + SeenImage::kReachOfMarks;
 
   // For images of this size; no new memory where it has it.
   void resize(std::uint32_t width, std::uint32_t height);
-  // Reads rows [begin, end); threads may read different ones.
+  // Reads rows [begin, end), whose neighbours are marked where they are to be settled; threads may
+  // read different ones.
   void read_rows(const SeenImage& seen, PointReading points, int begin, int end);
   // After all rows.
   void finish() { tiles_.unite(); }

@@ -9,17 +9,24 @@
 
 namespace vpm {
 
-// A pixel's window, to either side, and where its neighbours are asked: eight pixels, in rows and
-// columns this far apart.
+// A pixel's window, to either side; and where its neighbours are asked: in two rings of eight
+// pixels, in rows and columns this far apart.
 inline constexpr int kSettledRadius = 3, kSettledAcross = DepthSurface::kAcross;
+inline constexpr int kSettledReach = 2 * kSettledAcross;
 
-// What is seen at a pixel: inverse depth, and the normal in camera axes.
+// What is seen at a pixel: inverse depth, and the normal in camera axes. In marked images inverse
+// depths are negative where the pixel is not clear (is_clear).
 template <class Real>
 struct SeenPixel {
   Real inverse, x, y, z;
+
+  [[gnu::always_inline]] VPM_HD SeenPixel measured() const {
+    return {inverse < Real{} ? -inverse : inverse, x, y, z};
+  }
 };
 
-// Whether a neighbour shows the pixel's own smooth surface. Nothing is like a pixel without normal.
+// Whether a neighbour shows the pixel's own smooth surface. Nothing is like a pixel without normal,
+// nor is one that is marked like any.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline auto is_alike(const SeenPixel<Real>& own,
                                                    const SeenPixel<Real>& other) {
@@ -28,6 +35,22 @@ template <class Real>
              allowed = static_cast<float>(DepthSurface::kJump) * own.inverse;
   return (own.x * other.x + own.y * other.y + own.z * other.z > kSmooth) & (off <= allowed) &
          (off >= -allowed);
+}
+
+// Whether a pixel's window of normals holds one smooth surface, as far as the pixels at the ends of
+// its row and column tell. Of the pixel seen(0, 0), not marked, and those around it, seen(du, dv).
+template <class Real, class Seen>
+[[gnu::always_inline]] VPM_HD inline decltype(Real() < Real()) is_clear(const Seen& seen) {
+  constexpr int kEnd = kSettledRadius;
+  const SeenPixel<Real> own = seen(0, 0);
+  return is_alike(own, seen(-kEnd, 0)) & is_alike(own, seen(kEnd, 0)) &
+         is_alike(own, seen(0, -kEnd)) & is_alike(own, seen(0, kEnd));
+}
+
+// An inverse depth as marked images have it; 0 stays 0.
+template <class Real, class Mask>
+[[gnu::always_inline]] VPM_HD inline Real marked(const Real& inverse, const Mask& clear) {
+  return clear ? inverse : 0.0F - inverse;
 }
 
 // Least and greatest of some inverse depths.
@@ -114,50 +137,75 @@ template <class Real, class Column>
   return window;
 }
 
-// A pixel and those of its neighbours that are like it.
+// A sum of normals, not of unit length.
 template <class Real>
-class SettledPixel {
- public:
+struct NormalSum {
   using Mask = decltype(Real() < Real());
+  Real x{}, y{}, z{};
 
-  [[gnu::always_inline]] VPM_HD explicit SettledPixel(const SeenPixel<Real>& own)
-      : own_(own), x_(own.x), y_(own.y), z_(own.z), all_alike_(own.inverse > 0.0F) {}
-
-  [[gnu::always_inline]] VPM_HD void add(const SeenPixel<Real>& other) {
-    const Mask alike = is_alike(own_, other);
-    x_ += alike ? other.x : Real{};
-    y_ += alike ? other.y : Real{};
-    z_ += alike ? other.z : Real{};
-    all_alike_ = all_alike_ & alike;
+  [[gnu::always_inline]] VPM_HD void add(const Mask& which, const SeenPixel<Real>& pixel) {
+    x += which ? pixel.x : Real{};
+    y += which ? pixel.y : Real{};
+    z += which ? pixel.z : Real{};
   }
-
-  // After all eight. Beside a crease a paraboloid would round it off.
-  [[gnu::always_inline]] VPM_HD Real inverse_depth(const WindowOfDepths<Real>& window) const {
-    return static_cast<Mask>(all_alike_ & window.is_one_surface()) ? window.paraboloid()
-                                                                   : own_.inverse;
+  [[gnu::always_inline]] VPM_HD Mask is_empty() const {
+    return (x == 0.0F) & (y == 0.0F) & (z == 0.0F);
   }
-  // The sum of the normals, not of unit length; zero where the pixel has none.
-  [[gnu::always_inline]] VPM_HD Real x() const { return x_; }
-  [[gnu::always_inline]] VPM_HD Real y() const { return y_; }
-  [[gnu::always_inline]] VPM_HD Real z() const { return z_; }
-
- private:
-  SeenPixel<Real> own_;
-  Real x_, y_, z_;
-  Mask all_alike_;
 };
 
-// Of the pixel seen(0, 0) and those around it, seen(du, dv).
+// Visits the pixels, in an order that is always the same, whose normals make that of one.
+template <class Visit>
+[[gnu::always_inline]] VPM_HD inline void visit_ring(int across, const Visit& visit) {
+  visit(-across, -across), visit(0, -across), visit(across, -across);
+  visit(-across, 0), visit(across, 0);
+  visit(-across, across), visit(0, across), visit(across, across);
+}
+template <class Visit>
+[[gnu::always_inline]] VPM_HD inline void visit_settled(const Visit& visit) {
+  visit(0, 0);
+  visit_ring(kSettledAcross, visit);
+  visit_ring(kSettledReach, visit);
+}
+
+[[gnu::always_inline]] VPM_HD inline bool is_any(bool one) {
+  return one;
+}
+template <class Mask>
+[[gnu::always_inline]] inline bool is_any(const Mask& lanes) {
+  int one = 0;
+  for (unsigned k = 0; k < sizeof(Mask) / sizeof(lanes[0]); ++k) one |= lanes[k];
+  return one != 0;
+}
+
+// Of a pixel of a marked image, seen(0, 0), and those around it, seen(du, dv): the sum of the
+// normals that show its surface. Of those at clear pixels; where there are none, of all.
 template <class Real, class Seen>
-[[gnu::always_inline]] VPM_HD inline SettledPixel<Real> settled_pixel(const Seen& seen) {
-  constexpr int kAcross = kSettledAcross;
-  SettledPixel<Real> pixel(seen(0, 0));
-  for (const int dv : {-kAcross, 0, kAcross}) {
-    pixel.add(seen(-kAcross, dv));
-    if (dv != 0) pixel.add(seen(0, dv));
-    pixel.add(seen(kAcross, dv));
+[[gnu::always_inline]] VPM_HD inline NormalSum<Real> settled_normal(const Seen& seen) {
+  using Mask = typename NormalSum<Real>::Mask;
+  const SeenPixel<Real> own = seen(0, 0).measured();
+  NormalSum<Real> sum;
+  visit_settled([&](int du, int dv) __attribute__((always_inline)) {
+    const SeenPixel<Real> pixel = seen(du, dv);
+    sum.add(is_alike(own, pixel), pixel);
+  });
+  const Mask has_none = is_alike(own, own) & sum.is_empty();
+  if (is_any(has_none)) {
+    visit_settled([&](int du, int dv) __attribute__((always_inline)) {
+      const SeenPixel<Real> pixel = seen(du, dv).measured();
+      sum.add(has_none & is_alike(own, pixel), pixel);
+    });
   }
-  return pixel;
+  return sum;
+}
+
+// Of a pixel of a marked image, and its window. Beside a crease a paraboloid would round it off.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline Real settled_inverse_depth(
+    const SeenPixel<Real>& pixel, const WindowOfDepths<Real>& window) {
+  using Mask = typename NormalSum<Real>::Mask;
+  return static_cast<Mask>((pixel.inverse > 0.0F) & window.is_one_surface())
+             ? window.paraboloid()
+             : pixel.measured().inverse;
 }
 
 // That makes a sum of normals one of unit length; any number where the sum is zero. (A choice

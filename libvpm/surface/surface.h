@@ -50,6 +50,16 @@ struct TangentPlane {
   VPM_HD double distance(Vec3 x) const { return dot(normal, x - foot); }
 };
 
+// Of a solid that lies behind either of two planes, for a place behind both: the direction to its
+// nearest place, which is that of one of the planes, or where they meet.
+VPM_HD inline Vec3 normal_below_groove(Vec3 x, const TangentPlane& one, const TangentPlane& other) {
+  const double a = one.distance(x), b = other.distance(x), cosine = dot(one.normal, other.normal);
+  const double along_one = b * cosine - a, along_other = a * cosine - b;
+  if (along_one <= 0) return other.normal;
+  if (along_other <= 0) return one.normal;
+  return normalized_or_zero(along_one * one.normal + along_other * other.normal);
+}
+
 // A wall to which a part of a body is nearer than to the wall that its middle is nearest to. That
 // part is behind the border, which is as far from both.
 struct OtherWall {

@@ -45,6 +45,7 @@ SeenImage seen(const DepthImage& depth, const Intrinsics& k) {
   for (std::size_t i = 0; i < normals.size(); ++i)
     result.set_normal(static_cast<int>(i % depth.width), static_cast<int>(i / depth.width),
                       normals[i]);
+  for_bands(result.inverse.height, [&](int begin, int end) { result.mark_rows(begin, end); });
   return result;
 }
 
@@ -99,7 +100,7 @@ class Scene {
   }
 
  private:
-  static constexpr int kAround = 8;  // pixels
+  static constexpr int kAround = 12;  // pixels
 
   bool is_smooth(int u, int v) const {
     const Vec3 n = true_normal(u, v);
@@ -137,7 +138,7 @@ TEST(SettledImage, WhatHasNoNoiseStaysWhereItIs) {
     const Scene scene(name);
     const Errors after = scene.errors(Settled(seen(scene.true_depth(), scene.intrinsics())));
     EXPECT_LT(after.depth, 1e-6);   // m, at 1 m
-    EXPECT_LT(after.normal, 1e-3);  // mean of normals 4 pixels aside, on a radius of .3 m
+    EXPECT_LT(after.normal, 2e-3);  // mean of normals 8 pixels aside, on a radius of .3 m
   }
 }
 
@@ -170,6 +171,17 @@ TEST(SettledImage, CreasesAndStepsAreNotRoundedOff) {
         EXPECT_TRUE(stays(u, v)) << u << ", " << v;
     }
     for (const int u : {30, 45, 75, 105}) EXPECT_FALSE(stays(u, v)) << u << ", " << v;
+  }
+}
+
+// Windows of normals hold both sides of a crease up to three pixels beside it.
+TEST(SettledImage, NormalsBesideACreaseLeanToNoSide) {
+  const SeenImage image = seen(creased(0), {525, 525, kCrease, 20});
+  const Settled after(image);
+  const Vec3 right = normalized_or_zero(Vec3{1, 0, -1});
+  for (int v = 12; v < 28; ++v) {
+    for (int u = kCrease + 2; u < 110; ++u)
+      EXPECT_LT(angle(after.normal(u, v), right), 2e-4) << u << ", " << v;
   }
 }
 
@@ -219,23 +231,47 @@ class OneByOne {
  public:
   explicit OneByOne(const SeenImage& seen) : seen_(seen) {}
 
-  SettledPixel<float> pixel(int u, int v) const {
-    SettledPixel<float> pixel(at(u, v));
-    for (int dv = -kSettledAcross; dv <= kSettledAcross; dv += kSettledAcross) {
-      for (int du = -kSettledAcross; du <= kSettledAcross; du += kSettledAcross) {
-        if (du != 0 || dv != 0) pixel.add(at(u + du, v + dv));
+  bool is_clear(int u, int v) const {
+    bool clear = true;
+    for (const int d : {-kSettledRadius, kSettledRadius})
+      clear &= is_alike(at(u, v), at(u + d, v)) && is_alike(at(u, v), at(u, v + d));
+    return clear;
+  }
+  float inverse(int u, int v) const {
+    const WindowOfDepths<float> w = window(u, v);
+    return is_clear(u, v) && w.is_one_surface() ? w.paraboloid() : at(u, v).inverse;
+  }
+  Vec3f normal(int u, int v) const {
+    Sum of_clear, of_all;
+    add(u, v, 0, 0, of_clear, of_all);
+    for (int across = kSettledAcross; across <= kSettledReach; across += kSettledAcross) {
+      for (int dv = -across; dv <= across; dv += across) {
+        for (int du = -across; du <= across; du += across)
+          if (du != 0 || dv != 0) add(u, v, du, dv, of_clear, of_all);
       }
     }
-    return pixel;
-  }
-  float inverse(int u, int v) const { return pixel(u, v).inverse_depth(window(u, v)); }
-  Vec3f normal(int u, int v) const {
-    const SettledPixel<float> p = pixel(u, v);
-    const float scale = per_length(p.x(), p.y(), p.z());
-    return {p.x() * scale, p.y() * scale, p.z() * scale};
+    const Sum& sum = of_clear.count > 0 ? of_clear : of_all;
+    const float scale = per_length(sum.x, sum.y, sum.z);
+    return {sum.x * scale, sum.y * scale, sum.z * scale};
   }
 
  private:
+  struct Sum {
+    float x = 0, y = 0, z = 0;
+    int count = 0;
+
+    void add(const SeenPixel<float>& pixel) {
+      x += pixel.x, y += pixel.y, z += pixel.z;
+      ++count;
+    }
+  };
+  void add(int u, int v, int du, int dv, Sum& of_clear, Sum& of_all) const {
+    if (u + du < 0 || v + dv < 0 || u + du >= seen_.inverse.width ||
+        v + dv >= seen_.inverse.height || !is_alike(at(u, v), at(u + du, v + dv)))
+      return;
+    of_all.add(at(u + du, v + dv));
+    if (is_clear(u + du, v + dv)) of_clear.add(at(u + du, v + dv));
+  }
   SeenPixel<float> at(int u, int v) const {
     return {*seen_.inverse.at(u, v), *seen_.x.at(u, v), *seen_.y.at(u, v), *seen_.z.at(u, v)};
   }

@@ -7,21 +7,34 @@
 namespace vpm::cuda {
 namespace {
 
-using Frame = TileFrame<kSettledAcross>;
+constexpr int kMarginOfMarks = kSettledReach, kMargin = kMarginOfMarks + kSettledRadius;
+using Frame = TileFrame<kMargin>;
 using Window = WindowOfDepths<float>;
 
-constexpr int kWidth = kTileWidth + 2 * kSettledAcross, kHeight = kTileHeight + 2 * kSettledAcross;
+constexpr int kWidth = kTileWidth + 2 * kMargin, kHeight = kTileHeight + 2 * kMargin;
+constexpr int kMarkedWidth = kTileWidth + 2 * kMarginOfMarks,
+              kMarked = kMarkedWidth * (kTileHeight + 2 * kMarginOfMarks);
 constexpr int kColumns = kTileWidth + 2 * kSettledRadius;
 constexpr int kRanges = kTilePixels / 4 + kTilePixels / 16 + kTilePixels / 64 + 2;
-static_assert(kSettledRadius <= kSettledAcross);
+// Of each thread.
+constexpr int kThreads = static_cast<int>(kTileThreads), kMarkedPixels = kMarked / kThreads,
+              kOwnPixels = kTilePixels / kThreads;
+static_assert(kMarked % kThreads == 0 && kTilePixels % kThreads == 0);
+static_assert(kMargin <= kTileHeight && kMargin <= kTileWidth, "the tiles around hold it");
 
-struct SharedTile {
-  float inverse[kWidth * kHeight];         // with the margin
-  float4 seen[kWidth * kHeight];           // normals and, again, inverse depth: read together
+struct SeenTile {
+  float4 pixels[kWidth * kHeight];         // with the margin: normals and inverse depth
   Window columns[kColumns * kTileHeight];  // of the windows
+};
+struct SettledTile {
   float surface[kTilePixels];
   Vec3f normals[kTilePixels];
   InverseDepthRange ranges[kRanges];
+};
+// What is settled takes the place of what was seen.
+union SharedTile {
+  SeenTile seen;
+  SettledTile settled;
 };
 
 // One tile of an image, by a block.
@@ -34,20 +47,18 @@ class SettleWork {
 
   // A row by each warp. Zeros outside of the image.
   __device__ void load() const {
-    constexpr int kWarps = kTileThreads / 32;
+    constexpr int kWarps = kThreads / 32;
     const auto* const words = reinterpret_cast<const float*>(recipe_.seen);
-    auto* const seen = reinterpret_cast<float*>(shared_.seen);
+    auto* const seen = reinterpret_cast<float*>(shared_.seen.pixels);
 #pragma unroll
     for (int row = thread() / 32; row < kHeight; row += kWarps) {
-      const int v = tile_.v0 + row - kSettledAcross, u = tile_.u0 - kSettledAcross;
+      const int v = tile_.v0 + row - kMargin, u = tile_.u0 - kMargin;
       const bool is_row = v >= 0 && v < tile_.height;
       const std::ptrdiff_t first = std::ptrdiff_t{v} * tile_.width + u;
 #pragma unroll
       for (int x = thread() % 32; x < kWidth; x += 32) {
         const bool is_inside = is_row && u + x >= 0 && u + x < tile_.width;
-        const float inverse = is_inside ? recipe_.room.measured[first + x] : 0.0F;
-        shared_.inverse[row * kWidth + x] = inverse;
-        seen[4 * (row * kWidth + x) + 3] = inverse;
+        seen[4 * (row * kWidth + x) + 3] = is_inside ? recipe_.room.measured[first + x] : 0.0F;
       }
 #pragma unroll
       for (int w = thread() % 32; w < 3 * kWidth; w += 32) {
@@ -58,44 +69,79 @@ class SettleWork {
   }
 
   __device__ void sum_columns() const {
-    for (int k = thread(); k < kColumns * kTileHeight; k += kTileThreads) {
-      const float* const middle =
-          shared_.inverse + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
-      shared_.columns[k] = column_of_depths<float>([&](int dv) { return middle[dv * kWidth]; });
+    for (int k = thread(); k < kColumns * kTileHeight; k += kThreads) {
+      const float4* const middle =
+          shared_.seen.pixels + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
+      shared_.seen.columns[k] =
+          column_of_depths<float>([&](int dv) { return middle[dv * kWidth].w; });
     }
   }
 
-  __device__ void settle() const {
-    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
-      const int x = k % kTileWidth, y = k / kTileWidth;
-      const auto pixel =
-          settled_pixel<float>([&](int du, int dv) { return seen_at(x + du, y + dv); });
-      const float scale = per_length(pixel.x(), pixel.y(), pixel.z());
-      shared_.surface[k] = pixel.inverse_depth(window_at(x, y));
-      shared_.normals[k] = {pixel.x() * scale, pixel.y() * scale, pixel.z() * scale};
+  // Meets before others see the marks.
+  __device__ void mark() const {
+    float inverse[kMarkedPixels];
+#pragma unroll
+    for (int i = 0; i < kMarkedPixels; ++i) {
+      const int k = thread() + i * kThreads;
+      const int x = k % kMarkedWidth - kMarginOfMarks, y = k / kMarkedWidth - kMarginOfMarks;
+      const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
+      inverse[i] = marked(seen(0, 0).inverse, is_clear<float>(seen));
+    }
+    __syncthreads();
+#pragma unroll
+    for (int i = 0; i < kMarkedPixels; ++i) {
+      const int k = thread() + i * kThreads;
+      const int x = k % kMarkedWidth - kMarginOfMarks, y = k / kMarkedWidth - kMarginOfMarks;
+      shared_.seen.pixels[tile_.index(x, y)].w = inverse[i];
     }
   }
-  __device__ void take_as_measured() const {
-    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
-      const SeenPixel<float> pixel = seen_at(k % kTileWidth, k / kTileWidth);
-      shared_.surface[k] = pixel.inverse;
-      shared_.normals[k] = {pixel.x, pixel.y, pixel.z};
+
+  struct Pixel {
+    float inverse;
+    Vec3f normal;
+  };
+  __device__ Pixel settled(int x, int y) const {
+    const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
+    const NormalSum<float> sum = settled_normal<float>(seen);
+    const float scale = per_length(sum.x, sum.y, sum.z);
+    return {settled_inverse_depth(seen(0, 0), window_at(x, y)),
+            {sum.x * scale, sum.y * scale, sum.z * scale}};
+  }
+  __device__ Pixel as_measured(int x, int y) const {
+    const SeenPixel<float> pixel = seen_at(x, y);
+    return {pixel.inverse, {pixel.x, pixel.y, pixel.z}};
+  }
+  // Meets before the pixels take the place of what was seen.
+  template <class Make>
+  __device__ void make_pixels(const Make& make) const {
+    Pixel made[kOwnPixels];
+#pragma unroll
+    for (int i = 0; i < kOwnPixels; ++i) {
+      const int k = thread() + i * kThreads;
+      made[i] = make(k % kTileWidth, k / kTileWidth);
+    }
+    __syncthreads();
+#pragma unroll
+    for (int i = 0; i < kOwnPixels; ++i) {
+      const int k = thread() + i * kThreads;
+      shared_.settled.surface[k] = made[i].inverse;
+      shared_.settled.normals[k] = made[i].normal;
     }
   }
 
   __device__ void write_normals() const {
-    write_rows(tile_, shared_.normals, recipe_.room.pixel_normals);
+    write_rows(tile_, shared_.settled.normals, recipe_.room.pixel_normals);
   }
 
   // Levels 0 to kTileLevels, and this tile's part of what lies above. Meets after each.
   __device__ void write_tiles() const {
     for (int k = thread(); k < kTilePixels; k += kTileThreads) {
       const int x = k % kTileWidth, y = k / kTileWidth;
-      const float value = shared_.surface[k];
+      const float value = shared_.settled.surface[k];
       if (tile_.holds(x, y)) recipe_.room.tiles[0][tile_.pixel(x, y)] = {value, value};
     }
     InverseDepthRange* fine = nullptr;
-    InverseDepthRange* coarse = shared_.ranges;
+    InverseDepthRange* coarse = shared_.settled.ranges;
     for (int level = 1; level <= kTileLevels; ++level) {
       const int count = (kTileWidth >> level) * (kTileHeight >> level);
       if (thread() < count) coarse[thread()] = write_tile(level, fine);
@@ -118,11 +164,11 @@ class SettleWork {
   }
 
   __device__ SeenPixel<float> seen_at(int x, int y) const {
-    const float4 pixel = shared_.seen[tile_.index(x, y)];
+    const float4 pixel = shared_.seen.pixels[tile_.index(x, y)];
     return {pixel.w, pixel.x, pixel.y, pixel.z};
   }
   __device__ const Window& column_at(int x, int y) const {
-    return shared_.columns[y * kColumns + x + kSettledRadius];
+    return shared_.seen.columns[y * kColumns + x + kSettledRadius];
   }
   __device__ Window window_at(int x, int y) const {
     return window_of_depths<float>([&](int du) { return column_at(x + du, y); });
@@ -144,7 +190,7 @@ class SettleWork {
       if (fine != nullptr) {
         range = united(range, fine[cy * 2 * per_row + cx]);
       } else if (tile_.holds(cx, cy)) {
-        const float value = shared_.surface[cy * kTileWidth + cx];
+        const float value = shared_.settled.surface[cy * kTileWidth + cx];
         range = united(range, {value, value});
       }
     }
@@ -162,7 +208,8 @@ class SettleWork {
 
 __global__ void __launch_bounds__(kTileThreads)
     settle_cloud(const __grid_constant__ CloudRecipe recipe) {
-  __shared__ SharedTile shared;
+  __shared__ alignas(SharedTile) unsigned char memory[sizeof(SharedTile)];
+  SharedTile& shared = *reinterpret_cast<SharedTile*>(memory);
   const SettleWork work(recipe, shared);
   wait_for_last();
   if (work.is_done()) return;
@@ -170,10 +217,11 @@ __global__ void __launch_bounds__(kTileThreads)
   __syncthreads();
   if (recipe.points == PointReading::settled) {
     work.sum_columns();
+    work.mark();
     __syncthreads();
-    work.settle();
+    work.make_pixels([&](int x, int y) { return work.settled(x, y); });
   } else {
-    work.take_as_measured();
+    work.make_pixels([&](int x, int y) { return work.as_measured(x, y); });
   }
   __syncthreads();
   work.write_normals();
