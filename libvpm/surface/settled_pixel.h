@@ -163,8 +163,11 @@ template <class Visit>
 template <class Visit>
 [[gnu::always_inline]] VPM_HD inline void visit_settled(const Visit& visit) {
   visit(0, 0);
-  visit_ring(kSettledAcross, visit);
-  visit_ring(kSettledReach, visit);
+#ifdef __CUDA_ARCH__
+#pragma unroll 1  // a block goes through this code once or twice: what counts is how much it is
+#endif
+  for (int across = kSettledAcross; across <= kSettledReach; across += kSettledAcross)
+    visit_ring(across, visit);
 }
 
 [[gnu::always_inline]] VPM_HD inline bool is_any(bool one) {

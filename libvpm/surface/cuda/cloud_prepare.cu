@@ -286,7 +286,7 @@ void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream) {
   const Choice choice = choose(method, recipe.window / 2);
-  launch_over_tiles(recipe, choice.kernel, choice.bytes, preparation.overlaps, stream, recipe,
+  launch_over_tiles(recipe, choice.kernel, kTileThreads, choice.bytes, preparation.overlaps, stream, recipe,
                     counters, answer, sequence);
 }
 

@@ -16,10 +16,9 @@ constexpr int kMarkedWidth = kTileWidth + 2 * kMarginOfMarks,
               kMarked = kMarkedWidth * (kTileHeight + 2 * kMarginOfMarks);
 constexpr int kColumns = kTileWidth + 2 * kSettledRadius;
 constexpr int kRanges = kTilePixels / 4 + kTilePixels / 16 + kTilePixels / 64 + 2;
-// Of each thread.
-constexpr int kThreads = static_cast<int>(kTileThreads), kMarkedPixels = kMarked / kThreads,
-              kOwnPixels = kTilePixels / kThreads;
-static_assert(kMarked % kThreads == 0 && kTilePixels % kThreads == 0);
+// A thread for each pixel of the tile.
+constexpr int kThreads = kTilePixels, kBlocks = 2, kMarkedPixels = kMarked / kThreads;
+static_assert(kMarked % kThreads == 0);
 static_assert(kMargin <= kTileHeight && kMargin <= kTileWidth, "the tiles around hold it");
 
 struct SeenTile {
@@ -79,21 +78,16 @@ class SettleWork {
 
   // Meets before others see the marks.
   __device__ void mark() const {
-    float inverse[kMarkedPixels];
-#pragma unroll
-    for (int i = 0; i < kMarkedPixels; ++i) {
-      const int k = thread() + i * kThreads;
-      const int x = k % kMarkedWidth - kMarginOfMarks, y = k / kMarkedWidth - kMarginOfMarks;
+    unsigned clear = 0;
+    for_marked([&](int i, int x, int y) {
       const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
-      inverse[i] = marked(seen(0, 0).inverse, is_clear<float>(seen));
-    }
+      clear |= is_clear<float>(seen) ? 1U << i : 0U;
+    });
     __syncthreads();
-#pragma unroll
-    for (int i = 0; i < kMarkedPixels; ++i) {
-      const int k = thread() + i * kThreads;
-      const int x = k % kMarkedWidth - kMarginOfMarks, y = k / kMarkedWidth - kMarginOfMarks;
-      shared_.seen.pixels[tile_.index(x, y)].w = inverse[i];
-    }
+    for_marked([&](int i, int x, int y) {
+      float& inverse = shared_.seen.pixels[tile_.index(x, y)].w;
+      inverse = marked(inverse, (clear >> i & 1U) != 0);
+    });
   }
 
   struct Pixel {
@@ -113,20 +107,11 @@ class SettleWork {
   }
   // Meets before the pixels take the place of what was seen.
   template <class Make>
-  __device__ void make_pixels(const Make& make) const {
-    Pixel made[kOwnPixels];
-#pragma unroll
-    for (int i = 0; i < kOwnPixels; ++i) {
-      const int k = thread() + i * kThreads;
-      made[i] = make(k % kTileWidth, k / kTileWidth);
-    }
+  __device__ void make_pixel(const Make& make) const {
+    const Pixel made = make(thread() % kTileWidth, thread() / kTileWidth);
     __syncthreads();
-#pragma unroll
-    for (int i = 0; i < kOwnPixels; ++i) {
-      const int k = thread() + i * kThreads;
-      shared_.settled.surface[k] = made[i].inverse;
-      shared_.settled.normals[k] = made[i].normal;
-    }
+    shared_.settled.surface[thread()] = made.inverse;
+    shared_.settled.normals[thread()] = made.normal;
   }
 
   __device__ void write_normals() const {
@@ -135,10 +120,9 @@ class SettleWork {
 
   // Levels 0 to kTileLevels, and this tile's part of what lies above. Meets after each.
   __device__ void write_tiles() const {
-    for (int k = thread(); k < kTilePixels; k += kTileThreads) {
-      const int x = k % kTileWidth, y = k / kTileWidth;
-      const float value = shared_.settled.surface[k];
-      if (tile_.holds(x, y)) recipe_.room.tiles[0][tile_.pixel(x, y)] = {value, value};
+    if (const int x = thread() % kTileWidth, y = thread() / kTileWidth; tile_.holds(x, y)) {
+      const float value = shared_.settled.surface[thread()];
+      recipe_.room.tiles[0][tile_.pixel(x, y)] = {value, value};
     }
     InverseDepthRange* fine = nullptr;
     InverseDepthRange* coarse = shared_.settled.ranges;
@@ -159,6 +143,15 @@ class SettleWork {
   }
 
  private:
+  // Calls visit(i, x, y) for the thread's share of the pixels to be marked.
+  template <class Visit>
+  __device__ static void for_marked(const Visit& visit) {
+#pragma unroll 1
+    for (int i = 0; i < kMarkedPixels; ++i) {
+      const int k = thread() + i * kThreads;
+      visit(i, k % kMarkedWidth - kMarginOfMarks, k / kMarkedWidth - kMarginOfMarks);
+    }
+  }
   __device__ static int thread() {
     return static_cast<int>(threadIdx.x);
   }
@@ -206,7 +199,7 @@ class SettleWork {
   SharedTile& shared_;
 };
 
-__global__ void __launch_bounds__(kTileThreads)
+__global__ void __launch_bounds__(kThreads, kBlocks)
     settle_cloud(const __grid_constant__ CloudRecipe recipe) {
   __shared__ alignas(SharedTile) unsigned char memory[sizeof(SharedTile)];
   SharedTile& shared = *reinterpret_cast<SharedTile*>(memory);
@@ -219,9 +212,9 @@ __global__ void __launch_bounds__(kTileThreads)
     work.sum_columns();
     work.mark();
     __syncthreads();
-    work.make_pixels([&](int x, int y) { return work.settled(x, y); });
+    work.make_pixel([&](int x, int y) { return work.settled(x, y); });
   } else {
-    work.make_pixels([&](int x, int y) { return work.as_measured(x, y); });
+    work.make_pixel([&](int x, int y) { return work.as_measured(x, y); });
   }
   __syncthreads();
   work.write_normals();
@@ -231,7 +224,7 @@ __global__ void __launch_bounds__(kTileThreads)
 }  // namespace
 
 void settle_on_device(const CloudRecipe& recipe, bool overlaps, cudaStream_t stream) {
-  launch_over_tiles(recipe, settle_cloud, 0, overlaps, stream, recipe);
+  launch_over_tiles(recipe, settle_cloud, kThreads, 0, overlaps, stream, recipe);
 }
 
 }  // namespace vpm::cuda

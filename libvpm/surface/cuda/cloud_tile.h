@@ -102,7 +102,8 @@ __device__ __forceinline__ void write_rows(const TileFrame<Radius>& tile, const 
   auto* const image = reinterpret_cast<float*>(to);
   constexpr int kRow = 3 * kTileWidth;
 #pragma unroll 6
-  for (int k = static_cast<int>(threadIdx.x); k < 3 * kTilePixels; k += kTileThreads) {
+  for (int k = static_cast<int>(threadIdx.x); k < 3 * kTilePixels;
+       k += static_cast<int>(blockDim.x)) {
     const int x = k % kRow, y = k / kRow;
     if (x < 3 * (tile.width - tile.u0) && tile.v0 + y < tile.height)
       image[3 * tile.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
@@ -134,11 +135,11 @@ __device__ __forceinline__ void wait_for_last() {
 
 // A block for each tile that is wanted. `overlaps`: the kernel waits for the last one itself.
 template <class... Parameters, class... Arguments>
-void launch_over_tiles(const CloudRecipe& recipe, void (*kernel)(Parameters...), std::size_t shared,
-                       bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
+void launch_over_tiles(const CloudRecipe& recipe, void (*kernel)(Parameters...), unsigned threads,
+                       std::size_t shared, bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
   cudaLaunchConfig_t launch{};
   launch.gridDim = static_cast<unsigned>(recipe.wanted.count());
-  launch.blockDim = kTileThreads;
+  launch.blockDim = threads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;
   cudaLaunchAttribute overlap;
