@@ -102,7 +102,7 @@ class Timing {
     report_.summary += line;
     if (options_.progress) {
       const double recorded = options_.data.empty() ? 0 : 1;
-      const double stages = 7 + recorded + (7 + 3 * recorded) * static_cast<double>(sizes_.size());
+      const double stages = 7 + recorded + (9 + 3 * recorded) * static_cast<double>(sizes_.size());
       options_.progress(static_cast<double>(++done_) / stages);
     }
   }
@@ -170,17 +170,23 @@ class Timing {
     const PreparedCloud cloud(cloud_), measured(cloud_, PointReading::as_measured), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
-    const auto time_query = [&](const char* stage, const PreparedCloud& seen, Measure measure,
-                                PointLocation location) {
+    // Most of it is further behind the surface than its reach.
+    const Pose deep{pose.rotation,
+                    pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
+    const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
+                                Measure measure = Measure::refined,
+                                PointLocation location = PointLocation::grid) {
       QueryOptions options;
       options.measure = measure;
       options.location = location;
       Query query(model, options);
-      time(stage, spheres, runs_.fast, [&] { query.run(seen, pose); });
+      time(stage, spheres, runs_.fast, [&] { query.run(seen, at); });
     };
-    time_query("query refined", cloud, Measure::refined, PointLocation::grid);
-    time_query("query refined, as measured", measured, Measure::refined, PointLocation::grid);
-    time_query("query refined, points", points, Measure::refined, PointLocation::grid);
+    time_query("query refined", cloud, pose);
+    time_query("query refined, as measured", measured, pose);
+    time_query("query refined, points", points, pose);
+    time_query("query refined, deep", cloud, deep);
+    time_query("query refined, points, deep", points, deep);
     const auto time_rooms = [&](const char* stage, const auto& cloud_of) {
       Query query(model, {});
       time(
@@ -200,8 +206,8 @@ class Timing {
       time_rooms("query refined, points, recorded rooms",
                  [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
     }
-    time_query("query paper", cloud, Measure::paper, PointLocation::grid);
-    time_query("query paper (hierarchy)", cloud, Measure::paper, PointLocation::hierarchy);
+    time_query("query paper", cloud, pose, Measure::paper);
+    time_query("query paper (hierarchy)", cloud, pose, Measure::paper, PointLocation::hierarchy);
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
