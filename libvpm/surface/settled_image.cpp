@@ -147,6 +147,7 @@ void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* no
 }  // namespace
 
 void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
+  static_assert(kSettledRadius <= kSettledReach, "the margin holds windows too");
   for (PaddedImage* image : {&inverse, &x, &y, &z, &marked})
     image->resize(width, height, kSettledReach);
 }
