@@ -22,7 +22,8 @@ struct Bounds {
 };
 constexpr Bounds kBounds[] = {{"none", "1000", 0.0015, 0.01, 0.002},
                               {"none", "10000", 0.0006, 0.004, 0.002},
-                              {"kinect", "1000", 0.002, 0.015, 0.006}};
+                              {"kinect", "1000", 0.002, 0.015, 0.006},
+                              {"kinect", "10000", 0.002, 0.015, 0.006}};
 constexpr double kDirectionBound = 1, kTorqueBound = 0.01;
 
 constexpr int kRandomPoses = 10000;
@@ -139,9 +140,10 @@ class Accuracy {
     constexpr int kPoses = 121;
     report_.summary +=
         "\nSilhouettes and holes, in % of the tool\n"
-        "path                       worst    jump   counted in free space   paper worst    jump\n";
+        "path                       worst    jump   shadows solid: worst    jump   counted in free "
+        "space   paper worst    jump\n";
     int counted = 0;
-    MeanAndWorst jump;
+    MeanAndWorst jump, solid, solid_jump;
     for (const char* shape : {"cube", "torus"}) {
       for (const SilhouetteResult& r : run_silhouettes(tool(shape), 1000, kPoses)) {
         report_.results.push_back({{"group", "silhouettes"},
@@ -149,19 +151,28 @@ class Accuracy {
                                    {"path", r.path},
                                    {"volume_worst", r.volume_worst[0]},
                                    {"jump_worst", r.jump_worst[0]},
+                                   {"solid_worst", r.solid_worst},
+                                   {"solid_jump_worst", r.solid_jump_worst},
                                    {"counted_in_free_space", r.counted_in_free_space},
                                    {"paper_volume_worst", r.volume_worst[1]},
                                    {"paper_jump_worst", r.jump_worst[1]}});
         report_.summary +=
-            text("%-6s %-24s %6.2f %7.2f %12d %18.1f %7.1f\n", shape, r.path.c_str(),
-                 100 * r.volume_worst[0], 100 * r.jump_worst[0], r.counted_in_free_space,
-                 100 * r.volume_worst[1], 100 * r.jump_worst[1]);
+            text("%-6s %-24s %6.2f %7.2f %20.2f %7.2f %12d %23.1f %7.1f\n", shape, r.path.c_str(),
+                 100 * r.volume_worst[0], 100 * r.jump_worst[0], 100 * r.solid_worst,
+                 100 * r.solid_jump_worst, r.counted_in_free_space, 100 * r.volume_worst[1],
+                 100 * r.jump_worst[1]);
         counted += r.counted_in_free_space;
         jump.add(r.jump_worst[0]);
+        solid.add(r.solid_worst);
+        solid_jump.add(r.solid_jump_worst);
       }
     }
     check("spheres counted in seen free space, silhouettes and holes", counted, 0);
-    check("jump at silhouettes and holes", jump.worst(), kBounds[0].jump);
+    check("jump at silhouettes and holes, shadows near", jump.worst(), kBounds[0].jump);
+    check("jump at silhouettes, shadows solid, beyond that of the count", solid_jump.worst(),
+          kBounds[0].jump);
+    check("difference from the count at silhouettes, shadows solid", solid.worst(),
+          kBounds[0].worst);
     step();
   }
 

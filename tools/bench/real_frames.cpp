@@ -4,36 +4,12 @@
 
 #include "libvpm/query/query.h"
 #include "tools/bench/errors.h"
+#include "tools/bench/projective_count.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/silhouettes.h"
 
 namespace vpm::bench {
 namespace {
-
-// Parts of the tool.
-struct Count {
-  double behind = 0;  // the depth of the nearest pixel
-  double shadow = 0;  // of those: further than the tool's reach behind it
-};
-
-Count counted(const PackedSolid& tool, const Pose& pose, const CloudSensor& sensor) {
-  const Pose to_camera = relative_to(sensor.camera.to_world, pose);
-  const Intrinsics& k = sensor.camera.intrinsics;
-  std::size_t behind = 0, shadow = 0;
-  for (const Vec3& place : tool.few_places()) {
-    const Vec3 x = to_camera * place;
-    if (!(x.z > 0)) continue;
-    const double u = std::floor(k.fx * x.x / x.z + k.cx + 0.5),
-                 v = std::floor(k.fy * x.y / x.z + k.cy + 0.5);
-    if (!(u >= 0 && v >= 0 && u < sensor.depth.width && v < sensor.depth.height)) continue;
-    const double depth = sensor.depth.depth[sensor.depth.index(static_cast<std::uint32_t>(u),
-                                                               static_cast<std::uint32_t>(v))];
-    behind += depth > 0 && x.z > depth;
-    shadow += depth > 0 && x.z > depth + tool.model.reach;
-  }
-  const auto all = static_cast<double>(tool.few_places().size());
-  return {static_cast<double>(behind) / all, static_cast<double>(shadow) / all};
-}
 
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses) {
@@ -46,7 +22,8 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
   const int tries = 20 * poses;
   for (int k = 0; k < tries && result.poses < poses; ++k) {
     const Pose pose = random_pose_before(cloud, static_cast<std::uint64_t>(k), tool.model.reach);
-    const Count count = counted(tool, pose, *cloud.sensor);
+    const ProjectiveCount count = count_behind(tool.few_places(), tool.model.reach, pose,
+                                               cloud.sensor->depth, cloud.sensor->camera);
     if (!(count.behind > 0 && count.behind < kShallow)) continue;
     ++result.poses;
     const auto volume = [&](Query& query) { return query.run(prepared, pose).volume_fraction; };

@@ -7,6 +7,7 @@
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
+#include "tools/bench/projective_count.h"
 
 namespace vpm::bench {
 namespace {
@@ -78,6 +79,26 @@ std::vector<Path> make_paths() {
   return paths;
 }
 
+void follow_solid(const Path& path, const std::vector<Pose>& along, const PreparedCloud& cloud,
+                  const PackedSolid& tool, std::uint32_t level, SilhouetteResult& result) {
+  const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
+  Query query(tool.model, {.level = level, .shadows = Shadows::solid});
+  double volume_before = 0, count_before = 0;
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    const double volume = query.run(cloud, along[k]).volume_fraction;
+    result.counted_in_free_space += counted_in_free_space(
+        tool.model, query.level(), along[k], path.depth, path.scene.camera, query.states());
+    if (!is_whole) continue;
+    const double count =
+        count_behind(tool.places, tool.model.reach, along[k], path.depth, path.scene.camera).behind;
+    const double beyond = std::abs(volume - volume_before) - std::abs(count - count_before);
+    result.solid_worst = std::max(result.solid_worst, std::abs(volume - count));
+    if (k > 0) result.solid_jump_worst = std::max(result.solid_jump_worst, beyond);
+    volume_before = volume;
+    count_before = count;
+  }
+}
+
 SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t level, int poses) {
   std::vector<Pose> along;
   for (int k = 0; k < poses; ++k) {
@@ -93,7 +114,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
   const auto truth = truth_along(tool.solid, along, *path.scene.surface);
   const PreparedCloud cloud(make_cloud(path.depth, path.scene.camera, NormalOptions{}));
 
-  SilhouetteResult result{path.name, {}, {}, 0};
+  SilhouetteResult result{.path = path.name};
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     Query query(tool.model, {.measure = measure, .level = level});
     std::vector<Result> measured;
@@ -107,6 +128,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
     result.volume_worst[static_cast<std::size_t>(measure)] = errors.volume.worst();
     result.jump_worst[static_cast<std::size_t>(measure)] = errors.jump.worst();
   }
+  follow_solid(path, along, cloud, tool, level, result);
   return result;
 }
 

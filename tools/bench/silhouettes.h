@@ -13,7 +13,11 @@ namespace vpm::bench {
 struct SilhouetteResult {
   std::string path;
   double volume_worst[2] = {}, jump_worst[2] = {};  // of Measure::refined, Measure::paper
-  int counted_in_free_space = 0;                    // spheres of refined, over all poses
+  // Of Shadows::solid, beside the count of what is behind the image: difference, and how much the
+  // volume moves between neighbouring poses beyond what the count does; 0 of images that lack
+  // pixels.
+  double solid_worst = 0, solid_jump_worst = 0;
+  int counted_in_free_space = 0;  // spheres of refined with both kinds of shadows, over all poses
 };
 
 // Spheres that count although their share lies wholly before what every pixel in its direction
