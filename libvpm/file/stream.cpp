@@ -9,7 +9,6 @@
 #include <climits>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
 #include <utility>
 
 #include "libvpm/core/error.h"
@@ -56,29 +55,31 @@ void sync(int descriptor, const std::string& path) {
   if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) cannot_write(path, errno);
 }
 
-// The temporary file of the write under way. A signal handler reads it, hence no std::string; one
-// file is written at a time, so one is enough.
-char unfinished_path[PATH_MAX];
-std::atomic<bool> is_unfinished{false};
+// The temporary files that are there. A signal handler reads their names, hence no std::string.
+struct UnfinishedFile {
+  char path[PATH_MAX];
+  std::atomic<bool> is_taken{false}, is_there{false};
+
+  void remove() {
+    if (is_there.exchange(false)) ::unlink(path);
+  }
+};
+UnfinishedFile unfinished_files[64];
 
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target) {
-    const std::string stem =
-        (target.parent_path() / (".vpm-" + std::to_string(::getpid()) + "-")).string();
-    for (int attempt = 0; descriptor_ < 0; ++attempt) {
-      path_ = stem + std::to_string(attempt) + ".tmp";
-      if (path_.size() >= sizeof(unfinished_path)) cannot_write(target.string(), ENAMETOOLONG);
-      // 0666: the umask says who may read the result.
-      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && errno != EEXIST) cannot_write(target.string(), errno);
+  explicit TemporaryFile(const fs::path& target) : file_(take(target.string())) {
+    try {
+      open(target);
+    } catch (...) {
+      file_.is_taken = false;
+      throw;
     }
-    std::memcpy(unfinished_path, path_.c_str(), path_.size() + 1);
-    is_unfinished = true;
   }
   ~TemporaryFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
-    remove_unfinished_output();
+    file_.remove();
+    file_.is_taken = false;
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -88,12 +89,31 @@ class TemporaryFile {
   void rename_to(const fs::path& target) {
     const int descriptor = std::exchange(descriptor_, -1);
     if (::close(descriptor) != 0) cannot_write(target.string(), errno);  // NFS reports here
-    if (::rename(path_.c_str(), target.c_str()) != 0) cannot_write(target.string(), errno);
-    is_unfinished = false;
+    if (::rename(file_.path, target.c_str()) != 0) cannot_write(target.string(), errno);
+    file_.is_there = false;
   }
 
  private:
-  std::string path_;
+  static UnfinishedFile& take(const std::string& target) {
+    for (UnfinishedFile& file : unfinished_files)
+      if (!file.is_taken.exchange(true)) return file;
+    cannot_write(target, "too many outputs are under way");
+  }
+  void open(const fs::path& target) {
+    const std::string stem =
+        (target.parent_path() / (".vpm-" + std::to_string(::getpid()) + "-")).string();
+    for (int attempt = 0; descriptor_ < 0; ++attempt) {
+      const std::string path = stem + std::to_string(attempt) + ".tmp";
+      if (path.size() >= sizeof(file_.path)) cannot_write(target.string(), ENAMETOOLONG);
+      std::memcpy(file_.path, path.c_str(), path.size() + 1);
+      // 0666: the umask says who may read the result.
+      descriptor_ = ::open(file_.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && errno != EEXIST) cannot_write(target.string(), errno);
+    }
+    file_.is_there = true;
+  }
+
+  UnfinishedFile& file_;
   int descriptor_ = -1;
 };
 
@@ -108,19 +128,80 @@ fs::path end_of_links(fs::path path) {
   return path;
 }
 
-void write_file(const fs::path& target, std::span<const std::byte> bytes) {
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
-  TemporaryFile temporary(target);
-  struct stat there {};
-  if (::stat(target.c_str(), &there) == 0)  // who may read it stays as it was
-    ::fchmod(temporary.descriptor(), there.st_mode & 07777);
-  write_to(temporary.descriptor(), bytes, target.string());
-  sync(temporary.descriptor(), target.string());
-  temporary.rename_to(target);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened >= 0) sync(opened, target.string());
+}  // namespace
+
+class Output::Target {
+ public:
+  Target() = default;
+  virtual ~Target() = default;
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+  virtual void append(std::span<const std::byte> bytes) = 0;
+  virtual void finish() {}
+};
+
+namespace {
+
+class Straight : public Output::Target {
+ public:
+  explicit Straight(const std::string& path)
+      : path_(path), opened_(is_standard() ? -1 : ::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (!is_standard() && opened_ < 0) cannot_write(path, errno);
+  }
+  void append(std::span<const std::byte> bytes) override {
+    write_to(is_standard() ? STDOUT_FILENO : static_cast<int>(opened_), bytes, path_);
+  }
+
+ private:
+  bool is_standard() const { return path_ == "-"; }
+
+  std::string path_;
+  Descriptor opened_;
+};
+
+class WholeFile : public Output::Target {
+ public:
+  explicit WholeFile(const fs::path& target) : target_(target), temporary_(target) {
+    struct stat there {};
+    if (::stat(target.c_str(), &there) == 0)  // who may read it stays as it was
+      ::fchmod(temporary_.descriptor(), there.st_mode & 07777);
+  }
+  void append(std::span<const std::byte> bytes) override {
+    constexpr std::size_t kBlock = std::size_t{1} << 16;
+    if (waiting_.size() + bytes.size() > kBlock) write_waiting();
+    if (bytes.size() > kBlock)
+      write_to(temporary_.descriptor(), bytes, target_.string());
+    else
+      waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+  }
+  void finish() override {
+    write_waiting();
+    sync(temporary_.descriptor(), target_.string());
+    temporary_.rename_to(target_);
+    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (opened >= 0) sync(opened, target_.string());
+  }
+
+ private:
+  void write_waiting() {
+    write_to(temporary_.descriptor(), waiting_, target_.string());
+    waiting_.clear();
+  }
+
+  fs::path target_;
+  TemporaryFile temporary_;
+  std::vector<std::byte> waiting_;
+};
+
+std::unique_ptr<Output::Target> open_target(const std::string& path) {
+  if (path.empty()) cannot_write("the output", std::string("its name is empty"));
+  if (path == "-" || path == "/dev/stdout") return std::make_unique<Straight>("-");
+  std::error_code fault;
+  const fs::file_status status = fs::status(path, fault);
+  if (fs::is_directory(status)) cannot_write(path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return std::make_unique<Straight>(path);
+  return std::make_unique<WholeFile>(end_of_links(path));
 }
 
 }  // namespace
@@ -154,26 +235,29 @@ std::vector<std::byte> read_all(const std::string& path) {
   return bytes;
 }
 
-void write_all(const std::string& path, std::span<const std::byte> bytes) {
-  if (path.empty()) cannot_write("the output", std::string("its name is empty"));
-  if (path == "-" || path == "/dev/stdout") return write_to(STDOUT_FILENO, bytes, path);
-  std::error_code fault;
-  const fs::file_status status = fs::status(path, fault);
-  if (fs::is_directory(status)) cannot_write(path, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const Descriptor opened(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-    if (opened < 0) cannot_write(path, errno);
-    return write_to(opened, bytes, path);
-  }
-  write_file(end_of_links(path), bytes);
+Output::Output(const std::string& path) : target_(open_target(path)) {}
+Output::~Output() = default;
+void Output::append(std::span<const std::byte> bytes) {
+  target_->append(bytes);
+}
+void Output::append(std::string_view text) {
+  append(std::as_bytes(std::span(text)));
+}
+void Output::finish() {
+  target_->finish();
 }
 
+void write_all(const std::string& path, std::span<const std::byte> bytes) {
+  Output output(path);
+  output.append(bytes);
+  output.finish();
+}
 void write_all(const std::string& path, std::string_view text) {
   write_all(path, std::as_bytes(std::span(text)));
 }
 
 void remove_unfinished_output() {
-  if (is_unfinished.exchange(false)) ::unlink(unfinished_path);
+  for (UnfinishedFile& file : unfinished_files) file.remove();
 }
 
 }  // namespace vpm::file

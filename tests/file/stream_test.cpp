@@ -91,6 +91,64 @@ TEST_F(Stream, APipeIsWrittenStraight) {
   EXPECT_EQ(names(), Names{"pipe"});
 }
 
+TEST_F(Stream, PartsAppearAsOneFile) {
+  write_all(path("file"), std::string_view("old"));
+  std::string all;
+  Output output(path("file"));
+  for (int k = 0; k < 3000; ++k) {  // more than waits at once
+    const std::string part(static_cast<std::size_t>(k % 100), static_cast<char>('a' + k % 26));
+    output.append(part);
+    all += part;
+  }
+  const std::string large(200000, 'x');
+  output.append(large);
+  output.append("end");
+  EXPECT_EQ(text_of(path("file")), "old");
+  output.finish();
+  EXPECT_EQ(text_of(path("file")), all + large + "end");
+  EXPECT_EQ(names(), Names{"file"});
+}
+
+TEST_F(Stream, WhatIsNotFinishedLeavesTheOldFile) {
+  write_all(path("file"), std::string_view("old"));
+  {
+    Output output(path("file")), other(path("other"));
+    output.append(std::string(200000, 'x'));
+    other.append("y");
+  }
+  EXPECT_EQ(text_of(path("file")), "old");
+  EXPECT_EQ(names(), Names{"file"});
+}
+
+TEST_F(Stream, AnInterruptedRunLeavesNoneOfItsOutputs) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Output first(path("first")), second(path("second"));
+    write_all(path("third"), std::string_view("done"));
+    remove_unfinished_output();
+    ::_exit(names() == Names{"third"} ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(names(), Names{"third"});
+}
+
+// A reader sees each part before the next one is there.
+TEST_F(Stream, APipeHasEachPartAtOnce) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  Output output(path("pipe"));
+  for (const std::string_view part : {"first\n", "second\n"}) {
+    output.append(part);
+    char read[16] = {};
+    EXPECT_EQ(::read(reader, read, sizeof read), static_cast<ssize_t>(part.size()));
+    EXPECT_EQ(read, part);
+  }
+  output.finish();
+  ::close(reader);
+}
+
 TEST_F(Stream, AFullDiskLeavesTheOldFile) {
   write_all(path("file"), std::string_view("old"));
   const int status = in_limited_child(SIG_IGN, [&] {

@@ -162,7 +162,7 @@ void say_limits(const Tool& tool, const CouplingParameters& coupling, const Tool
 // Queries one after the other, each answered by a line.
 struct Run {
   const PreparedCloud& cloud;
-  ResultSink& sink;
+  file::Output& output;
   std::vector<double> seconds;  // of each
   Pose last;
 
@@ -175,13 +175,13 @@ struct Run {
   void pose(LevelQuery& query, const Pose& pose, Measure measure) {
     const std::size_t index = seconds.size();
     const Result result = ask(query, pose);
-    sink.line(result_line(index, result, query.query().level(), measure, query.reason(), {}));
+    output.append(result_line(index, result, query.query().level(), measure, query.reason(), {}));
   }
   void batch(LevelQuery& query, const std::vector<Pose>& poses, Measure measure) {
     std::vector<Result> results(poses.size());
     query.run(cloud, poses, results);
     for (const Result& result : results) {
-      sink.line(
+      output.append(
           result_line(seconds.size(), result, query.query().level(), measure, query.reason(), {}));
       seconds.push_back(query.seconds());
     }
@@ -209,7 +209,7 @@ struct Run {
       step.contact = ask(query, step.tool);
       step.rendered = coupling.advance(step.device, step.contact.wrench);
       step.energy = coupling.energy();
-      sink.line(coupled_line(step, ""));
+      output.append(coupled_line(step, ""));
     }
   }
 };
@@ -253,8 +253,8 @@ void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
 
   std::optional<PoseReader> reader;
   if (!pose) reader.emplace(a.poses);
-  ResultSink sink(a.output);
-  Run run{prepared, sink, {}, {}};
+  file::Output output(a.output);
+  Run run{prepared, output, {}, {}};
   std::optional<CouplingParameters> coupling;
   std::optional<SampledPath> path;
   if (!a.coupling.empty()) {
@@ -273,7 +273,7 @@ void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
   } else {
     run.all(query, pose, reader, a.batch, options.measure);
   }
-  sink.finish();
+  output.finish();
   note_deviation(tool, "", reader ? reader->largest_deviation() : deviation);
   if (!a.spheres_out.empty() && a.batch > 1)
     query.run(prepared, run.last);  // batches keep no states
@@ -301,9 +301,9 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
     say_limits(tool, *parameters, model, options.stiffness);
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
-  ResultSink sink(a.output);
-  replay.run(query, coupling, options.measure, sink);
-  sink.finish();
+  file::Output output(a.output);
+  replay.run(query, coupling, options.measure, output);
+  output.finish();
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_cloud().positions().size();

@@ -144,7 +144,7 @@ void Replay::find_first_cloud() {
 }
 
 void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-                 ResultSink& sink) {
+                 file::Output& output) {
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, points_);
   feed_->wait_for_first();
   clock_.emplace(rate_, arguments_.realtime);
@@ -166,9 +166,9 @@ void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Mea
     query_seconds_.push_back(query.seconds());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
-    sink.line(coupling ? coupled_line(step, frame_name())
-                       : result_line(k, step.contact, query.query().level(), measure,
-                                     query.reason(), StepOfReplay{step.time, frame_name()}));
+    output.append(coupling ? coupled_line(step, frame_name())
+                           : result_line(k, step.contact, query.query().level(), measure,
+                                         query.reason(), StepOfReplay{step.time, frame_name()}));
   }
   wall_seconds_ = clock_->seconds();
   say_at_end();

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "libvpm/file/stream.h"
 #include "libvpm/haptics/virtual_coupling.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/import_arguments.h"
 #include "tools/query/level_query.h"
-#include "tools/query/result_sink.h"
 
 namespace vpm::tools {
 
@@ -45,7 +45,7 @@ class Replay {
 
   // Step by step, a line of results each; what happens to frames is said as it happens.
   void run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-           ResultSink& sink);
+           file::Output& output);
 
   // After run().
   const Pose& last_pose() const { return last_pose_; }
