@@ -31,10 +31,34 @@ TEST(Suite, RefusesADeviceWhereItComputesOnTheCpu) {
   }
 }
 
+TEST(Suite, RefusesOptionsThatItWouldPassOver) {
+  const auto refuses = [](const char* name, auto set, const char* who_takes_it) {
+    SuiteOptions options;
+    set(options);
+    const auto fault = test::fault_of([&] { run_suite(name, options); });
+    ASSERT_TRUE(fault) << name;
+    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(fault->what()).find(who_takes_it), std::string::npos) << fault->what();
+  };
+  refuses(
+      "timing", [](SuiteOptions& o) { o.all = true; }, "accuracy, packing, scaling");
+  refuses(
+      "accuracy", [](SuiteOptions& o) { o.meshes = "folder"; }, "packing");
+  refuses(
+      "extremes", [](SuiteOptions& o) { o.data = "folder"; }, "accuracy, replay, timing");
+  refuses(
+      "replay", [](SuiteOptions& o) { o.baseline = true; }, "scaling");
+  refuses(
+      "tradeoff", [](SuiteOptions& o) { o.noise_seed = 2; }, "accuracy");
+  refuses(
+      "accuracy", [](SuiteOptions& o) { o.data = "folder"; }, "--all");
+}
+
 // Before it measures for minutes.
 TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
   for (const char* name : {"accuracy", "timing"}) {
     SuiteOptions options;
+    options.all = name == std::string("accuracy");  // which asks them then only
     options.data = "/nowhere";
     const auto fault = test::fault_of([&] { run_suite(name, options); });
     ASSERT_TRUE(fault) << name;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "libvpm/cloud/normals.h"
+#include "libvpm/core/error.h"
 #include "tools/bench/random_poses.h"
 #include "tools/bench/real_frames.h"
 #include "tools/bench/recorded_images.h"
@@ -295,6 +296,8 @@ class Accuracy {
 }  // namespace
 
 Report run_accuracy(const SuiteOptions& options) {
+  if (!options.data.empty() && !options.all)
+    throw Error(ErrorKind::usage, "accuracy asks recorded images with --all only; give it, too");
   if (!options.data.empty()) require_recorded_images(options.data);
   return Accuracy(options).run();
 }

@@ -1,21 +1,29 @@
 #include "tools/bench/suite.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "libvpm/core/error.h"
 
 namespace vpm::bench {
 namespace {
 
+// Options that only some suites take.
+enum Option : unsigned { kAll = 1, kMeshes = 2, kData = 4, kBaseline = 8, kNoiseSeed = 16 };
+
 struct Suite {
   const char* name;
   Report (*run)(const SuiteOptions& options);
+  unsigned options = 0;
   bool takes_device = false;
 };
 
-constexpr Suite kSuites[] = {{"accuracy", run_accuracy},     {"extremes", run_extremes},
-                             {"packing", run_packing},       {"replay", run_replay},
-                             {"scaling", run_scaling, true}, {"timing", run_timing},
+constexpr Suite kSuites[] = {{"accuracy", run_accuracy, kAll | kData | kNoiseSeed},
+                             {"extremes", run_extremes},
+                             {"packing", run_packing, kAll | kMeshes},
+                             {"replay", run_replay, kData},
+                             {"scaling", run_scaling, kAll | kBaseline, true},
+                             {"timing", run_timing, kData},
                              {"tradeoff", run_tradeoff}};
 
 const Suite* find_suite(const std::string& name) {
@@ -23,15 +31,34 @@ const Suite* find_suite(const std::string& name) {
   return found == std::end(kSuites) ? nullptr : found;
 }
 
+std::string names_of(const std::function<bool(const Suite&)>& is_meant) {
+  std::string names;
+  for (const Suite& suite : kSuites)
+    if (is_meant(suite)) names += (names.empty() ? "" : ", ") + std::string(suite.name);
+  return names;
+}
+
+// An option that is passed over would be taken for one that has changed nothing.
+void check_options(const Suite& suite, const SuiteOptions& given) {
+  const auto check = [&](bool is_given, Option option, const std::string& name) {
+    if (is_given && (suite.options & option) == 0) {
+      throw Error(ErrorKind::usage,
+                  std::string(suite.name) + " takes no " + name + ", which is for " +
+                      names_of([&](const Suite& other) { return (other.options & option) != 0; }) +
+                      "; leave it out");
+    }
+  };
+  check(given.all, kAll, "--all");
+  check(!given.meshes.empty(), kMeshes, "--meshes");
+  check(!given.data.empty(), kData, "--data");
+  check(given.baseline, kBaseline, "--baseline");
+  check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
+}
+
 }  // namespace
 
 std::string suite_names(bool on_device) {
-  std::string names;
-  for (const Suite& suite : kSuites) {
-    if (suite.takes_device || !on_device)
-      names += (names.empty() ? "" : ", ") + std::string(suite.name);
-  }
-  return names;
+  return names_of([&](const Suite& suite) { return suite.takes_device || !on_device; });
 }
 
 bool takes_device(const std::string& name) {
@@ -51,6 +78,7 @@ Report run_suite(const std::string& name, const SuiteOptions& options) {
                 name + " computes on the CPU only (on a device: " + suite_names(true) +
                     "); use --device cpu, or leave the option out");
   }
+  check_options(*suite, options);
   return suite->run(options);
 }
 

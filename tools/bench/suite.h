@@ -28,7 +28,8 @@ struct SuiteOptions {
 std::string suite_names(bool on_device = false);
 bool takes_device(const std::string& name);
 
-// Throws Error(usage) naming the suites there are, Error(unavailable) naming those that take a
+// Throws Error(usage) naming the suites there are, or those that take an option which this one does
+// not; Error(unavailable) naming those that take a
 // device for one that does not.
 Report run_suite(const std::string& name, const SuiteOptions& options);
 

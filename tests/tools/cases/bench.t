@@ -6,3 +6,6 @@ vpm-bench: error: scaling: WHY
 $ vpm-bench speed
 2> vpm-bench: error: there is no suite 'speed'; the suites are accuracy, extremes, packing, replay, scaling, timing, tradeoff
 [2]
+$ vpm-bench timing --noise-seed 3
+2> vpm-bench: error: timing takes no --noise-seed, which is for accuracy; leave it out
+[2]
