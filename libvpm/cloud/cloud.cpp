@@ -28,9 +28,11 @@ void validate(const Camera& camera, const std::string& name) {
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (pixels == 0 || pixels > std::numeric_limits<std::uint32_t>::max())
     refuse(name + ": the camera's image is empty or has more than 2^32 - 1 pixels");
-  if (!is_rotation(camera.to_world.rotation, kCameraRotationTolerance) ||
+  if (!is_rotation(camera.to_world.rotation, kRotationExact) ||
       !is_finite(camera.to_world.translation))
-    refuse(name + ": the camera's pose is not finite, or not a rotation and a translation");
+    refuse(name +
+           ": the camera's pose is not finite, or not a rotation and a translation; make its "
+           "rotation with rotation_from_matrix or rotation_from_quaternion");
 }
 
 void validate(const Cloud& cloud, const std::string& name) {

@@ -39,9 +39,8 @@ Cloud without_camera(Cloud cloud);
 // or radii that are not finite, radii < 0, normals that are not of unit length (tolerance 1e-3),
 // pixels outside of the image.
 void validate(const Cloud& cloud, const std::string& name);
-// A camera's rotation comes from the functions of pose.h, so it is off by rounding only.
-inline constexpr double kCameraRotationTolerance = 1e-9;
-// What it asks of the camera alone.
+// What it asks of the camera alone. Its rotation comes from the functions of pose.h, so it is exact
+// (kRotationExact).
 void validate(const Camera& camera, const std::string& name);
 
 }  // namespace vpm

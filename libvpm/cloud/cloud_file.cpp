@@ -9,6 +9,9 @@ namespace {
 constexpr file::ChunkId kOrigin("ORIG"), kPositions("POSN"), kNormals("NRML"), kRadii("RADI");
 constexpr file::ChunkId kPixels("PIXL"), kCamera("CAMR"), kDepth("DPTH");
 
+// Deviation of a camera's rotation up to which it is one, written with fewer digits.
+constexpr double kWrittenRotation = 1e-9;
+
 struct CameraRecord {
   Intrinsics intrinsics;
   Pose to_world;  // three rows of the rotation, then the translation
@@ -30,6 +33,8 @@ CloudSensor read_sensor(const file::Reader& reader) {
   const CameraRecord record = read_one<CameraRecord>(reader, kCamera);
   CloudSensor sensor{{record.intrinsics, record.width, record.height, record.to_world},
                      {record.width, record.height, reader.read<float>(kDepth, 0)}};
+  Rotation& rotation = sensor.camera.to_world.rotation;
+  if (is_rotation(rotation, kWrittenRotation)) rotation = exact_rotation(rotation);
   for (const float depth : sensor.depth.depth) {
     if (depth != 0 && !is_measured(depth))
       reader.refuse_file("the depth image holds values that are negative or not finite");

@@ -33,7 +33,6 @@ Vec3 middle_of_box(const std::vector<Vec3>& points) {
   return low + 0.5 * (high - low);
 }
 
-// Median over the distinct positions, so that repeated points change nothing.
 float median(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -70,6 +69,7 @@ std::vector<float> sampling_radii(const std::vector<Vec3f>& positions) {
   parallel_for(places.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) of_place[i] = radius(places[i]);
   });
+  // Over the distinct positions, so that repeated points change nothing.
   const auto largest = static_cast<float>(kLargestRadius * median(of_place));
   parallel_for(positions.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     const auto key = [](const Vec3f& p) { return std::tuple(p.x, p.y, p.z); };

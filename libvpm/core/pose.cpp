@@ -83,6 +83,10 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
   return nearest_rotation(given);
 }
 
+Rotation exact_rotation(const Rotation& rounded) {
+  return is_rotation(rounded, kRotationExact) ? rounded : nearest_rotation(rounded);
+}
+
 Quaternion quaternion_from_rotation(const Rotation& r) {
   const double xx = r.row0.x, yy = r.row1.y, zz = r.row2.z;
   const std::array<double, 4> squares{1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz,

@@ -70,11 +70,17 @@ inline constexpr double kRotationTolerance = 0.02;
 // Deviation that is mere decimal rounding and not worth a note.
 inline constexpr double kRotationRounding = 1e-5;
 
+// Deviation of rotations that were computed in double.
+inline constexpr double kRotationExact = 1e-13;
+
 // The rotation of a quaternion or a 3x3 matrix (row-major), normalised. `deviation` (may be null)
 // receives how far the input was from a rotation. Throws Error(refused) for non-finite, zero,
 // far-off or mirrored input.
 Rotation rotation_from_quaternion(const Quaternion& q, double* deviation = nullptr);
 Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation = nullptr);
+// The nearest rotation to one that is rounded (is_rotation, kRotationTolerance); itself where it is
+// exact.
+Rotation exact_rotation(const Rotation& rounded);
 Quaternion quaternion_from_rotation(const Rotation& r);  // w >= 0
 
 // Parses "tx,ty,tz,qx,qy,qz,qw". Throws Error: usage where it is not seven numbers, refused where

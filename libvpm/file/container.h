@@ -4,13 +4,16 @@
 // each; chunks aligned to 64 bytes. Little-endian. Identical input gives identical bytes.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace vpm::file {
@@ -22,7 +25,7 @@ struct ChunkId {
   char name[4];
   consteval ChunkId(const char (&text)[5]) : name{text[0], text[1], text[2], text[3]} {}
   constexpr ChunkId(const char* text, std::nullptr_t) : name{text[0], text[1], text[2], text[3]} {}
-  friend constexpr bool operator==(const ChunkId&, const ChunkId&) = default;
+  friend constexpr auto operator<=>(const ChunkId&, const ChunkId&) = default;
 };
 
 class Writer {
@@ -88,8 +91,6 @@ class Reader {
 
  private:
   struct Entry {
-    ChunkId id;
-    std::uint32_t index;
     std::uint32_t element_size;
     std::span<const std::byte> data;
   };
@@ -102,7 +103,7 @@ class Reader {
   std::vector<std::byte> bytes_;
   std::string name_;
   nlohmann::json header_;
-  std::vector<Entry> entries_;
+  std::map<std::pair<ChunkId, std::uint32_t>, Entry> entries_;
 };
 
 }  // namespace vpm::file

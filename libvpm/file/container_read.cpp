@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -15,6 +14,9 @@ namespace vpm::file {
 namespace {
 
 constexpr const char* kAgain = "; copy or make the file again";
+
+// Copies of deeper ones could take all of a thread's stack.
+constexpr int kDeepestHeader = 32;
 
 std::string quoted(ChunkId id, std::uint32_t index) {
   std::string text = "chunk ";
@@ -117,12 +119,18 @@ void Reader::parse_directory(std::uint64_t chunk_count, std::uint64_t header_siz
     refuse_file(std::string("the chunk table or the header is damaged (checksum)") + kAgain);
 
   const char* json = reinterpret_cast<const char*>(bytes_.data()) + sizeof(Preamble) + table_size;
-  header_ = nlohmann::json::parse(json, json + header_size, nullptr, false);
+  header_ = nlohmann::json::parse(
+      json, json + header_size,
+      [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+        if (depth > kDeepestHeader)
+          refuse_file(std::string("the header is nested too deeply") + kAgain);
+        return true;
+      },
+      false);
   if (!header_.is_object()) refuse_file(std::string("the header is not a JSON object") + kAgain);
   if (header_.value("unit", nlohmann::json()) != "m")
     refuse_file("the header's unit is not \"m\"; vpm files are in metres");
 
-  std::set<std::pair<std::string, std::uint32_t>> known;
   std::size_t end = sizeof(Preamble) + table_size + header_size;
   for (std::uint64_t k = 0; k < chunk_count; ++k) {
     ChunkEntry entry;
@@ -138,30 +146,27 @@ void Reader::parse_directory(std::uint64_t chunk_count, std::uint64_t header_siz
     const std::span<const std::byte> data = all.subspan(entry.offset, entry.size);
     if (checksum(data) != entry.checksum || !is_zero(all.subspan(end, entry.offset - end)))
       refuse_file(chunk + " is damaged (checksum)" + kAgain);
-    if (!known.emplace(std::string(entry.id, sizeof(entry.id)), entry.index).second)
+    if (!entries_.try_emplace({id, entry.index}, Entry{entry.element_size, data}).second)
       refuse_file(chunk + " is there twice" + kAgain);
-    entries_.push_back({id, entry.index, entry.element_size, data});
     end = entry.offset + entry.size;
   }
   if (end != all.size()) refuse_file(std::string("bytes follow the last chunk") + kAgain);
 }
 
 bool Reader::has(ChunkId id, std::uint32_t index) const {
-  return std::any_of(entries_.begin(), entries_.end(),
-                     [&](const Entry& e) { return e.id == id && e.index == index; });
+  return entries_.contains({id, index});
 }
 
 std::span<const std::byte> Reader::find(ChunkId id, std::uint32_t index,
                                         std::size_t element_size) const {
-  for (const Entry& entry : entries_) {
-    if (!(entry.id == id && entry.index == index)) continue;
-    if (entry.element_size != element_size) {
-      refuse_file(quoted(id, index) + " has elements of " + std::to_string(entry.element_size) +
-                  " bytes instead of " + std::to_string(element_size) + kAgain);
-    }
-    return entry.data;
+  const auto found = entries_.find({id, index});
+  if (found == entries_.end()) refuse_file(quoted(id, index) + " is missing" + kAgain);
+  const Entry& entry = found->second;
+  if (entry.element_size != element_size) {
+    refuse_file(quoted(id, index) + " has elements of " + std::to_string(entry.element_size) +
+                " bytes instead of " + std::to_string(element_size) + kAgain);
   }
-  refuse_file(quoted(id, index) + " is missing" + kAgain);
+  return entry.data;
 }
 
 void Reader::copy_bytes(void* to, std::span<const std::byte> from) {

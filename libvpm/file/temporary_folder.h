@@ -17,7 +17,11 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     // mkdtemp puts other letters in place of the last six.
-    std::string name = (std::filesystem::temp_directory_path() / "vpm-XXXXXX").string();
+    std::error_code fault;
+    std::string name = (std::filesystem::temp_directory_path(fault) / "vpm-XXXXXX").string();
+    if (fault)
+      throw Error(ErrorKind::cannot_write,
+                  "there is no folder for temporary files: " + fault.message() + "; set TMPDIR");
     if (::mkdtemp(name.data()) == nullptr)
       throw Error(ErrorKind::cannot_write, "cannot make a folder like " + name);
     folder_ = name;

@@ -15,6 +15,11 @@ void check_positive(double value, const char* name) {
     throw Error(ErrorKind::usage, std::string("coupling: ") + name + " must be a positive number");
 }
 
+void check_device(const Pose& pose) {
+  if (!is_rotation(pose.rotation, kRotationRounding) || !is_in_range(pose.translation))
+    refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
+}
+
 // N or N m: beyond, squares and products with lengths would overflow.
 constexpr double kLargestContact = 0x1p200;
 
@@ -61,6 +66,9 @@ VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 cent
                                  const Pose& device)
     : parameters_(parameters), center_of_mass_(center_of_mass) {
   validate(parameters);
+  check_device(device);
+  if (!is_in_range(center_of_mass))
+    refuse("coupling: the tool's centre of mass is not finite or further than 2^100 m away");
   device_ = {device.rotation, device * center_of_mass_};
   tool_ = device_;
 }
@@ -80,8 +88,7 @@ double VirtualCoupling::stored() const {
 }
 
 Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
-  if (!is_rotation(device.rotation, kRotationRounding) || !is_in_range(device.translation))
-    refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
+  check_device(device);
   if (!(is_within(contact.force, kLargestContact) && is_within(contact.torque, kLargestContact)))
     refuse("coupling: the contact's force or torque is not finite, or absurdly large");
   VirtualCoupling next = *this;

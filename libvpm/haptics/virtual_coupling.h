@@ -55,7 +55,8 @@ struct CouplingEnergy {
 
 class VirtualCoupling {
  public:
-  // The tool starts at rest where the device is. Throws Error(usage) for what validate() refuses.
+  // The tool starts at rest where the device is. Throws Error(usage) for what validate() refuses,
+  // Error(refused) for a pose or a centre of mass that is not finite or not rigid.
   VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass, const Pose& device);
 
   // The tool's pose now: ask the measure here.

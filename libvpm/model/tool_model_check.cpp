@@ -178,11 +178,12 @@ class LevelCheck {
   // What the fixed-point sums of a query rely on: no part lies beyond the tool, and the parts
   // together are no more than the whole.
   void sums() const {
-    const double farthest = kFarthestPart * model_.reach;
+    const double farthest = kFarthestPart * model_.reach,
+                 of_sphere = (1 + kSumTolerance) * model_.reach;
     double balls = 0, shares = 0, weights = 0;
     for (std::size_t i = 0; i < level_.sphere_count; ++i) {
       const Sphere& sphere = model_.spheres[i];
-      if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= farthest) ||
+      if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= of_sphere) ||
           !(level_.share_reach[i] <= 2 * farthest))
         fail("sphere " + std::to_string(i) + " or its share lies beyond the tool's reach");
       balls += volume(sphere);

@@ -76,7 +76,7 @@ class PointsOfSphere {
     const Near near = near_to(sphere);
     std::uint32_t found = 0;
     cloud_.for_ranges_in_ball(
-        near.center, sphere.radius,
+        near.center, near.radius,
         [&](std::uint32_t begin, std::uint32_t end) { found += count(near, begin, end); });
     return found;
   }
@@ -86,20 +86,21 @@ class PointsOfSphere {
   struct Near {
     const Sphere& sphere;
     Vec3 center;
-    double squared;
+    double radius;
   };
   Near near_to(const Sphere& sphere) const {
     constexpr double kRounding = 1e-9;  // far above that of double
     const Vec3 center = to_cloud_ * sphere.center;
-    const double radius = sphere.radius + kRounding * (sphere.radius + norm(center));
-    return {sphere, center, radius * radius};
+    const double rounded = sphere.radius + norm(sphere.center) + norm(center);
+    return {sphere, center, sphere.radius + kRounding * rounded};
   }
   // Few points are near enough for the exact test.
   std::uint32_t count(const Near& near, std::uint32_t begin, std::uint32_t end) const {
     std::uint32_t found = 0;
+    const double squared = near.radius * near.radius;
     for (std::uint32_t k = begin; k < end; ++k) {
       const Vec3 x = widen(cloud_.positions()[k]);
-      if (squared_norm(x - near.center) < near.squared)
+      if (squared_norm(x - near.center) < squared)
         found += strictly_inside(near.sphere, to_tool_ * x);
     }
     return found;

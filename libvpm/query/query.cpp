@@ -10,7 +10,9 @@
 namespace vpm {
 namespace {
 
-void check_pose(const Pose& pose) {
+// The pose that is computed with. What prunes relies on rotations that are exact, and not all of it
+// is done everywhere: a rounded one would not have the same bits on a device.
+Pose sound(const Pose& pose) {
   if (!is_in_range(pose.translation)) {
     refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
   }
@@ -19,6 +21,7 @@ void check_pose(const Pose& pose) {
         "pose: its rotation is not finite, not orthonormal or mirrors; make it with "
         "rotation_from_matrix or rotation_from_quaternion");
   }
+  return {exact_rotation(pose.rotation), pose.translation};
 }
 
 }  // namespace
@@ -52,8 +55,8 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   }
 }
 
-Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
-  check_pose(pose);
+Result Query::run(const PreparedCloud& cloud, const Pose& given) {
+  const Pose pose = sound(given);
   check_cloud(cloud);
   Result result;
   if (device_) {
@@ -69,8 +72,7 @@ Result Query::run(const PreparedCloud& cloud, const Pose& pose) {
 
 Result Query::run(const DepthFrame& frame, const Pose& pose) {
   if (!device_) return run(frame.cloud(), pose);
-  check_pose(pose);
-  Result result = device_->run_frame(frame, pose);
+  Result result = device_->run_frame(frame, sound(pose));
   finish(result);
   return result;
 }
@@ -101,10 +103,11 @@ void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
   }
   // What a device would wait for.
   constexpr std::size_t kPosesPerTask = 4096;
+  sound_.resize(poses.size());
   parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (const Pose& pose : poses.subspan(begin, end - begin)) check_pose(pose);
+    for (std::size_t k = begin; k < end; ++k) sound_[k] = sound(poses[k]);
   });
-  on_device();
+  on_device(sound_);
   parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) finish(results[k]);
   });
@@ -113,12 +116,13 @@ void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
 void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
                 std::span<Result> results) {
   check_cloud(cloud);
-  run_batch(&cloud, poses, results, [&] { device_->run(cloud, poses, results); });
+  run_batch(&cloud, poses, results,
+            [&](std::span<const Pose> sound) { device_->run(cloud, sound, results); });
 }
 
 void Query::run(const DepthFrame& frame, std::span<const Pose> poses, std::span<Result> results) {
   run_batch(device_ ? nullptr : &frame.cloud(), poses, results,
-            [&] { device_->run_frame(frame, poses, results); });
+            [&](std::span<const Pose> sound) { device_->run_frame(frame, sound, results); });
 }
 
 std::span<const SphereState> Query::states() const {

@@ -33,9 +33,10 @@ class Query {
   // to stand by for too long. The model must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
-  // `pose` maps tool to world coordinates. Throws Error(refused) for one that is not finite, not
-  // rigid (tolerance kRotationRounding) or further than kLargestLength from the origin, and
-  // where shadows are to be solid of points without a camera.
+  // `pose` maps tool to world coordinates; a rotation that is rounded is taken for the nearest one
+  // (exact_rotation). Throws Error(refused) for one that is not finite, not rigid (tolerance
+  // kRotationRounding) or further than kLargestLength from the origin, and where shadows are to be
+  // solid of points without a camera.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   // The results of many poses, in their order: the bits of one by one, but a device takes thousands
@@ -52,6 +53,7 @@ class Query {
 
   const Level& level() const { return level_; }
   // Of the last run of one pose, one per sphere of the level; from a device they are fetched here.
+  // A batch leaves them undefined.
   std::span<const SphereState> states() const;
 
  private:
@@ -66,6 +68,7 @@ class Query {
   std::unique_ptr<PaperMeasure> paper_;
   std::unique_ptr<RefinedMeasure> refined_;
   std::unique_ptr<DeviceMeasure> device_;
+  std::vector<Pose> sound_;  // of a batch
   mutable std::vector<SphereState> states_;
 };
 

@@ -12,8 +12,8 @@ enum class Measure { refined, paper };
 
 enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
 
-// Force and torque per unit of stiffness, in world axes; the torque is about the tool's centre of
-// mass. Both push the tool into free space. m^3 and m^4.
+// Force and torque in world axes, the torque about the tool's centre of mass; both push the tool
+// into free space. N and N m, or m^3 and m^4 where QueryOptions::stiffness is 1, its default.
 struct Wrench {
   Vec3 force, torque;
 

@@ -17,7 +17,7 @@ struct SceneScale {
   double curvature = 0;  // 1/m: larger principal curvature, which nine tenths of the surface keep
 
   // The smallest sphere that the points resolve: centred on the surface it holds a point, and
-  // centred its radius behind it, it is on the right side of the points in 19 of 20 cases.
+  // centred its radius behind it, it is on the wrong side of the points less than once in 40 cases.
   double smallest_radius() const;
   // The largest sphere within which the surface is a plane but for what the points do not resolve;
   // infinite for a plane.

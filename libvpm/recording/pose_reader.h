@@ -11,8 +11,8 @@
 
 namespace vpm {
 
-// Poses from a stream, one at a time, so that a pipe is answered line by line. Told apart by the
-// first line:
+// Poses from a stream, one at a time, so that a pipe is answered line by line. Each line tells what
+// it is:
 //   JSON Lines   [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
 //                by row]}; "time" in an object, or an eighth number in front, is the time
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)

@@ -20,6 +20,13 @@ fs::file_status status_of(const fs::path& path) {
   return fs::status(path, unknown);
 }
 
+// Or what cannot be looked at: that is said when it is read.
+bool is_file(const fs::path& path) {
+  const fs::file_type type = status_of(path).type();
+  return type == fs::file_type::regular || type == fs::file_type::none ||
+         type == fs::file_type::unknown;
+}
+
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
   TextCursor cursor(text);
@@ -72,20 +79,21 @@ std::string stem_of(const fs::path& path) {
 }
 
 // Not a folder, nor what one waits for, like a pipe. What is broken is said when it is read.
-bool may_be_read(const fs::directory_entry& entry) {
-  const fs::file_type type = status_of(entry.path()).type();
-  return type == fs::file_type::regular || type == fs::file_type::not_found ||
-         type == fs::file_type::none || type == fs::file_type::unknown;
+bool may_be_read(const fs::path& path) {
+  return is_file(path) || status_of(path).type() == fs::file_type::not_found;
 }
 
 std::vector<fs::path> files_of(const fs::path& folder) {
   std::vector<fs::path> files, depth;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (!is_frame(entry.path()) || !may_be_read(entry)) continue;
-    files.push_back(entry.path());
-    if (entry.path().filename().string().find("depth") != std::string::npos)
-      depth.push_back(entry.path());
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
+       entry.increment(fault)) {
+    const fs::path& path = entry->path();
+    if (!is_frame(path) || !may_be_read(path)) continue;
+    files.push_back(path);
+    if (path.filename().string().find("depth") != std::string::npos) depth.push_back(path);
   }
+  if (fault) refuse("cannot read " + folder.string() + ": " + fault.message());
   if (!depth.empty()) files = std::move(depth);
   std::sort(files.begin(), files.end());
   return files;
@@ -140,7 +148,7 @@ void number_frames(const std::vector<fs::path>& files, double frame_rate, Record
 
 void read_folder(const fs::path& folder, double frame_rate, Recording& recording) {
   for (const char* list : {"depth.txt", "associations.txt"}) {
-    if (fs::is_regular_file(folder / list)) return read_list(folder / list, recording);
+    if (is_file(folder / list)) return read_list(folder / list, recording);
   }
   const std::vector<fs::path> files = files_of(folder);
   if (files.empty())
@@ -206,13 +214,13 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
                return fs::exists(status_of(pose_beside(frame)));
              })) {
     place_by_files(recording);
-  } else if (recording.has_clock && fs::is_regular_file(folder / "groundtruth.txt")) {
+  } else if (recording.has_clock && is_file(folder / "groundtruth.txt")) {
     place_by_path((folder / "groundtruth.txt").string(), recording);
   }
 }
 
 void read_intrinsics(const fs::path& path, Recording& recording) {
-  if (!fs::is_regular_file(path)) return;
+  if (!is_file(path)) return;
   const std::vector<std::byte> bytes = file::read_all(path.string());
   std::vector<double> n;
   for (const std::string_view word : split_words(as_text(bytes)))
@@ -225,7 +233,7 @@ void read_intrinsics(const fs::path& path, Recording& recording) {
 }  // namespace
 
 Recording read_recording(const std::string& path, const RecordingOptions& options) {
-  const bool is_folder = fs::is_directory(path);
+  const bool is_folder = fs::is_directory(status_of(path));
   const fs::path folder = is_folder ? fs::path(path) : fs::path(path).parent_path();
   Recording recording;
   if (is_folder) {

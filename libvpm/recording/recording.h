@@ -37,8 +37,9 @@ struct Recording {
 struct RecordingOptions {
   double frame_rate = 30;  // of numbered frames, per second
   // Poses of the camera: TUM text, interpolated at the frames' times, or one pose for each frame.
-  // Otherwise NAME.pose.txt beside each frame (4x4; NAME is the frame's without its ending, or what
-  // comes before the first dot where it is no time), or groundtruth.txt in the folder, or `camera`.
+  // Otherwise `camera`, for all frames. Otherwise NAME.pose.txt beside each frame (4x4; NAME is the
+  // frame's without its ending, or what comes before the first dot where it is no time), or
+  // groundtruth.txt in the folder.
   std::string camera_poses;
   std::optional<Pose> camera;
 };

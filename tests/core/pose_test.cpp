@@ -120,6 +120,20 @@ TEST(Matrices, NonsenseIsRefused) {
     EXPECT_EQ(kind_of_fault([&] { rotation_from_matrix(m); }), ErrorKind::refused);
 }
 
+TEST(Rotations, AreMadeExactWhereTheyAreNot) {
+  const Rotation exact = rotation_from_quaternion({0.5, 0.1, -0.7, 0.5 * std::sqrt(1.0)});
+  const Rotation again = exact_rotation(exact);
+  EXPECT_TRUE(again.row0 == exact.row0 && again.row1 == exact.row1 && again.row2 == exact.row2);
+  const auto rounded = [](Vec3 row) { return widen(narrow(row)); };  // to float
+  const Rotation of_floats{rounded(exact.row0), rounded(exact.row1), rounded(exact.row2)};
+  EXPECT_FALSE(is_rotation(of_floats, kRotationExact));
+  const Rotation mended = exact_rotation(of_floats);
+  EXPECT_TRUE(is_rotation(mended, kRotationExact));
+  EXPECT_LT(norm(mended.row0 - exact.row0) + norm(mended.row1 - exact.row1) +
+                norm(mended.row2 - exact.row2),
+            1e-6);
+}
+
 TEST(Poses, InverseUndoes) {
   for (const Quaternion& q : random_quaternions()) {
     const Pose pose{rotation_from_quaternion(q), {0.1, -20, 3000}};

@@ -201,6 +201,32 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   }
 }
 
+// Rotations in single precision, as many programs have them.
+TEST(RoundedPosesOnDevice, GiveTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const Cloud seen = testing::see(synthetic::make_scene("step"));
+  const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
+  for (const bool camera : {true, false}) {
+    const PreparedCloud cloud(camera ? seen : without_camera(seen));
+    for (const Measure measure : {Measure::refined, Measure::paper}) {
+      Query on_cpu(tool, {.measure = measure}),
+          on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
+      std::vector<Pose> poses;
+      std::vector<Result> expected;
+      for (int k = 0; k < 60; ++k) {
+        SCOPED_TRACE(k);
+        Pose pose = pose_of(k);
+        for (Vec3* row : {&pose.rotation.row0, &pose.rotation.row1, &pose.rotation.row2})
+          *row = widen(narrow(*row));
+        poses.push_back(pose);
+        expected.push_back(on_cpu.run(cloud, pose));
+        expect_equal(expected.back(), on_device.run(cloud, pose));
+      }
+      expect_same_batch(on_device, cloud, poses, expected);
+    }
+  }
+}
+
 TEST(SolidShadowsOnDevice, GiveTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   constexpr std::uint32_t kStandbyMicroseconds = 2000;

@@ -45,6 +45,14 @@ class Spoiled {
     return *this;
   }
 
+  Spoiled& set_header(std::string json) {
+    if (json.size() > preamble.header_size) throw std::logic_error(json);
+    json.resize(preamble.header_size, ' ');
+    std::memcpy(bytes_.data() + sizeof(Preamble) + table.size() * sizeof(ChunkEntry), json.data(),
+                json.size());
+    return *this;
+  }
+
   std::vector<std::byte> bytes() {
     for (ChunkEntry& e : table) {
       if (e.offset <= bytes_.size() && e.size <= bytes_.size() - e.offset)
@@ -154,6 +162,10 @@ void add_containers(std::vector<RefusedFile>& all, const std::vector<std::byte>&
   add("chunk_twice", "chunk SPHR 0 is there twice",
       with_entry(good, [](ChunkEntry& e) { std::memcpy(e.id, "SPHR", 4); }));
   add("header_not_json", "not a JSON object", Spoiled(good).replace_in_header("{", "<").bytes());
+  add("header_too_deep", "nested too deeply",
+      Spoiled(good)
+          .set_header("{\"unit\":\"m\",\"x\":" + std::string(33, '[') + std::string(33, ']') + "}")
+          .bytes());
   add("header_other_unit", "unit is not \"m\"",
       Spoiled(good).replace_in_header("\"unit\":\"m\"", "\"unit\":\"k\"").bytes());
 }
@@ -177,6 +189,7 @@ void add_models(std::vector<RefusedFile>& all, const std::vector<std::byte>& goo
   };
   using u32 = std::uint32_t;
   add("volume_negative", "volume", Spoiled(good).set("TOOL", 0, 0, -1.0));
+  add("sphere_beyond_reach", "sphere 0 or its share lies beyond", Spoiled(good).set("TOOL", 0, 32, 0.1));
   add("level_too_large", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{9}));
   add("level_not_ascending", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{4}));
   add("edge_out_of_range", "neighbours of row 0", Spoiled(good).set("EDGN", 1, 8, kMost));

@@ -145,6 +145,15 @@ TEST(VirtualCoupling, RefusesWhatIsNoCoupling) {
   EXPECT_THROW(VirtualCoupling(wrong, {}, {}), Error);
 }
 
+TEST(VirtualCoupling, RefusesToStartAtNoPose) {
+  Pose start = at({0, 0, std::nan("")});
+  EXPECT_THROW(VirtualCoupling(parameters(), {}, start), Error);
+  start = at({0, 0, 0});
+  start.rotation.row0.x = 2;
+  EXPECT_THROW(VirtualCoupling(parameters(), {}, start), Error);
+  EXPECT_THROW(VirtualCoupling(parameters(), {0, std::nan(""), 0}, at({0, 0, 0})), Error);
+}
+
 // One bad sample of a device's driver, or of a measure, must not be the end.
 TEST(VirtualCoupling, GoesOnAfterASampleThatIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = HUGE_VAL;

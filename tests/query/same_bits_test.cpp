@@ -57,6 +57,27 @@ void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, dou
   }
 }
 
+// As a program gives it that keeps matrices in single precision.
+Pose in_floats(const Pose& pose) {
+  const auto rounded = [](Vec3 row) { return widen(narrow(row)); };
+  const Rotation& r = pose.rotation;
+  return {{rounded(r.row0), rounded(r.row1), rounded(r.row2)}, pose.translation};
+}
+
+TEST_P(SameBits, ForARoundedRotationAndTheNearestOne) {
+  const ToolModel tool = lattice_cube(0.2, 6, 4);
+  const PreparedCloud prepared(cloud());
+  QueryOptions options;
+  options.measure = GetParam().measure;
+  Query query(tool, options);
+  for (int k = 0; k < 12; ++k) {
+    const Pose rounded = in_floats({generic_rotation(), {0.01, -0.02, 0.84 + 0.015 * k}});
+    const Pose nearest{exact_rotation(rounded.rotation), rounded.translation};
+    ASSERT_FALSE(rounded.rotation.row0 == nearest.rotation.row0);
+    testing::expect_equal(query.run(prepared, nearest), query.run(prepared, rounded));
+  }
+}
+
 TEST_P(SameBits, ForAnyNumberOfThreads) {
   const ToolModel tool = lattice_cube(0.2, 8, 2);
   const Cloud seen = cloud();

@@ -51,6 +51,22 @@ TEST_F(ARecording, OfNumberedFramesHasNumbersForTimes) {
   }
 }
 
+TEST_F(ARecording, ThatCannotBeReadIsSaid) {
+  std::filesystem::create_symlink("loop", path("loop"));
+  EXPECT_NE(refusal([&] { read_recording(path("loop"), {}); }).find("loop"), std::string::npos);
+  write("3.png");
+  std::filesystem::create_symlink("depth.txt", path("depth.txt"));
+  EXPECT_NE(refusal([&] { read(); }).find("depth.txt"), std::string::npos);
+}
+
+// One pose that is given for all frames counts before those beside them.
+TEST_F(ARecording, TakesThePoseThatIsGivenForTheCamera) {
+  write("3.png");
+  write("3.pose.txt", kIdentity);
+  const Recording r = read({30, "", Pose{{}, {1, 2, 3}}});
+  EXPECT_EQ(r.frames.at(0).camera->translation, (Vec3{1, 2, 3}));
+}
+
 TEST_F(ARecording, OfEveryThirdFrameMissesNone) {
   for (const char* name : {"3.png", "6.png", "9.png"}) write(name);
   EXPECT_EQ(read().missing, 0u);

@@ -77,7 +77,6 @@ struct PoseFrame {
   Pose to_tool;           // from coordinates about the cloud's origin
   Vec3 center;            // of mass, about the cloud's origin
   PixelRectangle pixels;  // that the tool can reach; of organised clouds
-  Rotation tool_to_world;
 };
 
 __host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud,
@@ -88,7 +87,6 @@ __host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame
   frame.to_surface = relative_to(surface, from_center_of_mass);
   frame.to_tool = relative_to(pose, {{}, cloud.origin});
   frame.center = pose.rotation * center_of_mass + (pose.translation - cloud.origin);
-  frame.tool_to_world = pose.rotation;
   if (cloud.is_organised) {
     const Vec3 at = relative_to(cloud.camera_to_world, {{}, cloud.origin}) * frame.center;
     frame.pixels =

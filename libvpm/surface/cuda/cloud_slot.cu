@@ -26,7 +26,7 @@ bool is_plain(const Camera& camera) {
 
 // As validate() and PreparedCloud ask of a camera.
 bool is_sound_pose(const Pose& pose) {
-  return is_rotation(pose.rotation, kCameraRotationTolerance) && is_in_range(pose.translation);
+  return is_rotation(pose.rotation, kRotationExact) && is_in_range(pose.translation);
 }
 
 constexpr std::size_t whole_groups(std::size_t pixels) {
