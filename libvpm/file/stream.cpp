@@ -6,9 +6,11 @@
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "libvpm/core/error.h"
@@ -142,20 +144,23 @@ class Output::Target {
 
 namespace {
 
+// A descriptor of this process is written where it stands, not opened anew: a file behind it would
+// be written from its beginning.
 class Straight : public Output::Target {
  public:
   explicit Straight(const std::string& path)
-      : path_(path), opened_(is_standard() ? -1 : ::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
-    if (!is_standard() && opened_ < 0) cannot_write(path, errno);
+      : path_(path),
+        own_(descriptor_of(path)),
+        opened_(own_ ? -1 : ::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (!own_ && opened_ < 0) cannot_write(path, errno);
   }
   void append(std::span<const std::byte> bytes) override {
-    write_to(is_standard() ? STDOUT_FILENO : static_cast<int>(opened_), bytes, path_);
+    write_to(own_.value_or(opened_), bytes, path_);
   }
 
  private:
-  bool is_standard() const { return path_ == "-"; }
-
   std::string path_;
+  std::optional<int> own_;
   Descriptor opened_;
 };
 
@@ -196,7 +201,7 @@ class WholeFile : public Output::Target {
 
 std::unique_ptr<Output::Target> open_target(const std::string& path) {
   if (path.empty()) cannot_write("the output", std::string("its name is empty"));
-  if (path == "-" || path == "/dev/stdout") return std::make_unique<Straight>("-");
+  if (descriptor_of(path)) return std::make_unique<Straight>(path);
   std::error_code fault;
   const fs::file_status status = fs::status(path, fault);
   if (fs::is_directory(status)) cannot_write(path, EISDIR);
@@ -205,6 +210,20 @@ std::unique_ptr<Output::Target> open_target(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<int> descriptor_of(std::string_view path) {
+  if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+  if (path == "/dev/stderr") return STDERR_FILENO;
+  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+    if (!path.starts_with(folder)) continue;
+    const std::string_view number = path.substr(folder.size());
+    int descriptor = 0;
+    const auto [end, fault] =
+        std::from_chars(number.data(), number.data() + number.size(), descriptor);
+    if (fault == std::errc() && end == number.data() + number.size()) return descriptor;
+  }
+  return std::nullopt;
+}
 
 std::vector<std::byte> read_all(const std::string& path) {
   const bool is_input = path == "-";

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@ namespace vpm::file {
 
 // Throws Error(refused) where the file is not there, is a folder, or cannot be read.
 std::vector<std::byte> read_all(const std::string& path);
+
+// Of a path that leads to a descriptor of this process, as an output: "-", /dev/stdout, /dev/fd/3.
+std::optional<int> descriptor_of(std::string_view path);
 
 // What is written in parts. Atomic for a path: the old file or the whole new one, whatever
 // interrupts the run; parts wait in a temporary file beside it. A pipe, a device (/dev/stdout,

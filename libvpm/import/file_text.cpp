@@ -56,6 +56,16 @@ std::optional<std::string_view> TextCursor::line() {
   return line;
 }
 
+std::vector<std::string_view> TextCursor::row() {
+  std::vector<std::string_view> words;
+  while (words.empty()) {
+    const std::optional<std::string_view> next = line();
+    if (!next) break;
+    words = split_words(*next);
+  }
+  return words;
+}
+
 std::string_view TextCursor::word() {
   const std::size_t begin = std::min(text_.find_first_not_of(kBlank, at_), text_.size());
   at_ = std::min(text_.find_first_of(kBlank, begin), text_.size());

@@ -28,6 +28,8 @@ class TextCursor {
 
   // The next line without its end ("\n" or "\r\n"). Nothing at the end of the file.
   std::optional<std::string_view> line();
+  // The words of the next line that has any; none at the end of the file.
+  std::vector<std::string_view> row();
   // The next word, over ends of lines. Empty at the end of the file.
   std::string_view word();
 

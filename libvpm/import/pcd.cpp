@@ -221,12 +221,12 @@ void PcdParser::read_ascii() {
   if (header_.points > (cursor_.remaining() + 1) / 2 / header_.point_values)
     fail("is truncated: " + std::to_string(header_.points) + " points cannot fit into the file");
   allocate();
-  std::vector<std::string_view> words(header_.point_values);
   for (std::size_t i = 0; i < header_.points; ++i) {
-    for (std::string_view& word : words) {
-      word = cursor_.word();
-      if (word.empty()) fail("is truncated at point " + std::to_string(i));
-    }
+    const std::vector<std::string_view> words = cursor_.row();
+    if (words.empty()) fail("is truncated at point " + std::to_string(i));
+    if (words.size() != header_.point_values)
+      fail("point " + std::to_string(i) + " has " + std::to_string(words.size()) +
+           " numbers in its line, the header says " + std::to_string(header_.point_values));
     for (std::size_t c = 0; c < kColumns.size(); ++c) {
       if (column_[c] == nullptr) continue;
       const std::string_view word = words[column_[c]->first];
@@ -238,6 +238,7 @@ void PcdParser::read_ascii() {
       value(c, i) = *number;
     }
   }
+  if (!cursor_.row().empty()) fail("has more points than its header says");
 }
 
 void PcdParser::read_values(const std::byte* data, bool by_field) {

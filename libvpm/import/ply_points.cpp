@@ -60,6 +60,7 @@ class PlyParser {
       for (std::uint64_t row = 0; row < element.count; ++row)
         read_row(element, row, &element == &vertices);
     }
+    if (ascii_ && !cursor_.row().empty()) fail("has more rows than its header says");
     return std::move(points_);
   }
 
@@ -78,6 +79,8 @@ class PlyParser {
   const std::string& name_;
   TextCursor cursor_;
   std::size_t at_ = 0;
+  std::vector<std::string_view> row_;  // of text: a line
+  std::size_t word_ = 0;               // of it, that comes next
   bool ascii_ = false, big_endian_ = false, has_normals_ = false;
   std::vector<Element> elements_;
   PointSet points_;
@@ -163,9 +166,8 @@ void PlyParser::check_count(const Element& element) const {
 double PlyParser::read_value(ScalarType type, const Element& element, std::uint64_t row) {
   const auto where = [&] { return element.name.substr(0, 40) + " " + std::to_string(row); };
   if (ascii_) {
-    const std::string_view word = cursor_.word();
-    at_ = cursor_.offset();
-    if (word.empty()) fail("is truncated at " + where());
+    if (word_ == row_.size()) fail(where() + " has fewer numbers in its line than the header says");
+    const std::string_view word = row_[word_++];
     const std::optional<double> number = to_number(word);
     if (!number) fail(where() + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
     return *number;
@@ -177,6 +179,13 @@ double PlyParser::read_value(ScalarType type, const Element& element, std::uint6
 }
 
 void PlyParser::read_row(const Element& element, std::uint64_t row, bool keep) {
+  if (ascii_) {
+    row_ = cursor_.row();
+    word_ = 0;
+    at_ = cursor_.offset();
+    if (row_.empty())
+      fail("is truncated at " + element.name.substr(0, 40) + " " + std::to_string(row));
+  }
   for (const Property& property : element.properties) {
     if (property.count_type.size == 0) {
       const double value = read_value(property.type, element, row);
@@ -189,6 +198,9 @@ void PlyParser::read_row(const Element& element, std::uint64_t row, bool keep) {
            " has no sound length");
     for (double i = 0; i < length; ++i) read_value(property.type, element, row);
   }
+  if (ascii_ && word_ < row_.size())
+    fail(element.name.substr(0, 40) + " " + std::to_string(row) +
+         " has more numbers in its line than the header says");
 }
 
 void PlyParser::store(int column, std::uint64_t row, double value) {

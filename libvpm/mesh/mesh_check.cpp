@@ -155,6 +155,15 @@ class Check {
     const double max_hole = options_.max_hole ? *options_.max_hole / options_.scale
                             : is_flood        ? kDefaultMaxHole * longest
                                               : HUGE_VAL;
+    if (is_flood && max_hole > diagonal_) {
+      char text[160];
+      std::snprintf(
+          text, sizeof text,
+          "--max-hole %.3g m is more than the mesh is across, %.3g m: nothing of it would "
+          "be reached from outside; is it in metres?",
+          options_.scale * max_hole, options_.scale * diagonal_);
+      throw Error(ErrorKind::usage, text);
+    }
     refuse_wide_holes(max_hole);
     VoxelRepair done;
     if (is_flood) {
@@ -208,6 +217,7 @@ class Check {
     }
     if (topology_.boundary.empty()) return;
     orient_consistently(topology_, triangles());
+    topology_ = topology_of(vertices().size(), triangles());  // turned ones have other sides
     HoleFilling done = fill_holes(topology_, diagonal_, vertices(), triangles());
     for (FilledHole& hole : done.filled) {
       note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +

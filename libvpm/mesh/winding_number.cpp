@@ -12,11 +12,16 @@ namespace {
 constexpr double kFarFactor = 2.0;
 constexpr double kFullSolidAngle = 4 * 3.14159265358979323846;
 
+constexpr double kOnTriangle = 1e-12;  // of its size: far above rounding
+
 // Signed solid angle of a triangle about the origin (van Oosterom, Strackee 1983).
 double solid_angle(Vec3 a, Vec3 b, Vec3 c) {
   const double la = norm(a), lb = norm(b), lc = norm(c);
   const double numerator = dot(a, cross(b, c));
   const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  // On the triangle it is half of all directions to either side, and rounding would choose: two
+  // that lie on one another and enclose nothing would count for something.
+  if (denominator < 0 && std::abs(numerator) <= kOnTriangle * (la * lb * lc)) return 0;
   return 2 * std::atan2(numerator, denominator);
 }
 

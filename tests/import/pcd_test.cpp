@@ -127,7 +127,7 @@ TEST(Pcd, TextHoldsNaNAndWindowsLineEnds) {
 TEST(Pcd, KeepsGridAndViewpoint) {
   const PointSet points = parse(
       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 2\n"
-      "VIEWPOINT 1 2 3 0 1 0 0\nPOINTS 4\nDATA ascii\n0 0 1 1 0 1 0 1 1 1 1 1\n");
+      "VIEWPOINT 1 2 3 0 1 0 0\nPOINTS 4\nDATA ascii\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   EXPECT_TRUE(points.organised());
   EXPECT_EQ(points.width, 2U);
   EXPECT_EQ(points.viewpoint * (Vec3{1, 1, 1}), (Vec3{2, 1, 2}));
@@ -135,7 +135,11 @@ TEST(Pcd, KeepsGridAndViewpoint) {
 
 TEST(Pcd, SaysWhatIsWrong) {
   const std::string plain = header("x y z", "4 4 4", "F F F", "1 1 1", 2);
-  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3 4 x 6\n"), "point 1: 'x' is not a number"));
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 x 6\n"), "point 1: 'x' is not a number"));
+  // A number too many would make others of all that follow.
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3 4\n5 6\n"), "point 0 has 4 numbers"));
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2\n3 4 5 6\n"), "point 0 has 2 numbers"));
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 5 6\n7 8 9\n"), "more points"));
   EXPECT_TRUE(says(refused(plain + "zip\n"), "DATA 'zip'"));
   EXPECT_TRUE(says(refused(header("x y", "4 4", "F F", "1 1", 1) + "ascii\n1 2\n"), "no field z"));
   EXPECT_TRUE(

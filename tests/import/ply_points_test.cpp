@@ -76,6 +76,13 @@ TEST(PlyPoints, SaysWhatIsWrong) {
   EXPECT_TRUE(says(refused(start + "property quaternion z\n"), "unknown type"));
   EXPECT_TRUE(says(refused(start + "property float z\nend_header\n1 2 three\n"),
                    "vertex 0: 'three' is not a number"));
+  const std::string two =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  // A number too many would make others of all that follow.
+  EXPECT_TRUE(says(refused(two + "1 2 3 4\n5 6\n"), "vertex 0 has more numbers"));
+  EXPECT_TRUE(says(refused(two + "1 2\n3 4 5 6\n"), "vertex 0 has fewer numbers"));
+  EXPECT_TRUE(says(refused(two + "1 2 3\n4 5 6\n7 8 9\n"), "more rows"));
   EXPECT_TRUE(
       says(refused("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), "no element vertex"));
   EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nelement vertex many\n"), "is not a count"));

@@ -160,6 +160,19 @@ TEST(RepairHoles, SmallOnesAreClosedAndLargeOnesRefused) {
   EXPECT_TRUE(contains(message, "--repair voxel")) << message;
 }
 
+TEST(RepairHoles, AreFilledWhereTrianglesFaceTheOtherWay) {
+  const Solid whole = make_cube(0.2);
+  for (std::size_t missing = 0; missing < whole.triangles.size(); ++missing) {
+    for (std::size_t turned = 0; turned + 1 < whole.triangles.size(); ++turned) {
+      Solid cube = whole;
+      cube.triangles.erase(cube.triangles.begin() + static_cast<std::ptrdiff_t>(missing));
+      std::swap(cube.triangles[turned][1], cube.triangles[turned][2]);
+      EXPECT_NEAR(solid_of(cube, repair(Repair::holes)).facts.volume, 0.008, 1e-12)
+          << missing << " " << turned;
+    }
+  }
+}
+
 TEST(RepairHoles, RepeatedTrianglesAreDropped) {
   Solid cube = make_cube(2);
   cube.triangles.push_back(cube.triangles[3]);

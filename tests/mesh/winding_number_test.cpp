@@ -43,6 +43,24 @@ TEST(WindingNumber, CountsHowOftenAPointIsEnclosed) {
   }
 }
 
+// Two sheets that lie on one another, facing apart, enclose nothing: not what lies on them either.
+TEST(WindingNumber, FoldedSheetsEncloseNothing) {
+  std::mt19937_64 engine(2);
+  const auto lattice = [&] { return 0.05 * static_cast<double>(engine() % 9) - 0.2; };
+  for (int k = 0; k < 1000; ++k) {
+    const Vec3 a{lattice(), lattice(), lattice()}, b{lattice(), lattice(), lattice()},
+        c{lattice(), lattice(), lattice()};
+    if (norm(cross(b - a, c - a)) < 1e-6) continue;
+    const Solid sheet{{a, b, c}, {{0, 1, 2}, {0, 2, 1}}};
+    const TriangleBvh bvh(sheet.vertices, sheet.triangles);
+    const WindingNumber winding(bvh);
+    for (const double s : {0.25, 0.5}) {
+      const Vec3 on_it = a + s * (b - a) + 0.25 * (c - a);
+      EXPECT_NEAR(winding.at(on_it), 0, kApproximation) << k;
+    }
+  }
+}
+
 TEST(WindingNumber, TorusAgreesWithItsEquation) {
   const Solid torus = synthetic::make_torus(0.5, 0.2, 200, 80);
   const TriangleBvh bvh(torus.vertices, torus.triangles);

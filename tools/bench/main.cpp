@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   tool.computes_on_devices();
   return tool.run(argc, argv, [&] {
     const bool asks_device = tool.common().device != "auto" || vpm::bench::takes_device(suite);
+    if (vpm::bench::is_suite(suite)) vpm::bench::make_folder(folder);
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(
         suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -109,7 +108,7 @@ class Packings {
                                      {"fandisk", "fandisk.obj"},
                                      {"knot.ply", "knot.ply"}}) {
       const std::string path = options_.meshes + "/" + file;
-      if (options_.meshes.empty() || !std::filesystem::exists(path)) continue;
+      if (options_.meshes.empty()) continue;
       add_shape(name, make_solid(parse_mesh(file::read_all(path), path), {}).solid);
     }
     nlohmann::json names = nlohmann::json::array();

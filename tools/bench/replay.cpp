@@ -5,6 +5,7 @@
 
 #include "libvpm/file/stream.h"
 #include "libvpm/file/temporary_folder.h"
+#include "libvpm/recording/recording.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
@@ -86,6 +87,7 @@ Report run_replay(const SuiteOptions& options) {
   std::optional<SyntheticRecording> synthetic;
   if (options.data.empty()) synthetic.emplace();
   const std::string folder = synthetic ? synthetic->folder() : recording_in(options.data);
+  if (!synthetic) read_recording(folder, {});  // says what is wrong before minutes have passed
   const ReplayTool tool = make_replay_tool(options.quick);
   report.settings = {{"quick", options.quick},
                      {"shape", "twisted torus, 0.25 m"},

@@ -66,13 +66,17 @@ nlohmann::json to_json(const Report& report, const std::string& command) {
           {"results", report.results}};
 }
 
-void write(const Report& report, const std::string& command, const std::string& folder) {
+void make_folder(const std::string& folder) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   if (fault) {
     throw Error(ErrorKind::cannot_write,
                 "cannot make the folder " + folder + ": " + fault.message());
   }
+}
+
+void write(const Report& report, const std::string& command, const std::string& folder) {
+  make_folder(folder);
   const std::string stem = folder + "/" + report.suite;
   file::write_all(stem + ".json", std::string_view(to_json(report, command).dump(2) + "\n"));
   file::write_all(stem + ".csv", std::string_view(to_csv(report.table)));

@@ -29,6 +29,9 @@ std::string to_csv(const Table& table);
 // Suite, version, commit, machine, compiler, command, settings, results. No clock time.
 nlohmann::json to_json(const Report& report, const std::string& command);
 
+// Before the work, so that nobody waits for a refusal. Throws Error(cannot_write).
+void make_folder(const std::string& folder);
+
 // Writes <folder>/<suite>.json and .csv; makes the folder. Throws Error(cannot_write).
 void write(const Report& report, const std::string& command, const std::string& folder);
 

@@ -61,6 +61,10 @@ std::string suite_names(bool on_device) {
   return names_of([&](const Suite& suite) { return suite.takes_device || !on_device; });
 }
 
+bool is_suite(const std::string& name) {
+  return find_suite(name) != nullptr;
+}
+
 bool takes_device(const std::string& name) {
   const Suite* const suite = find_suite(name);
   return suite != nullptr && suite->takes_device;

@@ -26,6 +26,7 @@ struct SuiteOptions {
 
 // "accuracy, extremes, ...": all suites, or those that take a CUDA device.
 std::string suite_names(bool on_device = false);
+bool is_suite(const std::string& name);
 bool takes_device(const std::string& name);
 
 // Throws Error(usage) naming the suites there are, or those that take an option which this one does

@@ -1,8 +1,10 @@
 #include "tools/common/import_arguments.h"
 
 #include <cmath>
+#include <limits>
 
 #include "libvpm/core/error.h"
+#include "tools/common/number_checks.h"
 
 namespace vpm::tools {
 
@@ -17,6 +19,7 @@ void declare(CLI::App& app, ImportArguments& a) {
       ->check(CLI::IsMember({"inverse-depth", "pca"}))
       ->capture_default_str();
   app.add_option("--window", a.window, "Side of the window of a normal, pixels, odd, 3 to 31")
+      ->check(whole_number_in(0, std::numeric_limits<int>::max()))
       ->capture_default_str();
   app.add_option("--edge-gate", a.edge_gate,
                  "Difference of inverse depth, relative, that is still one surface; 0: no edges")

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace vpm::tools {
@@ -19,9 +21,15 @@ bool takes_numbers(const CLI::Option& option) {
   return type.rfind("INT", 0) == 0 || type.rfind("UINT", 0) == 0 || type.rfind("FLOAT", 0) == 0;
 }
 
+// CLI11 reads .001 and 1. too, which are no numbers of JSON.
 json number_or_text(const CLI::Option& option, const std::string& text) {
+  if (!takes_numbers(option)) return text;
   const json parsed = json::parse(text, nullptr, false);
-  return takes_numbers(option) && parsed.is_number() ? parsed : json(text);
+  if (parsed.is_number()) return parsed;
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = fault == std::errc() && end == text.data() + text.size();
+  return is_number && std::isfinite(value) ? json(value) : json(text);
 }
 
 json value_of(const CLI::Option& option) {
@@ -59,7 +67,11 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
   json config;
   try {
-    config = json::parse(input);
+    config = json::parse(input, [](int depth, json::parse_event_t, const json&) {
+      constexpr int kDeepest = 32;  // copies of much deeper ones would take all of the stack
+      if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
+      return true;
+    });
   } catch (const json::exception& fault) {
     throw CLI::FileError(std::string("the configuration is not JSON: ") + fault.what());
   }

@@ -1,8 +1,10 @@
 #include "tools/common/tool.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -42,6 +44,26 @@ constexpr double kSecondsToEstimate = 2;
 
 bool is_asked(int argc, char** argv, const std::string& flag) {
   return std::find(argv, argv + argc, flag) != argv + argc;
+}
+
+// An output must not be given the number of a standard stream that is closed: notes would go into
+// it. What takes its place fails as it would.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
+    // Takes the lowest number that is free, which is this one.
+    if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream) return;
+  }
+}
+
+// "--report=$UNSET": CLI11 would take what follows for the value.
+void refuse_cut_options(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view argument = argv[k];
+    if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+      throw Error(ErrorKind::usage, std::string(argument.substr(0, argument.size() - 1)) +
+                                        ": its value is empty; give one, or leave the option out");
+  }
 }
 
 void flush_output() {
@@ -89,6 +111,7 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
 }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
+  open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
     std::cerr << name_ << ": error: " << message << '\n';
@@ -99,6 +122,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     if (is_asked(argc, argv, "--dump-config")) {
       for (CLI::Option* option : app_.get_options()) option->required(false);
     }
+    refuse_cut_options(argc, argv);
     app_.parse(argc, argv);
     refuse_empty_values();
     if (dump_config_) {
@@ -171,10 +195,12 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
   for (auto a = outputs.begin(); a < outputs.end(); ++a) {
     for (auto b = outputs.begin(); b < a; ++b) {
-      if (a->path == "-" && b->path == "-")
+      const std::optional<int> descriptor = file::descriptor_of(a->path);
+      if (descriptor == STDOUT_FILENO && descriptor == file::descriptor_of(b->path))
         wrong(std::string("only one output can be standard output: ") + b->option + " or " +
               a->option);
-      if (file::is_same_file(a->path, b->path))
+      if (file::is_same_file(a->path, b->path) ||
+          (descriptor && descriptor == file::descriptor_of(b->path)))
         wrong(std::string(b->option) + " and " + a->option + " would both be written to " +
               a->path + "; name two files");
     }

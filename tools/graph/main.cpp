@@ -1,6 +1,8 @@
 // vpm-graph: makes the tool model that queries load from a packing.
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -35,7 +37,7 @@ void declare(CLI::App& app, Arguments& a) {
                  "Sphere counts of further levels of detail, e.g. 250,1000,4000")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(positive_number());
+      ->check(whole_number_in(1, std::numeric_limits<std::uint32_t>::max()));
   app.add_flag("--calibrate", a.calibrate,
                "Measure each level's error against the solid and keep it with the model, for "
                "vpm-query --max-error");
@@ -43,11 +45,14 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 // The mesh must be read as vpm-pack read it to give the same solid.
-SolidOptions options_of(const nlohmann::json& provenance) {
+SolidOptions options_of(const nlohmann::json& provenance, const std::string& packing) {
   SolidOptions options;
   const auto number = [&](const char* key) -> std::optional<double> {
     const nlohmann::json::json_pointer at(std::string("/parameters/") + key);
-    if (!provenance.contains(at) || !provenance.at(at).is_number()) return std::nullopt;
+    if (!provenance.contains(at)) return std::nullopt;
+    if (!provenance.at(at).is_number())
+      refuse(packing + ": says that it was packed with " + key + " " + provenance.at(at).dump() +
+             ", which is no number; pack the mesh again, or leave --mesh out");
     return provenance.at(at).get<double>();
   };
   options.scale = number("scale").value_or(1);
@@ -62,7 +67,8 @@ SolidOptions options_of(const nlohmann::json& provenance) {
 void check_mesh(const Packing& packing, const Arguments& a) {
   const RawMesh mesh = parse_mesh(file::read_all(a.mesh), a.mesh);
   const std::string expected = content_hash(packing.solid);
-  const std::string found = content_hash(make_solid(mesh, options_of(packing.provenance)).solid);
+  const std::string found =
+      content_hash(make_solid(mesh, options_of(packing.provenance, a.packing)).solid);
   if (found != expected) {
     refuse(a.packing + " was not made of " + a.mesh + ": their solids have the hashes " + expected +
            " and " + found + "; pack this mesh, or leave --mesh out");
@@ -79,6 +85,10 @@ void run(const Tool& tool, Arguments& a) {
       tool.common());
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
+  const std::size_t spheres = packing.spheres.size();
+  if (std::ranges::any_of(a.options.levels, [&](std::uint32_t n) { return n > spheres; }))
+    tool.note("--levels: the packing has " + std::to_string(spheres) +
+              " spheres; larger levels are left out");
 
   Progress progress("levels", tool.common());
   a.options.progress = [&](double fraction) { progress.update(fraction); };

@@ -118,6 +118,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.mesh == "-" && a.for_scene == "-")
     wrong("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
+  if (!a.link.empty() && a.export_path.empty())
+    wrong("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt},
@@ -204,6 +206,17 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 
+void say_validation(const Tool& tool, const Validation& v) {
+  const std::string counts = std::to_string(v.protruding_voxels) + " voxels of spheres outside, " +
+                             std::to_string(v.overlapping_voxels) + " of two spheres";
+  // What the two ways to tell inside from outside do not agree on is no fault of the packing.
+  if (v.protruding_voxels > v.disputed_voxels || v.overlapping_voxels > 0)
+    tool.warn("the count of voxels speaks against the packing: " + counts +
+              "; look at the mesh, which may cross itself");
+  else
+    tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
+}
+
 void refuse_uncertified(const Arguments& a, const Certificate& certificate) {
   if (certificate.holds) return;
   refuse(a.mesh + ": the packing does not hold its certificate (protrusion " +
@@ -248,7 +261,10 @@ void run(const Tool& tool, Arguments a) {
   say_result(tool, a, result);
 
   std::optional<Validation> validation;
-  if (a.validate) validation = validate_packing(checked.solid, result.spheres);
+  if (a.validate) {
+    validation = validate_packing(checked.solid, result.spheres);
+    say_validation(tool, *validation);
+  }
   if (!a.report.empty()) {
     auto report = pack_report(checked, result, certificate, validation, seconds);
     if (scene) report["scene"] = scene_report(*scene);

@@ -7,6 +7,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/haptics/gyration.h"
+#include "tools/query/query_report.h"
 
 namespace vpm::tools {
 namespace {
@@ -106,7 +107,7 @@ std::string coupled_line(const CoupledStep& s, const std::string& frame) {
                     {"dissipated", s.energy.dissipated},
                     {"absorbed", s.energy.absorbed},
                     {"lost", s.energy.lost}};
-  return line.dump() + "\n";
+  return to_line(line);
 }
 
 }  // namespace vpm::tools

@@ -6,6 +6,10 @@
 
 namespace vpm::tools {
 
+std::string to_line(const nlohmann::ordered_json& line) {
+  return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
 std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
                         Measure measure, const std::string& level_reason,
                         const std::optional<StepOfReplay>& replay) {
@@ -25,7 +29,7 @@ std::string result_line(std::size_t pose_index, const Result& r, const Level& le
   line["level"] = level.sphere_count;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
   if (!level_reason.empty()) line["level_reason"] = level_reason;
-  return line.dump() + "\n";
+  return to_line(line);
 }
 
 nlohmann::json query_stats(std::vector<double> seconds, double prepare_seconds,

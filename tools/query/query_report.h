@@ -17,6 +17,9 @@ struct StepOfReplay {
   std::string frame;  // name of the file; "": none yet
 };
 
+// One line of JSON. Names of files need not be UTF-8.
+std::string to_line(const nlohmann::ordered_json& line);
+
 // One line of results: formats/schemas/query-result.json. Nothing in it depends on the device or
 // the clock, unless a deadline chose the level. `level_reason`: how the level was chosen; "" leaves
 // it out.

@@ -18,8 +18,7 @@ bool is_ply(const std::string& path) {
 
 void append(std::string& text, double value) {
   std::array<char, 32> digits{};
-  const auto [end, fault] = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                          std::chars_format::general, 9);
+  const auto [end, fault] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), end);
 }
 
@@ -37,7 +36,7 @@ void write_spheres(const std::string& path, std::span<const Sphere> spheres,
   std::string text = "x,y,z,r,state\n";
   if (ply) {
     text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(spheres.size()) +
-           "\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+           "\nproperty double x\nproperty double y\nproperty double z\nproperty double "
            "radius\nproperty uchar state\n"
            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   }

@@ -6,6 +6,7 @@ $ vpm-pack cube.off -o cube.vpmp --spheres 60 --scale 0.5 --quiet
 
 # A model with levels, and what the report says of it.
 $ vpm-graph cube.vpmp -o cube.vpmg --levels 10,40,40,500 --report report.json
+2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 $ $VALIDATE graph-report report.json
 $ python3 -c "import json; r = json.load(open('report.json')); print(r['spheres'], r['bridges'] == r['components_before'] - 1, r['volume'], [l['spheres'] for l in r['levels']])"
 60 True 0.125 [10, 40, 60]
@@ -14,7 +15,9 @@ True
 
 # Pipes, and the same bytes for any number of threads.
 $ vpm-graph - -o - --levels 10,40,40,500 --threads 1 < cube.vpmp | cmp - cube.vpmg
+2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 $ vpm-graph cube.vpmp -o - --levels 10,40,40,500 --threads 4 | cmp - cube.vpmg
+2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 
 # The mesh must be the one that was packed, read in the same unit.
 $ vpm-graph cube.vpmp -o cube.vpmg --mesh cube.off

@@ -46,7 +46,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error ''
 2> vpm-query: error: --max-error: its value is empty; give one, or leave the option out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level=
-2> vpm-query: error: --level: 1 required UINT missing (see vpm-query --help)
+2> vpm-query: error: --level: its value is empty; give one, or leave the option out
 [2]
 $ echo '{"output": ""}' > empty.json; vpm-pack cube.off --spheres 3 --report - --config empty.json
 2> vpm-pack: error: --output: its value is empty; give one, or leave the option out
@@ -74,7 +74,7 @@ $ vpm-graph cube.vpmp -o new.vpmg --epsilon 1mm
 2> vpm-graph: error: --epsilon: 1mm is not a number greater than 0 (see vpm-graph --help)
 [2]
 $ vpm-graph cube.vpmp -o new.vpmg --levels 10,0
-2> vpm-graph: error: --levels: 0 is not a number greater than 0 (see vpm-graph --help)
+2> vpm-graph: error: --levels: 0 is not a whole number from 1 to 4294967295 (see vpm-graph --help)
 [2]
 $ vpm-query --tool cube.vpmg --frames . --trajectory path.txt --rate nan
 2> vpm-query: error: --rate: nan is not a number from 1 to 1e+06 (see vpm-query --help)
@@ -139,3 +139,42 @@ $ vpm-pack --help > /dev/full
 # A packing of a mesh that was repaired is known by the mesh.
 $ vpm-pack cube.off --repair voxel=20 --spheres 5 -o voxels.vpmp --quiet
 $ vpm-graph voxels.vpmp -o voxels.vpmg --mesh cube.off
+
+# A value that a script has left empty is none, whatever follows it.
+$ vpm-pack cube.off -o x.vpmp --report= --quiet; ls ./--quiet 2>&1 | wc -l
+1
+2> vpm-pack: error: --report: its value is empty; give one, or leave the option out
+[2]
+$ vpm-pack cube.off --spheres 5 -o x.vpmp --link part
+2> vpm-pack: error: --link is a name in .yml, .urdf and .srdf; give --export with one of these
+[2]
+
+# However a stream is named, two outputs do not share it; closed ones take no notes into a file.
+$ for out in /dev/stdout /dev/fd/1 /proc/self/fd/1; do vpm-pack cube.off --spheres 5 -o - --report $out; done
+2> vpm-pack: error: only one output can be standard output: --output or --report
+2> vpm-pack: error: only one output can be standard output: --output or --report
+2> vpm-pack: error: only one output can be standard output: --output or --report
+[2]
+$ (echo first; vpm-pack cube.off --spheres 5 --export five.csv --report /dev/fd/1) > both.txt; head -n 2 both.txt
+first
+{
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --for-scene -o closed.jsonl 2>&-; head -c 8 closed.jsonl
+{"pose":
+
+# Numbers as CLI11 takes them, and as JSON does not.
+$ vpm-pack cube.off --scale .001 --spheres 5 -o small.vpmp && vpm-graph small.vpmp --mesh cube.off -o small.vpmg && echo made
+made
+$ vpm-graph cube.vpmp --levels 010 -o x.vpmg
+2> vpm-graph: error: --levels: 010 begins with a zero; write it without (see vpm-graph --help)
+[2]
+$ vpm-graph small.vpmp --levels 2,99 -o x.vpmg
+2> vpm-graph: note: --levels: the packing has 5 spheres; larger levels are left out
+$ vpm-normals wall.png --window 011 -o x.vpmc
+2> vpm-normals: error: --window: 011 begins with a zero; write it without (see vpm-normals --help)
+[2]
+$ python3 -c 'print("{\"spheres\": " + 100000 * "[" + 100000 * "]" + "}")' > deep.json; vpm-pack cube.off --config deep.json -o x.vpmp
+2> vpm-pack: error: the configuration is nested too deeply (see vpm-pack --help)
+[2]
+$ vpm-pack cube.off --repair flood --max-hole 50 -o x.vpmp
+2> vpm-pack: error: --max-hole 50 m is more than the mesh is across, 0.346 m: nothing of it would be reached from outside; is it in metres?
+[2]

@@ -13,6 +13,7 @@ $ python3 -c 'import json; r = json.load(open("report.json")); print(r["spheres"
 # Pipes, and the same bytes from the same input, with any number of threads.
 $ vpm-pack - -o - --spheres 9 --threads 1 < cube.off | cmp - cube.vpmp
 $ vpm-pack cube.off -o - --spheres 9 --threads 2 --validate | cmp - cube.vpmp
+2> vpm-pack: note: voxels: 0.604167 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
 $ vpm-pack cube.off --spheres 1 --export cube.yml && cat cube.yml
 collision_spheres:
   "cube":
@@ -22,6 +23,7 @@ $ vpm-pack cube.off --scale 0.001 --spheres 1 --report - | python3 -c 'import js
 0.0005
 $ vpm-pack cube.off --spheres 1 --validate --report - | python3 -c 'import json, sys; v = json.load(sys.stdin)["validation"]; print(v["protruding_voxels"], v["overlapping_voxels"], abs(v["coverage"] - 0.5236) < 0.01)'
 0 0 True
+2> vpm-pack: note: voxels: 0.523591 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
 
 # Fewer spheres than asked, with the reason.
 $ vpm-pack cube.off --spheres 1000 --min-radius 0.3 --export one.csv

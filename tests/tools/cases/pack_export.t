@@ -16,4 +16,4 @@ $ head -c 3 all.ply; grep -ac 'property float radius' all.points.ply; sed -n 5p 
 ply1
 POINTS 9 double
 # The packing does not depend on the name of the link.
-$ vpm-pack cube.off --spheres 9 -o - --link a | cmp - <(vpm-pack cube.off --spheres 9 -o -)
+$ vpm-pack cube.off --spheres 9 -o - --link a --export a.urdf | cmp - <(vpm-pack cube.off --spheres 9 -o -)
