@@ -24,7 +24,7 @@ bool takes_numbers(const CLI::Option& option) {
 // CLI11 reads .001 and 1. too, which are no numbers of JSON.
 json number_or_text(const CLI::Option& option, const std::string& text) {
   if (!takes_numbers(option)) return text;
-  const json parsed = json::parse(text, nullptr, false);
+  json parsed = json::parse(text, nullptr, false);
   if (parsed.is_number()) return parsed;
   double value = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
