@@ -52,6 +52,8 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
       "tradeoff", [](SuiteOptions& o) { o.noise_seed = 2; }, "accuracy");
   refuses(
       "accuracy", [](SuiteOptions& o) { o.data = "folder"; }, "--all");
+  refuses(
+      "timing", [](SuiteOptions& o) { o.shadows = Shadows::solid; }, "accuracy");
 }
 
 // Before it measures for minutes.

@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   vpm::tools::Tool tool("vpm-bench",
                         "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
-  std::string suite, folder = "bench-output", meshes, data;
+  std::string suite, folder = "bench-output", meshes, data, shadows = "near";
   bool quick = false, all = false, baseline = false;
   std::uint64_t noise_seed = vpm::bench::SuiteOptions::kUsualNoise;
   tool.app().add_option("suite", suite, vpm::bench::suite_names());
@@ -30,6 +30,12 @@ int main(int argc, char** argv) {
       .add_option("--noise-seed", noise_seed, "accuracy: which sample of the noise")
       ->check(vpm::tools::whole_number_in(0, 1 << 30))
       ->capture_default_str();
+  tool.app()
+      .add_option("--shadows", shadows,
+                  "accuracy: what counts of places that a depth image does not show, near ones or "
+                  "all (solid, of images alone)")
+      ->check(CLI::IsMember({"near", "solid"}))
+      ->capture_default_str();
   tool.app().add_flag("--baseline", baseline,
                       "scaling: beside the measure as printed, by the algorithm as printed");
   tool.app()
@@ -44,13 +50,15 @@ int main(int argc, char** argv) {
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(
         suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,
-                baseline, noise_seed, asks_device ? tool.device() : vpm::Device{}});
+                baseline, noise_seed, shadows == "solid" ? vpm::Shadows::solid : vpm::Shadows::near,
+                asks_device ? tool.device() : vpm::Device{}});
     vpm::bench::write(report,
                       "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
                           (baseline ? " --baseline" : "") +
                           (noise_seed == vpm::bench::SuiteOptions::kUsualNoise
                                ? ""
                                : " --noise-seed " + std::to_string(noise_seed)) +
+                          (shadows == "near" ? "" : " --shadows " + shadows) +
                           (meshes.empty() ? "" : " --meshes MESHES") +
                           (data.empty() ? "" : " --data DATA"),
                       folder);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/query/shadows.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/statistics.h"
@@ -25,10 +26,11 @@ struct RandomPoses {
 Camera camera_of_spacing(double spacing);
 
 // `poses` poses with 0 to 60 % of the tool inside; the same for the same seed. The surface is
-// rendered without noise, normals are estimated from the image. Each tool takes its turn. The
-// measure as printed looks at every eighth pose only: it takes most of the time.
+// rendered without noise, normals are estimated from the image. Each tool takes its turn. `shadows`
+// are those of the refined measure. The measure as printed looks at every eighth pose only: it
+// takes most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed);
+                             int poses, std::uint64_t seed, Shadows shadows);
 
 }  // namespace vpm::bench

@@ -9,7 +9,14 @@ namespace vpm::bench {
 namespace {
 
 // Options that only some suites take.
-enum Option : unsigned { kAll = 1, kMeshes = 2, kData = 4, kBaseline = 8, kNoiseSeed = 16 };
+enum Option : unsigned {
+  kAll = 1,
+  kMeshes = 2,
+  kData = 4,
+  kBaseline = 8,
+  kNoiseSeed = 16,
+  kShadows = 32
+};
 
 struct Suite {
   const char* name;
@@ -18,7 +25,7 @@ struct Suite {
   bool takes_device = false;
 };
 
-constexpr Suite kSuites[] = {{"accuracy", run_accuracy, kAll | kData | kNoiseSeed},
+constexpr Suite kSuites[] = {{"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kShadows},
                              {"extremes", run_extremes},
                              {"packing", run_packing, kAll | kMeshes},
                              {"replay", run_replay, kData},
@@ -53,6 +60,7 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
   check(!given.data.empty(), kData, "--data");
   check(given.baseline, kBaseline, "--baseline");
   check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
+  check(given.shadows == Shadows::solid, kShadows, "--shadows");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "libvpm/device/device.h"
+#include "libvpm/query/shadows.h"
 #include "tools/bench/report.h"
 
 namespace vpm::bench {
@@ -21,6 +22,7 @@ struct SuiteOptions {
   bool baseline = false;    // scaling: the measure as printed beside it
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: which sample of the noise
+  Shadows shadows = Shadows::near;         // accuracy; solid: camera clouds alone
   Device device = {};                      // a CUDA device where the suite takes one
 };
 

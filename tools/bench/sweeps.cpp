@@ -43,8 +43,8 @@ std::vector<SweepCase> all_cases() {
   return cases;
 }
 
-Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Report& report)
-    : tool_(std::move(tool)), noise_seed_(noise_seed), report_(report) {
+Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, Report& report)
+    : tool_(std::move(tool)), noise_seed_(noise_seed), shadows_(shadows), report_(report) {
   report_.table.columns = {
       "group",    "shape",       "scene",   "noise",         "measure",       "pose",
       "z",        "volume_true", "volume",  "force_true_x",  "force_true_y",  "force_true_z",
@@ -92,7 +92,9 @@ void Sweeps::measure(const SweepCase& c, const Path& path, const std::vector<Uns
                      CloudKind kind, Noise noise, Measure measure, std::uint32_t spheres) {
   const PackedSolid& tool = tool_(c.shape);
   const View& seen = view(synthetic::make_scene(c.scene), kind, noise);
-  Query query(tool.model, {.measure = measure, .level = spheres});
+  Query query(tool.model, {.measure = measure,
+                           .level = spheres,
+                           .shadows = measure == Measure::refined ? shadows_ : Shadows::near});
   std::vector<Result> measured;
   for (const Pose& pose : path.poses) measured.push_back(query.run(seen.cloud, pose));
   const Errors errors = compare(measured, path.truth, unseen, tool.solid);
