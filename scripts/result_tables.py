@@ -280,6 +280,7 @@ def scaling(report):
 
 
 PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
+                       "bounds solid": (bounds, "accuracy_solid"),
                        "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"),
                        "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
