@@ -70,18 +70,9 @@ UnfinishedFile unfinished_files[64];
 
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target) : file_(take(target.string())) {
-    try {
-      open(target);
-    } catch (...) {
-      file_.is_taken = false;
-      throw;
-    }
-  }
+  explicit TemporaryFile(const fs::path& target) : place_(target.string()) { open(target); }
   ~TemporaryFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
-    file_.remove();
-    file_.is_taken = false;
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -91,31 +82,44 @@ class TemporaryFile {
   void rename_to(const fs::path& target) {
     const int descriptor = std::exchange(descriptor_, -1);
     if (::close(descriptor) != 0) cannot_write(target.string(), errno);  // NFS reports here
-    if (::rename(file_.path, target.c_str()) != 0) cannot_write(target.string(), errno);
-    file_.is_there = false;
+    if (::rename(place_.file.path, target.c_str()) != 0) cannot_write(target.string(), errno);
+    place_.file.is_there = false;
   }
 
  private:
-  static UnfinishedFile& take(const std::string& target) {
-    for (UnfinishedFile& file : unfinished_files)
-      if (!file.is_taken.exchange(true)) return file;
-    cannot_write(target, "too many outputs are under way");
-  }
+  // One of the unfinished files, given back at the end; what is there by then is removed.
+  struct Place {
+    explicit Place(const std::string& target) : file(take(target)) {}
+    ~Place() {
+      file.remove();
+      file.is_taken = false;
+    }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+    static UnfinishedFile& take(const std::string& target) {
+      for (UnfinishedFile& file : unfinished_files)
+        if (!file.is_taken.exchange(true)) return file;
+      cannot_write(target, "too many outputs are under way");
+    }
+    UnfinishedFile& file;
+  };
+
   void open(const fs::path& target) {
     const std::string stem =
         (target.parent_path() / (".vpm-" + std::to_string(::getpid()) + "-")).string();
     for (int attempt = 0; descriptor_ < 0; ++attempt) {
       const std::string path = stem + std::to_string(attempt) + ".tmp";
-      if (path.size() >= sizeof(file_.path)) cannot_write(target.string(), ENAMETOOLONG);
-      std::memcpy(file_.path, path.c_str(), path.size() + 1);
+      if (path.size() >= sizeof(place_.file.path)) cannot_write(target.string(), ENAMETOOLONG);
+      std::memcpy(place_.file.path, path.c_str(), path.size() + 1);
       // 0666: the umask says who may read the result.
-      descriptor_ = ::open(file_.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      descriptor_ = ::open(place_.file.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ < 0 && errno != EEXIST) cannot_write(target.string(), errno);
     }
-    file_.is_there = true;
+    place_.file.is_there = true;
   }
 
-  UnfinishedFile& file_;
+  Place place_;
   int descriptor_ = -1;
 };
 

@@ -41,6 +41,11 @@ ScalarType scalar_type(std::string_view name) {
   return {};
 }
 
+// "vertex 12": a row, for messages.
+std::string where(const Element& element, std::uint64_t row) {
+  return element.name.substr(0, 40) + " " + std::to_string(row);
+}
+
 class PlyParser {
  public:
   PlyParser(std::span<const std::byte> bytes, const std::string& name)
@@ -164,15 +169,16 @@ void PlyParser::check_count(const Element& element) const {
 }
 
 double PlyParser::read_value(ScalarType type, const Element& element, std::uint64_t row) {
-  const auto where = [&] { return element.name.substr(0, 40) + " " + std::to_string(row); };
   if (ascii_) {
-    if (word_ == row_.size()) fail(where() + " has fewer numbers in its line than the header says");
+    if (word_ == row_.size())
+      fail(where(element, row) + " has fewer numbers in its line than the header says");
     const std::string_view word = row_[word_++];
     const std::optional<double> number = to_number(word);
-    if (!number) fail(where() + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
+    if (!number)
+      fail(where(element, row) + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
     return *number;
   }
-  if (type.size > bytes_.size() - at_) fail("is truncated at " + where());
+  if (type.size > bytes_.size() - at_) fail("is truncated at " + where(element, row));
   const double value = read_scalar(bytes_.data() + at_, type, big_endian_);
   at_ += type.size;
   return value;
@@ -183,8 +189,7 @@ void PlyParser::read_row(const Element& element, std::uint64_t row, bool keep) {
     row_ = cursor_.row();
     word_ = 0;
     at_ = cursor_.offset();
-    if (row_.empty())
-      fail("is truncated at " + element.name.substr(0, 40) + " " + std::to_string(row));
+    if (row_.empty()) fail("is truncated at " + where(element, row));
   }
   for (const Property& property : element.properties) {
     if (property.count_type.size == 0) {
@@ -194,13 +199,11 @@ void PlyParser::read_row(const Element& element, std::uint64_t row, bool keep) {
     }
     const double length = read_value(property.count_type, element, row);
     if (!(length >= 0) || length != std::floor(length))
-      fail("is corrupt: a list of " + element.name.substr(0, 40) + " " + std::to_string(row) +
-           " has no sound length");
+      fail("is corrupt: a list of " + where(element, row) + " has no sound length");
     for (double i = 0; i < length; ++i) read_value(property.type, element, row);
   }
   if (ascii_ && word_ < row_.size())
-    fail(element.name.substr(0, 40) + " " + std::to_string(row) +
-         " has more numbers in its line than the header says");
+    fail(where(element, row) + " has more numbers in its line than the header says");
 }
 
 void PlyParser::store(int column, std::uint64_t row, double value) {

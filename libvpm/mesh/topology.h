@@ -32,7 +32,8 @@ Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& tria
 std::vector<std::uint32_t> shells_of(const Topology& topology, std::size_t& count);
 
 // Turns triangles so that neighbours agree with the first triangle of their shell; returns how many
-// were turned, or kNotOrientable for a one-sided surface, which is left as it is.
+// were turned, or kNotOrientable for a one-sided surface, which is left as it is. `topology` stays
+// that of the triangles as they were: a turned one has other sides.
 inline constexpr std::size_t kNotOrientable = static_cast<std::size_t>(-1);
 std::size_t orient_consistently(const Topology& topology, std::vector<Triangle>& triangles);
 

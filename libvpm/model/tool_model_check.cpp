@@ -14,6 +14,8 @@ using Indices = std::vector<std::uint32_t>;
 
 // Sums over the parts of a tool are off by rounding only.
 constexpr double kSumTolerance = 1e-6;
+// A tool's spheres touch the ball of its reach to rounding.
+constexpr double kReachTolerance = 1e-6;
 // Parts further than this many reaches from the centre of mass do not belong to the tool. The fixed
 // point of libvpm/query/tool_sum.h holds arms up to 8.
 constexpr double kFarthestPart = 2;
@@ -179,7 +181,7 @@ class LevelCheck {
   // together are no more than the whole.
   void sums() const {
     const double farthest = kFarthestPart * model_.reach,
-                 of_sphere = (1 + kSumTolerance) * model_.reach;
+                 of_sphere = (1 + kReachTolerance) * model_.reach;
     double balls = 0, shares = 0, weights = 0;
     for (std::size_t i = 0; i < level_.sphere_count; ++i) {
       const Sphere& sphere = model_.spheres[i];

@@ -16,6 +16,7 @@ Pose sound(const Pose& pose) {
   if (!is_in_range(pose.translation)) {
     refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
   }
+  if (is_rotation(pose.rotation, kRotationExact)) return pose;
   if (!is_rotation(pose.rotation, kRotationRounding)) {
     refuse(
         "pose: its rotation is not finite, not orthonormal or mirrors; make it with "

@@ -32,8 +32,7 @@ bool is_suite(const std::string& name);
 bool takes_device(const std::string& name);
 
 // Throws Error(usage) naming the suites there are, or those that take an option which this one does
-// not; Error(unavailable) naming those that take a
-// device for one that does not.
+// not; Error(unavailable) naming those that take a device for one that does not.
 Report run_suite(const std::string& name, const SuiteOptions& options);
 
 // Errors of volume, force and torque against the truth, for `paper` and `refined`.
