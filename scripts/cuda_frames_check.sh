@@ -3,7 +3,7 @@
 # NVIDIA device: images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages,
 # vpm-normals and vpm-query; CLOUD has a camera. 1. vpm-normals of the cloud's image, both methods, CPU and device compared
 # byte for byte; 2. the stages on the device's clock; 3. two thousand queries at each level, each in a new image, from the
-# image in the frames' memory to the result, made as asked or whole. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
+# image in the frames' memory to the result, made as asked (launched and standing by) or whole. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -42,7 +42,10 @@ loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=2
 for level in ${levels//,/ }; do
   "${loop[@]}" level="$level" json="$work/loop-$level-none.json" >/dev/null
   for frames in counts metres; do
-    "${loop[@]}" level="$level" frames=$frames making=as-asked json="$work/loop-$level-$frames.json" >/dev/null
+    for standby in 0 2000; do
+      "${loop[@]}" level="$level" frames=$frames making=as-asked standby=$standby \
+        json="$work/loop-$level-$frames-$standby.json" >/dev/null
+    done
   done
   "${loop[@]}" level="$level" frames=counts making=as-asked method=pca json="$work/loop-$level-pca.json" >/dev/null
   for behind in 0 1; do
@@ -60,7 +63,8 @@ report = {
     "bus": f"PCIe {smi[2]} x{smi[3]}", "same_bytes_as_cpu": dict(item.split("=") for item in same.split()),
     "stages": json.load(open(f"{work}/stages.json")),
     "control_loop": sorted((json.load(open(path)) for path in glob.glob(f"{work}/loop-*.json")),
-                           key=lambda r: [r["spheres"], "frames" in r] + [r.get(key, "") for key in ("making", "behind", "method", "frames")]),
+                           key=lambda r: [r["spheres"], "frames" in r] +
+                                         [r.get(key, "") for key in ("making", "behind", "method", "frames", "standby_us")]),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{report['device']}, {report['bus']}, commit {commit}: CPU and device the same {same}")
@@ -68,6 +72,7 @@ for r in report["stages"]:
     print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f} us")
 for r in report["control_loop"]:
     what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
-    print(f"{r['spheres']:8} spheres  {what:37} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+    what += ", standing by" if r["standby_us"] else ""
+    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
 PYTHON
 exit $failed

@@ -236,15 +236,17 @@ def cuda_frames(report):
     of = {}
     for r in report["control_loop"]:
         kind = ("prepared" if "frames" not in r else "behind" if r["behind"] else "whole" if r["making"] == "whole"
-                else "pca" if r["method"] == "pca" else r["frames"])
+                else "pca" if r["method"] == "pca" else r["frames"] + (" standing" if r["standby_us"] else ""))
         of.setdefault(r["spheres"], {})[kind] = r
     micro = lambda r: f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
-    rows = [[thousands(n)] + [micro(r[kind]) for kind in ("prepared", "counts", "metres", "pca", "whole", "behind")]
+    rows = [[thousands(n)] + [micro(r[kind]) for kind in ("prepared", "counts standing", "counts", "metres standing", "metres", "pca",
+                                                          "whole", "behind")]
             for n, r in sorted(of.items())]
     stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}"]
               for r in report["stages"]]
-    return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked", "of metres",
-                   "of counts, PCA", "made whole, of counts", "in the image before, while the new one is made whole"], rows)
+    return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
+                   "launched", "of metres, standing by", "launched", "of counts, PCA", "made whole, of counts",
+                   "in the image before, while the new one is made whole"], rows)
             + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "whole image", "copy alone (the floor), µs",
                               "brought by the kernel", "normals and all that queries read"], stages))
 

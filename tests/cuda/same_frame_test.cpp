@@ -373,6 +373,34 @@ TEST_P(AsAsked, ByManyAtOnce) {
   }
 }
 
+// Images come by turns in the same memory, by a kernel that stays as by one that is launched.
+TEST_P(AsAsked, EachImageAnew) {
+  std::vector<DepthImage> images;
+  for (int k = 0; k < 3; ++k) {
+    images.push_back(image_of(wall(0.02F, 0.002F), 320, 240));
+    for (float& z : images.back().depth) z *= 1 + 0.02F * static_cast<float>(k);
+  }
+  const DepthFrameOptions options = options_of(images[0], {GetParam()}, FrameMaking::as_asked);
+  const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
+  const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
+  const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.9}};
+  Query on_cpu(tool, {.counts_points = false});
+  std::vector<Result> expected;
+  for (int k = 0; k < 6; ++k)
+    expected.push_back(
+        on_cpu.run(prepared(images[k % 3], options, cameras[k % 2]), cameras[k % 2] * pose));
+  for (const std::uint32_t standby_us : {0U, 2000U}) {
+    Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
+    DepthFrames frames(options);
+    for (int k = 0; k < 120; ++k) {
+      SCOPED_TRACE(k);
+      const DepthFrame frame = frame_of(frames, images[k % 3], cameras[k % 2]);
+      expect_equal(expected[k % 6], query.run(frame, cameras[k % 2] * pose));
+    }
+  }
+  EXPECT_NE(expected[0].volume, expected[1].volume);
+}
+
 // The memory of a frame of which all is known but the surface, which is still being made.
 TEST_P(AsAsked, InMemoryThatIsUsedAgainAtOnce) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 1024, 1024);
@@ -465,13 +493,18 @@ TEST(FramesOnDevice, SmallQuery) {
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
 
-  DepthFrames parts(options_of(image, {}, FrameMaking::as_asked));
-  const DepthFrame part = frame_of(parts, image, {});
-  Query of_part(tool, {.device = kDevice, .counts_points = false});
-  for (const double x : {0.0, 0.0, 0.03, 0.06}) {
-    const Pose aside{pose.rotation, pose.translation + Vec3{x, 0, 0}};
-    expect_equal(Query(tool, {.counts_points = false}).run(frame.cloud(), aside),
-                 of_part.run(part, aside));
+  const DepthImage wide = image_of(wall(0.05F, 0.002F), 251, 141);
+  DepthFrames parts(options_of(wide, {}, FrameMaking::as_asked));
+  for (const std::uint32_t standby_us : {0U, 2000U}) {
+    const DepthFrame part = frame_of(parts, wide, {});
+    Query of_part(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
+    for (const double x : {0.0, 0.0, 0.03, 0.06}) {
+      const Pose aside{pose.rotation, {x, 0, 0.91}};
+      const Result there = Query(tool, {.counts_points = false}).run(part.cloud(), aside);
+      EXPECT_GT(there.boundary, 0U);
+      expect_equal(there, of_part.run(part, aside));
+      EXPECT_FALSE(testing::is_whole_on_device(part));
+    }
   }
 }
 

@@ -24,15 +24,18 @@ inline int current_device() {
 // Makes a device the current one of this thread for a scope.
 class CurrentDevice {
  public:
-  explicit CurrentDevice(int index) : before_(current_device()) {
-    if (index != before_) check(cudaSetDevice(index));
+  explicit CurrentDevice(int index) : before_(current_device()), is_changed_(index != before_) {
+    if (is_changed_) check(cudaSetDevice(index));
   }
-  ~CurrentDevice() { cudaSetDevice(before_); }
+  ~CurrentDevice() {
+    if (is_changed_) cudaSetDevice(before_);
+  }
   CurrentDevice(const CurrentDevice&) = delete;
   CurrentDevice& operator=(const CurrentDevice&) = delete;
 
  private:
   int before_ = 0;
+  bool is_changed_ = false;
 };
 
 }  // namespace vpm::cuda

@@ -38,30 +38,53 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
 
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
-  if (frame_ != nullptr) part_ = frame_->require(pixels_read(frame), stream());
-  RawResult raw = answer(frame);
-  if (raw.beyond != 0) {
-    part_ = frame_->require(all_pixels(), stream());
-    raw = answer(frame);
-  }
+  RawResult raw = frame_ == nullptr ? answer(frame) : answer_in_frame(frame, pixels_read(frame));
+  if (raw.beyond != 0) raw = answer_in_frame(frame, all_pixels());
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
 }
 
-RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
+RawResult MeasureOnDevice::answer_in_frame(const PoseFrame& frame, const PixelRectangle& pixels) {
+  RawResult raw;
+  const bool is_made = frame_->make_by_query(pixels, most_pixels_made(),
+                                             [&](const auto& part, const Making& making) {
+                                               part_ = part;
+                                               raw = answer(frame, &making);
+                                             });
+  if (is_made) return raw;
+  part_ = frame_->require(pixels, stream());
+  return answer(frame);
+}
+
+RawResult MeasureOnDevice::answer_standing_by(const void* launch, const PoseFrame& frame,
+                                              const Making* making, unsigned sequence) {
+  Order order;
+  order.launch = launch;
+  order.to_surface = frame.to_surface;
+  order.part.wanted = part_.is_whole ? all_pixels() : part_.made;
+  if (making != nullptr) {
+    order.image = making->on_device;
+    order.camera_to_world = making->source.recipe.camera.to_world.rotation;
+    order.part = making->part;
+  }
+  order.turn = sequence;
+  order.waits_us = standby_us_;
+  return standby_->ask(order, *answer_.host(), sequence);
+}
+
+RawResult MeasureOnDevice::answer(const PoseFrame& frame, const Making* making) {
   const unsigned sequence = sequence_ + 1;
   if (standby_ && part_.is_there) {  // otherwise the stream comes to it
     if (const void* const launch = standing_launch(answer_.device())) {
       end_launched();
-      const RawResult raw = standby_->ask({launch, frame.to_surface, sequence, standby_us_},
-                                          *answer_.host(), sequence);
+      const RawResult raw = answer_standing_by(launch, frame, making, sequence);
       sequence_ = sequence;
       return raw;
     }
   }
   const OtherWork other;
   has_launched_ = true;
-  launch(frame, answer_.device(), sequence);
+  launch(frame, making, answer_.device(), sequence);
   sequence_ = sequence;
   return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
 }

@@ -25,8 +25,11 @@ class MeasureOnDevice : public DeviceMeasure {
   double flood_microseconds() const final { return flood_microseconds_; }
 
  protected:
+  using Making = CloudSlot::Making;
   // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
-  virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
+  // `making`: not null where part() is to be made first.
+  virtual void launch(const PoseFrame& frame, const Making* making, Answer* answer,
+                      unsigned sequence) = 0;
   // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
   // is launched.
   virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
@@ -37,6 +40,8 @@ class MeasureOnDevice : public DeviceMeasure {
   // The pixels that one query reads of an image, as far as that is known beforehand; what more it
   // asks for, it says (RawResult::beyond).
   virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return all_pixels(); }
+  // So many pixels of an image a query makes itself, in the launch that `making` is given to.
+  virtual std::int64_t most_pixels_made() const { return 0; }
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
@@ -68,7 +73,10 @@ class MeasureOnDevice : public DeviceMeasure {
   // Null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
-  RawResult answer(const PoseFrame& frame);
+  RawResult answer_in_frame(const PoseFrame& frame, const PixelRectangle& pixels);
+  RawResult answer(const PoseFrame& frame, const Making* making = nullptr);
+  RawResult answer_standing_by(const void* launch, const PoseFrame& frame, const Making* making,
+                               unsigned sequence);
   PixelRectangle all_pixels() const {
     return whole_image(cloud_->frame().width, cloud_->frame().height);
   }

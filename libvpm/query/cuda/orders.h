@@ -6,21 +6,25 @@
 
 #include "libvpm/query/cuda/answer.h"
 #include "libvpm/query/cuda/views.h"
+#include "libvpm/surface/cuda/cloud_part.h"
 
 namespace vpm::cuda {
 
 struct Order {
-  const void* launch = nullptr;  // the query's arguments, on the device
-  Pose to_surface;               // of PoseFrame
-  std::uint32_t turn = 0;        // of the query
-  std::uint32_t waits_us = 0;    // for the next order
-  std::uint32_t leaves = 0;      // not 0: instead of a query
-  std::uint32_t unused[3] = {};
+  const void* launch = nullptr;        // the query's arguments, on the device
+  const CloudSource* image = nullptr;  // of which the part is to be made first; there as well
+  Pose to_surface;                     // of PoseFrame
+  Rotation camera_to_world;            // of the image
+  NewPart part;                        // what there is of the image then
+  std::uint32_t turn = 0;              // of the query
+  std::uint32_t waits_us = 0;          // for the next order
+  std::uint32_t leaves = 0;            // not 0: instead of a query
+  std::uint32_t unused[6] = {};
 };
 
-// A word for each lane of a warp.
+// Some for each lane of a warp.
 struct OrderWords {
-  static constexpr unsigned kWords = 32;
+  static constexpr unsigned kWords = 64, kOfLane = kWords / 32;
   static_assert(sizeof(Order) == kWords * sizeof(std::uint32_t));
 
   NumberedWord words[kWords] = {};
@@ -47,7 +51,7 @@ class Orders {
   // memory by transfers and kernels that had ended when the host gave it, since nothing older is
   // kept nearer than there.
   __device__ void receive(unsigned number) {
-    if (threadIdx.x < OrderWords::kWords) {
+    if (threadIdx.x < 32) {
       if (blockIdx.x == 0)
         pass_on(number, wait_for_host(number));
       else
@@ -66,21 +70,36 @@ class Orders {
  private:
   static constexpr std::uint64_t kFirstWait = 10'000'000;  // ns; the order was given already
 
-  // This lane's word of the order, when all have come or it is too late.
+  // Of a lane.
+  struct Words {
+    NumberedWord words[OrderWords::kOfLane];
+  };
+  __device__ static unsigned place(unsigned k) { return threadIdx.x + 32 * k; }
+
+  // This lane's words of the order, when all have come or it is too late.
   template <class IsLate>
-  __device__ static NumberedWord wait(const OrderWords& words, unsigned number,
-                                      const IsLate& is_late) {
+  __device__ static Words wait(const OrderWords& order, unsigned number, const IsLate& is_late) {
     constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
     for (;;) {
-      const NumberedWord word = look_at(words.words[threadIdx.x]);
-      if (__all_sync(~0U, number_of(word) == number) != 0) return word;
-      if (__any_sync(~0U, is_late()) != 0) return numbered(number, threadIdx.x == kLeaves ? 1 : 0);
+      Words mine;
+      bool have_come = true;
+#pragma unroll
+      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
+        mine.words[k] = look_at(order.words[place(k)]);
+#pragma unroll
+      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
+        have_come &= number_of(mine.words[k]) == number;
+      if (__all_sync(~0U, have_come) != 0) return mine;
+      if (__any_sync(~0U, is_late()) == 0) continue;
+      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
+        mine.words[k] = numbered(number, place(k) == kLeaves ? 1 : 0);
+      return mine;
     }
   }
-  __device__ NumberedWord wait_for_first_block(unsigned number) const {
+  __device__ Words wait_for_first_block(unsigned number) const {
     return wait(view_.passed_on[blockIdx.x % OrdersView::kCopies], number, [] { return false; });
   }
-  __device__ NumberedWord wait_for_host(unsigned number) const {
+  __device__ Words wait_for_host(unsigned number) const {
     const std::uint64_t most =
         number == first_ ? kFirstWait : std::uint64_t{order_.waits_us} * 1000;
     while (number != first_ &&
@@ -90,14 +109,17 @@ class Orders {
     const std::uint64_t begin = now();
     return wait(*view_.given, number, [&] { return now() - begin > most; });
   }
-  __device__ void take(NumberedWord word) {
+  __device__ void take(const Words& mine) {
     __syncwarp();  // who has read the order before is done
-    reinterpret_cast<std::uint32_t*>(&order_)[threadIdx.x] = value_of(word);
+    for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
+      reinterpret_cast<std::uint32_t*>(&order_)[place(k)] = value_of(mine.words[k]);
   }
-  __device__ void pass_on(unsigned number, NumberedWord word) {
-    for (unsigned k = 0; k < OrdersView::kCopies; ++k)
-      put(word, view_.passed_on[k].words[threadIdx.x]);
-    take(word);
+  __device__ void pass_on(unsigned number, const Words& mine) {
+    for (unsigned copy = 0; copy < OrdersView::kCopies; ++copy) {
+      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
+        put(mine.words[k], view_.passed_on[copy].words[place(k)]);
+    }
+    take(mine);
     __syncwarp();
     if (order_.leaves != 0 && threadIdx.x == 0)
       *static_cast<volatile unsigned*>(view_.left) = number;
@@ -108,13 +130,14 @@ class Orders {
   Order& order_;
 };
 
-// By all threads of a block, into its shared memory.
+// Into a block's shared memory, by one of so many groups of its threads.
 template <class T>
-__device__ void copy_words(const T& from, T& to) {
+__device__ void copy_words(const T& from, T& to, unsigned group, unsigned groups) {
   static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
-  for (unsigned k = threadIdx.x; k < sizeof(T) / sizeof(std::uint64_t); k += blockDim.x)
+  const unsigned threads = blockDim.x / groups, first = group * threads;
+  if (threadIdx.x < first || threadIdx.x >= first + threads) return;
+  for (unsigned k = threadIdx.x - first; k < sizeof(T) / sizeof(std::uint64_t); k += threads)
     reinterpret_cast<std::uint64_t*>(&to)[k] = reinterpret_cast<const std::uint64_t*>(&from)[k];
-  __syncthreads();
 }
 
 }  // namespace vpm::cuda

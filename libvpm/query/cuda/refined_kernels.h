@@ -118,11 +118,10 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
 // is the last to be done.
 template <class Surface>
 __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
-                            unsigned sequence, BlockShared<Surface>& shared) {
+                            unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   Totals* const totals = launch.totals;
   const RawResult found = measure_shares(launch, frame, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
-  GridTeam team(&totals->arrived);
   Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
                                    *launch.counters, team, shared.inside, launch.counts_points);
   const bool is_last = team.arrive();
@@ -151,24 +150,60 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
     one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
              const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
-  answer_pose(launch, frame, sequence, shared);
+  GridTeam team(&launch.totals->arrived);
+  answer_pose(launch, frame, sequence, team, shared);
+}
+
+// Memory of a block that makes a part of an image, and then answers a query there.
+union PartAndQueryShared {
+  PartWork<GridTeam>::Shared part;
+  alignas(16) unsigned char query[sizeof(BlockShared<DepthSurface>)];
+
+  __device__ BlockShared<DepthSurface>& of_query() {
+    return *reinterpret_cast<BlockShared<DepthSurface>*>(query);
+  }
+};
+
+// One query in an image of which nothing was made so far.
+__global__ void __launch_bounds__(kThreads, kFewBlocks)
+    one_pose_in_new_part(const __grid_constant__ RefinedLaunch<DepthSurface> launch,
+                         const __grid_constant__ CloudSource image,
+                         const __grid_constant__ NewPart part,
+                         const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ PartAndQueryShared shared;
+  GridTeam team(&launch.totals->arrived);
+  PartWork<GridTeam>(image, part, team, shared.part).run();
+  answer_pose(launch, frame, sequence, team, shared.of_query());
 }
 
 // One query after another (orders.h), until none comes.
 __global__ void __launch_bounds__(kThreads, kFewBlocks)
     stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
   using Launch = RefinedLaunch<DepthSurface>;
-  __shared__ BlockShared<DepthSurface> shared;
+  __shared__ PartAndQueryShared shared;
   __shared__ Launch launch;
+  __shared__ alignas(CloudSource) unsigned char image_memory[sizeof(CloudSource)];
+  auto& image = *reinterpret_cast<CloudSource*>(image_memory);
   __shared__ Order order;
   __shared__ PoseFrame frame;
   Orders orders(view, first, order);
   for (unsigned number = first;; ++number) {
     orders.receive(number);
     if (order.leaves != 0) return;
-    if (threadIdx.x == 0) frame.to_surface = order.to_surface;
-    copy_words(*static_cast<const Launch*>(order.launch), launch);
-    if (answer_pose(launch, frame, order.turn, shared)) orders.finish(number);
+    copy_words(*static_cast<const Launch*>(order.launch), launch, 0, 2);
+    if (order.image != nullptr) copy_words(*order.image, image, 1, 2);
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      frame.to_surface = order.to_surface;
+      image.look_from(order.camera_to_world);
+      const PixelRectangle& made = order.part.wanted;
+      if (!(made == launch.surface.made))
+        launch.surface.restrict_to(made, &launch.totals->result.beyond);
+    }
+    __syncthreads();
+    GridTeam team(&launch.totals->arrived);
+    if (order.image != nullptr) PartWork<GridTeam>(image, order.part, team, shared.part).run();
+    if (answer_pose(launch, frame, order.turn, team, shared.of_query())) orders.finish(number);
   }
 }
 

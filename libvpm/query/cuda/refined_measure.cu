@@ -18,9 +18,12 @@ class RefinedOnDevice : public MeasureOnDevice {
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
+        making_(kernel_of(one_pose_in_new_part, kFewBlocks)),
         standing_by_(kernel_of(stand_by_kernel, kFewBlocks)),
-        memory_(level_.view(), 1,
-                std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
+        memory_(
+            level_.view(), 1,
+            std::max({of_images_.blocks, of_points_.blocks, making_.blocks, standing_by_.blocks}),
+            kThreads),
         totals_(1),
         counters_(1) {
     totals_.clear();
@@ -61,8 +64,11 @@ class RefinedOnDevice : public MeasureOnDevice {
     RefinedMemory memory;
   };
 
-  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
-    if (cloud().frame().is_organised)
+  void launch(const PoseFrame& frame, const Making* making, Answer* answer,
+              unsigned sequence) override {
+    if (making != nullptr)
+      launch_making(*making, frame, answer, sequence);
+    else if (cloud().frame().is_organised)
       launch_on(surface_there(), of_images_, frame, answer, sequence);
     else
       launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
@@ -80,6 +86,10 @@ class RefinedOnDevice : public MeasureOnDevice {
     return part_read(cloud().depth_surface(), frame.to_surface.translation, reach(),
                      level_.looks().all());
   }
+  // More tiles than two for each block are sooner made by kernels that fill the device.
+  std::int64_t most_pixels_made() const override {
+    return std::int64_t{2} * making_.blocks * SmallTile::kPixels;
+  }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().notes[sequence % 2].words;
   }
@@ -93,18 +103,16 @@ class RefinedOnDevice : public MeasureOnDevice {
   // turns.
   const void* standing_launch(Answer* answer) override {
     if (!cloud().frame().is_organised) return nullptr;
-    const DepthSurface surface = surface_there();
-    const Known known{cloud().serial(), surface.made};
     for (std::size_t k = 0; k < kClouds; ++k)
-      if (clouds_on_device_[k] == known) return arguments_.get() + k;
+      if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
     if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
     const std::size_t k = next_cloud_++ % kClouds;
     const RefinedLaunch<DepthSurface> arguments =
-        arguments_of(surface, standing_by_.blocks, answer);
-    clouds_on_device_[k] = {};
+        arguments_of(cloud().depth_surface(), standing_by_.blocks, answer);
+    clouds_on_device_[k] = 0;
     check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
     finish_transfers();
-    clouds_on_device_[k] = known;
+    clouds_on_device_[k] = cloud().serial();
     return arguments_.get() + k;
   }
 
@@ -121,6 +129,16 @@ class RefinedOnDevice : public MeasureOnDevice {
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
             sphere_blocks, totals_.get(), counters_.get(),  answer};
+  }
+  void launch_making(const Making& making, const PoseFrame& frame, Answer* answer,
+                     unsigned sequence) {
+    auto arguments = arguments_of(surface_there(), making_.blocks, answer);
+    CloudSource image = making.source;
+    NewPart part = making.part;
+    PoseFrame pose = frame;
+    void* values[] = {&arguments, &image, &part, &pose, &sequence};
+    check(cudaLaunchCooperativeKernel(making_.function, making_.blocks, kThreads, values, 0,
+                                      stream()));
   }
   template <class Surface>
   void launch_on(const Surface& surface, const PoseKernel& kernel, const PoseFrame& frame,
@@ -145,21 +163,15 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   DeviceLevel level_;
   bool counts_points_;
-  PoseKernel of_images_, of_points_, standing_by_;
+  PoseKernel of_images_, of_points_, making_, standing_by_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
-  // A cloud whose arguments for standing_launch() are kept, and what was there of it. (Images made
-  // as asked seldom come again with the same part.)
-  struct Known {
-    std::uint64_t serial = 0;
-    PixelRectangle made;
-    bool operator==(const Known&) const = default;
-  };
+  // Clouds whose arguments for standing_launch() are kept.
   static constexpr std::size_t kClouds = 4;
   DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
-  Known clouds_on_device_[kClouds];
+  std::uint64_t clouds_on_device_[kClouds] = {};
   std::size_t next_cloud_ = 0;
 };
 

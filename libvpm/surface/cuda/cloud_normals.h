@@ -23,11 +23,10 @@ struct Extent {
 };
 
 // The plane of the pixels of one window that belong to the surface of its centre.
-template <int Radius>
+template <class Frame>
 class GatedFit {
  public:
-  __device__ __forceinline__ GatedFit(const float* centre, const TileFrame<Radius>& tile,
-                                      const EdgeGate& edges)
+  __device__ __forceinline__ GatedFit(const float* centre, const Frame& tile, const EdgeGate& edges)
       : centre_(centre), tile_(tile), edges_(edges), middle_(*centre), unit_(1.0F / middle_) {}
 
   // The last choice of pixels is by the gate about the plane `first`.
@@ -105,24 +104,25 @@ class GatedFit {
   }
 
   const float* centre_;
-  TileFrame<Radius> tile_;
+  const Frame& tile_;
   const EdgeGate& edges_;
   float middle_, unit_;
 };
 
 // What a block knows of its tile when normals are estimated.
-template <int Radius>
+template <class Frame>
 struct TileImage {
-  TileFrame<Radius> frame;
+  Frame frame;
   const float *inverse, *depth;  // with the margin; depth only where it is needed
   const double *ray_x, *ray_y;   // of the tile's columns and rows
 };
 
 // How a tile's normals are estimated. Each has: what is kept of a column, the sums down a column,
 // the normal of a smooth window from them, and that of a gated one.
-template <int Radius>
+template <class Tile>
 class InverseDepthNormals {
  public:
+  using Frame = Tile;
   static constexpr bool kNeedsDepth = false;
   static constexpr int kMostBlocks = 5;  // of a multiprocessor
   struct alignas(16) Column {
@@ -130,12 +130,12 @@ class InverseDepthNormals {
   };
 
   __device__ __forceinline__ InverseDepthNormals(const CloudRecipe& recipe,
-                                                 const TileImage<Radius>& image)
+                                                 const TileImage<Frame>& image)
       : recipe_(recipe), image_(image) {}
 
   // Down the column x (from -radius on) around the row y.
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    const TileFrame<Radius>& frame = image_.frame;
+    const Frame& frame = image_.frame;
     const float* const middle = image_.inverse + frame.index(x, y);
     float s = *middle, vs = 0;
     Extent extent(s);
@@ -169,8 +169,8 @@ class InverseDepthNormals {
   }
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
-    const GatedFit<Radius> fit(image_.inverse + image_.frame.index(x, y), image_.frame,
-                               recipe_.edges);
+    const GatedFit<Frame> fit(image_.inverse + image_.frame.index(x, y), image_.frame,
+                              recipe_.edges);
     WindowPlane first;
     return normal_of_window(fit.run(first), fx(), fy(), du_axis(x), dv_axis(y));
   }
@@ -190,12 +190,13 @@ class InverseDepthNormals {
   }
 
   const CloudRecipe& recipe_;
-  TileImage<Radius> image_;
+  TileImage<Frame> image_;
 };
 
-template <int Radius>
+template <class Tile>
 class PcaNormals {
  public:
+  using Frame = Tile;
   static constexpr bool kNeedsDepth = true;
   static constexpr int kMostBlocks = 3;
   struct Column {
@@ -203,11 +204,11 @@ class PcaNormals {
     float low, high;
   };
 
-  __device__ __forceinline__ PcaNormals(const CloudRecipe& recipe, const TileImage<Radius>& image)
+  __device__ __forceinline__ PcaNormals(const CloudRecipe& recipe, const TileImage<Frame>& image)
       : recipe_(recipe), image_(image) {}
 
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    const TileFrame<Radius>& frame = image_.frame;
+    const Frame& frame = image_.frame;
     const int at = frame.index(x, y);
     const double middle = image_.depth[at];
     double z = middle, vz = 0, z2 = middle * middle, vz2 = 0, vvz2 = 0;
@@ -250,7 +251,7 @@ class PcaNormals {
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
     const int at = image_.frame.index(x, y), radius = image_.frame.radius();
-    const GatedFit<Radius> fit(image_.inverse + at, image_.frame, recipe_.edges);
+    const GatedFit<Frame> fit(image_.inverse + at, image_.frame, recipe_.edges);
     WindowPlane first;
     if (!fit.run(first).found) return {};
     Moments m;
@@ -270,7 +271,7 @@ class PcaNormals {
   }
 
   const CloudRecipe& recipe_;
-  TileImage<Radius> image_;
+  TileImage<Frame> image_;
 };
 
 }  // namespace vpm::cuda

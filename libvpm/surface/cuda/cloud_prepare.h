@@ -20,6 +20,20 @@ struct CloudCounters {
   unsigned done = 0;  // blocks of a launch; 0 between launches
 };
 
+// By one thread of each block, with what it has counted; then, when all have come, by one.
+__device__ inline void count(unsigned points, unsigned doubtful, CloudCounters& counters) {
+  if (points > 0) atomicAdd(&counters.points, points);
+  if (doubtful > 0) atomicAdd(&counters.doubtful, doubtful);
+}
+__device__ inline void answer_with(const volatile CloudCounters& counters, CloudAnswer* answer,
+                                   unsigned sequence) {
+  put(numbered(sequence, counters.doubtful), answer->doubtful);
+  put(numbered(sequence, counters.points), answer->points);
+}
+
+// Of the default window: kernels know it beforehand.
+inline constexpr int kUsualRadius = 3;
+
 // What the current device can do with windows of this size.
 struct Preparation {
   bool fits = false;      // its shared memory holds them
@@ -29,7 +43,7 @@ Preparation preparation_of(const NormalOptions& options);
 
 // After take_image() in the same stream. The answer, of all tiles made so far, comes when the last
 // normal is known.
-void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
+void prepare_on_device(const CloudRecipe& recipe, const StepPixels& pixels, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream);
 

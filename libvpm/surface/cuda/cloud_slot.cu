@@ -4,7 +4,6 @@
 #include "libvpm/core/lengths.h"
 #include "libvpm/surface/cuda/cloud_settle.h"
 #include "libvpm/surface/cuda/cloud_slot.h"
-#include "libvpm/surface/cuda/cloud_take.h"
 
 namespace vpm::cuda {
 namespace {
@@ -30,13 +29,7 @@ bool is_sound_pose(const Pose& pose) {
 }
 
 constexpr std::size_t whole_groups(std::size_t pixels) {
-  return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
-}
-
-TileRectangle tiles_of(const PixelRectangle& pixels) {
-  if (is_empty(pixels)) return {};
-  return {pixels.u0 / kTileWidth, pixels.v0 / kTileHeight, pixels.u1 / kTileWidth + 1,
-          pixels.v1 / kTileHeight + 1};
+  return (pixels + kMostPixelsAtOnce - 1) / kMostPixelsAtOnce * kMostPixelsAtOnce;
 }
 
 Error lost() {
@@ -56,6 +49,8 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       answer_(1),
       preparation_(preparation_of(options.normals)) {
   counters_.clear();
+  const CloudSource source = this->source();
+  source_ = DeviceArray<CloudSource>(&source, 1);
 }
 
 CloudSlot::~CloudSlot() {
@@ -70,7 +65,7 @@ void CloudSlot::begin() {
     return;
   }
   cloud_.stand_at(camera().to_world);
-  made_ = {};
+  made_ = placed_ = {};
   has_failed_ = false;
   if (options().making == FrameMaking::whole) require_all();
 }
@@ -84,7 +79,7 @@ CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t st
   if (has_failed_) throw lost();
   if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
   const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
-  if (!(wanted == made_)) {
+  if (!(wanted == made_) || (wanted == whole() && !(wanted == placed_))) {
     const OtherWork other;
     launch(wanted, stream);
     other.goes_on_until(end_);
@@ -108,7 +103,7 @@ void CloudSlot::launch(const PixelRectangle& wanted, cudaStream_t stream) const 
   }
   check(mark_end());
   has_failed_ = false;
-  made_ = wanted;
+  made_ = placed_ = wanted;
 }
 
 bool CloudSlot::is_there() const {
@@ -117,29 +112,35 @@ bool CloudSlot::is_there() const {
 }
 
 void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
-  DepthSource source;
-  if (options().counts_per_metre) {
-    source.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
-    source.counts_per_metre = *options().counts_per_metre;
-  } else {
-    source.metres = reinterpret_cast<const float*>(image_.device());
-  }
-  take_image(source, depth_.get(), inverse_.get(), recipe(), with_neighbors(wanted),
-             with_neighbors(made_), counters_.get(), stream);
+  const CloudSource source = this->source();
+  const int margin = kSettleMargin + TileFrame<LargeTile, 0>::margin_of(source.recipe.window / 2);
+  take_image(source.image, source.taken, source.recipe, step(wanted, placed_, margin),
+             is_empty(made_), source.counters, stream);
 }
 
-// A tile is settled from what was prepared of it and of those around it.
 void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
-  CloudRecipe recipe = this->recipe();
-  recipe.room.estimated = estimated;
-  recipe.wanted = tiles_of(with_neighbors(wanted));
-  recipe.made = tiles_of(with_neighbors(made_));
-  prepare_on_device(recipe, options().normals.method, preparation_, counters_.get(),
-                    answer_.device(), sequence_ + 1, stream);
+  CloudSource source = this->source();
+  source.recipe.room.estimated = estimated;
+  prepare_on_device(source.recipe, step(wanted, placed_, kSettleMargin), options().normals.method,
+                    preparation_, source.counters, source.answer, sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
-  recipe.wanted = tiles_of(wanted);
-  recipe.made = tiles_of(made_);
-  settle_on_device(recipe, preparation_.overlaps, stream);
+  settle_on_device(source.recipe, {wanted, made_}, preparation_.overlaps, stream);
+}
+
+StepPixels CloudSlot::step(const PixelRectangle& wanted, const PixelRectangle& made,
+                           int margin) const {
+  const DepthSurface& surface = cloud_.depth_surface();
+  const auto with_margin = [&](const PixelRectangle& pixels) {
+    return widened(pixels, margin, 1, 1, surface.width, surface.height);
+  };
+  return {with_margin(wanted), with_margin(made)};
+}
+
+// Images of which all is asked for are made by kernels that fill the device. What was launched in
+// this memory, the query's own kernel would not wait for.
+bool CloudSlot::is_for_query(const PixelRectangle& wanted) const {
+  return !has_failed_ && !(wanted == made_) && !(wanted == whole()) &&
+         is_made_by_queries(options().normals) && is_there();
 }
 
 PixelRectangle CloudSlot::whole() const {
@@ -147,9 +148,9 @@ PixelRectangle CloudSlot::whole() const {
   return whole_image(surface.width, surface.height);
 }
 
-PixelRectangle CloudSlot::in_whole_tiles(const PixelRectangle& pixels, int margin) const {
+PixelRectangle CloudSlot::in_whole_tiles(const PixelRectangle& pixels) const {
   const DepthSurface& surface = cloud_.depth_surface();
-  return widened(pixels, margin, kTileWidth, kTileHeight, surface.width, surface.height);
+  return widened(pixels, 0, kTileWidth, kTileHeight, surface.width, surface.height);
 }
 
 std::vector<Vec3f> CloudSlot::estimate_normals() {
@@ -165,21 +166,33 @@ std::vector<Vec3f> CloudSlot::estimate_normals() {
   return normals;
 }
 
-CloudRecipe CloudSlot::recipe() const {
+CloudSource CloudSlot::source() const {
   const DepthFrameOptions& o = options();
-  const Pose& to_world = camera().to_world;
-  return {depth_.get(),
-          inverse_.get(),
-          camera(),
-          relative_to(to_world, {{}, to_world.translation}).rotation,
-          1 / o.intrinsics.fx,
-          1 / o.intrinsics.fy,
-          o.normals.window,
-          EdgeGate(o.normals, o.intrinsics),
-          WholeWindow(o.normals.window),
-          seen_.get(),
-          o.points,
-          cloud_.room()};
+  DepthSource image;
+  if (o.counts_per_metre) {
+    image.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
+    image.counts_per_metre = *o.counts_per_metre;
+  } else {
+    image.metres = reinterpret_cast<const float*>(image_.device());
+  }
+  CloudSource source{image,
+                     {depth_.get(), inverse_.get()},
+                     {depth_.get(),
+                      inverse_.get(),
+                      camera(),
+                      {},
+                      1 / o.intrinsics.fx,
+                      1 / o.intrinsics.fy,
+                      o.normals.window,
+                      EdgeGate(o.normals, o.intrinsics),
+                      WholeWindow(o.normals.window),
+                      seen_.get(),
+                      o.points,
+                      cloud_.room()},
+                     counters_.get(),
+                     answer_.device()};
+  source.look_from(camera().to_world.rotation);
+  return source;
 }
 
 bool CloudSlot::is_answered(unsigned sequence) const {

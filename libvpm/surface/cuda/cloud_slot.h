@@ -5,7 +5,7 @@
 
 #include "libvpm/device/cuda/other_work.h"
 #include "libvpm/device/cuda/stream.h"
-#include "libvpm/surface/cuda/cloud_prepare.h"
+#include "libvpm/surface/cuda/cloud_part.h"
 #include "libvpm/surface/cuda/device_cloud.h"
 #include "libvpm/surface/frame_slot.h"
 
@@ -31,6 +31,29 @@ class CloudSlot : public FrameSlot {
   // made is launched there. From any thread. Where a launch fails, the frame is lost.
   Part require(const PixelRectangle& pixels, cudaStream_t stream) const;
 
+  // The same by a query that makes what it reads (cloud_part.h), `most` pixels at most: calls
+  // ask(part, making), which returns when that is answered. Others wait meanwhile. False, and
+  // nothing is done, where all is there, or must be required.
+  struct Making {
+    const CloudSource& source;
+    const CloudSource* on_device;  // the same, but for the camera's pose
+    NewPart part;
+  };
+  template <class Ask>
+  bool make_by_query(const PixelRectangle& pixels, std::int64_t most, const Ask& ask) const {
+    const std::lock_guard lock(making_);
+    const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
+    if (pixel_count(wanted) - pixel_count(made_) > most || !is_for_query(wanted)) return false;
+    has_failed_ = true;  // unless it ends
+    const NewPart part{wanted, made_, sequence_ + 1};
+    const CloudSource source = this->source();
+    ask(Part{wanted, false, true, part.sequence}, Making{source, source_.get(), part});
+    ++sequence_;
+    made_ = wanted;
+    has_failed_ = false;
+    return true;
+  }
+
   // Whether the device makes the cloud. Otherwise the CPU does, since it might refuse something.
   bool is_on_device() const { return is_plain_; }
   // Whether no point that the CPU might refuse was made so far. Waits for the part.
@@ -53,27 +76,28 @@ class CloudSlot : public FrameSlot {
   Part require_all() const;
   void launch(const PixelRectangle& wanted, cudaStream_t stream) const;
   bool is_there() const;
-  CloudRecipe recipe() const;
-  PixelRectangle in_whole_tiles(const PixelRectangle& pixels, int margin = 0) const;
-  // Whole tiles, and those around them.
-  PixelRectangle with_neighbors(const PixelRectangle& tiles) const {
-    return in_whole_tiles(tiles, 1);
-  }
+  CloudSource source() const;
+  bool is_for_query(const PixelRectangle& wanted) const;
+  PixelRectangle in_whole_tiles(const PixelRectangle& pixels) const;
+  // Pixels, and what was made of them, with so much around.
+  StepPixels step(const PixelRectangle& wanted, const PixelRectangle& made, int margin) const;
   bool is_answered(unsigned sequence) const;
   void wait_for(unsigned sequence) const;
 
   Stream stream_;
   MappedArray<std::byte> image_;
   DeviceArray<float> depth_, inverse_;
-  DeviceArray<Vec3f> seen_;
+  DeviceArray<float4> seen_;
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
+  DeviceArray<CloudSource> source_;
   Preparation preparation_;
   bool is_plain_ = false;
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
   mutable std::mutex making_;                                                     // of what follows
-  mutable PixelRectangle made_;                                                   // whole tiles
+  mutable PixelRectangle made_;      // whole tiles: the surface,
+  mutable PixelRectangle placed_;    // and points as well
   mutable bool is_there_ = true;     // what was launched in this memory has ended, of any frame
   mutable bool has_failed_ = false;  // some of it was not launched
   mutable unsigned sequence_ = 0;    // of the last making

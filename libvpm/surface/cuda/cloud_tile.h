@@ -1,5 +1,4 @@
-// What the kernels of cloud_prepare.cu and cloud_settle.cu know of an image, and of the tile of it
-// that a block works on.
+// What is known of an image that becomes a cloud, and of the tile of it that a block works on.
 #pragma once
 
 #include "libvpm/cloud/depth_image.h"
@@ -7,35 +6,38 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/surface/cuda/cloud_room.h"
 #include "libvpm/surface/hole_closing.h"
+#include "libvpm/surface/pixel_rectangle.h"
 #include "libvpm/surface/point_reading.h"
 
 namespace vpm::cuda {
 
-inline constexpr int kTileWidth = 32, kTileHeight = 16, kTilePixels = kTileWidth * kTileHeight;
-inline constexpr unsigned kTileThreads = 256;
+// Pixels of which whole tiles are made ready, and levels of coarser ones that lie whole in each.
+inline constexpr int kTileWidth = 32, kTileHeight = 16, kTileLevels = 4;
+
+// The tile of a block, and the threads that make points of it, then its surface; how far loops
+// over its pixels are unrolled.
+template <int Width, int Height, int PointThreads, int SurfaceThreads, int Unroll>
+struct TileShape {
+  static constexpr int kUnroll = Unroll;
+  static constexpr int kWidth = Width, kHeight = Height, kPixels = Width * Height;
+  static constexpr int kPointThreads = PointThreads, kSurfaceThreads = SurfaceThreads;
+  static_assert(kTileWidth % Width == 0 && kTileHeight % Height == 0);
+  static_assert(Height == 1 << kTileLevels && Width % Height == 0);
+};
+// Of kernels that fill a device with an image; of queries, which make a part of it, by as many
+// blocks as there are. These go through their code once: what counts is how much it is.
+using LargeTile = TileShape<kTileWidth, kTileHeight, 256, kTileWidth * kTileHeight, 6>;
+using SmallTile = TileShape<16, 16, 128, 128, 1>;
+
 // Blocks of a multiprocessor: so many, if it has threads for them.
 VPM_HD constexpr int blocks_for_tiles(int wanted) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
-  constexpr int kMost = 1024 / kTileThreads;
+  constexpr int kMost = 1024 / LargeTile::kPointThreads;
   return wanted < kMost ? wanted : kMost;
 #else
   return wanted;
 #endif
 }
-// Coarser levels whose tiles lie whole in one tile of the kernel.
-inline constexpr int kTileLevels = 4;
-static_assert(kTileHeight == 1 << kTileLevels && kTileWidth % kTileHeight == 0);
-
-// Some of an image's tiles; those of u1 and v1 are no more among them.
-struct TileRectangle {
-  int u0 = 0, v0 = 0, u1 = 0, v1 = 0;
-
-  __host__ __device__ int columns() const { return u1 - u0; }
-  __host__ __device__ int count() const { return columns() * (v1 - v0); }
-  __host__ __device__ bool holds(int u, int v) const {
-    return u >= u0 && u < u1 && v >= v0 && v < v1;
-  }
-};
 
 // An image and how its cloud is made.
 struct CloudRecipe {
@@ -47,65 +49,103 @@ struct CloudRecipe {
   int window = 0;
   EdgeGate edges;
   WholeWindow whole;
-  Vec3f* seen = nullptr;  // normals of the pixels, camera axes, turned back from the world's
+  float4* seen = nullptr;  // of the pixels: normals in camera axes, turned back from the world's,
+                           // and inverse depth without holes
   PointReading points = PointReading::settled;
   CloudRoom room;
-  TileRectangle wanted, made;  // a launch makes what is wanted and was not made before
 };
 
-// Where a block's tile lies, and its image with a margin. `Radius`: of the windows; 0 if it is
-// known at run time only.
-template <int Radius>
+// The pixels that a step is to make, and those of them that it has made of this image before:
+// there the same is written again, or nothing.
+struct StepPixels {
+  PixelRectangle wanted, made;
+
+  template <class Shape>
+  __host__ __device__ int tiles_per_row() const {
+    return (wanted.u1 - wanted.u0) / Shape::kWidth + 1;
+  }
+  template <class Shape>
+  __host__ __device__ int tile_count() const {
+    return tiles_per_row<Shape>() * ((wanted.v1 - wanted.v0) / Shape::kHeight + 1);
+  }
+};
+
+// Where one of a step's tiles lies, and its image with a margin. `Radius`: of the windows; 0 if it
+// is known at run time only.
+template <class TheShape, int Radius>
 class TileFrame {
  public:
-  int u0, v0, width, height;  // width, height: of the image
-  bool is_made;               // before this launch
+  using Shape = TheShape;
 
-  __device__ explicit TileFrame(const CloudRecipe& recipe)
-      : width(static_cast<int>(recipe.camera.width)),
+  int u0, v0, width, height;  // width, height: of the image
+
+  __device__ TileFrame(const CloudRecipe& recipe, const StepPixels& pixels, int number)
+      : u0(pixels.wanted.u0 + number % pixels.tiles_per_row<Shape>() * Shape::kWidth),
+        v0(pixels.wanted.v0 + number / pixels.tiles_per_row<Shape>() * Shape::kHeight),
+        width(static_cast<int>(recipe.camera.width)),
         height(static_cast<int>(recipe.camera.height)),
-        radius_(recipe.window / 2) {
-    const auto per_row = static_cast<unsigned>(recipe.wanted.columns());
-    const int u = recipe.wanted.u0 + static_cast<int>(blockIdx.x % per_row);
-    const int v = recipe.wanted.v0 + static_cast<int>(blockIdx.x / per_row);
-    is_made = recipe.made.holds(u, v);
-    u0 = u * kTileWidth;
-    v0 = v * kTileHeight;
-  }
+        made_(pixels.made),
+        end_x_(pixels.wanted.u1 + 1 - u0),
+        end_y_(pixels.wanted.v1 + 1 - v0),
+        radius_(recipe.window / 2) {}
   __host__ __device__ static constexpr int margin_of(int radius) {
     return radius > kFillPasses ? radius : kFillPasses;
   }
   __device__ int radius() const { return Radius > 0 ? Radius : radius_; }
   __device__ int margin() const { return margin_of(radius()); }
-  __device__ int pitch() const { return kTileWidth + 2 * margin(); }
-  __device__ int rows() const { return kTileHeight + 2 * margin(); }
+  __device__ int pitch() const { return Shape::kWidth + 2 * margin(); }
+  __device__ int rows() const { return Shape::kHeight + 2 * margin(); }
   // Columns of windows: the tile's, and those beside it.
-  __device__ int columns() const { return kTileWidth + 2 * radius(); }
+  __device__ int columns() const { return Shape::kWidth + 2 * radius(); }
   // Of the tile's own pixel (x, y), from -margin on.
   __device__ int index(int x, int y) const { return (y + margin()) * pitch() + x + margin(); }
-  __device__ bool holds(int x, int y) const { return u0 + x < width && v0 + y < height; }
   __device__ std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(v0 + y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(u0 + x);
   }
 
+  // Of the tile's own pixels: whether it is to be made; was not before.
+  __device__ bool holds(int x, int y) const { return x < end_x() && y < end_y(); }
+  __device__ bool is_new(int x, int y) const {
+    const int u = u0 + x, v = v0 + y;
+    return holds(x, y) && !vpm::holds(made_, {u, v, u, v});
+  }
+  __device__ bool was_made() const {
+    const int columns = end_x() < Shape::kWidth ? end_x() : Shape::kWidth;
+    const int rows = end_y() < Shape::kHeight ? end_y() : Shape::kHeight;
+    return vpm::holds(made_, {u0, v0, u0 + columns - 1, v0 + rows - 1});
+  }
+  __device__ bool is_in_image(int x, int y) const {
+    return u0 + x >= 0 && v0 + y >= 0 && u0 + x < width && v0 + y < height;
+  }
+  // Whether it is known what the step before has made of a pixel in the margin.
+  __device__ bool is_known(int x, int y) const {
+    return is_in_image(x, y) && x < end_x() + margin() && y < end_y() + margin();
+  }
+  // Of rows and columns that have pixels to be made, the ends.
+  __device__ int end_x() const { return end_x_; }
+  __device__ int end_y() const { return end_y_; }
+
  private:
+  PixelRectangle made_;
+  int end_x_, end_y_;
   int radius_;
 };
 
 // The rows of a block's tile to their places in the image, word by word, so that a warp's words lie
 // together.
-template <int Radius>
-__device__ __forceinline__ void write_rows(const TileFrame<Radius>& tile, const Vec3f* from,
-                                           Vec3f* to) {
+template <class Frame>
+__device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from, Vec3f* to) {
+  using Shape = typename Frame::Shape;
   const auto* const words = reinterpret_cast<const float*>(from);
   auto* const image = reinterpret_cast<float*>(to);
-  constexpr int kRow = 3 * kTileWidth;
-#pragma unroll 6
-  for (int k = static_cast<int>(threadIdx.x); k < 3 * kTilePixels;
+  constexpr int kRow = 3 * Shape::kWidth;
+  const int end_x = 3 * tile.end_x(), end_y = tile.end_y();
+#pragma unroll Shape::kUnroll
+  for (int k = static_cast<int>(threadIdx.x); k < 3 * Shape::kPixels;
        k += static_cast<int>(blockDim.x)) {
     const int x = k % kRow, y = k / kRow;
-    if (x < 3 * (tile.width - tile.u0) && tile.v0 + y < tile.height)
+    if (x < end_x && y < end_y)
       image[3 * tile.pixel(0, y) + static_cast<std::size_t>(x)] = words[k];
   }
 }
@@ -133,12 +173,13 @@ __device__ __forceinline__ void wait_for_last() {
 #endif
 }
 
-// A block for each tile that is wanted. `overlaps`: the kernel waits for the last one itself.
+// A block for each of a step's tiles. `overlaps`: the kernel waits for the last one itself.
 template <class... Parameters, class... Arguments>
-void launch_over_tiles(const CloudRecipe& recipe, void (*kernel)(Parameters...), unsigned threads,
-                       std::size_t shared, bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
+void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
+                       std::size_t shared, bool overlaps, cudaStream_t stream,
+                       const Arguments&... arguments) {
   cudaLaunchConfig_t launch{};
-  launch.gridDim = static_cast<unsigned>(recipe.wanted.count());
+  launch.gridDim = static_cast<unsigned>(pixels.tile_count<LargeTile>());
   launch.blockDim = threads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;
