@@ -190,19 +190,20 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   for (unsigned number = first;; ++number) {
     orders.receive(number);
     if (order.leaves != 0) return;
-    copy_words(*static_cast<const Launch*>(order.launch), launch, 0, 2);
-    if (order.image != nullptr) copy_words(*order.image, image, 1, 2);
+    const bool makes = order.image != nullptr;
+    if (threadIdx.x == 0) frame.to_surface = order.to_surface;
+    copy_words(*static_cast<const Launch*>(order.launch), launch, 0, makes ? 2 : 1);
+    if (makes) copy_words(*order.image, image, 1, 2);
     __syncthreads();
-    if (threadIdx.x == 0) {
-      frame.to_surface = order.to_surface;
-      image.look_from(order.camera_to_world);
-      const PixelRectangle& made = order.part.wanted;
-      if (!(made == launch.surface.made))
-        launch.surface.restrict_to(made, &launch.totals->result.beyond);
+    if (!(order.part.wanted == whole_image(launch.surface.width, launch.surface.height))) {
+      if (threadIdx.x == 0) {
+        launch.surface.restrict_to(order.part.wanted, &launch.totals->result.beyond);
+        image.look_from(order.camera_to_world);
+      }
+      __syncthreads();
     }
-    __syncthreads();
     GridTeam team(&launch.totals->arrived);
-    if (order.image != nullptr) PartWork<GridTeam>(image, order.part, team, shared.part).run();
+    if (makes) PartWork<GridTeam>(image, order.part, team, shared.part).run();
     if (answer_pose(launch, frame, order.turn, team, shared.of_query())) orders.finish(number);
   }
 }
