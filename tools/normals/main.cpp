@@ -62,8 +62,13 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
   return report;
 }
 
-void say_notes(const Tool& tool, const std::string& name, const ImportedCloud& imported) {
-  if (!imported.cloud.sensor) return;
+void say_notes(const Tool& tool, const std::string& name, const ImportArguments& import,
+               const ImportedCloud& imported) {
+  if (!imported.cloud.sensor) {
+    if (!import.intrinsics.empty())
+      tool.warn(name + ": --intrinsics are not used: it holds points with normals, not an image");
+    return;
+  }
   const Camera& camera = imported.cloud.sensor->camera;
   const Intrinsics& k = camera.intrinsics;
   const std::string text = std::to_string(k.fx) + "," + std::to_string(k.fy) + "," +
@@ -89,7 +94,7 @@ void run(const Tool& tool, const Arguments& a) {
   ImportedCloud imported = import_cloud(bytes, name, options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_notes(tool, name, imported);
+  say_notes(tool, name, a.import, imported);
   imported.cloud.provenance = {{"tool", tool.name()},
                                {"version", VPM_VERSION},
                                {"parameters", tool.parameters()},

@@ -19,6 +19,8 @@ $ vpm-normals grid.pcd -o grid.vpmc --intrinsics 60,60,31.5,23.5 --force && vpm-
 3071
 $ vpm-normals wall.ply -o scattered.vpmc --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["method"], r["points"], r["invalid"])'
 file 3071 0
+$ vpm-normals wall.ply -o scattered.vpmc --intrinsics 60,60,31.5,23.5 --force
+2> vpm-normals: warning: wall.ply: --intrinsics are not used: it holds points with normals, not an image
 $ vpm-normals grid.pcd -o x.vpmc --intrinsics 90,90,31.5,23.5
 2> vpm-normals: error: grid.pcd: the organised cloud does not fit the intrinsics given: point (0, 0) is 15.7 pixels away from where the pinhole camera fx 90 fy 90 cx 31.5 cy 23.5 sees it (at most 0.5 is accepted); leave --intrinsics out to have them recovered
 [1]
