@@ -40,7 +40,8 @@ class MeasureOnDevice : public DeviceMeasure {
   // The pixels that one query reads of an image, as far as that is known beforehand; what more it
   // asks for, it says (RawResult::beyond).
   virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return all_pixels(); }
-  // So many pixels of an image a query makes itself, in the launch that `making` is given to.
+  // So many pixels of an image a query makes itself, in the launch or by the order that `making` is
+  // given to.
   virtual std::int64_t most_pixels_made() const { return 0; }
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
@@ -54,7 +55,7 @@ class MeasureOnDevice : public DeviceMeasure {
 
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
-  // What there is of that cloud when the stream comes to the query.
+  // What there is of that cloud when the stream comes to the query, or the query makes first.
   const CloudSlot::Part& part() const { return part_; }
   cudaStream_t stream() const { return stream_.get(); }
 

@@ -1,4 +1,5 @@
-// How a kernel that stands by is told of the next pose, without a launch.
+// How a kernel that stands by is told of the next pose, and of what to make before, without a
+// launch.
 //
 // The host writes an order into its own memory. A warp of the first block looks there and passes it
 // on to the other blocks in the device's memory.
@@ -15,7 +16,8 @@ struct Order {
   const CloudSource* image = nullptr;  // of which the part is to be made first; there as well
   Pose to_surface;                     // of PoseFrame
   Rotation camera_to_world;            // of the image
-  NewPart part;                        // what there is of the image then
+  NewPart part;                        // what there is of the image then (wanted); the rest of it
+                                       // counts where some is to be made
   std::uint32_t turn = 0;              // of the query
   std::uint32_t waits_us = 0;          // for the next order
   std::uint32_t leaves = 0;            // not 0: instead of a query
@@ -49,7 +51,8 @@ class Orders {
   // By all threads of all blocks: the order of this number, or one to leave if the host gives none
   // in time. What was done for the order before is seen then; so is what came to the device's
   // memory by transfers and kernels that had ended when the host gave it, since nothing older is
-  // kept nearer than there.
+  // kept nearer than there. (Images in the host's memory are read past everything near:
+  // cloud_take.h.)
   __device__ void receive(unsigned number) {
     if (threadIdx.x < 32) {
       if (blockIdx.x == 0)

@@ -154,6 +154,9 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   answer_pose(launch, frame, sequence, team, shared);
 }
 
+static_assert(kThreads == SmallTile::kPointThreads && kThreads == SmallTile::kSurfaceThreads);
+static_assert(alignof(BlockShared<DepthSurface>) <= 16);
+
 // Memory of a block that makes a part of an image, and then answers a query there.
 union PartAndQueryShared {
   PartWork<GridTeam>::Shared part;
@@ -164,7 +167,7 @@ union PartAndQueryShared {
   }
 };
 
-// One query in an image of which nothing was made so far.
+// One query in an image of which it makes a part first.
 __global__ void __launch_bounds__(kThreads, kFewBlocks)
     one_pose_in_new_part(const __grid_constant__ RefinedLaunch<DepthSurface> launch,
                          const __grid_constant__ CloudSource image,
@@ -198,7 +201,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
     if (!(order.part.wanted == whole_image(launch.surface.width, launch.surface.height))) {
       if (threadIdx.x == 0) {
         launch.surface.restrict_to(order.part.wanted, &launch.totals->result.beyond);
-        image.look_from(order.camera_to_world);
+        if (makes) image.look_from(order.camera_to_world);  // never all of an image
       }
       __syncthreads();
     }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "libvpm/query/cuda/standby.h"
@@ -56,8 +57,10 @@ bool Standby::has_left_at(unsigned number) const {
   return *static_cast<const volatile unsigned*>(left_.host()) == number;
 }
 
+// The image that an order names is there before the order is.
 void Standby::give(const Order& order) {
   ++number_;
+  std::atomic_thread_fence(std::memory_order_release);
   std::uint32_t words[OrderWords::kWords];
   std::memcpy(words, &order, sizeof(words));
   for (unsigned k = 0; k < OrderWords::kWords; ++k)

@@ -51,8 +51,8 @@ class PartWork {
   __device__ PartWork(const CloudSource& source, const NewPart& part, Team& team, Shared& shared)
       : source_(source),
         settled_{part.wanted, part.made},
-        prepared_(with_margin(part, kSettleMargin)),
-        taken_(with_margin(part, kSettleMargin + Points::Frame::margin_of(kUsualRadius))),
+        prepared_(pixels_to_prepare(source.recipe, settled_)),
+        taken_(pixels_to_take(source.recipe, settled_)),
         sequence_(part.sequence),
         team_(team),
         shared_(shared) {}
@@ -69,13 +69,6 @@ class PartWork {
   }
 
  private:
-  __device__ StepPixels with_margin(const NewPart& part, int margin) const {
-    const auto width = static_cast<int>(source_.recipe.camera.width),
-               height = static_cast<int>(source_.recipe.camera.height);
-    return {widened(part.wanted, margin, 1, 1, width, height),
-            widened(part.made, margin, 1, 1, width, height)};
-  }
-
   // Groups side by side by the lanes of a warp; warps of all blocks, before more of one.
   __device__ void take() const {
     const TakenDepths taken{nullptr, source_.taken.inverse};

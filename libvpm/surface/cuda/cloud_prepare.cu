@@ -1,4 +1,3 @@
-#include "libvpm/device/cuda/device_array.h"
 #include "libvpm/surface/cuda/cloud_points.h"
 #include "libvpm/surface/cuda/cloud_prepare.h"
 

@@ -32,7 +32,7 @@ __device__ inline void answer_with(const volatile CloudCounters& counters, Cloud
 }
 
 // Of the default window: kernels know it beforehand.
-inline constexpr int kUsualRadius = 3;
+inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
 
 // What the current device can do with windows of this size.
 struct Preparation {

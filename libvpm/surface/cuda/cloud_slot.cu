@@ -79,7 +79,7 @@ CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t st
   if (has_failed_) throw lost();
   if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
   const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
-  if (!(wanted == made_) || (wanted == whole() && !(wanted == placed_))) {
+  if (!(wanted == made_)) {  // all of it is made with its points
     const OtherWork other;
     launch(wanted, stream);
     other.goes_on_until(end_);
@@ -113,27 +113,19 @@ bool CloudSlot::is_there() const {
 
 void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
   const CloudSource source = this->source();
-  const int margin = kSettleMargin + TileFrame<LargeTile, 0>::margin_of(source.recipe.window / 2);
-  take_image(source.image, source.taken, source.recipe, step(wanted, placed_, margin),
-             is_empty(made_), source.counters, stream);
+  take_image(source.image, source.taken, source.recipe,
+             pixels_to_take(source.recipe, {wanted, placed_}), is_empty(made_), source.counters,
+             stream);
 }
 
 void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
   CloudSource source = this->source();
   source.recipe.room.estimated = estimated;
-  prepare_on_device(source.recipe, step(wanted, placed_, kSettleMargin), options().normals.method,
-                    preparation_, source.counters, source.answer, sequence_ + 1, stream);
+  prepare_on_device(source.recipe, pixels_to_prepare(source.recipe, {wanted, placed_}),
+                    options().normals.method, preparation_, source.counters, source.answer,
+                    sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
   settle_on_device(source.recipe, {wanted, made_}, preparation_.overlaps, stream);
-}
-
-StepPixels CloudSlot::step(const PixelRectangle& wanted, const PixelRectangle& made,
-                           int margin) const {
-  const DepthSurface& surface = cloud_.depth_surface();
-  const auto with_margin = [&](const PixelRectangle& pixels) {
-    return widened(pixels, margin, 1, 1, surface.width, surface.height);
-  };
-  return {with_margin(wanted), with_margin(made)};
 }
 
 // Images of which all is asked for are made by kernels that fill the device. What was launched in
@@ -215,7 +207,9 @@ void CloudSlot::wait() const {
 
 bool CloudSlot::is_sound(const Part& part) const {
   if (is_empty(part.made)) return true;  // answers are of other frames
-  wait_for(part.sequence);
+  if (!part.is_there) wait_for(part.sequence);
+  while (!is_answered(part.sequence)) {  // what has been made has answered: it is on its way
+  }
   return value_of(look_at(answer_.host()->doubtful)) == 0;
 }
 

@@ -24,7 +24,7 @@ class CloudSlot : public FrameSlot {
   struct Part {
     PixelRectangle made;
     bool is_whole = true;
-    bool is_there = true;  // its making has ended
+    bool is_there = true;  // nothing that was launched is to be waited for
     unsigned sequence = 0;
   };
   // These pixels, and what was made before, for what is launched on the stream next. What was not
@@ -32,8 +32,8 @@ class CloudSlot : public FrameSlot {
   Part require(const PixelRectangle& pixels, cudaStream_t stream) const;
 
   // The same by a query that makes what it reads (cloud_part.h), `most` pixels at most: calls
-  // ask(part, making), which returns when that is answered. Others wait meanwhile. False, and
-  // nothing is done, where all is there, or must be required.
+  // ask(part, making), which returns when that is answered. Whoever asks anything of the frame
+  // waits meanwhile. False, and nothing is done, where all is there, or must be required.
   struct Making {
     const CloudSource& source;
     const CloudSource* on_device;  // the same, but for the camera's pose
@@ -79,8 +79,6 @@ class CloudSlot : public FrameSlot {
   CloudSource source() const;
   bool is_for_query(const PixelRectangle& wanted) const;
   PixelRectangle in_whole_tiles(const PixelRectangle& pixels) const;
-  // Pixels, and what was made of them, with so much around.
-  StepPixels step(const PixelRectangle& wanted, const PixelRectangle& made, int margin) const;
   bool is_answered(unsigned sequence) const;
   void wait_for(unsigned sequence) const;
 

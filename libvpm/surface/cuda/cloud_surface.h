@@ -13,6 +13,15 @@ namespace vpm::cuda {
 inline constexpr int kMarginOfMarks = kSettledReach,
                      kSettleMargin = kMarginOfMarks + kSettledRadius;
 
+// What is to be prepared for such pixels, and to be taken for that.
+VPM_HD inline StepPixels pixels_to_prepare(const CloudRecipe& recipe, const StepPixels& settled) {
+  return with_margin(recipe, settled, kSettleMargin);
+}
+VPM_HD inline StepPixels pixels_to_take(const CloudRecipe& recipe, const StepPixels& settled) {
+  return with_margin(recipe, settled,
+                     kSettleMargin + TileFrame<LargeTile, 0>::margin_of(recipe.window / 2));
+}
+
 // Sizes of what a block keeps of a tile.
 template <class TheShape>
 struct SettleSizes {

@@ -103,10 +103,10 @@ __device__ inline void clear_coarse_tiles(const CloudRoom& room, const Camera& c
   }
 }
 
-// Brings pixels of the image to the device, and clears the counters with the first. With what is
-// first made of an image it clears what settle_on_device() (cloud_settle.h) adds up.
+// Brings pixels of the image to the device. Clears the counters where it has taken none before, and
+// where it is to the coarse tiles, which settle_on_device() (cloud_settle.h) adds to.
 void take_image(const DepthSource& source, const TakenDepths& taken, const CloudRecipe& recipe,
-                const StepPixels& pixels, bool is_first, CloudCounters* counters,
+                const StepPixels& pixels, bool clears_tiles, CloudCounters* counters,
                 cudaStream_t stream);
 
 }  // namespace vpm::cuda

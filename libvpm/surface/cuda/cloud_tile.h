@@ -14,8 +14,8 @@ namespace vpm::cuda {
 // Pixels of which whole tiles are made ready, and levels of coarser ones that lie whole in each.
 inline constexpr int kTileWidth = 32, kTileHeight = 16, kTileLevels = 4;
 
-// The tile of a block, and the threads that make points of it, then its surface; how far loops
-// over its pixels are unrolled.
+// The tile of a block, and the threads that make points of it, then its surface; how far the loops
+// that make points are unrolled.
 template <int Width, int Height, int PointThreads, int SurfaceThreads, int Unroll>
 struct TileShape {
   static constexpr int kUnroll = Unroll;
@@ -23,6 +23,7 @@ struct TileShape {
   static constexpr int kPointThreads = PointThreads, kSurfaceThreads = SurfaceThreads;
   static_assert(kTileWidth % Width == 0 && kTileHeight % Height == 0);
   static_assert(Height == 1 << kTileLevels && Width % Height == 0);
+  static_assert(kPixels % PointThreads == 0, "whole warps count what they find");
 };
 // Of kernels that fill a device with an image; of queries, which make a part of it, by as many
 // blocks as there are. These go through their code once: what counts is how much it is.
@@ -69,6 +70,15 @@ struct StepPixels {
     return tiles_per_row<Shape>() * ((wanted.v1 - wanted.v0) / Shape::kHeight + 1);
   }
 };
+
+// Pixels of an image with so much around, as far as it goes.
+VPM_HD inline StepPixels with_margin(const CloudRecipe& recipe, const StepPixels& pixels,
+                                     int margin) {
+  const auto width = static_cast<int>(recipe.camera.width),
+             height = static_cast<int>(recipe.camera.height);
+  return {widened(pixels.wanted, margin, 1, 1, width, height),
+          widened(pixels.made, margin, 1, 1, width, height)};
+}
 
 // Where one of a step's tiles lies, and its image with a margin. `Radius`: of the windows; 0 if it
 // is known at run time only.

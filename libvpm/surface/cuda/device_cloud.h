@@ -13,7 +13,8 @@ namespace vpm::cuda {
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
-  // Room for the cloud of an image, which kernels make (cloud_prepare.h, cloud_settle.h).
+  // Room for the cloud of an image, which kernels make (cloud_prepare.h, cloud_settle.h,
+  // cloud_part.h).
   explicit DeviceCloud(const Camera& camera);
   void stand_at(const Pose& camera_to_world);
   CloudRoom room() const;
