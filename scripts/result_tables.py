@@ -132,9 +132,12 @@ def replay(report):
             rows.append([name, thousands(spheres) if spheres else ""]
                         + [f"{r['median_us']:.0f} / {r['p99_us']:.0f}" for r in of])
     text = table(["query, 5 % of the tool inside", "spheres", "µs median / p99, 1 thread", "2 threads"], rows)
-    for r in (r for r in report["results"] if r["part"] == "coherent"):
+    coherent = [r for r in report["results"] if r["part"] == "coherent"]
+    for r in (r for r in coherent if r["in_contact"]):
+        free = next(f for f in coherent if not f["in_contact"] and f["spheres"] == r["spheres"])
         text += (f"\n\nCoherent poses {r['step_mm']:g} mm apart, {thousands(r['spheres'])} spheres: {r['ratio']:.2f} of the"
-                 f" time of the same poses alone, {'the same' if r['same_bits'] else 'OTHER'} bits.")
+                 f" time of the same poses alone, {free['ratio']:.2f} in free space,"
+                 f" {'the same' if r['same_bits'] and free['same_bits'] else 'OTHER'} bits.")
     for r in (r for r in report["results"] if r["part"] == "outside"):
         text += (f"\n\nTwice the points ({r['cloud']}, {thousands(r['points'])} to {thousands(r['points_doubled'])}), those"
                  f" added out of reach: {100 * r['change']:+.1f} % of the time.")

@@ -120,13 +120,14 @@ void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, co
   inside.begin_to_remember(to_world, *memory_);
   const auto keep = [&](std::uint32_t i) {
     const std::uint32_t root = level_.root(i);
-    if (memory_->is_known(root) && inside.follows(i)) {
-      memory_->remember(i);
-      return;
+    const bool is_known = memory_->is_known(root);
+    if (!is_known || !inside.follows(i)) {
+      const Reading reading = surface.read(to_surface * level_.cell(i).center);
+      const Vec3 foot = to_world * reading.foot;
+      if (!reading.known || !inside.is_sure(i, foot)) return;
+      if (!is_known) memory_->remember(root, level_.cluster(root), foot);
     }
-    const Reading reading = surface.read(to_surface * level_.cell(i).center);
-    const Vec3 foot = to_world * reading.foot;
-    if (reading.known && inside.is_sure(i, foot)) memory_->remember(i, root, foot);
+    memory_->remember(i);
   };
   for (const std::uint32_t i : shares_.cut) keep(i);
   for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "libvpm/query/share_clusters.h"
 #include "libvpm/surface/surface.h"
 
 namespace vpm {
@@ -22,6 +23,14 @@ class PoseMemory {
       : last_(shares, clusters), next_(shares, clusters) {}
 
   bool was_inside(std::uint32_t share) const { return last_.inside[share] != 0; }
+  // Calls visit(share) for those that were.
+  template <class Visit>
+  void for_shares(const Visit& visit) const {
+    for (const Rows& rows : last_.remembered) {
+      for (std::uint32_t share = rows.begin; share < rows.end; ++share)
+        if (was_inside(share)) visit(share);
+    }
+  }
   bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
     return last_.known[cluster] && squared_norm(foot - last_.feet[cluster]) <= reach * reach;
   }
@@ -31,11 +40,11 @@ class PoseMemory {
   void forget(std::uint32_t share) { last_.inside[share] = false; }
   void forget() { last_.clear(); }
 
-  // `foot`: where the share is behind the surface, world coordinates. The first of a cluster stands
-  // for all of it.
-  void remember(std::uint32_t share, std::uint32_t cluster, Vec3 foot) {
-    if (!next_.known[cluster]) next_.feet[cluster] = foot;
-    next_.known[cluster] = next_.inside[share] = true;
+  // `foot`: where a share of the cluster, not known yet, is behind the surface, world coordinates.
+  void remember(std::uint32_t index, const ShareCluster& cluster, Vec3 foot) {
+    next_.feet[index] = foot;
+    next_.known[index] = true;
+    next_.remembered.push_back({index, cluster.begin, cluster.end});
   }
   bool is_known(std::uint32_t cluster) const { return next_.known[cluster] != 0; }
   // Of a cluster that is known.
@@ -47,16 +56,27 @@ class PoseMemory {
   }
 
  private:
+  // Of a cluster, those of its shares.
+  struct Rows {
+    std::uint32_t cluster, begin, end;
+  };
+  // Clusters that are not known cost nothing: most of a tool, mostly.
   struct Memory {
     Memory(std::size_t shares, std::size_t clusters)
-        : inside(shares), feet(clusters), known(clusters) {}
+        : inside(shares), feet(clusters), known(clusters) {
+      remembered.reserve(clusters);
+    }
     void clear() {
-      std::fill(inside.begin(), inside.end(), false);
-      std::fill(known.begin(), known.end(), false);
+      for (const Rows& rows : remembered) {
+        std::fill(inside.begin() + rows.begin, inside.begin() + rows.end, false);
+        known[rows.cluster] = false;
+      }
+      remembered.clear();
     }
     std::vector<char> inside;  // of each share
     std::vector<Vec3> feet;    // of each cluster
     std::vector<char> known;
+    std::vector<Rows> remembered;  // of the clusters that are known
   };
   Memory last_, next_;
   TangentPlane touched_;

@@ -35,13 +35,12 @@ class SeenShares {
   // they are behind the same surface.
   void run_from(PoseMemory& memory, const Pose& to_world) {
     memory_ = &memory;
-    for (std::uint32_t i = 0; i < level_.size(); ++i) {
-      if (!memory.was_inside(i)) continue;
+    memory.for_shares([&](std::uint32_t i) {
       if (stays(i, memory, to_world))
         any_stays_ = true;
       else
         memory.forget(i);
-    }
+    });
   }
 
   Voucher voucher(std::uint32_t row, std::uint32_t& last_cut) const {

@@ -47,12 +47,12 @@ class ShareFlood {
       if (states_.cells[i] == Cell::open) states_.cells[i] = Cell::whole;
       take(part, i);
     };
-    for (std::uint32_t i = 0; i < level_.size(); ++i) {
-      if (memory.was_inside(i) && is_behind(i, [&](Vec3, Vec3 foot) {
+    memory.for_shares([&](std::uint32_t i) {
+      if (is_behind(i, [&](Vec3, Vec3 foot) {
             return memory.is_near(level_.root(i), to_world * foot, reach_.length);
           }))
         take_open(i);
-    }
+    });
     const auto is_near = [&](Vec3 at, Vec3 foot) {
       return squared_norm(foot - at) <= reach_.length * reach_.length;
     };

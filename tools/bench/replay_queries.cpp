@@ -17,7 +17,8 @@ namespace vpm::bench {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 1;
-constexpr double kInside = 0.05;  // of the tool's volume
+constexpr double kInside = 0.05;          // of the tool's volume
+constexpr double kCoherentStep = 0.5e-3;  // m
 
 synthetic::Scene the_scene() {
   return synthetic::make_scene("tilted-wall");
@@ -185,29 +186,27 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
                               {"peer_voxels", kPeerVoxels}};
 }
 
-void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
-  const synthetic::Scene scene = the_scene();
-  const PreparedCloud cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
-  constexpr double kStep = 0.5e-3, kRadius = 20e-3;
-  const int poses = static_cast<int>(2 * kPi * kRadius / kStep);
-  const std::vector<Pose> path = circle(pose_inside(tool.model, cloud), kRadius, poses);
-  set_thread_count(1);
+// Every pose by a query that knows the last ones, and by one that knows none.
+void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud,
+                    const std::vector<Pose>& path, bool in_contact, int rounds, Report& report) {
+  const int poses = static_cast<int>(path.size());
   for (const std::uint32_t level : tool.levels) {
     Query stateless(tool.model, {.level = level, .counts_points = false}),
         coherent(tool.model, {.level = level, .coherent = true, .counts_points = false});
     Result alone, following;
     bool same = true;
     const auto pose = [&](int k) { return path[static_cast<std::size_t>(k) % path.size()]; };
-    const auto [a, b] = timed_in_turn((quick ? 1 : 8) * poses, poses / 4,
-                                      [&](int k) { alone = stateless.run(cloud, pose(k)); },
-                                      [&](int k) {
-                                        following = coherent.run(cloud, pose(k));
-                                        same = same && alone == following;
-                                      });
+    const auto [a, b] = timed_in_turn(
+        rounds * poses, poses / 4, [&](int k) { alone = stateless.run(cloud, pose(k)); },
+        [&](int k) {
+          following = coherent.run(cloud, pose(k));
+          same = same && alone == following;
+        });
     const double ratio = b.mean() / a.mean();
     report.results.push_back({{"part", "coherent"},
                               {"spheres", level},
-                              {"step_mm", 1e3 * kStep},
+                              {"in_contact", in_contact},
+                              {"step_mm", 1e3 * kCoherentStep},
                               {"stateless_us", 1e6 * a.mean()},
                               {"coherent_us", 1e6 * b.mean()},
                               {"ratio", ratio},
@@ -215,10 +214,23 @@ void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
                               {"runs", a.size()}});
     char line[160];
     std::snprintf(line, sizeof line,
-                  "coherent               %7u spheres: %.1f us, stateless %.1f us: %.2f, %s bits\n",
-                  level, 1e6 * b.mean(), 1e6 * a.mean(), ratio, same ? "same" : "OTHER");
+                  "coherent, %-12s %7u spheres: %.1f us, stateless %.1f us: %.2f, %s bits\n",
+                  in_contact ? "in contact" : "free", level, 1e6 * b.mean(), 1e6 * a.mean(), ratio,
+                  same ? "same" : "OTHER");
     report.summary += line;
   }
+}
+
+void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
+  const synthetic::Scene scene = the_scene();
+  const PreparedCloud cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
+  constexpr double kRadius = 20e-3;
+  const int poses = static_cast<int>(2 * kPi * kRadius / kCoherentStep), rounds = quick ? 1 : 8;
+  const Pose inside = pose_inside(tool.model, cloud);
+  const Pose before{inside.rotation, inside.translation - Vec3{0, 0, 1.5 * tool.model.reach}};
+  set_thread_count(1);
+  time_coherence(tool, cloud, circle(inside, kRadius, poses), true, rounds, report);
+  time_coherence(tool, cloud, circle(before, kRadius, poses), false, rounds, report);
   set_thread_count(0);
 }
 
