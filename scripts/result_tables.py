@@ -235,16 +235,25 @@ def cuda(report):
                   for r in rotated if r["standby_us"] == 0])
 
 
-def cuda_frames(report):
+def cuda_frame_queries(report):
     of = {}
     for r in report["control_loop"]:
         kind = ("prepared" if "frames" not in r else "behind" if r["behind"] else "whole" if r["making"] == "whole"
                 else "pca" if r["method"] == "pca" else r["frames"] + (" standing" if r["standby_us"] else ""))
-        of.setdefault(r["spheres"], {})[kind] = r
-    micro = lambda r: f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
-    rows = [[thousands(n)] + [micro(r[kind]) for kind in ("prepared", "counts standing", "counts", "metres standing", "metres", "pca",
+        of.setdefault(r["spheres"], {})[kind] = f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
+    return sorted(of.items())
+
+
+def cuda_new_images(report):
+    kinds = ("counts standing", "metres standing", "counts", "metres")
+    return table(["spheres", "standing by: counts, µs median / p99", "metres", "launched: counts", "metres"],
+                 [[thousands(n)] + [r[kind] for kind in kinds] for n, r in cuda_frame_queries(report)])
+
+
+def cuda_frames(report):
+    rows = [[thousands(n)] + [r[kind] for kind in ("prepared", "counts standing", "counts", "metres standing", "metres", "pca",
                                                           "whole", "behind")]
-            for n, r in sorted(of.items())]
+            for n, r in cuda_frame_queries(report)]
     stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}"]
               for r in report["stages"]]
     return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
@@ -290,7 +299,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
-                       "cuda": (cuda, "cuda"), "scaling": (scaling, "scaling")},
+                       "cuda": (cuda, "cuda"), "cuda new images": (cuda_new_images, "cuda_frames"), "scaling": (scaling, "scaling")},
          "libvpm/query/README.md": {"single precision": (single_precision, "single_precision"),
                                     "cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
                                      "cuda devices": (cuda_devices, "cuda_devices")},
