@@ -45,7 +45,6 @@ Result MeasureOnDevice::ask(const Pose& pose) {
 }
 
 RawResult MeasureOnDevice::answer_in_frame(const PoseFrame& frame, const PixelRectangle& pixels) {
-  if (standby_) standing_launch(answer_.device());  // what fails here costs no frame
   RawResult raw;
   const bool is_made = frame_->make_by_query(pixels, most_pixels_made(),
                                              [&](const auto& part, const Making& making) {

@@ -45,15 +45,10 @@ class GridTeam {
   __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
   __device__ Part block() const { return {blockIdx.x, gridDim.x}; }
   __device__ void sync() {
-    __syncthreads();
-    target_ += gridDim.x;
-    if (threadIdx.x == 0) {
-      fence();
-      count().fetch_add(1, ::cuda::memory_order_relaxed);
-    }
+    arrive();
     wait();
   }
-  // In two halves. Whether this block is the last to arrive.
+  // The two halves of sync(). Whether this block is the last to arrive.
   __device__ bool arrive() {
     __shared__ bool is_last;
     __syncthreads();

@@ -11,8 +11,8 @@ namespace vpm::cuda {
 
 // Where the host looks for what came of an image.
 struct CloudAnswer {
-  NumberedWord points = 0;    // with a normal
-  NumberedWord doubtful = 0;  // points that a PreparedCloud might refuse
+  NumberedWord points = 0;    // with a normal; queries that make a part count none
+  NumberedWord doubtful = 0;  // not 0: there are points that a PreparedCloud might refuse
 };
 
 struct CloudCounters {

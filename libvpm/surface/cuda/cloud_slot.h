@@ -32,8 +32,9 @@ class CloudSlot : public FrameSlot {
   Part require(const PixelRectangle& pixels, cudaStream_t stream) const;
 
   // The same by a query that makes what it reads (cloud_part.h), `most` pixels at most: calls
-  // ask(part, making), which returns when that is answered. Whoever asks anything of the frame
-  // waits meanwhile. False, and nothing is done, where all is there, or must be required.
+  // ask(part, making), which returns when that is answered; where it throws, nothing was made, or
+  // the device is lost. Whoever asks anything of the frame waits meanwhile. False, and nothing is
+  // done, where all is there, or must be required.
   struct Making {
     const CloudSource& source;
     const CloudSource* on_device;  // the same, but for the camera's pose
@@ -44,13 +45,11 @@ class CloudSlot : public FrameSlot {
     const std::lock_guard lock(making_);
     const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
     if (pixel_count(wanted) - pixel_count(made_) > most || !is_for_query(wanted)) return false;
-    has_failed_ = true;  // unless it ends
     const NewPart part{wanted, made_, sequence_ + 1};
     const CloudSource source = this->source();
     ask(Part{wanted, false, true, part.sequence}, Making{source, source_.get(), part});
     ++sequence_;
     made_ = wanted;
-    has_failed_ = false;
     return true;
   }
 
