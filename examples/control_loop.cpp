@@ -202,6 +202,30 @@ double prepare_microseconds(std::deque<CameraStream>& cameras, int count) {
   return figures.quantile(0.5);
 }
 
+// What the machine takes of a thread that only looks at the clock: a query can be interrupted as
+// well, and no library can help it.
+nlohmann::json interruptions() {
+  using Clock = std::chrono::steady_clock;
+  using Microseconds = std::chrono::duration<double, std::micro>;
+  constexpr double kLeast = 5, kWatched = 5e5;  // us
+  const Clock::time_point begin = Clock::now();
+  int count = 0;
+  double longest = 0, lost = 0;
+  for (Clock::time_point last = begin; Microseconds(last - begin).count() < kWatched;) {
+    const Clock::time_point next = Clock::now();
+    const double gap = Microseconds(next - last).count();
+    if (gap >= kLeast) {
+      ++count;
+      lost += gap;
+      longest = std::max(longest, gap);
+    }
+    last = next;
+  }
+  return {{"per_second", count * 1e6 / kWatched},
+          {"mean_us", count > 0 ? lost / count : 0},
+          {"longest_us", longest}};
+}
+
 // Bars over classes that widen by a fifth.
 void print_histogram(const Figures& figures) {
   const std::vector<double>& times = figures.microseconds;
@@ -331,6 +355,7 @@ void control(int argc, char** argv) {
     print_histogram(figures);
     json.update(to_json(figures));
     json["copies"] = copies;
+    json["interruptions"] = interruptions();
   }
   std::cout << json.dump() << '\n';
   if (!options.at("json").empty()) std::ofstream(options.at("json")) << json.dump(2) << '\n';

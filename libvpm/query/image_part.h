@@ -30,7 +30,16 @@ class LookSizes {
     size.radius = std::max(size.radius, radius);
     size.reach = std::max(size.reach, norm(center) + radius);
   }
-  std::span<const LooksOfSize> all() const { return sizes_; }
+  // But for those that another one outdoes in both: what it reads holds what they read.
+  std::vector<LooksOfSize> largest() const {
+    std::vector<LooksOfSize> sorted = sizes_, kept;
+    std::sort(sorted.begin(), sorted.end(), [](const LooksOfSize& a, const LooksOfSize& b) {
+      return a.radius != b.radius ? a.radius > b.radius : a.reach > b.reach;
+    });
+    for (const LooksOfSize& size : sorted)
+      if (kept.empty() || size.reach > kept.back().reach) kept.push_back(size);
+    return kept;
+  }
 
  private:
   std::vector<int> exponents_;  // of the radii

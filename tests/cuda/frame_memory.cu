@@ -48,6 +48,10 @@ bool is_whole_on_device(const DepthFrame& frame) {
   return slot.require({}, nullptr).is_whole;
 }
 
+bool has_part_of_queries(const DepthFrame& frame) {
+  return dynamic_cast<const cuda::CloudSlot&>(frame.slot()).has_part_of_queries();
+}
+
 FrameMemory memory_of(const PreparedCloud& cloud) {
   const DepthSurface surface = cloud.depth_surface();
   const std::vector<std::uint32_t>& begin = cloud.pixel_begin();

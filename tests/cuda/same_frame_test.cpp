@@ -346,6 +346,45 @@ TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
   }
 }
 
+// Kernels that fill the device make what is large, queries themselves what is small and between it,
+// and in the end points() all that is missing.
+TEST_P(AsAsked, ByKernelsAndByQueriesInTurn) {
+  const DepthImage image = image_of(wall(0.05F, 0.002F), 1280, 1024);
+  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
+  const PreparedCloud cloud = prepared(image, options, {});
+  const ToolModel large = testing::lattice_cube(0.32, 9, 3),
+                  small = testing::lattice_cube(0.1, 9, 3);
+  const bool by_queries = GetParam() == NormalMethod::inverse_depth;
+  for (const std::uint32_t standby_us : {0U, 2000U}) {
+    SCOPED_TRACE(standby_us);
+    const QueryOptions on_device{
+        .device = kDevice, .counts_points = false, .standby_us = standby_us};
+    DepthFrames frames(options);
+    const DepthFrame frame = frame_of(frames, image, {});
+    const auto expect_same_at = [&](const ToolModel& tool, Vec3 at) {
+      const Result expected = Query(tool, {.counts_points = false}).run(cloud, {{}, at});
+      EXPECT_GT(expected.boundary, 0U);
+      expect_equal(expected, Query(tool, on_device).run(frame, {{}, at}));
+    };
+    expect_same_at(small, {-0.36, -0.33, 0.8});
+    EXPECT_EQ(testing::has_part_of_queries(frame), by_queries);
+    expect_same_at(large, {-0.05, -0.02, 0.65});
+    EXPECT_FALSE(testing::has_part_of_queries(frame));
+    EXPECT_FALSE(testing::is_whole_on_device(frame));
+    bool has_part_of_queries = false;
+    for (double u = 850; u < 1200 && !has_part_of_queries; u += 50) {
+      const double z = 1 / (0.75 + 1e-3 * u);
+      expect_same_at(small, {(u - 640) / 525 * z, 0, z});
+      has_part_of_queries = testing::has_part_of_queries(frame);
+    }
+    EXPECT_EQ(has_part_of_queries, by_queries);
+    frame.points();
+    EXPECT_FALSE(testing::has_part_of_queries(frame));
+    const auto memory = testing::memory_on_device(frame);
+    EXPECT_TRUE(memory && testing::same_bits(*memory, testing::memory_of(cloud)));
+  }
+}
+
 // Two threads ask for different parts of one frame.
 TEST_P(AsAsked, ByManyAtOnce) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 640, 480);

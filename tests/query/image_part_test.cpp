@@ -79,7 +79,7 @@ TEST_P(ImagePart, HoldsAllLooksAndReadingsInTheTool) {
     for (int t = 0; t < 100; ++t) {
       const Tool tool(reach, numbers_);
       const Vec3 center = place(numbers_);
-      const PixelRectangle made = part_read(whole_, center, tool.reach, tool.looks.all());
+      const PixelRectangle made = part_read(whole_, center, tool.reach, tool.looks.largest());
       volatile std::uint32_t beyond = 0;
       DepthSurface part = whole_;
       part.restrict_to(made, &beyond);
@@ -144,23 +144,27 @@ TEST_P(ImagePart, MayReachTheRimOfTheImage) {
   }
 }
 
-TEST(LookSizes, GoByPowersOfTwo) {
+TEST(LookSizes, GoByPowersOfTwoAndAreTheLargest) {
   LookSizes looks;
   looks.add({1, 0, 0}, 0.5);
   looks.add({3, 0, 0}, 0.9);
   looks.add({0, 0, 4}, 0.25);
-  looks.add({0, 9, 0}, 0);  // no ball
-  ASSERT_EQ(looks.all().size(), 2U);
-  EXPECT_EQ(looks.all()[0].radius, 0.9);
-  EXPECT_EQ(looks.all()[0].reach, 3.9);
-  EXPECT_EQ(looks.all()[1].radius, 0.25);
-  EXPECT_EQ(looks.all()[1].reach, 4.25);
+  looks.add({0, 0, 1}, 0.1);  // outdone
+  looks.add({0, 9, 0}, 0);    // no ball
+  const std::vector<LooksOfSize> largest = looks.largest();
+  ASSERT_EQ(largest.size(), 2U);
+  EXPECT_EQ(largest[0].radius, 0.9);
+  EXPECT_EQ(largest[0].reach, 3.9);
+  EXPECT_EQ(largest[1].radius, 0.25);
+  EXPECT_EQ(largest[1].reach, 4.25);
 }
 
 // Empty where the tool cannot be seen; all where it may be around the camera.
 TEST_P(ImagePart, OfToolsNotSeenOrAroundTheCamera) {
   const Tool tool(0.1, numbers_);
-  const auto part_at = [&](Vec3 at) { return part_read(whole_, at, tool.reach, tool.looks.all()); };
+  const auto part_at = [&](Vec3 at) {
+    return part_read(whole_, at, tool.reach, tool.looks.largest());
+  };
   EXPECT_EQ(part_at({0, 0, -1}), PixelRectangle{});
   EXPECT_EQ(part_at({10, 0, 1}), PixelRectangle{});
   EXPECT_EQ(part_at({0, 0, 0.05}), whole_image(whole_.width, whole_.height));

@@ -124,12 +124,14 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach re
   view_.center_of_mass = tool.center_of_mass;
   view_.tool_reach = reach;
   view_.spheres_reach = reach_of_spheres(tool, level);
-  for (const Chunk& chunk : chunks) looks_.add(chunk.ball.center, chunk.ball.radius);
+  LookSizes looks;
+  for (const Chunk& chunk : chunks) looks.add(chunk.ball.center, chunk.ball.radius);
   for (const Unit& unit : units) {
     const UnitBall &share = unit.balls[Unit::of_share], &block = unit.balls[Unit::of_block];
-    if ((unit.flags & Unit::is_head) != 0) looks_.add(share.center, share.radius);
-    looks_.add(block.center, block.radius);
+    if ((unit.flags & Unit::is_head) != 0) looks.add(share.center, share.radius);
+    looks.add(block.center, block.radius);
   }
+  looks_ = looks.largest();
 }
 
 }  // namespace vpm::cuda

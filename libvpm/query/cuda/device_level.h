@@ -16,7 +16,7 @@ class DeviceLevel {
       : DeviceLevel(tool, level, {tool.reach, shadows}, cluster_shares(tool, level)) {}
   const LevelView& view() const { return view_; }
   // By queries that count no points.
-  const LookSizes& looks() const { return looks_; }
+  std::span<const LooksOfSize> looks() const { return looks_; }
 
  private:
   DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
@@ -34,7 +34,7 @@ class DeviceLevel {
   DeviceArray<Edge> edges_;
   DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;
-  LookSizes looks_;
+  std::vector<LooksOfSize> looks_;
 };
 
 }  // namespace vpm::cuda

@@ -4,21 +4,20 @@
 
 namespace vpm::cuda {
 
+// One pose may be answered without a word to the driver: who talks to it makes the device the
+// current one.
 Result MeasureOnDevice::run(const PreparedCloud& cloud, const Pose& pose) {
-  const CurrentDevice current(device_);
   bring(cloud);
   return ask(pose);
 }
 
 void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> poses,
                           std::span<Result> results) {
-  const CurrentDevice current(device_);
   bring(cloud);
   ask(poses, results);
 }
 
 Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
-  const CurrentDevice current(device_);
   if (const CloudSlot* const slot = bring(frame)) {
     const Result result = ask(pose);
     if (slot->is_sound(part_)) return result;
@@ -28,7 +27,6 @@ Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
 
 void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> poses,
                                 std::span<Result> results) {
-  const CurrentDevice current(device_);
   if (const CloudSlot* const slot = bring(frame)) {
     ask(poses, results);
     if (slot->is_sound(part_)) return;
@@ -82,6 +80,7 @@ RawResult MeasureOnDevice::answer(const PoseFrame& frame, const Making* making) 
       return raw;
     }
   }
+  const CurrentDevice current(device_);
   const OtherWork other;
   has_launched_ = true;
   launch(frame, making, answer_.device(), sequence);
@@ -96,6 +95,7 @@ void MeasureOnDevice::end_launched() {
 }
 
 void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
+  const CurrentDevice current(device_);
   if (!batch_) batch_ = std::make_unique<Batch>();
   const OtherWork other;
   if (frame_ != nullptr) part_ = frame_->require(all_pixels(), stream());
@@ -124,6 +124,7 @@ void MeasureOnDevice::read_states(std::vector<SphereState>& states) {
 
 void MeasureOnDevice::bring(const PreparedCloud& cloud) {
   if (!copy_ || cloud.serial() != serial_) {
+    const CurrentDevice current(device_);
     copy_ = on_device(cloud);
     serial_ = cloud.serial();
   }

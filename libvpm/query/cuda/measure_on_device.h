@@ -53,6 +53,7 @@ class MeasureOnDevice : public DeviceMeasure {
     standby_us_ = waits_us;
   }
 
+  int device() const { return device_; }
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
   // What there is of that cloud when the stream comes to the query, or the query makes first.

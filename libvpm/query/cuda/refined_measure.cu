@@ -84,7 +84,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   PixelRectangle pixels_read(const PoseFrame& frame) const override {
     if (counts_points_) return MeasureOnDevice::pixels_read(frame);
     return part_read(cloud().depth_surface(), frame.to_surface.translation, reach(),
-                     level_.looks().all());
+                     level_.looks());
   }
   // More tiles than two for each block are sooner made by kernels that fill the device.
   std::int64_t most_pixels_made() const override {
@@ -105,6 +105,7 @@ class RefinedOnDevice : public MeasureOnDevice {
     if (!cloud().frame().is_organised) return nullptr;
     for (std::size_t k = 0; k < kClouds; ++k)
       if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
+    const CurrentDevice current(device());
     if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
     const std::size_t k = next_cloud_++ % kClouds;
     const RefinedLaunch<DepthSurface> arguments =

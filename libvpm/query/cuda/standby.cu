@@ -82,6 +82,7 @@ void Standby::give_leave() {
 // The last kernel may have left at the next number: that is passed over, since its blocks would
 // find the order to leave again.
 void Standby::launch(const Order& order) {
+  const CurrentDevice current(device_);
   is_there_ = false;
   ++number_;
   OrdersView view{given_.device(), passed_on_.get(), finished_.get(), left_.device()};

@@ -46,6 +46,7 @@ class Standby : public StandingKernel {
 
   std::mutex mutex_;
   StandbyKernel kernel_;
+  int device_ = current_device();
   Stream stream_;
   MappedArray<OrderWords> given_{1};
   MappedArray<unsigned> left_{1};

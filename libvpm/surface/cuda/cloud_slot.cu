@@ -47,10 +47,10 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
       counters_(1),
       answer_(1),
+      source_(new_source()),
+      source_on_device_(&source_, 1),
       preparation_(preparation_of(options.normals)) {
   counters_.clear();
-  const CloudSource source = this->source();
-  source_ = DeviceArray<CloudSource>(&source, 1);
 }
 
 CloudSlot::~CloudSlot() {
@@ -58,13 +58,14 @@ CloudSlot::~CloudSlot() {
 }
 
 void CloudSlot::begin() {
-  const CurrentDevice current(options().device.first());
   is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
   if (!is_plain_) {
     cloud();  // refuses what is to be refused
     return;
   }
   cloud_.stand_at(camera().to_world);
+  source_.recipe.camera = camera();
+  source_.look_from(camera().to_world.rotation);
   made_ = placed_ = {};
   has_failed_ = false;
   if (options().making == FrameMaking::whole) require_all();
@@ -80,6 +81,7 @@ CloudSlot::Part CloudSlot::require(const PixelRectangle& pixels, cudaStream_t st
   if (!is_there()) check(cudaStreamWaitEvent(stream, end_->get()));
   const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
   if (!(wanted == made_)) {  // all of it is made with its points
+    const CurrentDevice current(options().device.first());
     const OtherWork other;
     launch(wanted, stream);
     other.goes_on_until(end_);
@@ -112,14 +114,13 @@ bool CloudSlot::is_there() const {
 }
 
 void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
-  const CloudSource source = this->source();
-  take_image(source.image, source.taken, source.recipe,
-             pixels_to_take(source.recipe, {wanted, placed_}), is_empty(made_), source.counters,
+  take_image(source_.image, source_.taken, source_.recipe,
+             pixels_to_take(source_.recipe, {wanted, placed_}), is_empty(made_), source_.counters,
              stream);
 }
 
 void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
-  CloudSource source = this->source();
+  CloudSource source = source_;
   source.recipe.room.estimated = estimated;
   prepare_on_device(source.recipe, pixels_to_prepare(source.recipe, {wanted, placed_}),
                     options().normals.method, preparation_, source.counters, source.answer,
@@ -158,7 +159,7 @@ std::vector<Vec3f> CloudSlot::estimate_normals() {
   return normals;
 }
 
-CloudSource CloudSlot::source() const {
+CloudSource CloudSlot::new_source() {
   const DepthFrameOptions& o = options();
   DepthSource image;
   if (o.counts_per_metre) {

@@ -46,8 +46,7 @@ class CloudSlot : public FrameSlot {
     const PixelRectangle wanted = united(made_, in_whole_tiles(pixels));
     if (pixel_count(wanted) - pixel_count(made_) > most || !is_for_query(wanted)) return false;
     const NewPart part{wanted, made_, sequence_ + 1};
-    const CloudSource source = this->source();
-    ask(Part{wanted, false, true, part.sequence}, Making{source, source_.get(), part});
+    ask(Part{wanted, false, true, part.sequence}, Making{source_, source_on_device_.get(), part});
     ++sequence_;
     made_ = wanted;
     return true;
@@ -57,6 +56,11 @@ class CloudSlot : public FrameSlot {
   bool is_on_device() const { return is_plain_; }
   // Whether no point that the CPU might refuse was made so far. Waits for the part.
   bool is_sound(const Part& part) const;
+  // Whether queries have made some of it, which has no points so far.
+  bool has_part_of_queries() const {
+    const std::lock_guard lock(making_);
+    return !(made_ == placed_);
+  }
 
   const DeviceCloud& device_cloud() const { return cloud_; }
 
@@ -75,7 +79,7 @@ class CloudSlot : public FrameSlot {
   Part require_all() const;
   void launch(const PixelRectangle& wanted, cudaStream_t stream) const;
   bool is_there() const;
-  CloudSource source() const;
+  CloudSource new_source();
   bool is_for_query(const PixelRectangle& wanted) const;
   PixelRectangle in_whole_tiles(const PixelRectangle& pixels) const;
   bool is_answered(unsigned sequence) const;
@@ -88,7 +92,8 @@ class CloudSlot : public FrameSlot {
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
-  DeviceArray<CloudSource> source_;
+  CloudSource source_;  // seen from the camera of the image
+  DeviceArray<CloudSource> source_on_device_;
   Preparation preparation_;
   bool is_plain_ = false;
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
