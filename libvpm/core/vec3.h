@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "libvpm/core/division.h"
 #include "libvpm/core/host_device.h"
 
 namespace vpm {
@@ -52,13 +53,16 @@ VPM_HD constexpr double squared_norm(Vec3 a) {
   return dot(a, a);
 }
 VPM_HD inline double norm(Vec3 a) {
-  return std::sqrt(squared_norm(a));
+  return square_root(squared_norm(a));
 }
 
 // The unit vector along a, or zero where a has no direction (zero, or not finite).
 VPM_HD inline Vec3 normalized_or_zero(Vec3 a) {
   const double length = norm(a);
-  return length > 0 && length < HUGE_VAL ? a / length : Vec3{};
+  const bool has_direction = length > 0 && length < HUGE_VAL;
+  const double by = has_direction ? length : 1;
+  const Vec3 unit{quotient(a.x, by), quotient(a.y, by), quotient(a.z, by)};
+  return has_direction ? unit : Vec3{};
 }
 
 VPM_HD constexpr Vec3 widen(Vec3f a) {

@@ -294,10 +294,12 @@ class CellMeasure {
   // Adds a block around a centre that a plane crosses.
   VPM_HD void add_crossed(Vec3 center, const CrossingPlane& plane, const CrossedSums& sums,
                           CellResult& result) const {
-    if (sums.is_cut)
-      result.plane.add(plane.seen.normal,
-                       relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
+    if (sums.is_cut) add_to_plane(center, plane, result.plane);
     result.sum.add_moment(sums.weight, arm(sums.moment), plane.normal);
+  }
+  VPM_HD void add_to_plane(Vec3 center, const CrossingPlane& plane, ContactPlane& mean) const {
+    mean.add(plane.seen.normal,
+             relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
   }
   // Adds one block of a share that lies where the surface is one plane.
   template <class Samples>

@@ -1,6 +1,7 @@
 // A plane through a tool, and what of samples lies behind it.
 #pragma once
 
+#include "libvpm/core/division.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/surface/ball_fraction.h"
@@ -35,14 +36,15 @@ struct CrossedSums {
 // vectors, or threads, can add a row each.
 inline constexpr std::uint32_t kSumRows = 16;
 
-// The weight of a sample that lies behind a plane.
+// The weight of a sample that lies behind a plane. Without branches: what is asked of many samples
+// at once waits for the slowest division only (of which what is not cut needs none).
 VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane& plane,
                                    bool& is_cut) {
-  const double distance = plane.distance(widen(sample.center));
-  if (distance >= sample.radius) return 0;
-  if (distance <= -sample.radius) return sample.weight;
-  is_cut = true;
-  return sample.weight * ball_fraction_inside(distance / sample.radius);
+  const double distance = plane.distance(widen(sample.center)), radius = sample.radius;
+  const bool reached = !(distance >= radius), cut = reached && !(distance <= -radius);
+  const double fraction = fraction_of_cut_ball(quotient(distance, radius));
+  is_cut |= cut;
+  return reached ? (cut ? sample.weight * fraction : sample.weight) : 0;
 }
 // Adds what of a sample lies behind a plane to its row. Zeros too: a row that begins with 0 is
 // never -0, whoever adds it.

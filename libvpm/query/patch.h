@@ -14,17 +14,24 @@ VPM_HD constexpr bool is_patch(double cluster_reach, double tool_reach) {
   return cluster_reach <= kPatchReach * tool_reach;
 }
 
-// Whether the surface passes through a patch as one plane: not further away than kSheetReach of
-// its reaches.
-// `read_all`: ReadInTurn, or what gives the same readings sooner.
-template <class Surface, class ReadAll>
-VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& look, Vec3 center,
-                       double reach, const ReadAll& read_all, TangentPlane& plane) {
-  if (!surface.mean_plane(look, center, reach, reach, read_all, plane)) return false;
+// Whether a plane as which the surface passes through a patch is that of the patch: it passes not
+// further away than kSheetReach of its reaches, and no other wall is near.
+template <class Surface>
+VPM_HD bool is_plane_of_patch(const Surface& surface, const typename Surface::Look& look,
+                              Vec3 center, double reach, const TangentPlane& plane) {
   const double near = kSheetReach * reach;
   OtherWall other;
   return squared_norm(plane.foot - center) <= near * near &&
          !surface.find_other_wall(center, plane, look.point, reach, kOneDirection, other);
+}
+
+// Whether the surface passes through a patch as one plane. `read_all`: ReadInTurn, or what gives
+// the same readings sooner.
+template <class Surface, class ReadAll>
+VPM_HD bool sees_patch(const Surface& surface, const typename Surface::Look& look, Vec3 center,
+                       double reach, const ReadAll& read_all, TangentPlane& plane) {
+  return surface.mean_plane(look, center, reach, reach, read_all, plane) &&
+         is_plane_of_patch(surface, look, center, reach, plane);
 }
 
 // Of a patch in which there is no surface: whether it is behind one, as its middle is.

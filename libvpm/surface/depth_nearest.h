@@ -5,43 +5,89 @@
 
 namespace vpm {
 
-VPM_HD inline Vec3 DepthSurface::closest_normal(Vec3 x, const Reading& reading) const {
-  Reading first = reading;
-  const auto i = static_cast<std::int32_t>(reading.point);
-  take_one_side(x, neighbors_of(i % width, i / width), first);
-  Vec3 foot = first.foot, normal = first.normal;
-  double squared = squared_norm(x - foot);
-  Vec3 target = x - first.distance * normal;
-  const double pixel = foot.z / k.fx, near = kFootPixels * pixel;
-  for (int step = 0; step < kFootSteps && squared_norm(target - foot) > near * near; ++step) {
-    Neighbors neighbors;
-    Reading next =
-        read_and(target, [&](std::int32_t u, std::int32_t v) { neighbors = neighbors_of(u, v); });
-    if (!next.known) break;
-    take_one_side(x, neighbors, next);
-    const double next_squared = squared_norm(x - next.foot);
-    if (next_squared < squared) {
-      foot = next.foot;
-      normal = next.normal;
-      squared = next_squared;
-      target = x - dot(normal, x - foot) * normal;
-    } else if (dot(normal, next.normal) > kSmoothCosine) {
-      return normalized_or_zero(normal + next.normal);
-    } else if (const TangentPlane one{normal, foot}, other{next.normal, next.foot};
-               meet_above(x, one, other)) {
-      return normal_below_groove(x, one, other);
+// The search for it, reading by reading. Starts from the point on x's ray, steps to the foot on its
+// tangent plane and, where that overshoots a crease, back by halves; where it is the bottom of a
+// groove that it overshoots, its walls tell the direction. A step that leads away without a crease
+// has met noise: there the normals tell the direction, not single pixels. Beside a crease, where
+// windows of normals hold both sides, those of one side lead.
+class DepthSurface::FootSearch {
+ public:
+  FootSearch() = default;
+  // `first`: what was read at x, and is known.
+  VPM_HD FootSearch(const DepthSurface& surface, Vec3 x, Reading first, const Neighbors& beside)
+      : x_(x) {
+    surface.take_one_side(x, beside, first);
+    foot_ = first.foot;
+    normal_ = first.normal;
+    squared_ = squared_norm(x - foot_);
+    target_ = x - first.distance * normal_;
+    pixel_ = quotient(foot_.z, surface.k.fx);
+  }
+
+  // Whether another reading is wanted, at this place.
+  VPM_HD bool goes_on() const {
+    const double near = kFootPixels * pixel_;
+    return steps_ < kFootSteps && squared_norm(target_ - foot_) > near * near;
+  }
+  VPM_HD Vec3 target() const { return target_; }
+  VPM_HD void take(const DepthSurface& surface, Reading next, const Neighbors& beside) {
+    ++steps_;
+    if (!next.known) {
+      steps_ = kFootSteps;
+      return;
+    }
+    surface.take_one_side(x_, beside, next);
+    const double squared = squared_norm(x_ - next.foot);
+    if (squared < squared_) {
+      foot_ = next.foot;
+      normal_ = next.normal;
+      squared_ = squared;
+      target_ = x_ - dot(normal_, x_ - foot_) * normal_;
+    } else if (dot(normal_, next.normal) > kSmoothCosine) {
+      end(normalized_or_zero(normal_ + next.normal));
+    } else if (const TangentPlane one{normal_, foot_}, other{next.normal, next.foot};
+               meet_above(x_, one, other)) {
+      end(normal_below_groove(x_, one, other));
     } else {
-      target = 0.5 * (foot + next.foot);
+      target_ = 0.5 * (foot_ + next.foot);
     }
   }
-  // Where the foot is not below x on its own tangent plane, it lies on a crease: there the
-  // gradient fans out.
-  const Vec3 towards = foot - x;
-  const double above = dot(normal, towards);
-  const double aside = squared_norm(towards - above * normal);
-  return above > 0 && aside <= (kCreasePixels * pixel) * (kCreasePixels * pixel)
-             ? normal
-             : normalized_or_zero(towards);
+
+  // Where the foot is not below x on its own tangent plane, it lies on a crease: there the gradient
+  // fans out.
+  VPM_HD Vec3 normal() const {
+    if (is_known_) return normal_;
+    const Vec3 towards = foot_ - x_;
+    const double above = dot(normal_, towards);
+    const double aside = squared_norm(towards - above * normal_);
+    return above > 0 && aside <= (kCreasePixels * pixel_) * (kCreasePixels * pixel_)
+               ? normal_
+               : normalized_or_zero(towards);
+  }
+
+ private:
+  VPM_HD void end(Vec3 normal) {
+    normal_ = normal;
+    is_known_ = true;
+    steps_ = kFootSteps;
+  }
+
+  Vec3 x_, foot_, normal_, target_;
+  double squared_ = 0, pixel_ = 0;  // of the foot's distance; a pixel's width at the first foot
+  int steps_ = 0;
+  bool is_known_ = false;
+};
+
+VPM_HD inline Vec3 DepthSurface::closest_normal(Vec3 x, const Reading& reading) const {
+  const auto i = static_cast<std::int32_t>(reading.point);
+  FootSearch search(*this, x, reading, neighbors_of(i % width, i / width));
+  while (search.goes_on()) {
+    Neighbors beside;
+    const Reading next = read_and(
+        search.target(), [&](std::int32_t u, std::int32_t v) { beside = neighbors_of(u, v); });
+    search.take(*this, next, beside);
+  }
+  return search.normal();
 }
 
 VPM_HD inline DepthSurface::Neighbors DepthSurface::neighbors_of(std::int32_t u,

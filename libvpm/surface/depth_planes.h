@@ -18,16 +18,32 @@ VPM_HD inline bool DepthSurface::is_flat(const Look& look, const Reading& readin
 VPM_HD inline bool DepthSurface::shows(const Look& look, const TangentPlane& plane,
                                        double tolerance) const {
   if (spans_few_pixels(look)) return look.range.high - look.range.low <= kJump * look.range.high;
-  const double per_height = 1 / dot(plane.normal, plane.foot);
-  const double per_u = plane.normal.x * per_height / k.fx;
-  const double per_v = plane.normal.y * per_height / k.fy;
+  const double per_height = quotient(1, dot(plane.normal, plane.foot));
+  const double per_u = quotient(plane.normal.x * per_height, k.fx);
+  const double per_v = quotient(plane.normal.y * per_height, k.fy);
   const PixelRectangle& t = look.tiles;
   const double u = 0.5 * (t.u0 + t.u1) - k.cx, v = 0.5 * (t.v0 + t.v1) - k.cy;
   const double middle = per_u * u + per_v * v + plane.normal.z * per_height;
   const double spread = 0.5 * (std::fabs(per_u) * (t.u1 - t.u0) + std::fabs(per_v) * (t.v1 - t.v0));
-  const double allowed = tolerance / (plane.foot.z * plane.foot.z);
+  const double allowed = quotient(tolerance, plane.foot.z * plane.foot.z);
   return std::fabs(middle - spread - look.range.low) <= allowed &&
          std::fabs(middle + spread - look.range.high) <= allowed;
+}
+
+VPM_HD inline DepthSurface::PlacesAround::PlacesAround(const Reading& middle, Vec3 center,
+                                                       double radius)
+    : below(center - middle.distance * middle.normal) {
+  const Vec3 n = middle.normal;
+  const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  side = kRim * radius * normalized_or_zero(cross(n, axis));
+  other = cross(n, side);
+}
+
+VPM_HD inline bool DepthSurface::PlaneMean::take(const Reading& reading) {
+  if (!reading.known || dot(reading.normal, middle_normal) < kSmoothCosine) return false;
+  direction += reading.normal;
+  feet += reading.foot;
+  return true;
 }
 
 template <class ReadAll>
@@ -36,20 +52,13 @@ VPM_HD bool DepthSurface::mean_plane(const Look& look, Vec3 center, double radiu
   if (!may_be_flat(look)) return false;
   const Reading middle = read(center);
   if (!middle.known) return false;
-  const Vec3 n = middle.normal;
-  const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis)), other = cross(n, side);
-  const Vec3 below = center - middle.distance * n;
-  const Vec3 places[4] = {below + side, below - side, below + other, below - other};
-  Vec3 direction = n, feet = middle.foot;
-  const auto take = [&](const Reading& reading) {
-    if (!reading.known || dot(reading.normal, n) < kSmoothCosine) return false;
-    direction += reading.normal;
-    feet += reading.foot;
-    return true;
-  };
-  if (!read_all(*this, places, take)) return false;
-  plane = {normalized_or_zero(direction), 0.2 * feet};
+  const PlacesAround around(middle, center, radius);
+  const Vec3 places[PlacesAround::kCount] = {around.at(0), around.at(1), around.at(2),
+                                             around.at(3)};
+  PlaneMean mean(middle);
+  if (!read_all(*this, places, [&](const Reading& reading) { return mean.take(reading); }))
+    return false;
+  plane = mean.plane();
   return shows(look, plane, tolerance);
 }
 

@@ -5,7 +5,10 @@
 // distance. Camera coordinates.
 #pragma once
 
+#include <bit>
+
 #include "libvpm/cloud/camera.h"
+#include "libvpm/core/division.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/surface/ball_fraction.h"
 #include "libvpm/surface/pixel_rectangle.h"
@@ -15,11 +18,15 @@ namespace vpm {
 
 // Least and greatest inverse depth of a tile of pixels; low = 0 where any pixel is unknown, both 0
 // where all are.
-struct InverseDepthRange {
+struct alignas(8) InverseDepthRange {  // read at once
   float low = 0, high = 0;
 };
-VPM_HD constexpr InverseDepthRange united(InverseDepthRange a, InverseDepthRange b) {
+VPM_HD inline InverseDepthRange united(InverseDepthRange a, InverseDepthRange b) {
+#ifdef __CUDA_ARCH__
+  return {fminf(a.low, b.low), fmaxf(a.high, b.high)};
+#else
   return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high};
+#endif
 }
 
 // A view: plain pointers, for host or device.
@@ -124,7 +131,7 @@ struct DepthSurface {
   // nearest pixel: a device waits for all reads together.
   template <class Also>
   VPM_HD Pixel look_up(Vec3 x, const Also& also) const {
-    const double per_depth = 1 / x.z;
+    const double per_depth = quotient(1, x.z);
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     const double up = u + 0.5, vp = v + 0.5;
     if (!(u >= left && v >= top && up < right && vp < bottom)) {
@@ -157,7 +164,8 @@ struct DepthSurface {
     if (!(pixel.inverse_depth > 0)) return {};
     Reading reading;
     reading.known = true;
-    const double to_foot = 1 / (x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
+    const double to_foot =
+        quotient(1, x.z * pixel.inverse_depth);  // foot = to_foot * x: on the ray of x
     reading.foot = to_foot * x;
     reading.point = static_cast<std::uint32_t>(pixel.nearest);
     reading.normal = widen(pixel.normal);
@@ -165,8 +173,8 @@ struct DepthSurface {
     if (along < 0 && along * along >= (kGrazing * kGrazing) * squared_length) {
       reading.distance = along * (1 - to_foot);
     } else {  // no normal, or one that cannot be right: take the surface to face the ray
-      const double length = std::sqrt(squared_length);
-      reading.normal = -1 / length * x;
+      const double length = square_root(squared_length);
+      reading.normal = quotient(-1, length) * x;
       reading.distance = length * (to_foot - 1);
     }
     return reading;
@@ -181,13 +189,17 @@ struct DepthSurface {
     return false;
   }
 
+  // Normals of the pixels kAcross to either side of one, where there are such.
+  struct Neighbors {
+    bool in_row = false, in_column = false;
+    Vec3f left, right, above, below;
+  };
+  VPM_HD Neighbors neighbors_of(std::int32_t u, std::int32_t v) const;
+
   // Gradient of the distance to the surface at a place x behind it: towards the nearest surface
-  // point. Starts from the point on x's ray (`reading` is that of x, and known), steps to the foot
-  // on its tangent plane and, where that overshoots a crease, back by halves; where it is the
-  // bottom of a groove that it overshoots, its walls tell the direction. A step that leads away
-  // without a crease has met noise: there the normals tell the direction, not single pixels. Beside
-  // a crease, where windows of normals hold both sides, those of one side lead.
+  // point. `reading` is that of x, and known.
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const;
+  class FootSearch;
 
   // What the pixels of a ball tell: its side, and the range of inverse depth over the tiles that
   // cover them.
@@ -238,9 +250,9 @@ struct DepthSurface {
     if (!(farthest > 0)) return look;
     look.side = Side::mixed;
     look.pixels = whole_image(width, height);
-    if (!(nearest > 0)) return look;
+    if (!(nearest >= kSmallestLength)) return look;
     // |x'/z' - x/z| <= r (1 + |x|/z) / (z - r) for every x' in the ball.
-    const double per_depth = 1 / center.z, per_nearest = radius / nearest;
+    const double per_depth = quotient(1, center.z), per_nearest = quotient(radius, nearest);
     const double x = center.x * per_depth, y = center.y * per_depth;
     const double u = k.fx * x + k.cx, spread_u = k.fx * (per_nearest * (1 + std::fabs(x)));
     const double v = k.fy * y + k.cy, spread_v = k.fy * (per_nearest * (1 + std::fabs(y)));
@@ -287,8 +299,8 @@ struct DepthSurface {
   }
   // Its pixel must be made.
   VPM_HD bool may_be_free(Vec3 center, double radius) const {
-    if (!(center.z - radius > 0)) return true;
-    const double per_depth = 1 / center.z;
+    if (!(center.z - radius >= kSmallestLength)) return true;
+    const double per_depth = quotient(1, center.z);
     const double u = k.fx * (center.x * per_depth) + k.cx + 0.5;
     const double v = k.fy * (center.y * per_depth) + k.cy + 0.5;
     if (!(u >= 0 && v >= 0 && u < width && v < height)) return true;
@@ -325,12 +337,33 @@ struct DepthSurface {
   template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
                          const ReadAll& read_all, TangentPlane& plane) const;
+  // Those four places; `middle` was read at the ball's centre, and is known.
+  struct PlacesAround {
+    static constexpr int kCount = 4;
+    Vec3 below, side, other;
+
+    VPM_HD PlacesAround(const Reading& middle, Vec3 center, double radius);
+    VPM_HD Vec3 at(int k) const {
+      const Vec3 aside = k < 2 ? side : other;
+      return k % 2 == 0 ? below + aside : below - aside;
+    }
+  };
+  // The mean of what is read there and in the middle, as far as it belongs to one smooth surface.
+  struct PlaneMean {
+    Vec3 middle_normal, direction, feet;
+
+    VPM_HD explicit PlaneMean(const Reading& middle)
+        : middle_normal(middle.normal), direction(middle.normal), feet(middle.foot) {}
+    VPM_HD bool take(const Reading& reading);  // false where it does not
+    // When all is taken.
+    VPM_HD TangentPlane plane() const { return {normalized_or_zero(direction), 0.2 * feet}; }
+  };
 
   // Bound of the distance from any place in a ball that was looked at to the foot of its reading.
   VPM_HD double largest_gap(const Look& look, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;
-    if (!(nearest > 0 && look.range.high > 0)) return HUGE_VAL;
-    return (farthest - 1 / double{look.range.high}) * ((norm(center) + radius) / nearest);
+    if (!(nearest >= kSmallestLength && look.range.high > 0)) return HUGE_VAL;
+    return (farthest - quotient(1, look.range.high)) * quotient(norm(center) + radius, nearest);
   }
 
   static VPM_HD double fraction_inside(const Reading& reading, Vec3, double radius) {
@@ -358,13 +391,6 @@ struct DepthSurface {
            other.distance(x) < 0;
   }
 
-  // Normals of the pixels kAcross to either side of one, where there are such.
-  struct Neighbors {
-    bool in_row = false, in_column = false;
-    Vec3f left, right, above, below;
-  };
-  VPM_HD Neighbors neighbors_of(std::int32_t u, std::int32_t v) const;
-
   // The normal of what was read at x, where its pixel lies beside a crease: of that side of it on
   // whose tangent plane the foot lies.
   VPM_HD void take_one_side(Vec3 x, const Neighbors& beside, Reading& reading) const;
@@ -374,13 +400,22 @@ struct DepthSurface {
   // another surface, or nothing.
   VPM_HD double off_plane(Vec3 place, std::int32_t i, Vec3 normal) const;
 
+  // The greatest power of two that is not above a number; 0 for 0.
+  static VPM_HD int exponent_of(std::uint32_t number) {
+#ifdef __CUDA_ARCH__
+    return 31 - __clz(static_cast<int>(number | 1));
+#else
+    return std::bit_width(number | 1) - 1;
+#endif
+  }
+
   // Takes the range of the look's pixels from at most 3 by 3 tiles; nothing where these are not
   // made.
   VPM_HD void cover(Look& look) const {
     const PixelRectangle& p = look.pixels;
-    int level = 0;
-    while (level + 1 < levels && ((p.u1 - p.u0) >> level > 1 || (p.v1 - p.v0) >> level > 1))
-      ++level;
+    const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
+    const int least = exponent_of(static_cast<std::uint32_t>(wide > high ? wide : high));
+    const int level = least < levels ? least : levels - 1;
     const std::int32_t row = tiles_per_row(level);
     const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
     const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
@@ -395,8 +430,7 @@ struct DepthSurface {
     InverseDepthRange all = tiles[level][v0 * row + u0];
     const auto take = [&](std::int32_t u, std::int32_t v) {
       const InverseDepthRange tile = tiles[level][v * row + u];
-      all.low = tile.low < all.low ? tile.low : all.low;
-      all.high = tile.high > all.high ? tile.high : all.high;
+      all = united(all, tile);
     };
     // Always nine, some of them twice: loads that do not wait for each other, and no branch.
     for (std::int32_t i = 0; i < 9; ++i)

@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+#include <random>
+
 #include "tests/cuda/device_cells.h"
+#include "tests/cuda/device_division.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 
@@ -62,6 +67,41 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameMath,
                                                               "inverted-ball"),
                                             ::testing::Bool()),
                          name_of);
+
+// Random ones over all of the range that division.h promises, and those next to powers of two,
+// where the last step is most easily wrong.
+std::vector<testing::Operands> operands_of_all_kinds() {
+  std::vector<testing::Operands> operands;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> mantissa(1, 2);
+  std::uniform_int_distribution<int> exponent(-440, 440);
+  const auto any = [&] {
+    return (random() % 2 == 0 ? 1 : -1) * std::ldexp(mantissa(random), exponent(random));
+  };
+  for (int k = 0; k < 4'000'000; ++k) operands.push_back({any(), any()});
+  const auto one = std::bit_cast<std::int64_t>(1.0);
+  for (std::int64_t i = -1000; i <= 1000; ++i) {
+    const auto a = std::bit_cast<double>(one + i);
+    operands.push_back({0, a});
+    operands.push_back({1, a});
+    for (std::int64_t j = -200; j <= 200; ++j)
+      operands.push_back({a, std::bit_cast<double>(one + j)});
+  }
+  return operands;
+}
+
+TEST(SameDivision, OnHostAndDevice) {
+  if (!testing::has_device()) GTEST_SKIP() << "no CUDA device here";
+  const std::vector<testing::Operands> operands = operands_of_all_kinds();
+  const std::vector<testing::Divided> divided = testing::divide_on_device(operands);
+  std::size_t wrong = 0;
+  for (std::size_t k = 0; k < operands.size(); ++k) {
+    const auto [a, b] = operands[k];
+    if (divided[k].quotient == a / b && divided[k].square_root == std::sqrt(std::fabs(a))) continue;
+    if (++wrong < 10) ADD_FAILURE() << std::hexfloat << a << " / " << b;
+  }
+  EXPECT_EQ(wrong, 0U);
+}
 
 }  // namespace
 }  // namespace vpm

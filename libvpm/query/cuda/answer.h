@@ -47,35 +47,50 @@ struct Totals {
   unsigned arrived = 0;  // of GridTeam
 };
 
+// Adds up eight values over a warp. Each lane has the sum of value lane / 4.
+__device__ inline std::int64_t add_up_over_warp(std::int64_t (&values)[8]) {
+  // Half of the values go to one half of the lanes, and so on.
+#pragma unroll
+  for (unsigned half = 16, kept = 4; kept > 0; half /= 2, kept /= 2) {
+    const bool is_upper = (threadIdx.x & half) != 0;
+#pragma unroll
+    for (unsigned k = 0; k < kept; ++k) {
+      const std::int64_t low = values[k], high = values[k + kept];
+      values[k] = (is_upper ? high : low) + __shfl_xor_sync(~0U, is_upper ? low : high, half);
+    }
+  }
+  std::int64_t sum = values[0];
+  sum += __shfl_xor_sync(~0U, sum, 2);
+  return sum + __shfl_xor_sync(~0U, sum, 1);
+}
+
 // Adds up a block's parts into `total`, which may lie in shared memory.
 __device__ inline void add_block(const RawResult& part, RawResult& total) {
-  constexpr int kMostWarps = kMostThreads / 32, kValues = 10;
-  __shared__ std::int64_t values[kValues][kMostWarps];
+  constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
+  __shared__ std::int64_t values[kMostWarps][kTerms + 1];
   const ToolSum& s = part.sum;
-  const std::int64_t mine[kValues] = {
-      s.volume.value,    s.force[0].value,  s.force[1].value, s.force[2].value, s.torque[0].value,
-      s.torque[1].value, s.torque[2].value, part.boundary,    part.inside,      part.points};
-  const Tile warp(32);
+  const std::int64_t counts = std::int64_t{part.inside} << 32 | part.boundary;
+  std::int64_t mine[kTerms + 1] = {
+      s.volume.value,    s.force[0].value,  s.force[1].value,  s.force[2].value,
+      s.torque[0].value, s.torque[1].value, s.torque[2].value, counts};
+  const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+  const std::int64_t sum_of_warp = add_up_over_warp(mine);
   __syncthreads();
-#pragma unroll
-  for (int k = 0; k < kValues; ++k) {
-    const std::int64_t sum = warp.sum(mine[k]);
-    if (warp.leads()) values[k][threadIdx.x / 32] = sum;
+  if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
+  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom asked for
+    const auto points = static_cast<unsigned>(Tile(32).sum(part.points));
+    if (lane == 0) atomicAdd(&total.points, points);
   }
   __syncthreads();
-  if (threadIdx.x >= kValues) return;
+  if (threadIdx.x > kCounts) return;
   std::int64_t sum = 0;
-  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum += values[threadIdx.x][w];
+  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum += values[w][threadIdx.x];
   if (sum == 0) return;
-  ToolSum& t = total.sum;
-  std::int64_t* const sums[] = {&t.volume.value,   &t.force[0].value,  &t.force[1].value,
-                                &t.force[2].value, &t.torque[0].value, &t.torque[1].value,
-                                &t.torque[2].value};
-  unsigned* const counts[] = {&total.boundary, &total.inside, &total.points};
-  if (threadIdx.x < 7) {
-    add_term(*sums[threadIdx.x], sum);
+  if (threadIdx.x < kCounts) {
+    add_term(terms_of(total.sum)[threadIdx.x], sum);
   } else {
-    atomicAdd(counts[threadIdx.x - 7], static_cast<unsigned>(sum));
+    atomicAdd(&total.boundary, static_cast<unsigned>(sum));
+    atomicAdd(&total.inside, static_cast<unsigned>(sum >> 32));
   }
 }
 

@@ -1,47 +1,11 @@
 #include <algorithm>
 
 #include "libvpm/query/cuda/device_level.h"
+#include "libvpm/query/cuda/level_units.h"
 #include "libvpm/query/measure_refined.h"
 
 namespace vpm::cuda {
 namespace {
-
-void add_units(const ToolModel& tool, const Level& level, std::uint32_t i,
-               std::vector<Unit>& units) {
-  const Vec3 center = tool.spheres[i].center - tool.center_of_mass;
-  const std::uint32_t begin = level.block_begin[i], end = level.block_begin[i + 1];
-  Unit unit;
-  unit.balls[Unit::of_share] = {center, level.share_reach[i]};
-  unit.balls[Unit::of_sphere] = {center, tool.spheres[i].radius};
-  unit.share = i;
-  if (is_compact(level.share_reach[i], tool.reach)) unit.flags |= Unit::is_compact;
-  if (begin == end) units.push_back(unit), units.back().flags |= Unit::is_head;
-  for (std::uint32_t b = begin; b < end; ++b) {
-    const CellBlock& block = level.blocks[b];
-    unit.balls[Unit::of_block] = {widen(block.center), block.radius};
-    unit.block = b;
-    unit.begin = block.begin;
-    unit.end = block.end;
-    units.push_back(unit);
-    units.back().flags |= Unit::has_block | (b == begin ? Unit::is_head : 0U);
-  }
-}
-
-// Cluster by cluster.
-std::vector<Unit> units_of(const ToolModel& tool, const Level& level, const ShareClusters& clusters,
-                           std::vector<Chunk>& chunks) {
-  std::vector<Unit> units;
-  for (const ShareCluster& cluster : clusters.clusters) {
-    auto begin = static_cast<std::uint32_t>(units.size());
-    for (std::uint32_t k = cluster.begin; k < cluster.end; ++k)
-      add_units(tool, level, clusters.shares[k], units);
-    const auto end = static_cast<std::uint32_t>(units.size());
-    for (; begin < end; begin += Chunk::kUnits)
-      chunks.push_back(
-          {{cluster.center, cluster.reach}, begin, std::min(begin + Chunk::kUnits, end)});
-  }
-  return units;
-}
 
 std::vector<Edge> edges_of(const SphereGraph& graph) {
   std::vector<Edge> edges;
@@ -92,18 +56,26 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach re
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
       blocks_(level.blocks),
-      block_masses_(block_masses(level)),
       share_masses_(clusters.masses),
       samples_(level.samples),
       edges_(edges_of(level.graph)),
       edge_begin_(edge_begins(level.graph)) {
-  std::vector<Chunk> chunks;
-  const std::vector<Unit> units = units_of(tool, level, clusters, chunks);
-  units_ = DeviceArray<Unit>(units);
-  chunks_ = DeviceArray<Chunk>(chunks);
+  const LevelUnits units(tool, level, clusters);
+  block_masses_ = DeviceArray<BlockMass>(units.block_masses());
+  const ChunkedUnits<Unit> chunked = units.chunked();
+  units_ = DeviceArray<Unit>(chunked.units);
+  chunks_ = DeviceArray<Chunk>(chunked.chunks);
   view_.count = level.sphere_count;
   view_.chunks = chunks_.get();
-  view_.chunk_count = static_cast<std::uint32_t>(chunks.size());
+  view_.chunk_count = static_cast<std::uint32_t>(chunked.chunks.size());
+  if (level.sphere_count <= kSpheresOfWarps) {
+    std::uint32_t wide_count = 0;
+    const ChunkedUnits<WarpUnit> of_warps = units.chunked_for_warps(wide_count);
+    units_of_warps_ = DeviceArray<WarpUnit>(of_warps.units);
+    chunks_of_warps_ = DeviceArray<Chunk>(of_warps.chunks);
+    view_.of_warps = {units_of_warps_.get(), chunks_of_warps_.get(),
+                      static_cast<std::uint32_t>(of_warps.chunks.size()), wide_count};
+  }
   view_.spheres = spheres_.get();
   view_.centers = centers_.get();
   view_.reach = reach_.get();
@@ -125,12 +97,9 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach re
   view_.tool_reach = reach;
   view_.spheres_reach = reach_of_spheres(tool, level);
   LookSizes looks;
-  for (const Chunk& chunk : chunks) looks.add(chunk.ball.center, chunk.ball.radius);
-  for (const Unit& unit : units) {
-    const UnitBall &share = unit.balls[Unit::of_share], &block = unit.balls[Unit::of_block];
-    if ((unit.flags & Unit::is_head) != 0) looks.add(share.center, share.radius);
-    looks.add(block.center, block.radius);
-  }
+  for (const Chunk& chunk : chunked.chunks) looks.add(chunk.ball.center, chunk.ball.radius);
+  for (const Unit& unit : chunked.units)
+    for (const UnitBall& ball : unit.balls) looks.add(ball.center, ball.radius);
   looks_ = looks.largest();
 }
 

@@ -30,7 +30,8 @@ class DeviceLevel {
   DeviceArray<BlockMass> block_masses_, share_masses_;
   DeviceArray<CellSample> samples_;
   DeviceArray<Unit> units_;
-  DeviceArray<Chunk> chunks_;
+  DeviceArray<WarpUnit> units_of_warps_;
+  DeviceArray<Chunk> chunks_, chunks_of_warps_;
   DeviceArray<Edge> edges_;
   DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;

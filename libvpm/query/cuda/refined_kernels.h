@@ -6,6 +6,7 @@
 
 #include "libvpm/query/cuda/answer.h"
 #include "libvpm/query/cuda/flood.h"
+#include "libvpm/query/cuda/image_measure.h"
 #include "libvpm/query/cuda/orders.h"
 #include "libvpm/query/cuda/points.h"
 #include "libvpm/query/cuda/seen_shares.h"
@@ -61,6 +62,7 @@ using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Team>, Flood
 template <class Surface>
 union BlockShared {
   MeasureShared measure;
+  ImageMeasure::Shared image;
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
@@ -69,14 +71,19 @@ template <class Surface>
 __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                                     unsigned turn, BlockShared<Surface>& shared) {
   const Part of_spheres{blockIdx.x, launch.sphere_blocks};
-  const Part of_points{blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks};
   if (blockIdx.x >= launch.sphere_blocks) {
-    count_points(launch.level, launch.points, frame, of_points,
-                 launch.space.notes[turn % 2].points);
+    if (launch.counts_points)
+      count_points(launch.level, launch.points, frame,
+                   {blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks},
+                   launch.space.notes[turn % 2].points);
     return {};
   }
   const PoseWork<Surface> work(launch.level, launch.surface, frame.to_surface, launch.space, turn,
                                *launch.counters, of_spheres);
+  if constexpr (Surface::kTellsInside) {
+    if (ImageMeasure::is_for(launch.level, of_spheres))
+      return ImageMeasure(work, launch.counts_points, shared.image).run();
+  }
   return ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
 }
 
@@ -175,7 +182,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
                          const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ PartAndQueryShared shared;
   GridTeam team(&launch.totals->arrived);
-  PartWork<GridTeam>(image, part, team, shared.part).run();
+  PartWork<GridTeam>(image, part, team.block(), team, shared.part).run();
   answer_pose(launch, frame, sequence, team, shared.of_query());
 }
 
@@ -206,7 +213,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
       __syncthreads();
     }
     GridTeam team(&launch.totals->arrived);
-    if (makes) PartWork<GridTeam>(image, order.part, team, shared.part).run();
+    if (makes) PartWork<GridTeam>(image, order.part, team.block(), team, shared.part).run();
     if (answer_pose(launch, frame, order.turn, team, shared.of_query())) orders.finish(number);
   }
 }

@@ -3,33 +3,10 @@
 // no flood decides what is inside, each thread adds up what it finds.
 #pragma once
 
+#include "libvpm/query/cuda/pose_work.h"
 #include "libvpm/query/cuda/share_tasks.h"
-#include "libvpm/query/cuda/shares.h"
 
 namespace vpm::cuda {
-
-// What a block knows of the pose that it works at.
-template <class Surface>
-struct PoseWork {
-  const LevelView& level;
-  const Surface& surface;
-  const Pose& to_surface;
-  const RefinedSpace& space;
-  const ShareNotes& notes;  // of the pose, in that space
-  RefinedCounters& counters;
-  Part part;
-
-  __device__ PoseWork(const LevelView& of_level, const Surface& of_surface, const Pose& pose,
-                      const RefinedSpace& of_space, unsigned turn, RefinedCounters& of_counters,
-                      Part of_part)
-      : level(of_level),
-        surface(of_surface),
-        to_surface(pose),
-        space(of_space),
-        notes(of_space.notes[turn % 2]),
-        counters(of_counters),
-        part(of_part) {}
-};
 
 template <class Surface>
 class TaskMeasure {

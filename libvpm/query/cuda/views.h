@@ -13,7 +13,7 @@
 
 namespace vpm::cuda {
 
-struct UnitBall {
+struct alignas(32) UnitBall {
   Vec3 center;  // about the centre of mass
   double radius = 0;
 };
@@ -26,17 +26,39 @@ struct alignas(32) Unit {
     is_head = 1,     // the first of its share
     is_compact = 2,  // its share is (share_clusters.h)
     has_block = 4,
+    is_alone = 8,  // the only one of its share
   };
   UnitBall balls[kBalls];
   std::uint32_t share = 0, block = 0, begin = 0, end = 0;  // samples of the block
   std::uint32_t flags = 0;
 };
 
-// Units of one cluster that a warp classifies together.
+// Units of one cluster that are classified together.
 struct Chunk {
   static constexpr unsigned kUnits = 8;
   UnitBall ball;  // of the cluster
   std::uint32_t begin = 0, end = 0;
+};
+
+// A unit, and what of it may be taken whole.
+struct WarpUnit : Unit {
+  BlockMass block_mass, share_mass;
+};
+
+// Levels of more spheres have more chunks than any device has warps at once.
+inline constexpr std::uint32_t kSpheresOfWarps = 8192;
+
+// The units of a small level, for warps that take one chunk each: of few units that are wide, of
+// more samples than kNarrow, or of more others. Where there are fewer, room is left behind them for
+// such as are nothing.
+struct WarpChunks {
+  static constexpr unsigned kWideUnits = 2;
+  static constexpr std::uint32_t kNarrow = 8;
+
+  const WarpUnit* units = nullptr;
+  const Chunk* chunks = nullptr;
+  std::uint32_t count = 0,
+                wide_count = 0;  // wide ones come first; none of a level that is not small
 };
 
 // An edge of the graph; the spheres' indices.
@@ -58,6 +80,7 @@ struct LevelView {
   const CellSample* samples = nullptr;
   const Unit* units = nullptr;
   const Chunk* chunks = nullptr;
+  WarpChunks of_warps;
   const Edge* edges = nullptr;                // by their larger index
   const std::uint32_t* edge_begin = nullptr;  // count + 1
   GridView grid;
@@ -65,7 +88,7 @@ struct LevelView {
   ToolReach tool_reach;
   double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
 
-  __host__ __device__ CellView cell(std::uint32_t i) const {
+  VPM_HD CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
             centers[i], reach[i]};
   }
@@ -79,8 +102,8 @@ struct PoseFrame {
   PixelRectangle pixels;  // that the tool can reach; of organised clouds
 };
 
-__host__ __device__ inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud,
-                                              Vec3 center_of_mass, double spheres_reach) {
+VPM_HD inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud, Vec3 center_of_mass,
+                                 double spheres_reach) {
   PoseFrame frame;
   const Pose from_center_of_mass{pose.rotation, pose * center_of_mass};
   const Pose surface = cloud.is_organised ? cloud.camera_to_world : Pose{{}, cloud.origin};
