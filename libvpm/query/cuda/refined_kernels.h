@@ -182,7 +182,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
                          const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ PartAndQueryShared shared;
   GridTeam team(&launch.totals->arrived);
-  PartWork<GridTeam>(image, part, team.block(), team, shared.part).run();
+  PartWork<GridTeam>(image, part, team, shared.part).run();
   answer_pose(launch, frame, sequence, team, shared.of_query());
 }
 
@@ -213,7 +213,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
       __syncthreads();
     }
     GridTeam team(&launch.totals->arrived);
-    if (makes) PartWork<GridTeam>(image, order.part, team.block(), team, shared.part).run();
+    if (makes) PartWork<GridTeam>(image, order.part, team, shared.part).run();
     if (answer_pose(launch, frame, order.turn, team, shared.of_query())) orders.finish(number);
   }
 }

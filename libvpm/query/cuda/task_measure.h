@@ -175,29 +175,15 @@ __device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure&
   const bool exists = k < task.count;
   const SharePiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
   const typename Measure::PieceLook look = measure.look_at(piece);
-  const bool inside = exists && look.is_inside, cut = Measure::is_cut(piece, look);
+  const bool inside = exists && look.is_inside;
   const bool shares =
       exists && task.form == Task::samples && Measure::shares_direction(piece, look);
   const unsigned first = Surface::kSearchesFoot ? first_neighbor(tile, shares) : tile.lane;
   Vec3 normal;
-  if (inside && !cut && first == tile.lane) normal = measure.closest_normal(look);
+  if (inside && !Measure::is_cut(piece, look) && first == tile.lane)
+    normal = measure.closest_normal(look);
   if (Surface::kSearchesFoot) normal = tile.from(normal, first);
-  if (!inside) return;
-  result.is_far |= look.is_far;
-  if (!task.is_whole() && cut) measure.add_to_plane(look, result.plane);
-  ToolSum sum;
-  measure.add_behind(cut ? measure.part_behind(piece, look) : piece, look,
-                     cut ? look.reading.normal : normal, work_.surface, sum);
-  if (look.is_far) {
-    // Member by member: the whole would be stored byte by byte.
-    FarPiece& far = work_.space.far[atomicAdd(&work_.counters.far, 1U)];
-    far.at = look.x;
-    far.foot = look.reading.foot;
-    far.sum = sum;
-    far.share = task.share;
-    return;
-  }
-  result.sum.add(sum);
+  if (inside) work_.add_inside(measure, piece, look, normal, task.share, result);
 }
 
 // The first lane of those that share a direction with this one; itself where it has its own.

@@ -3,7 +3,6 @@
 
 #include <cuda/atomic>
 
-#include "libvpm/device/cuda/part.h"
 #include "libvpm/query/cell.h"
 #include "libvpm/surface/pixel_rectangle.h"
 
@@ -21,6 +20,11 @@ inline constexpr unsigned kMostThreads = 256;
 __device__ inline void fence() {
   ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
 }
+
+// Work dealt out to blocks: row k to part k % parts.
+struct Part {
+  unsigned part = 0, parts = 1;
+};
 
 // A block alone.
 class BlockTeam {
@@ -100,28 +104,11 @@ struct Tile {
   __device__ T from(T value, unsigned source) const {
     return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
   }
-  __device__ bool from(bool value, unsigned source) const {
-    return from(value ? 1 : 0, source) != 0;
-  }
   __device__ Vec3 from(Vec3 v, unsigned source) const {
     return {from(v.x, source), from(v.y, source), from(v.z, source)};
   }
   __device__ PixelRectangle from(const PixelRectangle& r, unsigned source) const {
     return {from(r.u0, source), from(r.v0, source), from(r.u1, source), from(r.v1, source)};
-  }
-  __device__ TangentPlane from(const TangentPlane& p, unsigned source) const {
-    return {from(p.normal, source), from(p.foot, source)};
-  }
-  __device__ CrossingPlane from(const CrossingPlane& p, unsigned source) const {
-    CrossingPlane plane;
-    plane.seen = from(p.seen, source);
-    plane.normal = from(p.normal, source);
-    plane.height = from(p.height, source);
-    return plane;
-  }
-  __device__ Reading from(const Reading& r, unsigned source) const {
-    return {from(r.known, source), from(r.distance, source), from(r.normal, source),
-            from(r.foot, source), from(r.point, source)};
   }
   // From the thread so many lanes on.
   __device__ double from_next(double value, unsigned lanes) const {

@@ -3,7 +3,6 @@
 // DepthSurface reads is made, not the points.
 #pragma once
 
-#include "libvpm/device/cuda/part.h"
 #include "libvpm/surface/cuda/cloud_points.h"
 #include "libvpm/surface/cuda/cloud_surface.h"
 #include "libvpm/surface/cuda/cloud_take.h"
@@ -36,8 +35,7 @@ inline bool is_made_by_queries(const NormalOptions& normals) {
   return normals.method == NormalMethod::inverse_depth && normals.window / 2 == kUsualRadius;
 }
 
-// By all blocks of a launch, each of SmallTile's threads, who meet between the steps; all that was
-// made is seen then.
+// By all blocks of a launch, each of SmallTile's threads; all that was made is seen then.
 template <class Team>
 class PartWork {
   using Points = TileWork<InverseDepthNormals<TileFrame<SmallTile, kUsualRadius>>>;
@@ -50,15 +48,12 @@ class PartWork {
     alignas(16) unsigned char surface[sizeof(Surface::Shared)];
   };
 
-  // `mine`: of the work, this block's; none where there are fewer parts.
-  __device__ PartWork(const CloudSource& source, const NewPart& part, Part mine, Team& team,
-                      Shared& shared)
+  __device__ PartWork(const CloudSource& source, const NewPart& part, Team& team, Shared& shared)
       : source_(source),
         settled_{part.wanted, part.made},
         prepared_(pixels_to_prepare(source.recipe, settled_)),
         taken_(pixels_to_take(source.recipe, settled_)),
         sequence_(part.sequence),
-        mine_(mine),
         team_(team),
         shared_(shared) {}
 
@@ -78,9 +73,8 @@ class PartWork {
   __device__ void take() const {
     const TakenDepths taken{nullptr, source_.taken.inverse};
     const TakeWork<4, true> work(source_.image, taken, taken_, source_.recipe.camera.width);
-    if (mine_.part >= mine_.parts) return;
-    const unsigned warp = threadIdx.x / 32 * mine_.parts + mine_.part;
-    const unsigned thread = warp * 32 + threadIdx.x % 32, threads = mine_.parts * blockDim.x;
+    const unsigned warp = threadIdx.x / 32 * gridDim.x + blockIdx.x;
+    const unsigned thread = warp * 32 + threadIdx.x % 32, threads = gridDim.x * blockDim.x;
     for (unsigned group = thread; group < work.groups(); group += threads) work.take(group);
     if (!is_empty(settled_.made)) return;
     clear_coarse_tiles(source_.recipe.room, source_.recipe.camera, thread, threads);
@@ -110,11 +104,11 @@ class PartWork {
 
   // This block's.
   template <class Visit>
-  __device__ void for_tiles(const StepPixels& pixels, const Visit& visit) const {
-    if (mine_.part >= mine_.parts) return;
-    const auto count = static_cast<unsigned>(pixels.tile_count<SmallTile>());
-    for (unsigned tile = mine_.part; tile < count; tile += mine_.parts) {
-      visit(static_cast<int>(tile));
+  __device__ static void for_tiles(const StepPixels& pixels, const Visit& visit) {
+    const int count = pixels.tile_count<SmallTile>();
+    for (int tile = static_cast<int>(blockIdx.x); tile < count;
+         tile += static_cast<int>(gridDim.x)) {
+      visit(tile);
       __syncthreads();
     }
   }
@@ -122,7 +116,6 @@ class PartWork {
   const CloudSource& source_;
   StepPixels settled_, prepared_, taken_;
   unsigned sequence_;
-  Part mine_;
   Team& team_;
   Shared& shared_;
 };
