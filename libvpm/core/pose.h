@@ -18,7 +18,7 @@ struct Rotation {
   Vec3 row0{1, 0, 0}, row1{0, 1, 0}, row2{0, 0, 1};
 };
 
-VPM_HD constexpr Vec3 operator*(const Rotation& r, Vec3 v) {
+[[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Rotation& r, Vec3 v) {
   return {dot(r.row0, v), dot(r.row1, v), dot(r.row2, v)};
 }
 VPM_HD constexpr Rotation transpose(const Rotation& r) {
@@ -36,7 +36,7 @@ struct Pose {
   Vec3 translation;
 };
 
-VPM_HD constexpr Vec3 operator*(const Pose& p, Vec3 v) {
+[[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Pose& p, Vec3 v) {
   return p.rotation * v + p.translation;
 }
 VPM_HD constexpr Pose operator*(const Pose& a, const Pose& b) {

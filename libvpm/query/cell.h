@@ -56,9 +56,10 @@ class CellMeasure {
   // without the far pieces. `samples`: SamplesInTurn, or what adds the same sooner. `point`: where
   // to begin to read disks.
   template <class Samples>
-  VPM_HD CellResult run(Samples samples, std::uint32_t point = kNoPoint) const {
+  VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
     result.point = point;
+    samples.begin_share();
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, result);
     samples.flush(*this, result);
     if (result.is_far && result.plane.count > 0) {
@@ -152,8 +153,9 @@ class CellMeasure {
     if (look.point != kNoPoint) result.point = look.point;
     if (look.side != Side::mixed) {
       add_piece(piece_of(cell_.masses[b], block), result);
+      samples.pushed(cell_.masses[b], result.sum);
     } else if (look.is_flat) {
-      add_block<Samples>(b, {look.tangent, to_surface_}, result);
+      add_block(b, {look.tangent, to_surface_}, samples, result);
     } else {
       const auto& near = surface_.around_ball(look.center, block.radius, look.point);
       samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
@@ -303,16 +305,18 @@ class CellMeasure {
   }
   // Adds one block of a share that lies where the surface is one plane.
   template <class Samples>
-  VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, CellResult& result) const {
+  VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, Samples& samples,
+                        CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const double distance = plane.distance(widen(block.center));
     if (distance >= block.radius) return;
     if (distance <= -block.radius) {
       add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
+      samples.pushed(cell_.masses[b], result.sum);
       return;
     }
     const CrossedSums sums =
-        Samples::crossed(plane, cell_.samples + block.begin, block.end - block.begin);
+        samples.crossed(plane, cell_.samples + block.begin, block.end - block.begin);
     add_crossed(widen(block.center), plane, sums, result);
   }
   VPM_HD const Surface& surface() const { return surface_; }
@@ -332,8 +336,16 @@ class CellMeasure {
   Vec3 center_;  // in the surface's frame
 };
 
+// What samples are told beside, of a share and its blocks: for those that note how a share's part
+// behind the surface changes (ContactSlopes). Others do not.
+struct WithoutSlopes {
+  VPM_HD void begin_share() const {}
+  // After a block that counts whole, or not at all: the sum of the share so far.
+  VPM_HD void pushed(const BlockMass&, const ToolSum&) const {}
+};
+
 // The samples of a block that the surface may cut, one after another.
-struct SamplesInTurn {
+struct SamplesInTurn : WithoutSlopes {
   template <class Measure, class Near>
   VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
                   const Near& near, CellResult& result) const {

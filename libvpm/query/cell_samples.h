@@ -7,12 +7,16 @@
 #include <type_traits>
 
 #include "libvpm/query/cell.h"
+#include "libvpm/query/contact_slopes.h"
 #include "libvpm/query/depth_readings.h"
 
 namespace vpm {
 
 // SamplesInTurn::crossed.
 CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
+// The same, and the slopes of the samples that are cut.
+CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples,
+                         CrossedSlopes& slopes);
 
 // Reads the surface of a camera at four places by vectors, others one after the other.
 struct ReadTogether {
@@ -37,7 +41,7 @@ struct SamplesAmongDisks : SamplesInTurn {
 };
 
 // Seen by a camera. For one cell.
-class SamplesTogether {
+class SamplesTogether : public WithoutSlopes {
  public:
   template <class Measure>
   void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
@@ -98,6 +102,38 @@ class SamplesTogether {
   Pushed pushed_[kAtOnce * kNeighborSamples];
   std::uint32_t direction_count_ = 0, pushed_count_ = 0;
   std::uint32_t neighbors_ = kNone;  // for which the last direction is searched
+};
+
+// The same, and how what they add changes as the tool moves.
+class SamplesWithSlopes : public SamplesTogether {
+ public:
+  SamplesWithSlopes(ToolReach reach, ContactSlopes& slopes) : reach_(reach), slopes_(slopes) {}
+
+  void begin_share() { before_ = {}; }
+  void pushed(const BlockMass& mass, const ToolSum& sum) {
+    const Vec3 force = sum.force_terms();
+    slopes_.add_pushed(force - before_, reach_.inverse * mass.centroid);
+    before_ = force;
+  }
+  // Where the surface is no plane its slopes are not known.
+  template <class Measure>
+  void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+           const DepthSurface& surface, CellResult& result) {
+    slopes_.are_known = false;
+    SamplesTogether::add(measure, samples, count, surface, result);
+  }
+  CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples, std::uint32_t count) {
+    CrossedSlopes slopes;
+    const CrossedSums sums = crossed_sums(plane, {samples, count}, slopes);
+    slopes_.add_crossed(plane.normal, sums, slopes, reach_.inverse);
+    before_ += sums.weight * plane.normal;
+    return sums;
+  }
+
+ private:
+  ToolReach reach_;
+  ContactSlopes& slopes_;
+  Vec3 before_;  // force of the share's blocks so far
 };
 
 template <class Surface>

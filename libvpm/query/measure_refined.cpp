@@ -24,6 +24,8 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       level_(tool, level),
       shares_(level_) {
   if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
+  if (options.coherent && options.reuse > 0)
+    contacts_.emplace(level_.roots().size(), level_.groups().size(), reach_, options.reuse);
 }
 
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
@@ -47,8 +49,11 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
                             Result& result) {
   const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
   const PointsOfSphere points(cloud, pose);
+  ContactMemory* contacts = nullptr;
+  if (Surface::kTellsInside && contacts_) contacts = &*contacts_;
+  if (contacts != nullptr) contacts->turn(cloud.serial(), to_surface);
   ShareClassifier classifier(tool_, reach_, level_, surface, to_surface,
-                             counts_points_ ? &points : nullptr, shares_);
+                             counts_points_ ? &points : nullptr, contacts, shares_);
   ParallelRegion region;
   result.points = classifier.run(region);
   CutShares cut(tool_, level_, to_surface, shares_);
@@ -61,31 +66,63 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   if (memory_) remember(surface, to_surface, to_world, inside);
 }
 
+template <class Known, class Rows>
+void RefinedMeasure::for_clusters(std::uint32_t begin, std::uint32_t end, const Known& known,
+                                  const Rows& rows) const {
+  const auto first_row = [&](std::uint32_t root) {
+    return root < level_.roots().size() ? level_.cluster(root).begin : level_.size();
+  };
+  std::uint32_t row = first_row(begin);
+  for (std::uint32_t root = begin; contacts_ && root < end; ++root) {
+    if (!contacts_->knows(root)) continue;
+    rows(row, first_row(root));
+    known(root);
+    row = first_row(root + 1);
+  }
+  rows(row, first_row(end));
+}
+
 template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
                                      const Inside& inside, ParallelRegion& region, ToolSum& sum) {
-  constexpr std::size_t kGrain = 512;
+  constexpr std::size_t kGrain = 8;
   std::mutex adding;
   std::uint32_t all = 0;
-  region.loop(level_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
-    std::uint32_t last_cut = kNoRow;
     std::uint32_t count = 0;
-    for_rows_in(Cell::cut, shares_.cells, begin, end,
-                [&](std::uint32_t i) { of_all.add(shares_.results[i].sum); });
-    for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
-      const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
-      of_all.add(part);
-      if (part.volume.value != 0)
-        ++count;
-      else
-        shares_.cells[i] = Cell::free;  // hidden, not inside
-    });
+    for_clusters(
+        static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+        [&](std::uint32_t root) {
+          contacts_->add(root, of_all);
+          count += contacts_->inside(root);
+        },
+        [&](std::uint32_t first, std::uint32_t last) {
+          count += add_up(surface, to_surface, inside, first, last, of_all);
+        });
     const std::lock_guard lock(adding);
     sum.add(of_all);
     all += count;
   });
   return all;
+}
+
+template <class Surface, class Inside>
+std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
+                                     const Inside& inside, std::uint32_t begin, std::uint32_t end,
+                                     ToolSum& sum) {
+  std::uint32_t last_cut = kNoRow, count = 0;
+  for_rows_in(Cell::cut, shares_.cells, begin, end,
+              [&](std::uint32_t i) { sum.add(shares_.results[i].sum); });
+  for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
+    const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
+    sum.add(part);
+    if (part.volume.value != 0)
+      ++count;
+    else
+      shares_.cells[i] = Cell::free;  // hidden, not inside
+  });
+  return count;
 }
 
 template <class Surface, class Inside>
@@ -118,30 +155,49 @@ template <class Surface, class Inside>
 void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                               Inside& inside) {
   inside.begin_to_remember(to_world, *memory_);
-  const auto keep = [&](std::uint32_t i) {
-    const std::uint32_t root = level_.root(i);
-    const bool is_known = memory_->is_known(root);
-    if (!is_known || !inside.follows(i)) {
-      const Reading reading = surface.read(to_surface * level_.cell(i).center);
-      const Vec3 foot = to_world * reading.foot;
-      if (!reading.known || !inside.is_sure(i, foot)) return;
-      if (!is_known) memory_->remember(root, level_.cluster(root), foot);
+  const auto keep_cluster = [&](std::uint32_t root) {
+    const ShareCluster& cluster = level_.cluster(root);
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      if (!shares_.counts(i)) continue;
+      const bool is_known = memory_->is_known(root);
+      if (!is_known || !inside.follows(i)) {
+        const Reading reading = surface.read(to_surface * level_.cell(i).center);
+        const Vec3 foot = to_world * reading.foot;
+        if (!reading.known || !inside.is_sure(i, foot)) continue;
+        if (!is_known) memory_->remember(root, cluster, foot);
+      }
+      if (inside.all_follow()) {
+        memory_->remember_if(cluster, [&](std::uint32_t k) { return shares_.counts(k); });
+        return;
+      }
+      memory_->remember(i);
     }
-    memory_->remember(i);
   };
-  for (const std::uint32_t i : shares_.cut) keep(i);
-  for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {
-    if (shares_.cells[i] != Cell::free) keep(i);
-  });
+  const auto keep_rows = [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = next_busy(shares_.cells, begin, end); i < end;) {
+      const std::uint32_t root = level_.root(i);
+      keep_cluster(root);
+      i = next_busy(shares_.cells, level_.cluster(root).end, end);
+    }
+  };
+  for_clusters(
+      0, static_cast<std::uint32_t>(level_.roots().size()),
+      [&](std::uint32_t root) {
+        if (contacts_->is_empty(root)) return;
+        if (contacts_->was_read(root) || !memory_->keep(root, level_.cluster(root)))
+          keep_cluster(root);
+      },
+      keep_rows);
   memory_->turn();
 }
 
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {
   std::fill(states.begin(), states.end(), SphereState::outside);
-  for (const std::uint32_t i : shares_.cut) states[level_.sphere(i)] = SphereState::boundary;
-  for_rows_in(Passage::taken, shares_.passages, 0, level_.size(), [&](std::uint32_t i) {
-    if (shares_.cells[i] != Cell::free) states[level_.sphere(i)] = SphereState::inside;
-  });
+  for (std::uint32_t i = 0; i < level_.size(); ++i) {
+    if (shares_.counts(i))
+      states[level_.sphere(i)] =
+          shares_.cells[i] == Cell::cut ? SphereState::boundary : SphereState::inside;
+  }
 }
 
 }  // namespace vpm

@@ -55,8 +55,9 @@ class SeenShares {
     if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
     plane_ = memory.touched();
   }
-  // Whether to remember a share of which another one of its cluster is remembered.
-  bool follows(std::uint32_t row) const { return !cut_.are_none() || has_stayed(row); }
+  // Whether to remember a share of which another one of its cluster is remembered; or any such.
+  bool follows(std::uint32_t row) const { return all_follow() || has_stayed(row); }
+  bool all_follow() const { return !cut_.are_none(); }
   // Whether to remember any, behind the surface's place `foot` of the world.
   bool is_sure(std::uint32_t row, Vec3 foot) const {
     if (has_stayed(row)) return true;

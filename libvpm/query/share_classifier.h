@@ -1,12 +1,15 @@
 // The first step of the refined measure: how the surface meets each share. Groups of clusters are
 // looked at before clusters, clusters before shares: what holds for a ball holds for the balls in
-// it.
+// it. Where poses follow each other, what is known of a cluster is not read again.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cell_samples.h"
+#include "libvpm/query/contact_memory.h"
 #include "libvpm/query/patch.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/share_states.h"
@@ -17,16 +20,18 @@ template <class Surface>
 class ShareClassifier {
  public:
   // `points`: those of the cloud, to be counted in the spheres that the surface may pass; null
-  // where nobody asks for their number.
+  // where nobody asks for their number. `memory`: of what was read at poses before, and what will
+  // be of this one; null where every pose is read anew.
   ShareClassifier(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
                   const Surface& surface, const Pose& to_surface, const PointsOfSphere* points,
-                  ShareStates& states)
+                  ContactMemory* memory, ShareStates& states)
       : tool_(tool),
         reach_(reach),
         level_(level),
         surface_(surface),
         to_surface_(to_surface),
         points_(points),
+        memory_(memory),
         states_(states) {}
 
   // Returns the number of points in spheres.
@@ -34,7 +39,8 @@ class ShareClassifier {
     std::atomic<std::uint32_t> found{0};
     region.loop(level_.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
       std::uint32_t found_here = 0;
-      for (std::size_t g = begin; g < end; ++g) found_here += classify(level_.groups()[g]);
+      for (std::size_t g = begin; g < end; ++g)
+        found_here += classify_group(static_cast<std::uint32_t>(g));
       if (found_here > 0) found.fetch_add(found_here, std::memory_order_relaxed);
     });
     return found;
@@ -43,23 +49,31 @@ class ShareClassifier {
  private:
   using Look = typename Surface::Look;
 
-  std::uint32_t classify(const ShareGroup& group) {
+  std::uint32_t classify_group(std::uint32_t index) {
+    if (memory_ != nullptr && memory_->knows_free_group(index)) return 0;
+    const ShareGroup& group = level_.groups()[index];
     const Vec3 center = to_surface_ * group.ball.center;
-    const bool tells =
-        group.end - group.begin > 1 && surface_.tells_of_parts(center, group.ball.reach);
+    const double reach = group.ball.reach + reused_way();
+    const bool tells = unknown_roots(group) > 1 && surface_.tells_of_parts(center, reach);
     Look look;
-    if (tells) look = surface_.look_at_ball(center, group.ball.reach);
+    if (tells) look = surface_.look_at_ball(center, reach);
     if (tells && look.side == Side::free) {
       states_.set(group.ball, Cell::free, Passage::closed);
+      forget(group);
+      if (memory_ != nullptr) memory_->remember_free_group(index);
       return 0;
     }
     std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const ShareCluster& part = level_.cluster(root);
-      if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach))
+      if (is_known(root)) {
+        found += count_points(part);
+      } else if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach)) {
         states_.set(part, Cell::free, Passage::closed);
-      else
+        forget(root);
+      } else {
         found += classify(root);
+      }
     }
     return found;
   }
@@ -67,23 +81,34 @@ class ShareClassifier {
   std::uint32_t classify(std::uint32_t root) {
     const ShareCluster& whole = level_.cluster(root);
     const Vec3 center = to_surface_ * whole.center;
+    if (stays_free(center, whole.reach)) {
+      states_.set(whole, Cell::free, Passage::closed);
+      memory_->remember_free(root);
+      return 0;
+    }
+    forget(root);
     const Look look = surface_.look_at_ball(center, whole.reach);
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
     if (look.side == Side::mixed) {
       TangentPlane plane;
-      if (!may_be_patch || !sees_patch(surface_, look, center, whole.reach, ReadTogether{}, plane))
-        return classify_nodes(root);
-      states_.planes[root] = {plane, to_surface_};
-      classify_crossed(root, look);
-      return count_points(whole, look);
+      const bool is_crossed =
+          may_be_patch && sees_patch(surface_, look, center, whole.reach, ReadTogether{}, plane);
+      if (is_crossed) states_.planes[root] = {plane, to_surface_};
+      return classify_mixed(root, look, is_crossed);
     }
     if (look.side == Side::uncut && may_be_patch) {
       states_.set(whole, Cell::open, Passage::middle);
       return 0;
     }
     decide(look, whole, center);
-    if (may_be_patch && states_.passages[whole.begin] == Passage::near)
-      push_patch(surface_, to_surface_, whole, root, surface_.read(center), states_);
+    if (may_be_patch && states_.passages[whole.begin] == Passage::near) {
+      const Reading middle = surface_.read(center);
+      push_patch(surface_, to_surface_, whole, root, middle, states_);
+      if (stays_behind(middle, center, whole.reach)) {
+        Contact contact;
+        remember(root, false, contact);
+      }
+    }
     return 0;
   }
 
@@ -100,8 +125,119 @@ class ShareClassifier {
                       : Passage::unknown);
   }
 
+  // Of a cluster through which the surface passes, as one plane or not.
+  std::uint32_t classify_mixed(std::uint32_t root, const Look& look, bool is_crossed) {
+    if constexpr (Surface::kTellsInside) {
+      if (memory_ != nullptr) {
+        Contact contact;
+        SamplesWithSlopes samples(reach_, contact.slopes);
+        const std::uint32_t found = classify_mixed(root, look, is_crossed, samples);
+        if (contact.slopes.are_known) remember(root, is_crossed, contact);
+        return found;
+      }
+    }
+    SamplesOnHost<Surface> samples;
+    return classify_mixed(root, look, is_crossed, samples);
+  }
+  template <class Samples>
+  std::uint32_t classify_mixed(std::uint32_t root, const Look& look, bool is_crossed,
+                               Samples& samples) {
+    if (!is_crossed) return classify_nodes(root, samples);
+    classify_crossed(root, look, samples);
+    return count_points(level_.cluster(root), look);
+  }
+
+  // What is known of clusters from poses before, and remembered for those that follow.
+  std::uint32_t unknown_roots(const ShareGroup& group) const {
+    std::uint32_t count = group.end - group.begin;
+    if (memory_ == nullptr) return count;
+    for (std::uint32_t root = group.begin; root < group.end; ++root) count -= memory_->knows(root);
+    return count;
+  }
+  // How far the tool may move while this is of use.
+  double reused_way() const { return memory_ != nullptr ? memory_->limit() : 0; }
+  // Whether the surface does not reach a ball on that way, in free space or behind it.
+  bool stays_free(Vec3 center, double radius) const {
+    return memory_ != nullptr &&
+           surface_.look_at_ball(center, radius + reused_way()).side == Side::free;
+  }
+  bool stays_behind(const Reading& middle, Vec3 center, double radius) const {
+    const double away = radius + reused_way();
+    return memory_ != nullptr && middle.distance <= -away &&
+           squared_norm(middle.foot - center) >= away * away;
+  }
+  bool is_known(std::uint32_t root) const { return memory_ != nullptr && memory_->is_of_use(root); }
+  void forget(std::uint32_t root) {
+    if (memory_ != nullptr) memory_->forget(root);
+  }
+  void forget(const ShareGroup& group) {
+    for (std::uint32_t root = group.begin; root < group.end; ++root) forget(root);
+  }
+  // What of a cluster is behind the surface, unless that depends on more than the cluster.
+  void remember(std::uint32_t root, bool is_crossed, Contact& contact) {
+    const ShareCluster& cluster = level_.cluster(root);
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      const Cell cell = states_.cells[i];
+      const BlockMass& mass = level_.mass(i);
+      contact.weight += mass.weight;
+      if (cell == Cell::free) continue;
+      if (cell == Cell::pushed) {
+        ToolSum whole;
+        add_whole(reach_, mass, states_.planes[root].normal, whole);
+        if (whole.volume.value == 0) continue;
+        contact.slopes.add_pushed(whole.force_terms(), reach_.inverse * mass.centroid);
+        contact.sum.add(whole);
+      } else if ((cell == Cell::cut || cell == Cell::partial) && !states_.results[i].is_far) {
+        contact.sum.add(states_.results[i].sum);
+      } else {
+        return;
+      }
+      contact.inside += cell != Cell::cut;
+    }
+    if (contact.is_empty())
+      contact.clearance = is_crossed ? clearance(root) : clearance_of_blocks(root);
+    memory_->remember(root, contact);
+  }
+  // Of shares that a plane does not reach.
+  Clearance clearance_of_blocks(std::uint32_t root) const {
+    const ShareCluster& cluster = level_.cluster(root);
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      const CellView share = level_.cell(i);
+      const CellMeasure measure = this->measure(share);
+      for (std::uint32_t b = share.begin; b < share.end; ++b) {
+        CellBlock wider = share.blocks[b];
+        wider.radius += static_cast<float>(reused_way());
+        const auto look = measure.look_at(wider);
+        if (look.side == Side::free) continue;
+        if (!look.is_flat || look.tangent.distance(look.center) < wider.radius) return {};
+      }
+    }
+    return {HUGE_VAL, {}, {}, 0};
+  }
+  // Of shares that a plane does not reach.
+  Clearance clearance(std::uint32_t root) const {
+    const ShareCluster& cluster = level_.cluster(root);
+    const CrossingPlane& plane = states_.planes[root];
+    double least = HUGE_VAL;
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      const CellView share = level_.cell(i);
+      if (plane.distance(share.center) - share.reach >= least) continue;
+      for (std::uint32_t b = share.begin; b < share.end; ++b) {
+        const CellBlock& block = share.blocks[b];
+        if (plane.distance(widen(block.center)) - block.radius >= least) continue;
+        for (std::uint32_t k = block.begin; k < block.end; ++k) {
+          const CellSample& sample = share.samples[k];
+          least = std::min(least, plane.distance(widen(sample.center)) - sample.radius);
+        }
+      }
+    }
+    return {reach_.inverse * least, plane.normal, reach_.inverse * cluster.center,
+            reach_.inverse * cluster.reach};
+  }
+
   // Of a cluster that is no patch.
-  std::uint32_t classify_nodes(std::uint32_t root) {
+  template <class Samples>
+  std::uint32_t classify_nodes(std::uint32_t root, Samples& samples) {
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
     const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
     std::uint32_t found = 0, node = first;
@@ -115,14 +251,15 @@ class ShareClassifier {
         continue;
       }
       if (next == node + 1) {
-        for (std::uint32_t i = part.begin; i < part.end; ++i) found += classify_share(i);
+        for (std::uint32_t i = part.begin; i < part.end; ++i) found += classify_share(i, samples);
       }
       ++node;
     }
     return found;
   }
 
-  std::uint32_t classify_share(std::uint32_t i) {
+  template <class Samples>
+  std::uint32_t classify_share(std::uint32_t i, Samples& samples) {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
     const Look look = surface_.look_at_ball(center, view.reach);
@@ -134,7 +271,7 @@ class ShareClassifier {
     } else if (side == Side::uncut) {
       states_.set(i, Cell::open, Passage::unknown);
     } else {
-      states_.results[i] = measure(view).run(SamplesOnHost<Surface>{}, look.point);
+      states_.results[i] = measure(view).run(samples, look.point);
       take_result(i, Passage::unknown);
       return points_ != nullptr ? count_points(i, center) : 0;
     }
@@ -143,7 +280,8 @@ class ShareClassifier {
 
   // Of a patch through which the surface passes as one plane. Where that is further from a node
   // than it reaches, it is so from each share in it.
-  void classify_crossed(std::uint32_t root, const Look& look) {
+  template <class Samples>
+  void classify_crossed(std::uint32_t root, const Look& look, Samples& samples) {
     constexpr double kRounding = 1e-9;  // of the tool's reach: far above that of a distance
     const CrossingPlane& plane = states_.planes[root];
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
@@ -162,7 +300,8 @@ class ShareClassifier {
         node = next;
       } else {
         if (next == node + 1) {
-          for (std::uint32_t i = part.begin; i < part.end; ++i) classify_crossed(i, plane, look);
+          for (std::uint32_t i = part.begin; i < part.end; ++i)
+            classify_crossed(i, plane, look, samples);
         }
         ++node;
       }
@@ -170,7 +309,9 @@ class ShareClassifier {
   }
 
   // What a share's own pixels show to be free is free, whatever the mean of all says.
-  void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look) {
+  template <class Samples>
+  void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look,
+                        Samples& samples) {
     const CellView view = level_.cell(i);
     const double distance = plane.distance(view.center);
     const Vec3 center = to_surface_ * view.center;
@@ -183,8 +324,9 @@ class ShareClassifier {
       CellResult& result = states_.results[i];
       result = {};
       const CellMeasure measure = this->measure(view);
+      samples.begin_share();
       for (std::uint32_t b = view.begin; b < view.end; ++b)
-        measure.template add_block<SamplesOnHost<Surface>>(b, plane, result);
+        measure.add_block(b, plane, samples, result);
       take_result(i, Passage::patch);
     }
   }
@@ -200,6 +342,12 @@ class ShareClassifier {
       states_.set(i, Cell::free, Passage::closed);
   }
 
+  // Points in the spheres of a cluster that was not looked at.
+  std::uint32_t count_points(const ShareCluster& cluster) const {
+    if (points_ == nullptr) return 0;
+    const Look look = surface_.look_at_ball(to_surface_ * cluster.center, cluster.reach);
+    return look.side == Side::mixed ? count_points(cluster, look) : 0;
+  }
   // Points in the spheres of a patch that was looked at.
   std::uint32_t count_points(const ShareCluster& patch, const Look& look) const {
     if (points_ == nullptr) return 0;
@@ -225,6 +373,7 @@ class ShareClassifier {
   const Surface& surface_;
   const Pose& to_surface_;
   const PointsOfSphere* points_;
+  ContactMemory* memory_;
   ShareStates& states_;
 };
 

@@ -70,6 +70,7 @@ class ShareFlood {
   // What to remember: all that counts (as SeenShares).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
   static bool follows(std::uint32_t) { return true; }
+  static bool all_follow() { return true; }
   static bool is_sure(std::uint32_t, Vec3) { return true; }
 
  private:

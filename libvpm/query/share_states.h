@@ -34,6 +34,18 @@ enum class Passage : std::uint8_t {
 
 inline constexpr std::uint32_t kNoRow = UINT32_MAX;
 
+// The first row from `begin` on that is not free, or `end`.
+inline std::uint32_t next_busy(const std::vector<Cell>& cells, std::uint32_t begin,
+                               std::uint32_t end) {
+  static_assert(static_cast<int>(Cell::free) == 0);
+  for (std::uint64_t many = 0; begin + sizeof many <= end; begin += sizeof many) {
+    std::memcpy(&many, cells.data() + begin, sizeof many);
+    if (many != 0) break;
+  }
+  while (begin < end && cells[begin] == Cell::free) ++begin;
+  return begin;
+}
+
 // Where one thread floods: the rows from `begin` to `end`.
 struct FloodPart {
   struct Step {
@@ -89,6 +101,11 @@ struct ShareStates {
   void set(const ShareCluster& cluster, Cell cell, Passage passage) {
     std::fill(cells.begin() + cluster.begin, cells.begin() + cluster.end, cell);
     std::fill(passages.begin() + cluster.begin, passages.begin() + cluster.end, passage);
+  }
+
+  // Whether a row counts, when it is decided what is taken.
+  bool counts(std::uint32_t row) const {
+    return cells[row] == Cell::cut || (passages[row] == Passage::taken && cells[row] != Cell::free);
   }
 
   // Rows of the SpatialLevel.
