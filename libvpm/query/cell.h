@@ -67,6 +67,7 @@ class CellMeasure {
       add_far([&](Vec3 x, Vec3 foot) { return own.vouches_for(x, foot, tool_reach_.length); },
               result.sum);
     }
+    samples.end_share(cell_.center, result.sum);
     return result;
   }
 
@@ -153,7 +154,7 @@ class CellMeasure {
     if (look.point != kNoPoint) result.point = look.point;
     if (look.side != Side::mixed) {
       add_piece(piece_of(cell_.masses[b], block), result);
-      samples.pushed(cell_.masses[b], result.sum);
+      samples.add_whole_block(cell_.masses[b], result.sum);
     } else if (look.is_flat) {
       add_block(b, {look.tangent, to_surface_}, samples, result);
     } else {
@@ -312,7 +313,7 @@ class CellMeasure {
     if (distance >= block.radius) return;
     if (distance <= -block.radius) {
       add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
-      samples.pushed(cell_.masses[b], result.sum);
+      samples.add_whole_block(cell_.masses[b], result.sum);
       return;
     }
     const CrossedSums sums =
@@ -336,16 +337,21 @@ class CellMeasure {
   Vec3 center_;  // in the surface's frame
 };
 
-// What samples are told beside, of a share and its blocks: for those that note how a share's part
-// behind the surface changes (ContactSlopes). Others do not.
-struct WithoutSlopes {
+// What is told beside of what samples and blocks add, to those that note how a share's part behind
+// the surface changes (SlopeNotes). Others do not.
+struct WithoutNotes {
   VPM_HD void begin_share() const {}
   // After a block that counts whole, or not at all: the sum of the share so far.
-  VPM_HD void pushed(const BlockMass&, const ToolSum&) const {}
+  VPM_HD void add_whole_block(const BlockMass&, const ToolSum&) const {}
+  // A sample of which this weight is pushed along a normal, tool axes: one that is cut at this
+  // signed distance, or wholly behind the surface.
+  VPM_HD void add_cut(const CellSample&, double, double, Vec3) const {}
+  VPM_HD void add_behind(const SharePiece&, Vec3) const {}
+  VPM_HD void end_share(Vec3, const ToolSum&) const {}
 };
 
 // The samples of a block that the surface may cut, one after another.
-struct SamplesInTurn : WithoutSlopes {
+struct SamplesInTurn : WithoutNotes {
   template <class Measure, class Near>
   VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
                   const Near& near, CellResult& result) const {

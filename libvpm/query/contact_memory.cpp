@@ -41,6 +41,7 @@ void ContactMemory::turn(std::uint64_t cloud, const Pose& to_surface) {
   if (cloud != cloud_) forget();
   cloud_ = cloud;
   ++pose_;
+  std::fill(uses_.begin(), uses_.end(), Use::none);
   origin(pose_).to_surface = to_surface;
   const std::uint64_t oldest = pose_ > kOrigins ? pose_ - kOrigins + 1 : 1;
   for (std::uint64_t pose = std::max(oldest, forget_before_); pose <= pose_; ++pose) {
@@ -50,19 +51,18 @@ void ContactMemory::turn(std::uint64_t cloud, const Pose& to_surface) {
   }
 }
 
-bool ContactMemory::is_of_use(std::uint32_t cluster) const {
+bool ContactMemory::use(std::uint32_t cluster) {
   const Age& age = ages_[cluster];
-  return is_young(age) &&
-         (!age.is_empty || contacts_[cluster].clearance.holds(origin(age.read).motion));
+  const bool is_of_use =
+      is_young(age) &&
+      (!age.is_empty || contacts_[cluster].clearance.holds(origin(age.read).motion));
+  if (is_of_use) uses_[cluster] = Use::again;
+  return is_of_use;
 }
 
 void ContactMemory::add(std::uint32_t cluster, ToolSum& sum) const {
   if (is_empty(cluster)) return;
   const Contact& contact = contacts_[cluster];
-  if (was_read(cluster)) {
-    sum.add(contact.sum);
-    return;
-  }
   SumChange change =
       contact.slopes.change(origin(ages_[cluster].read).motion, contact.sum.force_terms());
   const double part = contact.sum.volume.real();
@@ -72,14 +72,14 @@ void ContactMemory::add(std::uint32_t cluster, ToolSum& sum) const {
   sum.add(change);
 }
 
-void ContactMemory::remember(std::uint32_t cluster, const Contact& contact) {
+void ContactMemory::end(std::uint32_t cluster) {
+  const Contact& contact = contacts_[cluster];
   const bool tells = contact.is_empty()
                          ? contact.clearance.height > 0
                          : contact.slopes.most_passing(reach_.inverse * limit_) <= contact.weight;
   if (!tells) return;
   ages_[cluster] = age(cluster, ages_[cluster]);
   ages_[cluster].is_empty = contact.is_empty();
-  contacts_[cluster] = contact;
 }
 
 ContactMemory::Age ContactMemory::age(std::uint32_t index, const Age& before) const {

@@ -30,8 +30,8 @@ struct Clearance {
 
 // What is known of a cluster.
 struct Contact {
-  ToolSum sum;               // what is behind the surface
-  ContactSlopes slopes;      // known ones
+  ToolSum sum;  // what is behind the surface
+  ContactSlopes slopes;
   double weight = 0;         // of the cluster: part of the tool's volume
   std::uint32_t inside = 0;  // shares that count
   Clearance clearance;       // where nothing is behind the surface
@@ -44,7 +44,12 @@ class ContactMemory {
   // `groups` of clusters. `limit`: how far any place of the tool may move before a cluster is read
   // again, m.
   ContactMemory(std::size_t clusters, std::size_t groups, ToolReach reach, double limit)
-      : reach_(reach), limit_(limit), ages_(clusters), group_ages_(groups), contacts_(clusters) {}
+      : reach_(reach),
+        limit_(limit),
+        ages_(clusters),
+        group_ages_(groups),
+        uses_(clusters),
+        contacts_(clusters) {}
 
   double limit() const { return limit_; }
 
@@ -52,26 +57,41 @@ class ContactMemory {
   void turn(std::uint64_t cloud, const Pose& to_surface);
   void forget() { forget_before_ = pose_ + 1; }
 
-  // Whether what is known of a cluster tells what of it is behind the surface at this pose.
-  bool is_of_use(std::uint32_t cluster) const;
-  // The same of clusters that were forgotten where it does not.
+  // Whether anything is known of a cluster that is not too old.
   bool knows(std::uint32_t cluster) const { return is_young(ages_[cluster]); }
-  // Of one that is known:
-  bool was_read(std::uint32_t cluster) const { return ages_[cluster].read == pose_; }  // now
+  // Whether that tells what of it is behind the surface at this pose. It is used then.
+  bool use(std::uint32_t cluster);
+  // Of clusters, how this pose uses the memory.
+  enum class Use : std::uint8_t {
+    none,
+    again,  // what is known
+    anew,   // begin() has been called
+  };
+  Use use_of(std::uint32_t cluster) const { return uses_[cluster]; }
+  // Of one that is used again, or ended:
   bool is_empty(std::uint32_t cluster) const { return ages_[cluster].is_empty; }
   void add(std::uint32_t cluster, ToolSum& sum) const;  // what is behind the surface
   std::uint32_t inside(std::uint32_t cluster) const {
     return is_empty(cluster) ? 0 : contacts_[cluster].inside;
   }
 
-  // At this pose. What may pass the surface as a whole within the limit, or may reach it at once,
-  // is not remembered: first order says nothing then.
-  void remember(std::uint32_t cluster, const Contact& contact);
+  // To remember a cluster that is read at this pose is begun where it is read, and ended when all
+  // that counts is known. What may pass the surface as a whole within the limit, or may reach it at
+  // once, is not remembered: first order says nothing then.
+  Contact& begin(std::uint32_t cluster) {
+    uses_[cluster] = Use::anew;
+    ages_[cluster].is_empty = false;
+    return contacts_[cluster] = {};
+  }
+  bool is_begun(std::uint32_t cluster) const {
+    return uses_[cluster] == Use::anew && ages_[cluster].read != pose_;
+  }
+  Contact& begun(std::uint32_t cluster) { return contacts_[cluster]; }
+  void end(std::uint32_t cluster);
   // Of a cluster that the surface does not reach within the limit.
   void remember_free(std::uint32_t cluster) {
-    ages_[cluster] = age(cluster, ages_[cluster]);
-    ages_[cluster].is_empty = true;
-    contacts_[cluster].clearance.height = HUGE_VAL;
+    begin(cluster).clearance.height = HUGE_VAL;
+    end(cluster);
   }
   void forget(std::uint32_t cluster) { ages_[cluster].until = 0; }
 
@@ -108,6 +128,7 @@ class ContactMemory {
   ToolReach reach_;
   double limit_;
   std::vector<Age> ages_, group_ages_;
+  std::vector<Use> uses_;
   std::vector<Contact> contacts_;
   std::array<Origin, kOrigins> origins_;
   std::uint64_t pose_ = 0, forget_before_ = 1, cloud_ = 0;

@@ -26,8 +26,6 @@ struct CrossedSlopes {
 
 class ContactSlopes {
  public:
-  bool are_known = true;  // of all that was added
-
   // What one plane crosses.
   void add_crossed(Vec3 normal, const CrossedSums& sums, const CrossedSlopes& slopes,
                    double inverse_reach) {

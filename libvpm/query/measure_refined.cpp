@@ -49,8 +49,7 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
                             Result& result) {
   const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
   const PointsOfSphere points(cloud, pose);
-  ContactMemory* contacts = nullptr;
-  if (Surface::kTellsInside && contacts_) contacts = &*contacts_;
+  ContactMemory* const contacts = this->contacts<Surface>();
   if (contacts != nullptr) contacts->turn(cloud.serial(), to_surface);
   ShareClassifier classifier(tool_, reach_, level_, surface, to_surface,
                              counts_points_ ? &points : nullptr, contacts, shares_);
@@ -67,14 +66,15 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
 }
 
 template <class Known, class Rows>
-void RefinedMeasure::for_clusters(std::uint32_t begin, std::uint32_t end, const Known& known,
+void RefinedMeasure::for_clusters(std::uint32_t begin, std::uint32_t end,
+                                  const ContactMemory* contacts, const Known& known,
                                   const Rows& rows) const {
   const auto first_row = [&](std::uint32_t root) {
     return root < level_.roots().size() ? level_.cluster(root).begin : level_.size();
   };
   std::uint32_t row = first_row(begin);
-  for (std::uint32_t root = begin; contacts_ && root < end; ++root) {
-    if (!contacts_->knows(root)) continue;
+  for (std::uint32_t root = begin; contacts != nullptr && root < end; ++root) {
+    if (contacts->use_of(root) == ContactMemory::Use::none) continue;
     rows(row, first_row(root));
     known(root);
     row = first_row(root + 1);
@@ -86,16 +86,23 @@ template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
                                      const Inside& inside, ParallelRegion& region, ToolSum& sum) {
   constexpr std::size_t kGrain = 8;
+  ContactMemory* const contacts = this->contacts<Surface>();
   std::mutex adding;
   std::uint32_t all = 0;
   region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
     std::uint32_t count = 0;
     for_clusters(
-        static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+        static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), contacts,
         [&](std::uint32_t root) {
-          contacts_->add(root, of_all);
-          count += contacts_->inside(root);
+          if (contacts->is_begun(root)) {
+            const Contact& contact = end_contact(surface, to_surface, inside, root);
+            of_all.add(contact.sum);
+            count += contact.inside;
+          } else {
+            contacts->add(root, of_all);
+            count += contacts->inside(root);
+          }
         },
         [&](std::uint32_t first, std::uint32_t last) {
           count += add_up(surface, to_surface, inside, first, last, of_all);
@@ -123,6 +130,32 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
       shares_.cells[i] = Cell::free;  // hidden, not inside
   });
   return count;
+}
+
+// Of a cluster that was read at this pose: what is behind the surface, to be used again.
+template <class Surface, class Inside>
+const Contact& RefinedMeasure::end_contact(const Surface& surface, const Pose& to_surface,
+                                           const Inside& inside, std::uint32_t root) {
+  Contact& contact = contacts_->begun(root);
+  const ShareCluster& rows = level_.cluster(root);
+  std::uint32_t last_cut = kNoRow;
+  for (std::uint32_t i = rows.begin; i < rows.end; ++i) {
+    contact.weight += level_.mass(i).weight;
+    if (!shares_.counts(i)) continue;
+    if (shares_.cells[i] == Cell::cut) {
+      contact.sum.add(shares_.results[i].sum);
+      continue;
+    }
+    const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
+    contact.sum.add(part);
+    Vec3 force = part.force_terms();
+    if (shares_.cells[i] == Cell::partial) force -= shares_.results[i].sum.force_terms();
+    contact.slopes.add_pushed(force, reach_.inverse * level_.mass(i).centroid);
+    contact.inside += part.volume.value != 0;
+    if (part.volume.value == 0) shares_.cells[i] = Cell::free;  // hidden, not inside
+  }
+  contacts_->end(root);
+  return contact;
 }
 
 template <class Surface, class Inside>
@@ -181,10 +214,11 @@ void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, co
     }
   };
   for_clusters(
-      0, static_cast<std::uint32_t>(level_.roots().size()),
+      0, static_cast<std::uint32_t>(level_.roots().size()), contacts<Surface>(),
       [&](std::uint32_t root) {
         if (contacts_->is_empty(root)) return;
-        if (contacts_->was_read(root) || !memory_->keep(root, level_.cluster(root)))
+        if (contacts_->use_of(root) == ContactMemory::Use::anew ||
+            !memory_->keep(root, level_.cluster(root)))
           keep_cluster(root);
       },
       keep_rows);

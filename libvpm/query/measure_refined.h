@@ -47,13 +47,21 @@ class RefinedMeasure {
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
                        std::uint32_t begin, std::uint32_t end, ToolSum& sum);
   template <class Surface, class Inside>
+  const Contact& end_contact(const Surface& surface, const Pose& to_surface, const Inside& inside,
+                             std::uint32_t root);
+  template <class Surface, class Inside>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                  std::uint32_t row, std::uint32_t& last_cut) const;
+  // Null where every pose is read anew.
+  template <class Surface>
+  ContactMemory* contacts() {
+    return Surface::kTellsInside && contacts_ ? &*contacts_ : nullptr;
+  }
   // Of clusters [begin, end): calls known(cluster) for those that are known as a whole, and
   // rows(begin, end) for the shares of the others.
   template <class Known, class Rows>
-  void for_clusters(std::uint32_t begin, std::uint32_t end, const Known& known,
-                    const Rows& rows) const;
+  void for_clusters(std::uint32_t begin, std::uint32_t end, const ContactMemory* contacts,
+                    const Known& known, const Rows& rows) const;
   template <class Surface, class Inside>
   void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                 Inside& inside);

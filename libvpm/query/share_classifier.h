@@ -66,7 +66,7 @@ class ShareClassifier {
     std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const ShareCluster& part = level_.cluster(root);
-      if (is_known(root)) {
+      if (uses_again(root)) {
         found += count_points(part);
       } else if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach)) {
         states_.set(part, Cell::free, Passage::closed);
@@ -81,12 +81,14 @@ class ShareClassifier {
   std::uint32_t classify(std::uint32_t root) {
     const ShareCluster& whole = level_.cluster(root);
     const Vec3 center = to_surface_ * whole.center;
-    if (stays_free(center, whole.reach)) {
+    const Side stays = side_on_the_way(center, whole.reach);
+    if (stays == Side::free) {
       states_.set(whole, Cell::free, Passage::closed);
       memory_->remember_free(root);
       return 0;
     }
     forget(root);
+    if (stays == Side::behind) memory_->begin(root);
     const Look look = surface_.look_at_ball(center, whole.reach);
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
     if (look.side == Side::mixed) {
@@ -101,14 +103,8 @@ class ShareClassifier {
       return 0;
     }
     decide(look, whole, center);
-    if (may_be_patch && states_.passages[whole.begin] == Passage::near) {
-      const Reading middle = surface_.read(center);
-      push_patch(surface_, to_surface_, whole, root, middle, states_);
-      if (stays_behind(middle, center, whole.reach)) {
-        Contact contact;
-        remember(root, false, contact);
-      }
-    }
+    if (may_be_patch && states_.passages[whole.begin] == Passage::near)
+      push_patch(surface_, to_surface_, whole, root, surface_.read(center), states_);
     return 0;
   }
 
@@ -129,10 +125,12 @@ class ShareClassifier {
   std::uint32_t classify_mixed(std::uint32_t root, const Look& look, bool is_crossed) {
     if constexpr (Surface::kTellsInside) {
       if (memory_ != nullptr) {
-        Contact contact;
+        Contact& contact = memory_->begin(root);
         SamplesWithSlopes samples(reach_, contact.slopes);
         const std::uint32_t found = classify_mixed(root, look, is_crossed, samples);
-        if (contact.slopes.are_known) remember(root, is_crossed, contact);
+        const ShareCluster& cluster = level_.cluster(root);
+        if (next_busy(states_.cells, cluster.begin, cluster.end) == cluster.end)
+          contact.clearance = is_crossed ? clearance(root) : clearance_of_blocks(root);
         return found;
       }
     }
@@ -156,49 +154,19 @@ class ShareClassifier {
   }
   // How far the tool may move while this is of use.
   double reused_way() const { return memory_ != nullptr ? memory_->limit() : 0; }
-  // Whether the surface does not reach a ball on that way, in free space or behind it.
-  bool stays_free(Vec3 center, double radius) const {
-    return memory_ != nullptr &&
-           surface_.look_at_ball(center, radius + reused_way()).side == Side::free;
+  // On which side a ball stays on that way.
+  Side side_on_the_way(Vec3 center, double radius) const {
+    return memory_ != nullptr ? surface_.look_at_ball(center, radius + reused_way()).side
+                              : Side::mixed;
   }
-  bool stays_behind(const Reading& middle, Vec3 center, double radius) const {
-    const double away = radius + reused_way();
-    return memory_ != nullptr && middle.distance <= -away &&
-           squared_norm(middle.foot - center) >= away * away;
-  }
-  bool is_known(std::uint32_t root) const { return memory_ != nullptr && memory_->is_of_use(root); }
+  bool uses_again(std::uint32_t root) { return memory_ != nullptr && memory_->use(root); }
   void forget(std::uint32_t root) {
     if (memory_ != nullptr) memory_->forget(root);
   }
   void forget(const ShareGroup& group) {
     for (std::uint32_t root = group.begin; root < group.end; ++root) forget(root);
   }
-  // What of a cluster is behind the surface, unless that depends on more than the cluster.
-  void remember(std::uint32_t root, bool is_crossed, Contact& contact) {
-    const ShareCluster& cluster = level_.cluster(root);
-    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-      const Cell cell = states_.cells[i];
-      const BlockMass& mass = level_.mass(i);
-      contact.weight += mass.weight;
-      if (cell == Cell::free) continue;
-      if (cell == Cell::pushed) {
-        ToolSum whole;
-        add_whole(reach_, mass, states_.planes[root].normal, whole);
-        if (whole.volume.value == 0) continue;
-        contact.slopes.add_pushed(whole.force_terms(), reach_.inverse * mass.centroid);
-        contact.sum.add(whole);
-      } else if ((cell == Cell::cut || cell == Cell::partial) && !states_.results[i].is_far) {
-        contact.sum.add(states_.results[i].sum);
-      } else {
-        return;
-      }
-      contact.inside += cell != Cell::cut;
-    }
-    if (contact.is_empty())
-      contact.clearance = is_crossed ? clearance(root) : clearance_of_blocks(root);
-    memory_->remember(root, contact);
-  }
-  // Of shares that a plane does not reach.
+  // Of shares, none of which is behind the surface: of blocks that it does not reach on that way.
   Clearance clearance_of_blocks(std::uint32_t root) const {
     const ShareCluster& cluster = level_.cluster(root);
     for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
