@@ -132,15 +132,35 @@ def replay(report):
             rows.append([name, thousands(spheres) if spheres else ""]
                         + [f"{r['median_us']:.0f} / {r['p99_us']:.0f}" for r in of])
     text = table(["query, 5 % of the tool inside", "spheres", "µs median / p99, 1 thread", "2 threads"], rows)
-    coherent = [r for r in report["results"] if r["part"] == "coherent"]
-    for r in (r for r in coherent if r["in_contact"]):
-        free = next(f for f in coherent if not f["in_contact"] and f["spheres"] == r["spheres"])
-        text += (f"\n\nCoherent poses {r['step_mm']:g} mm apart, {thousands(r['spheres'])} spheres: {r['ratio']:.2f} of the"
-                 f" time of the same poses alone, {free['ratio']:.2f} in free space,"
-                 f" {'the same' if r['same_bits'] and free['same_bits'] else 'OTHER'} bits.")
     for r in (r for r in report["results"] if r["part"] == "outside"):
         text += (f"\n\nTwice the points ({r['cloud']}, {thousands(r['points'])} to {thousands(r['points_doubled'])}), those"
                  f" added out of reach: {100 * r['change']:+.1f} % of the time.")
+    return text
+
+
+def replay_coherent(report):
+    of = {(r["path"], r["spheres"], r["reuse_mm"]): r for r in report["results"] if r["part"] == "coherent"}
+    levels = sorted({spheres for _, spheres, _ in of})
+    reuses = sorted({reuse for _, _, reuse in of})
+    percent = lambda part: f"{100 * part:.3f}"
+    rows = []
+    for reuse in reuses:
+        worst = lambda key: max(of["in contact", n, reuse][key] for n in levels)
+        same = all(of["in contact", n, reuse]["same_bits"] for n in levels)
+        rows.append([f"{reuse:g} mm" if reuse else "none"]
+                    + [f"{of['in contact', n, reuse]['ratio']:.2f}" for n in levels]
+                    + (["the same bits", "", ""] if same else
+                       [percent(worst(key)) for key in ("volume_difference", "force_difference", "torque_difference")]))
+    step = next(iter(of.values()))["step_mm"]
+    free = ", ".join(f"{of['free', n, 0.0]['ratio']:.2f}" for n in levels)
+    text = table([f"poses {step:g} mm apart, `--reuse`"] + [f"{thousands(n)} spheres" for n in levels]
+                 + ["volume: largest difference, % of the tool's", "force", "torque, of its reach"], rows)
+    streams = [r for r in report["results"] if r["part"] == "stream reusing"]
+    text += f"\n\nOf the time of the same poses alone; in free space without reuse {free}."
+    for r in streams:
+        text += (f"\n\n{report['settings']['recording']}, {thousands(r['spheres'])} spheres, `--reuse` {r['reuse_mm']:g} mm:"
+                 f" {r['mean_us']:.0f} µs in the mean, {r['ratio']:.2f} of the time without; volume on average within"
+                 f" {100 * r['mean_volume_difference']:.2f} % of the tool's, at most {100 * r['volume_difference']:.1f} %.")
     return text
 
 
