@@ -36,6 +36,13 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --mea
 2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
 [2]
 
+# Where each step is longer than what may be used again, nothing is.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent > anew.jsonl
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001 | cmp - anew.jsonl
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --reuse 0.001
+2> vpm-query: error: --reuse is for poses that are one motion: give --coherent too
+[2]
+
 # What the steps cannot stand is said, with what mends it.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 1e7 -o /dev/null --quiet
 2> vpm-query: warning: --coupling is stable against contacts up to 6.05e+04 N/m, but with --stiffness 1e+07 this tool can make one of 9.42e+05 N/m: take rate=4242 or more, a larger mass, or less --stiffness
