@@ -276,7 +276,7 @@ void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
   set_thread_count(1);
   for (const std::uint32_t level : tool.levels) {
     time_coherence(tool, cloud, free, level, 0, rounds, report);
-    for (const double reuse : {0.0, 1e-3, 2e-3, 3e-3, 4e-3}) {
+    for (const double reuse : {0.0, 1e-3, 2e-3, 3e-3, 5e-3}) {
       if (reuse <= QueryOptions::kMostReuse * tool.model.reach)
         time_coherence(tool, cloud, contact, level, reuse, rounds, report);
     }
