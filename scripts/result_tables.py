@@ -318,7 +318,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"),
                        "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
-                       "replay coherent": (replay_coherent, "replay"),
+                       "replay coherent": (replay_coherent, "replay_coherent"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "cuda": (cuda, "cuda"), "cuda new images": (cuda_new_images, "cuda_frames"), "scaling": (scaling, "scaling")},
          "libvpm/query/README.md": {"single precision": (single_precision, "single_precision"),
