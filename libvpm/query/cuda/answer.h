@@ -94,18 +94,4 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   }
 }
 
-// By all threads of a block: whether it is the last one of the launch to come here; what the others
-// did before is seen then.
-__device__ inline bool is_last_block(unsigned& done) {
-  __shared__ bool last;
-  __syncthreads();
-  if (threadIdx.x == 0) {
-    fence();
-    last = atomicAdd(&done, 1U) == gridDim.x - 1;
-    if (last) fence();
-  }
-  __syncthreads();
-  return last;
-}
-
 }  // namespace vpm::cuda

@@ -56,7 +56,7 @@ class Flood {
   }
 
   // When the first step is done: whether it has left anything.
-  __device__ static bool has_more() { return true; }
+  __device__ static bool has_more(unsigned, bool) { return true; }
   // This thread's part of the result. All threads of the team.
   __device__ RawResult run() {
     const RefinedCounters found = read_for_block(counters_);

@@ -7,6 +7,8 @@
 // together.
 #pragma once
 
+#include <type_traits>
+
 #include "libvpm/query/cuda/image_sums.h"
 #include "libvpm/query/cuda/pose_work.h"
 #include "libvpm/query/patch.h"
@@ -33,7 +35,9 @@ struct alignas(16) ImageShared {
   OfUnit units[Chunk::kUnits];
 };
 
-// One chunk, by all lanes of a warp.
+// One chunk, by all lanes of a warp. `Found`, of each unit: UnitSums; or ContactPlane, in another
+// turn, since few queries need planes.
+template <class Found>
 class ImageChunk {
  public:
   // `lanes` of each unit.
@@ -46,6 +50,9 @@ class ImageChunk {
         lanes_(lanes),
         lane_(threadIdx.x % lanes),
         unit_(units[threadIdx.x % 32 / lanes]),
+        flags_(unit_.flags),
+        begin_(unit_.begin),
+        end_(unit_.end),
         shared_(shared),
         seen_(shared.units[threadIdx.x % 32 / lanes]),
         sums_(sums) {}
@@ -53,14 +60,15 @@ class ImageChunk {
   __device__ void measure() {
     look();
     if (shared_.look.side == Side::free) return;
-    CellResult result;
+    Found found;
     const Counts counts = classify();
-    measure_pieces(counts, result);
-    measure_by_plane(counts, result);
-    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(unit_, result);
+    measure_pieces(counts, found);
+    measure_by_plane(counts, found);
+    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(unit_, found);
   }
 
  private:
+  static constexpr bool kFindsPlanes = std::is_same_v<Found, ContactPlane>;
   using Measure = CellMeasure<DepthSurface>;
   using PieceLook = Measure::PieceLook;
 
@@ -79,7 +87,7 @@ class ImageChunk {
   };
 
   __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
-  __device__ bool is(Unit::Flag flag) const { return (unit_.flags & flag) != 0; }
+  __device__ bool is(Unit::Flag flag) const { return (flags_ & flag) != 0; }
   __device__ Measure measure_of_share() const {
     const UnitBall& share = unit_.balls[kOfShare];
     return work_.measure_of({.center = share.center, .reach = share.radius});
@@ -120,10 +128,12 @@ class ImageChunk {
   __device__ Side side_of_share(bool asks);
   __device__ void see_block();
   __device__ bool take_piece(Counts counts, unsigned turn, SharePiece& piece, Vec3& x) const;
-  __device__ void measure_pieces(Counts counts, CellResult& result);
+  __device__ void measure_pieces(Counts counts, Found& found);
   __device__ Vec3 measure_piece(const SharePiece& piece, Vec3 x, bool exists, bool is_sample,
-                                CellResult& result);
-  __device__ void measure_by_plane(Counts counts, CellResult& result);
+                                Found& found);
+  __device__ void add_piece(const Measure& measure, const SharePiece& piece, const PieceLook& look,
+                            Vec3 normal, Found& found);
+  __device__ void measure_by_plane(Counts counts, Found& found);
   __device__ CrossedSums crossed_sums(std::uint32_t count) const;
 
   const PoseWork<DepthSurface>& work_;
@@ -131,6 +141,7 @@ class ImageChunk {
   const UnitBall& cluster_;
   unsigned lanes_, lane_;
   const WarpUnit& unit_;
+  std::uint32_t flags_, begin_, end_;  // of the unit: read together with its balls
   ImageShared& shared_;
   ImageShared::OfUnit& seen_;
   ImageSums& sums_;
@@ -143,7 +154,8 @@ class ImageChunk {
 };
 
 // At all balls.
-__device__ inline void ImageChunk::look() {
+template <class Found>
+__device__ void ImageChunk<Found>::look() {
   const bool is_of_unit = lane_ < (counts_points_ ? kOfSphere : kOfBlock) + 1;
   const UnitBall ball = is_of_unit ? unit_.balls[lane_] : cluster_;
   radius_ = ball.radius;
@@ -164,7 +176,8 @@ __device__ inline void ImageChunk::look() {
   __syncwarp();
 }
 
-__device__ inline ImageChunk::Counts ImageChunk::classify() {
+template <class Found>
+__device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify() {
   if (shared_.look.side == Side::mixed)
     return sees_plane() ? classify_crossed() : classify_alone(Side::mixed);
   const bool is_pushed =
@@ -176,7 +189,8 @@ __device__ inline ImageChunk::Counts ImageChunk::classify() {
 
 // Whether the surface passes through the cluster as one plane. It is read in the middles of the
 // cluster and of the blocks, and then at four places about that of the cluster.
-__device__ inline bool ImageChunk::sees_plane() {
+template <class Found>
+__device__ bool ImageChunk<Found>::sees_plane() {
   const bool may_be = is_patch() && work_.surface.may_be_flat(shared_.look);
   Vec3 place = middle_;
   bool reads = is_of_cluster() ? may_be : lane_ == kOfBlock && is(Unit::has_block);
@@ -207,7 +221,8 @@ __device__ inline bool ImageChunk::sees_plane() {
 }
 
 // Of a patch that is crossed by plane_.
-__device__ inline ImageChunk::Counts ImageChunk::classify_crossed() {
+template <class Found>
+__device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify_crossed() {
   const UnitBall& share = unit_.balls[kOfShare];
   const double distance = plane_.distance(share.center);
   if (counts_points_ && lane_ == kOfSphere && is(Unit::is_head) && look_.side == Side::mixed)
@@ -222,7 +237,8 @@ __device__ inline ImageChunk::Counts ImageChunk::classify_crossed() {
 
 // Of a share that may be, by all lanes: whether its own pixels show it to be free, whatever the
 // plane says.
-__device__ inline bool ImageChunk::is_free_in_patch(bool may_be_free) {
+template <class Found>
+__device__ bool ImageChunk<Found>::is_free_in_patch(bool may_be_free) {
   if (lane_ == kOfShare)
     seen_.may_be_free = may_be_free && work_.surface.may_be_free(middle_, radius_);
   __syncwarp();
@@ -230,7 +246,8 @@ __device__ inline bool ImageChunk::is_free_in_patch(bool may_be_free) {
 }
 
 // Of a cluster that is no patch.
-__device__ inline ImageChunk::Counts ImageChunk::classify_alone(Side side) {
+template <class Found>
+__device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify_alone(Side side) {
   if (side == Side::mixed) {
     side = side_of_share(true);
     if (counts_points_ && lane_ == kOfSphere && is(Unit::is_head) && side == Side::mixed &&
@@ -254,7 +271,8 @@ __device__ inline ImageChunk::Counts ImageChunk::classify_alone(Side side) {
 }
 
 // Its pixels, if they are asked, may show that the share is free.
-__device__ inline Side ImageChunk::side_of_share(bool asks) {
+template <class Found>
+__device__ Side ImageChunk<Found>::side_of_share(bool asks) {
   asks = asks && seen_.asks_pixels;
   if (__any_sync(~0U, asks) == 0) return seen_.share;
   const bool is_past =
@@ -264,7 +282,8 @@ __device__ inline Side ImageChunk::side_of_share(bool asks) {
 }
 
 // By its lane, whether the surface passes through the block as one plane.
-__device__ inline void ImageChunk::see_block() {
+template <class Found>
+__device__ void ImageChunk<Found>::see_block() {
   const Measure measure = measure_of_share();
   TangentPlane tangent;
   seen_.is_flat =
@@ -276,11 +295,12 @@ __device__ inline void ImageChunk::see_block() {
 
 // The piece that this lane measures in this turn, if there is one, and where it lies: a sample, or
 // what is taken whole.
-__device__ inline bool ImageChunk::take_piece(Counts counts, unsigned turn, SharePiece& piece,
+template <class Found>
+__device__ bool ImageChunk<Found>::take_piece(Counts counts, unsigned turn, SharePiece& piece,
                                               Vec3& x) const {
   if (counts == Counts::by_samples) {
-    const std::uint32_t k = unit_.begin + turn * lanes_ + lane_;
-    if (k >= unit_.end) return false;
+    const std::uint32_t k = begin_ + turn * lanes_ + lane_;
+    if (k >= end_) return false;
     piece = piece_of(work_.level.samples[k]);
   } else {
     if (counts != Counts::whole_share && counts != Counts::whole_block) return false;
@@ -293,7 +313,8 @@ __device__ inline bool ImageChunk::take_piece(Counts counts, unsigned turn, Shar
 }
 
 // Pieces that are measured one by one, and the way out of the middle of a cluster that is pushed.
-__device__ inline void ImageChunk::measure_pieces(Counts counts, CellResult& result) {
+template <class Found>
+__device__ void ImageChunk<Found>::measure_pieces(Counts counts, Found& found) {
   const bool finds_way =
       __any_sync(~0U, counts == Counts::pushed) != 0 && shared_.look.side == Side::behind;
   const bool adds_up = __any_sync(~0U, counts == Counts::by_samples) != 0;
@@ -303,7 +324,7 @@ __device__ inline void ImageChunk::measure_pieces(Counts counts, CellResult& res
     const bool exists =
         finds_way ? turn == 0 && is_of_cluster() : take_piece(counts, turn, piece, x);
     if (__any_sync(~0U, exists) == 0) break;
-    const Vec3 way = measure_piece(piece, x, exists, counts == Counts::by_samples, result);
+    const Vec3 way = measure_piece(piece, x, exists, counts == Counts::by_samples, found);
     if (finds_way && exists) shared_.normal = transpose(work_.to_surface.rotation) * way;
   }
   if (finds_way) {
@@ -311,14 +332,19 @@ __device__ inline void ImageChunk::measure_pieces(Counts counts, CellResult& res
     plane_.normal = shared_.normal;
   }
   if (!adds_up) return;
-  add_up(result.sum);
-  if (__any_sync(~0U, result.plane.count > 0) != 0) add_up(result.plane);
+  if constexpr (kFindsPlanes) {
+    add_up(found);
+  } else {
+    add_up(found.sum);
+    found.is_cut = any(found.is_cut);
+  }
 }
 
 // By all lanes, those that have none too: one of no weight adds nothing. Neighbours among samples
 // are pushed in one direction. Returns the way out of one that is wholly inside.
-__device__ inline Vec3 ImageChunk::measure_piece(const SharePiece& piece, Vec3 x, bool exists,
-                                                 bool is_sample, CellResult& result) {
+template <class Found>
+__device__ Vec3 ImageChunk<Found>::measure_piece(const SharePiece& piece, Vec3 x, bool exists,
+                                                 bool is_sample, Found& found) {
   const Measure measure = measure_of_share();
   const unsigned lane = threadIdx.x % 32, begin = lane / kNeighborSamples * kNeighborSamples;
   unsigned leader = lane;
@@ -353,44 +379,60 @@ __device__ inline Vec3 ImageChunk::measure_piece(const SharePiece& piece, Vec3 x
   Vec3 normal;
   if (searches) normal = search.normal();
   normal = {from(normal.x, leader), from(normal.y, leader), from(normal.z, leader)};
-  if (is_inside && piece.weight > 0)
-    work_.add_inside(measure, piece, look, normal, unit_.share, result);
+  if (is_inside && piece.weight > 0) add_piece(measure, piece, look, normal, found);
   return normal;
 }
 
+// One that is inside.
+template <class Found>
+__device__ void ImageChunk<Found>::add_piece(const Measure& measure, const SharePiece& piece,
+                                             const PieceLook& look, Vec3 normal, Found& found) {
+  const bool is_cut = Measure::is_cut(piece, look);
+  if constexpr (kFindsPlanes) {
+    if (is_cut) measure.add_to_plane(look, found);
+  } else {
+    found.is_cut |= is_cut;
+    work_.add_inside(measure, piece, look, normal, unit_.share, found.sum);
+  }
+}
+
 // What a plane says of the unit, by its first lane.
-__device__ inline void ImageChunk::measure_by_plane(Counts counts, CellResult& result) {
+template <class Found>
+__device__ void ImageChunk<Found>::measure_by_plane(Counts counts, Found& found) {
   const UnitBall& block = unit_.balls[kOfBlock];
   const double distance = plane_.distance(block.center);
   const bool is_reached = counts == Counts::by_plane && distance < block.radius;
   const bool is_crossed = is_reached && distance > -block.radius;
   CrossedSums sums;
-  if (__any_sync(~0U, is_crossed) != 0)
-    sums = crossed_sums(is_crossed ? unit_.end - unit_.begin : 0);
+  if (__any_sync(~0U, is_crossed) != 0) sums = crossed_sums(is_crossed ? end_ - begin_ : 0);
   if (lane_ != 0 || !(is_reached || counts == Counts::pushed)) return;
-  const ToolReach& reach = work_.level.tool_reach;
-  double weight = sums.weight;
-  Vec3 moment = reach.inverse * sums.moment;
-  if (!is_crossed) {
-    const BlockMass& mass = is_reached ? unit_.block_mass : unit_.share_mass;
-    weight = mass.weight;
-    moment = weight * (reach.inverse * mass.centroid);
-  } else if (sums.is_cut) {
-    measure_of_share().add_to_plane(block.center, plane_, result.plane);
+  if constexpr (kFindsPlanes) {
+    if (sums.is_cut) measure_of_share().add_to_plane(block.center, plane_, found);
+  } else {
+    const ToolReach& reach = work_.level.tool_reach;
+    double weight = sums.weight;
+    Vec3 moment = reach.inverse * sums.moment;
+    if (!is_crossed) {
+      const BlockMass& mass = is_reached ? unit_.block_mass : unit_.share_mass;
+      weight = mass.weight;
+      moment = weight * (reach.inverse * mass.centroid);
+    }
+    found.is_cut |= sums.is_cut;
+    found.sum.add_moment(weight, moment, plane_.normal);
   }
-  result.sum.add_moment(weight, moment, plane_.normal);
 }
 
 // Of the first samples of the block behind its plane, for the first lane: the rows of
 // crossed_in_turn, one for each lane, and these by halves. (Where there are fewer lanes than rows,
 // no lane has more than two samples, and 0 in the rows that are left out.)
-__device__ inline CrossedSums ImageChunk::crossed_sums(std::uint32_t count) const {
+template <class Found>
+__device__ CrossedSums ImageChunk<Found>::crossed_sums(std::uint32_t count) const {
   static_assert(WarpChunks::kNarrow == 2 * (32 / Chunk::kUnits) &&
                 kSumRows == 32 / WarpChunks::kWideUnits);
   CrossedSums row;
 #pragma unroll 4
   for (std::uint32_t k = lane_; k < count; k += lanes_)
-    add_to_row(work_.level.samples[unit_.begin + k], plane_, row, row.is_cut);
+    add_to_row(work_.level.samples[begin_ + k], plane_, row, row.is_cut);
   __syncwarp();
 #pragma unroll 1
   for (unsigned half = lanes_ / 2; half > 0; half /= 2) {

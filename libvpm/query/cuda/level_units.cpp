@@ -43,7 +43,6 @@ void LevelUnits::add_units(std::uint32_t share, std::vector<WarpUnit>& units) co
   unit.share_mass = clusters_.masses[share];
   unit.share = share;
   if (is_compact(reach, tool_.reach)) unit.flags |= Unit::is_compact;
-  if (end - begin <= 1) unit.flags |= Unit::is_alone;
   const std::size_t head = units.size();
   if (begin == end) units.push_back(unit);
   for (std::uint32_t b = begin; b < end; ++b) {

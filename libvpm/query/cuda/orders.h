@@ -1,8 +1,9 @@
 // How a kernel that stands by is told of the next pose, and of what to make before, without a
 // launch.
 //
-// The host writes an order into its own memory. A warp of the first block looks there and passes it
-// on to the other blocks in the device's memory.
+// The host writes an order into its own memory. A warp of one block looks there and passes it on to
+// the other blocks in the device's memory: of the block that was the last to be done with the order
+// before, which so needs not be told that all are.
 #pragma once
 
 #include "libvpm/query/cuda/answer.h"
@@ -36,10 +37,9 @@ struct OrderWords {
 struct OrdersView {
   static constexpr unsigned kCopies = 4;  // so that not all blocks look at one place
 
-  const OrderWords* given = nullptr;  // by the host, in its memory
-  OrderWords* passed_on = nullptr;    // by the first block, kCopies
-  unsigned* finished = nullptr;       // the last order that all blocks have carried out
-  unsigned* left = nullptr;           // in the host's memory: the order at which the kernel left
+  OrderWords* given = nullptr;      // by the host, in its memory
+  OrderWords* passed_on = nullptr;  // by the block that leads, kCopies
+  unsigned* left = nullptr;         // in the host's memory: the order at which the kernel left
 };
 
 class Orders {
@@ -49,25 +49,18 @@ class Orders {
       : view_(view), first_(first), order_(order) {}
 
   // By all threads of all blocks: the order of this number, or one to leave if the host gives none
-  // in time. What was done for the order before is seen then; so is what came to the device's
-  // memory by transfers and kernels that had ended when the host gave it, since nothing older is
-  // kept nearer than there. (Images in the host's memory are read past everything near:
-  // cloud_take.h.)
-  __device__ void receive(unsigned number) {
+  // in time. One block leads: some block at first, then the last to be done with the order before.
+  // What was done for that order is seen then; so is what came to the device's memory by transfers
+  // and kernels that had ended when the host gave this one, since nothing older is kept nearer than
+  // there. (Images in the host's memory are read past everything near: cloud_take.h.)
+  __device__ void receive(unsigned number, bool leads) {
     if (threadIdx.x < 32) {
-      if (blockIdx.x == 0)
+      if (leads)
         pass_on(number, wait_for_host(number));
       else
-        take(wait_for_first_block(number));
-      if (threadIdx.x == 0) fence();
+        take(wait_for_leader(number));
     }
     __syncthreads();
-  }
-  // By all threads of the block that is the last to be done with it.
-  __device__ void finish(unsigned number) {
-    if (threadIdx.x != 0) return;
-    fence();
-    *static_cast<volatile unsigned*>(view_.finished) = number;
   }
 
  private:
@@ -79,16 +72,17 @@ class Orders {
   };
   __device__ static unsigned place(unsigned k) { return threadIdx.x + 32 * k; }
 
-  // This lane's words of the order, when all have come or it is too late.
-  template <class IsLate>
-  __device__ static Words wait(const OrderWords& order, unsigned number, const IsLate& is_late) {
+  // This lane's words of the order, when all have come or it is too late. `look(word)`.
+  template <class Look, class IsLate>
+  __device__ static Words wait(OrderWords& order, unsigned number, const Look& look,
+                               const IsLate& is_late) {
     constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
     for (;;) {
       Words mine;
       bool have_come = true;
 #pragma unroll
       for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-        mine.words[k] = look_at(order.words[place(k)]);
+        mine.words[k] = look(order.words[place(k)]);
 #pragma unroll
       for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
         have_come &= number_of(mine.words[k]) == number;
@@ -99,18 +93,22 @@ class Orders {
       return mine;
     }
   }
-  __device__ Words wait_for_first_block(unsigned number) const {
-    return wait(view_.passed_on[blockIdx.x % OrdersView::kCopies], number, [] { return false; });
+  // What the block that leads has seen is seen then.
+  __device__ Words wait_for_leader(unsigned number) const {
+    using Word = ::cuda::atomic_ref<NumberedWord, ::cuda::thread_scope_device>;
+    return wait(
+        view_.passed_on[blockIdx.x % OrdersView::kCopies], number,
+        [](NumberedWord& word) { return Word(word).load(::cuda::memory_order_acquire); },
+        [] { return false; });
   }
   __device__ Words wait_for_host(unsigned number) const {
     const std::uint64_t most =
         number == first_ ? kFirstWait : std::uint64_t{order_.waits_us} * 1000;
-    while (number != first_ &&
-           *static_cast<const volatile unsigned*>(view_.finished) != number - 1) {
-    }
-    fence();
+    fence();  // for what this block has seen to be passed on too; now, while nobody waits
     const std::uint64_t begin = now();
-    return wait(*view_.given, number, [&] { return now() - begin > most; });
+    return wait(
+        *view_.given, number, [](const NumberedWord& word) { return look_at(word); },
+        [&] { return now() - begin > most; });
   }
   __device__ void take(const Words& mine) {
     __syncwarp();  // who has read the order before is done

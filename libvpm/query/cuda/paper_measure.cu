@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   const std::uint64_t met = now();
   const RawResult part = PaperFlood<GridTeam>(level, space, counters[turn], team, shared).run();
   add_block(part, totals->result);
-  if (!is_last_block(totals->done)) return;
+  if (!is_last_of(totals->done, gridDim.x)) return;
   if (threadIdx.x == 0) {
     total = totals->result;
     total.points = read(counters[turn].points);

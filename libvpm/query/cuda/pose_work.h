@@ -35,15 +35,13 @@ struct PoseWork {
   // Far ones are listed.
   __device__ void add_inside(const CellMeasure<Surface>& measure, const SharePiece& piece,
                              const typename CellMeasure<Surface>::PieceLook& look, Vec3 normal,
-                             std::uint32_t share, CellResult& result) const {
+                             std::uint32_t share, ToolSum& total) const {
     const bool cut = CellMeasure<Surface>::is_cut(piece, look);
-    result.is_far |= look.is_far;
-    if (cut) measure.add_to_plane(look, result.plane);
     ToolSum sum;
     measure.add_behind(cut ? measure.part_behind(piece, look) : piece, look,
                        cut ? look.reading.normal : normal, surface, sum);
     if (!look.is_far) {
-      result.sum.add(sum);
+      total.add(sum);
       return;
     }
     // Member by member: the whole would be stored byte by byte.

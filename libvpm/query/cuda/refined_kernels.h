@@ -66,8 +66,12 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
+// Where a kernel has its arguments. In shared memory they are read soon only by what is inlined
+// into it, which knows that they are there; of a launch, by functions as well.
+enum class Arguments { launched, shared };
+
 // The first step of one query by all blocks of a launch. Returns what this thread has added up.
-template <class Surface>
+template <Arguments kArguments, class Surface>
 __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                                     unsigned turn, BlockShared<Surface>& shared) {
   const Part of_spheres{blockIdx.x, launch.sphere_blocks};
@@ -84,7 +88,22 @@ __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const 
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
   }
-  return ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
+  ShareMeasure<Surface> measure(work, launch.counts_points, shared.measure);
+  if constexpr (kArguments == Arguments::shared)
+    return measure.run_inlined();
+  else
+    return measure.run();
+}
+
+// The planes of cut shares, where the first step has not noted them: few queries need them.
+__device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
+                                         const PoseFrame& frame, unsigned turn,
+                                         BlockShared<DepthSurface>& shared) {
+  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
+  const PoseWork<DepthSurface> work(launch.level, launch.surface, frame.to_surface, launch.space,
+                                    turn, *launch.counters, of_spheres);
+  ImageMeasure(work, launch.counts_points, shared.image).note_planes();
 }
 
 // What the next query begins with, when nobody waits for this one any more.
@@ -99,8 +118,8 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
                    const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<DiskSurface> shared;
   __shared__ RawResult total;
-  measure_shares(launch, frame, sequence, shared);
-  if (!is_last_block(launch.totals->done)) {
+  measure_shares<Arguments::launched>(launch, frame, sequence, shared);
+  if (!is_last_of(launch.totals->done, gridDim.x)) {
     clear_next(launch, sequence);
     return;
   }
@@ -123,27 +142,38 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
 // One query by all blocks of a cooperative launch. Where the first step has found all (no far
 // pieces, and nobody asks for points), the last block to come sends the answer. Whether this block
 // is the last to be done.
-template <class Surface>
+template <Arguments kArguments, class Surface>
 __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
+  using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const RawResult found = measure_shares(launch, frame, sequence, shared);
+  const RawResult found = measure_shares<kArguments>(launch, frame, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
-  Inside<Surface, GridTeam> inside(launch.level, frame.to_surface, launch.space, sequence,
-                                   *launch.counters, team, shared.inside, launch.counts_points);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
+  unsigned far = 0;
+  const auto has_more = [&] { return Rest::has_more(far, launch.counts_points); };
   if (is_last) {
     const std::uint32_t word = word_of(totals->result);  // read while it is seen that this is all
-    if (!inside.has_more()) send(word, now() - met, launch.answer, sequence);
+    far = read(launch.counters->far);
+    if (!has_more()) send(word, now() - met, launch.answer, sequence);
   }
-  team.wait();
-  met = now();
-  const bool has_more = inside.has_more();
-  if (has_more) add_block(inside.run(), totals->result);
-  clear_next(launch, sequence);
-  if (!is_last_block(totals->done)) return false;
-  if (has_more) send(word_of(totals->result), now() - met, launch.answer, sequence);
+  clear_next(launch, sequence);  // while the others come
+  if (!is_last) {
+    team.wait();
+    met = now();
+    far = read_for_block(*launch.counters).far;
+  }
+  if (has_more()) {
+    if constexpr (Surface::kTellsInside)
+      if (far > 0) note_planes(launch, frame, sequence, shared);
+    GridTeam meeting = team;  // one of its own: what functions are given lies in memory
+    Rest rest(launch.level, frame.to_surface, launch.space, sequence, *launch.counters, meeting,
+              shared.inside, launch.counts_points);
+    add_block(rest.run(), totals->result);
+  }
+  if (!is_last_of(totals->done, gridDim.x)) return false;
+  if (has_more()) send(word_of(totals->result), now() - met, launch.answer, sequence);
   __syncthreads();
   if (threadIdx.x == 0) {
     *totals = Totals{};
@@ -158,7 +188,7 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
              const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
   GridTeam team(&launch.totals->arrived);
-  answer_pose(launch, frame, sequence, team, shared);
+  answer_pose<Arguments::launched>(launch, frame, sequence, team, shared);
 }
 
 static_assert(kThreads == SmallTile::kPointThreads && kThreads == SmallTile::kSurfaceThreads);
@@ -183,7 +213,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   __shared__ PartAndQueryShared shared;
   GridTeam team(&launch.totals->arrived);
   PartWork<GridTeam>(image, part, team, shared.part).run();
-  answer_pose(launch, frame, sequence, team, shared.of_query());
+  answer_pose<Arguments::launched>(launch, frame, sequence, team, shared.of_query());
 }
 
 // One query after another (orders.h), until none comes.
@@ -197,8 +227,9 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   __shared__ Order order;
   __shared__ PoseFrame frame;
   Orders orders(view, first, order);
+  bool leads = blockIdx.x == 0;
   for (unsigned number = first;; ++number) {
-    orders.receive(number);
+    orders.receive(number, leads);
     if (order.leaves != 0) return;
     const bool makes = order.image != nullptr;
     if (threadIdx.x == 0) frame.to_surface = order.to_surface;
@@ -214,7 +245,7 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
     }
     GridTeam team(&launch.totals->arrived);
     if (makes) PartWork<GridTeam>(image, order.part, team, shared.part).run();
-    if (answer_pose(launch, frame, order.turn, team, shared.of_query())) orders.finish(number);
+    leads = answer_pose<Arguments::shared>(launch, frame, order.turn, team, shared.of_query());
   }
 }
 
@@ -250,7 +281,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
                                       shared.inside, launch.counts_points);
-    if (inside.has_more()) add_block(inside.run(), total);
+    if (inside.has_more(counters.far, launch.counts_points)) add_block(inside.run(), total);
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }

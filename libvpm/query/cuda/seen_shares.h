@@ -23,8 +23,10 @@ class SeenShares {
         cut_(level, to_surface, space, notes_, counters, team),
         counts_points_(counts_points) {}
 
-  // When the first step is done: whether it has left anything.
-  __device__ bool has_more() const { return counts_points_ || read_for_block(counters_).far > 0; }
+  // Whether the first step has left anything: `far` pieces, or points.
+  __device__ static bool has_more(unsigned far, bool counts_points) {
+    return counts_points || far > 0;
+  }
   // This thread's part of the result, beyond that of the first step. All threads of the team.
   __device__ RawResult run() {
     RawResult result;

@@ -8,7 +8,6 @@ namespace vpm::cuda {
 
 Standby::Standby(const StandbyKernel& kernel) : kernel_(kernel) {
   passed_on_.clear();
-  finished_.clear();
 }
 
 Standby::~Standby() {
@@ -85,7 +84,7 @@ void Standby::launch(const Order& order) {
   const CurrentDevice current(device_);
   is_there_ = false;
   ++number_;
-  OrdersView view{given_.device(), passed_on_.get(), finished_.get(), left_.device()};
+  OrdersView view{given_.device(), passed_on_.get(), left_.device()};
   unsigned first = number_ + 1;
   give(order);
   void* values[] = {&view, &first};

@@ -51,7 +51,6 @@ class Standby : public StandingKernel {
   MappedArray<OrderWords> given_{1};
   MappedArray<unsigned> left_{1};
   DeviceArray<OrderWords> passed_on_{OrdersView::kCopies};
-  DeviceArray<unsigned> finished_{1};
   unsigned number_ = 0;  // of the last order
   bool is_there_ = false;
   unsigned others_ = 0;  // that hold an OtherWork

@@ -183,7 +183,9 @@ __device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure&
   if (inside && !Measure::is_cut(piece, look) && first == tile.lane)
     normal = measure.closest_normal(look);
   if (Surface::kSearchesFoot) normal = tile.from(normal, first);
-  if (inside) work_.add_inside(measure, piece, look, normal, task.share, result);
+  if (!inside) return;
+  measure.note(piece, look, result);
+  work_.add_inside(measure, piece, look, normal, task.share, result.sum);
 }
 
 // The first lane of those that share a direction with this one; itself where it has its own.

@@ -21,6 +21,18 @@ __device__ inline void fence() {
   ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
 }
 
+// Counts a block, by all its threads: whether it is the last of so many. What the others did before
+// is seen then.
+__device__ inline bool is_last_of(unsigned& come, unsigned all) {
+  using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
+  __shared__ bool is_last;
+  __syncthreads();
+  // Not fence(): that takes as long as the addition, and would be needed on both sides of it.
+  if (threadIdx.x == 0) is_last = Count(come).fetch_add(1, ::cuda::memory_order_acq_rel) == all - 1;
+  __syncthreads();
+  return is_last;
+}
+
 // Work dealt out to blocks: row k to part k % parts.
 struct Part {
   unsigned part = 0, parts = 1;
@@ -50,22 +62,16 @@ class GridTeam {
   }
   // The two halves of sync(). Whether this block is the last to arrive.
   __device__ bool arrive() {
-    __shared__ bool is_last;
-    __syncthreads();
     target_ += gridDim.x;
-    if (threadIdx.x == 0) {
-      fence();
-      is_last = count().fetch_add(1, ::cuda::memory_order_relaxed) == target_ - 1;
-      if (is_last) fence();
-    }
-    __syncthreads();
-    return is_last;
+    return is_last_of(*arrived_, target_);
   }
+  // Each look that acquires has the multiprocessor forget what it keeps near, which other blocks
+  // may still need: only the last one does.
   __device__ void wait() {
     if (threadIdx.x == 0) {
       while (count().load(::cuda::memory_order_relaxed) < target_) {
       }
-      fence();
+      static_cast<void>(count().load(::cuda::memory_order_acquire));
     }
     __syncthreads();
   }

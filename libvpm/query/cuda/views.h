@@ -26,7 +26,6 @@ struct alignas(32) Unit {
     is_head = 1,     // the first of its share
     is_compact = 2,  // its share is (share_clusters.h)
     has_block = 4,
-    is_alone = 8,  // the only one of its share
   };
   UnitBall balls[kBalls];
   std::uint32_t share = 0, block = 0, begin = 0, end = 0;  // samples of the block
