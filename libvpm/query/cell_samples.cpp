@@ -29,9 +29,7 @@ struct FourSlopes {
 
   // Of samples of which a plane cuts off less by `rate` as it comes nearer by a metre.
   [[gnu::always_inline]] void add(const Double4& rates, const Vec3& normal, const Vec3x4& center) {
-    const Vec3x4 arm(center.y * normal.z - center.z * normal.y,
-                     center.z * normal.x - center.x * normal.z,
-                     center.x * normal.y - center.y * normal.x);
+    const Vec3x4 arm = cross(center, Vec3x4(normal, normal, normal, normal));
     const Vec3x4 part = rates * arm;
     rate = rate + rates;
     turn = turn + part;

@@ -67,16 +67,16 @@ void ContactMemory::add(std::uint32_t cluster, ToolSum& sum) const {
       contact.slopes.change(origin(ages_[cluster].read).motion, contact.sum.force_terms());
   const double part = contact.sum.volume.real();
   if (!(part + change.part > 0)) return;  // it has come out
-  change.part = std::min(change.part, contact.weight - part);
+  change.part = std::min(change.part, weights_[cluster] - part);
   sum.add(contact.sum);
   sum.add(change);
 }
 
 void ContactMemory::end(std::uint32_t cluster) {
   const Contact& contact = contacts_[cluster];
-  const bool tells = contact.is_empty()
-                         ? contact.clearance.height > 0
-                         : contact.slopes.most_passing(reach_.inverse * limit_) <= contact.weight;
+  const bool tells = contact.is_empty() ? contact.clearance.height > 0
+                                        : contact.slopes.most_passing(reach_.inverse * limit_) <=
+                                              weights_[cluster];
   if (!tells) return;
   ages_[cluster] = age(cluster, ages_[cluster]);
   ages_[cluster].is_empty = contact.is_empty();

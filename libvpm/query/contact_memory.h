@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "libvpm/query/cell.h"
@@ -32,7 +33,6 @@ struct Clearance {
 struct Contact {
   ToolSum sum;  // what is behind the surface
   ContactSlopes slopes;
-  double weight = 0;         // of the cluster: part of the tool's volume
   std::uint32_t inside = 0;  // shares that count
   Clearance clearance;       // where nothing is behind the surface
 
@@ -41,15 +41,16 @@ struct Contact {
 
 class ContactMemory {
  public:
-  // `groups` of clusters. `limit`: how far any place of the tool may move before a cluster is read
-  // again, m.
-  ContactMemory(std::size_t clusters, std::size_t groups, ToolReach reach, double limit)
+  // `weights` of the clusters: parts of the tool's volume. `groups` of clusters. `limit`: how far
+  // any place of the tool may move before a cluster is read again, m.
+  ContactMemory(std::vector<double> weights, std::size_t groups, ToolReach reach, double limit)
       : reach_(reach),
         limit_(limit),
-        ages_(clusters),
+        weights_(std::move(weights)),
+        ages_(weights_.size()),
         group_ages_(groups),
-        uses_(clusters),
-        contacts_(clusters) {}
+        uses_(weights_.size()),
+        contacts_(weights_.size()) {}
 
   double limit() const { return limit_; }
 
@@ -127,6 +128,7 @@ class ContactMemory {
 
   ToolReach reach_;
   double limit_;
+  std::vector<double> weights_;
   std::vector<Age> ages_, group_ages_;
   std::vector<Use> uses_;
   std::vector<Contact> contacts_;

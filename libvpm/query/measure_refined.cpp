@@ -14,6 +14,12 @@ namespace {
 template <class Surface>
 using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, ShareFlood<Surface>>;
 
+std::vector<double> cluster_weights(const SpatialLevel& level) {
+  std::vector<double> weights(level.roots().size());
+  for (std::uint32_t i = 0; i < level.size(); ++i) weights[level.root(i)] += level.mass(i).weight;
+  return weights;
+}
+
 }  // namespace
 
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
@@ -25,7 +31,7 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       shares_(level_) {
   if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
   if (options.coherent && options.reuse > 0)
-    contacts_.emplace(level_.roots().size(), level_.groups().size(), reach_, options.reuse);
+    contacts_.emplace(cluster_weights(level_), level_.groups().size(), reach_, options.reuse);
 }
 
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
@@ -105,7 +111,8 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
           }
         },
         [&](std::uint32_t first, std::uint32_t last) {
-          count += add_up(surface, to_surface, inside, first, last, of_all);
+          count += add_up(surface, to_surface, inside, first, last, of_all,
+                          [](std::uint32_t, const ToolSum&) {});
         });
     const std::lock_guard lock(adding);
     sum.add(of_all);
@@ -114,16 +121,17 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
   return all;
 }
 
-template <class Surface, class Inside>
+template <class Surface, class Inside, class Taken>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
                                      const Inside& inside, std::uint32_t begin, std::uint32_t end,
-                                     ToolSum& sum) {
+                                     ToolSum& sum, const Taken& taken) {
   std::uint32_t last_cut = kNoRow, count = 0;
   for_rows_in(Cell::cut, shares_.cells, begin, end,
               [&](std::uint32_t i) { sum.add(shares_.results[i].sum); });
   for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
     const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
     sum.add(part);
+    taken(i, part);
     if (part.volume.value != 0)
       ++count;
     else
@@ -138,22 +146,12 @@ const Contact& RefinedMeasure::end_contact(const Surface& surface, const Pose& t
                                            const Inside& inside, std::uint32_t root) {
   Contact& contact = contacts_->begun(root);
   const ShareCluster& rows = level_.cluster(root);
-  std::uint32_t last_cut = kNoRow;
-  for (std::uint32_t i = rows.begin; i < rows.end; ++i) {
-    contact.weight += level_.mass(i).weight;
-    if (!shares_.counts(i)) continue;
-    if (shares_.cells[i] == Cell::cut) {
-      contact.sum.add(shares_.results[i].sum);
-      continue;
-    }
-    const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
-    contact.sum.add(part);
-    Vec3 force = part.force_terms();
+  const auto note = [&](std::uint32_t i, const ToolSum& part) {
+    Vec3 force = part.force_terms();  // without what has been noted of it
     if (shares_.cells[i] == Cell::partial) force -= shares_.results[i].sum.force_terms();
     contact.slopes.add_pushed(force, reach_.inverse * level_.mass(i).centroid);
-    contact.inside += part.volume.value != 0;
-    if (part.volume.value == 0) shares_.cells[i] = Cell::free;  // hidden, not inside
-  }
+  };
+  contact.inside = add_up(surface, to_surface, inside, rows.begin, rows.end, contact.sum, note);
   contacts_->end(root);
   return contact;
 }

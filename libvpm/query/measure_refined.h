@@ -42,10 +42,10 @@ class RefinedMeasure {
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
                        ParallelRegion& region, ToolSum& sum);
-  // Of these rows.
-  template <class Surface, class Inside>
+  // Of these rows. Calls taken(row, part) for those that are not cut.
+  template <class Surface, class Inside, class Taken>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       std::uint32_t begin, std::uint32_t end, ToolSum& sum);
+                       std::uint32_t begin, std::uint32_t end, ToolSum& sum, const Taken& taken);
   template <class Surface, class Inside>
   const Contact& end_contact(const Surface& surface, const Pose& to_surface, const Inside& inside,
                              std::uint32_t root);

@@ -55,9 +55,10 @@ class SeenShares {
     if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
     plane_ = memory.touched();
   }
-  // Whether to remember a share of which another one of its cluster is remembered; or any such.
-  bool follows(std::uint32_t row) const { return all_follow() || has_stayed(row); }
+  // Whether to remember every share of which another one of its cluster is remembered; or else,
+  // whether this one.
   bool all_follow() const { return !cut_.are_none(); }
+  bool follows(std::uint32_t row) const { return has_stayed(row); }
   // Whether to remember any, behind the surface's place `foot` of the world.
   bool is_sure(std::uint32_t row, Vec3 foot) const {
     if (has_stayed(row)) return true;

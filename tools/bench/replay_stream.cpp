@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <span>
 
 #include "libvpm/core/error.h"
@@ -157,10 +156,6 @@ void add_pass(const Pass& pass, std::uint32_t level, Report& report) {
   report.summary += line;
 }
 
-double mean(const std::vector<double>& numbers) {
-  return std::accumulate(numbers.begin(), numbers.end(), 0.0) / static_cast<double>(numbers.size());
-}
-
 // A pass that uses again what was read of the surface, beside one that does not.
 void add_reusing_pass(const Pass& pass, const Pass& anew, std::uint32_t level, double reuse,
                       Report& report) {
@@ -170,14 +165,14 @@ void add_reusing_pass(const Pass& pass, const Pass& anew, std::uint32_t level, d
     largest = std::max(largest, by);
     sum += by;
   }
-  const double ratio = mean(pass.latencies) / mean(anew.latencies);
-  const Durations latency(pass.latencies);
+  const Durations latency(pass.latencies), latency_anew(anew.latencies);
+  const double ratio = latency.mean() / latency_anew.mean();
   report.results.push_back(
       {{"part", "stream reusing"},
        {"spheres", level},
        {"reuse_mm", 1e3 * reuse},
-       {"mean_us", 1e6 * mean(pass.latencies)},
-       {"mean_us_anew", 1e6 * mean(anew.latencies)},
+       {"mean_us", 1e6 * latency.mean()},
+       {"mean_us_anew", 1e6 * latency_anew.mean()},
        {"ratio", ratio},
        {"p99_us", 1e6 * latency.quantile(0.99)},
        {"deadline_misses", latency.longer_than(1 / kRate)},
@@ -187,7 +182,7 @@ void add_reusing_pass(const Pass& pass, const Pass& anew, std::uint32_t level, d
   std::snprintf(line, sizeof line,
                 "stream, reuse %.0f mm     %7u spheres: %.1f us mean, %.2f of the time; volume "
                 "within %.2f %% of the tool's, mean %.3f %%\n",
-                1e3 * reuse, level, 1e6 * mean(pass.latencies), ratio, 100 * largest,
+                1e3 * reuse, level, 1e6 * latency.mean(), ratio, 100 * largest,
                 100 * sum / static_cast<double>(pass.profile.size()));
   report.summary += line;
 }
