@@ -1,5 +1,5 @@
-// make-example FOLDER: a tool, what a noisy depth camera sees of a bowl, a path of the tool into
-// the bowl, and what is true on it.
+// make-example FOLDER [SCENE]: a tool, what a noisy depth camera sees of a scene, a path of the tool
+// into it, and what is true on it. Scenes: libvpm/synthetic/scenes.h; by default a bowl.
 //   tool.off      a twisted torus of 0.2 m
 //   depth.png     640 x 480 pixels, 5000 units per metre, f = 525 px, Kinect noise
 //   poses.jsonl   one pose per line: [tx,ty,tz,qx,qy,qz,qw]
@@ -23,10 +23,10 @@ using namespace vpm;
 constexpr double kUnitsPerMetre = 5000;
 constexpr std::uint64_t kNoiseSeed = 1;
 constexpr int kPoses = 121;
-constexpr double kStart = 0.87, kEnd = 0.97;  // z of the tool's centre; the bowl's lowest is z = 1
+constexpr double kStart = 0.87, kEnd = 0.97;  // z of the tool's centre; the scene begins near z = 1
 
-void make_example(const std::string& folder) {
-  const synthetic::Scene scene = synthetic::make_scene("inverted-ball");
+void make_example(const std::string& folder, const std::string& name) {
+  const synthetic::Scene scene = synthetic::make_scene(name);
   const synthetic::TrueSolid tool(synthetic::make_twisted_torus(0.07, 0.045, 3, 192));
   synthetic::write_off(folder + "/tool.off", tool.solid());
   examples::write_depth_png(
@@ -56,12 +56,12 @@ void make_example(const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: make-example FOLDER\n";
+  if (argc < 2 || argc > 3) {
+    std::cerr << "usage: make-example FOLDER [SCENE]\n";
     return static_cast<int>(ErrorKind::usage);
   }
   try {
-    make_example(argv[1]);
+    make_example(argv[1], argc == 3 ? argv[2] : "inverted-ball");
     return 0;
   } catch (const Error& fault) {
     std::cerr << "make-example: error: " << fault.what() << '\n';

@@ -2,9 +2,10 @@
 # bundle.sh BUILD FOLDER [EXECUTABLE ...]: makes a folder that runs on a machine with nothing installed but the C library
 # (and an NVIDIA driver, for --device cuda): executables in bin/, libvpm and every shared library that they need in lib/,
 # found by their place relative to the executable. Without names: the tools and control-loop, as far as they are built.
+# It runs on the devices that BUILD is made for: of the preset "cuda" on all that CMakeLists.txt names, and later ones.
 set -euo pipefail
 if [[ $# -lt 2 || ! -d $1/bin ]]; then
-  echo "usage: bundle.sh BUILD FOLDER [EXECUTABLE ...]; BUILD is a build tree, like build/release" >&2
+  echo "usage: bundle.sh BUILD FOLDER [EXECUTABLE ...]; BUILD is a build tree, like build/cuda" >&2
   exit 2
 fi
 build=$1 folder=$2
@@ -33,4 +34,5 @@ for name in "${names[@]}"; do
   done < <(ldd "$build/bin/$name" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
 done
 strip --strip-unneeded "$folder"/lib/*
-echo "$folder: ${#names[@]} executables, $(find "$folder/lib" -type f | wc -l) libraries, $(du -sh "$folder" | cut -f1)"
+cuda=$(sed -n 's/^CMAKE_CUDA_ARCHITECTURES:[A-Z]*=//p' "$build/CMakeCache.txt")
+echo "$folder: ${#names[@]} executables${cuda:+ for CUDA $cuda}, $(find "$folder/lib" -type f | wc -l) libraries, $(du -sh "$folder" | cut -f1)"
