@@ -69,7 +69,8 @@ report = {
 json.dump(report, open(out, "w"), indent=2)
 print(f"{report['device']}, {report['bus']}, commit {commit}: CPU and device the same {same}")
 for r in report["stages"]:
-    print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f} us")
+    print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f}  "
+          f"normals alone {r['normals_us']:5.1f} us")
 for r in report["control_loop"]:
     what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
     what += ", standing by" if r["standby_us"] else ""

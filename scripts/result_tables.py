@@ -274,13 +274,13 @@ def cuda_frames(report):
     rows = [[thousands(n)] + [r[kind] for kind in ("prepared", "counts standing", "counts", "metres standing", "metres", "pca",
                                                           "whole", "behind")]
             for n, r in cuda_frame_queries(report)]
-    stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}"]
-              for r in report["stages"]]
+    stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}",
+               f"{r['normals_us']:.1f}"] for r in report["stages"]]
     return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
                    "launched", "of metres, standing by", "launched", "of counts, PCA", "made whole, of counts",
                    "in the image before, while the new one is made whole"], rows)
             + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "whole image", "copy alone (the floor), µs",
-                              "brought by the kernel", "normals and all that queries read"], stages))
+                              "brought by the kernel", "normals and all that queries read", "normals alone"], stages))
 
 
 def cuda_devices(report):

@@ -10,6 +10,7 @@
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/cloud/normal_limits.h"
+#include "libvpm/core/division.h"
 
 namespace vpm {
 
@@ -48,7 +49,7 @@ template <class Real>
                                                            Real fy, Real du_axis, Real dv_axis) {
   const Real x = plane.a * fx, y = plane.b * fy;
   const Real z = plane.a * du_axis + plane.b * dv_axis + plane.c;
-  const Real scale = Real(-1) / std::sqrt(x * x + y * y + z * z);
+  const Real scale = -reciprocal(square_root(x * x + y * y + z * z));
   return {static_cast<float>(x * scale), static_cast<float>(y * scale),
           static_cast<float>(z * scale)};
 }
@@ -66,7 +67,7 @@ struct WholeWindow {
   }
   [[gnu::always_inline]] VPM_HD inline PlaneSlopes<float> plane(float s, float us, float vs,
                                                                 float centre) const {
-    const float unit = 1.0F / centre;
+    const float unit = reciprocal(centre);
     return {us * per_slope * unit, vs * per_slope * unit, s * per_count * unit};
   }
 };
@@ -78,6 +79,12 @@ template <class Real>
                                                      float allowed) {
   const Real off = difference - expected;
   return (off <= allowed) & (off >= -allowed) & (value > 0.0F);
+}
+
+// Of one window; `allowed` is not below 0.
+[[gnu::always_inline]] VPM_HD inline bool is_in_gate(float value, float difference, float expected,
+                                                     float allowed) {
+  return std::fabs(difference - expected) <= allowed && value > 0;
 }
 
 // Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
@@ -95,6 +102,15 @@ struct FittedPlane {
   Real a, b, c;
 };
 
+// Devices have none of the vectors.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline Real ratio(const Real& a, const Real& b) {
+  if constexpr (std::is_same_v<Real, double>)
+    return quotient(a, b);
+  else
+    return a / b;
+}
+
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline FittedPlane<Real> fit_plane(const SumsOfPlane<Real>& s) {
   // Moments about the pixels' mean, times n: integers, exact in double.
@@ -102,10 +118,11 @@ template <class Real>
   const Real determinant = uu * vv - uv * uv;
   const auto found = static_cast<typename FittedPlane<Real>::Mask>(
       (s.n >= double{kMinSupport}) & (determinant >= kMinSpread * s.n * s.n * (uu + vv)));
-  const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e, unit = 1.0 / determinant;
+  const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e;
+  const Real unit = ratio(Real{} + 1.0, determinant);
   const Real a = (ue * vv - ve * uv) * unit;
   const Real b = (ve * uu - ue * uv) * unit;
-  const Real c = (s.e - a * s.u - b * s.v) / s.n;
+  const Real c = ratio(s.e - a * s.u - b * s.v, s.n);
   return {found, found ? a : Real{}, found ? b : Real{}, found ? c : Real{}};
 }
 
@@ -133,70 +150,79 @@ struct WindowPlane {
 }
 
 // Upper triangle of a symmetric 3x3 matrix.
+template <class Real>
 struct Symmetric3 {
-  double xx, xy, xz, yy, yz, zz;
+  Real xx, xy, xz, yy, yz, zz;
 };
 
 // Newton steps from below to the smallest root of the characteristic polynomial. They double the
-// digits once past the first few; with the two small eigenvalues as 1 to 2, eight reach double
-// precision.
+// digits once past the first few; with the two small eigenvalues as 1 to 2, six reach a float's.
 inline constexpr int kEigenSteps = 8;
 
-// Squared length of the eigenvector before it is normalised, for a matrix of trace 1, below which
-// its direction is rounding noise: the two small eigenvalues coincide (points on a line).
-inline constexpr double kEigenNoise = 1e-24;
+// For a matrix of trace 1 in floats: values of the polynomial that are rounding noise; squared
+// length of the eigenvector before it is normalised, below which its direction may be off by more
+// than 0.01, since the two small eigenvalues nearly coincide (points on a line).
+inline constexpr float kRootNoise = 0x1p-60F, kEigenNoise = 1e-10F;
 
 // x^3 - x^2 + minors x - determinant, whose smallest root is sought from below. It is concave and
 // increasing up to there, so no step of Newton's passes the root; once one would, all are done.
 struct Characteristic {
-  double minors, determinant;
+  float minors, determinant;
 
-  [[gnu::always_inline]] VPM_HD inline double at(double x) const {
+  [[gnu::always_inline]] VPM_HD inline float at(float x) const {
     return ((x - 1) * x + minors) * x - determinant;
   }
   // `value`: at(x).
-  [[gnu::always_inline]] VPM_HD inline double next(double x, double value) const {
-    const double slope = (3 * x - 2) * x + minors;
-    const double step = value / (slope > 0 ? slope : 1.0);
-    return x - (value < 0 ? step : 0.0);
+  [[gnu::always_inline]] VPM_HD inline float next(float x, float value) const {
+    const float slope = (3 * x - 2) * x + minors;
+    const float step = quotient(value, slope > kRootNoise ? slope : 1.0F);
+    return x - (value < -kRootNoise ? step : 0.0F);
   }
 };
 
-// A positive semidefinite matrix over its trace.
-[[gnu::always_inline]] VPM_HD inline Symmetric3 over_trace(const Symmetric3& m) {
+// A positive semidefinite matrix over its trace. What is known of it in floats then gives the
+// direction of a plane's normal to some 1e-7, over what its second eigenvalue is of the trace.
+[[gnu::always_inline]] VPM_HD inline Symmetric3<float> over_trace(const Symmetric3<double>& m) {
   const double trace = m.xx + m.yy + m.zz;
-  const double unit = trace > 0 ? 1 / trace : 0;
-  return {m.xx * unit, m.xy * unit, m.xz * unit, m.yy * unit, m.yz * unit, m.zz * unit};
+  const double unit = trace > 0 ? quotient(1, trace) : 0;
+  const auto scaled = [&](double of) { return static_cast<float>(of * unit); };
+  return {scaled(m.xx), scaled(m.xy), scaled(m.xz), scaled(m.yy), scaled(m.yz), scaled(m.zz)};
 }
-[[gnu::always_inline]] VPM_HD inline Characteristic characteristic_of(const Symmetric3& m) {
+[[gnu::always_inline]] VPM_HD inline Characteristic characteristic_of(const Symmetric3<float>& m) {
   return {(m.xx * m.yy - m.xy * m.xy) + (m.xx * m.zz - m.xz * m.xz) + (m.yy * m.zz - m.yz * m.yz),
           m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
               m.xz * (m.xy * m.yz - m.yy * m.xz)};
 }
-[[gnu::always_inline]] VPM_HD inline double smallest_root(const Characteristic& polynomial) {
-  double root = 0;
+[[gnu::always_inline]] VPM_HD inline float smallest_root(const Characteristic& polynomial) {
+  float root = 0;
   for (int step = 0; step < kEigenSteps; ++step) {
-    const double value = polynomial.at(root);
-    if (!(value < 0)) break;
-    root = polynomial.next(root, value);
+    const float next = polynomial.next(root, polynomial.at(root));
+    if (next == root) break;
+    root = next;
   }
   return root;
 }
 
 // Eigenvector of an eigenvalue, of any length; zero where there is no single one.
-[[gnu::always_inline]] VPM_HD inline Vec3 eigenvector(const Symmetric3& m, double root) {
-  const double dx = m.xx - root, dy = m.yy - root, dz = m.zz - root;
-  const Vec3 ab = cross({dx, m.xy, m.xz}, {m.xy, dy, m.yz});
-  const Vec3 ac = cross({dx, m.xy, m.xz}, {m.xz, m.yz, dz});
-  const Vec3 bc = cross({m.xy, dy, m.yz}, {m.xz, m.yz, dz});
-  const double ab2 = squared_norm(ab), ac2 = squared_norm(ac), bc2 = squared_norm(bc);
+[[gnu::always_inline]] VPM_HD inline Vec3f eigenvector(const Symmetric3<float>& m, float root) {
+  const auto cross = [](const Vec3f& a, const Vec3f& b) __attribute__((always_inline)) {
+    return Vec3f{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const auto squared_norm = [](const Vec3f& a) __attribute__((always_inline)) {
+    return a.x * a.x + a.y * a.y + a.z * a.z;
+  };
+  const float dx = m.xx - root, dy = m.yy - root, dz = m.zz - root;
+  const Vec3f ab = cross({dx, m.xy, m.xz}, {m.xy, dy, m.yz});
+  const Vec3f ac = cross({dx, m.xy, m.xz}, {m.xz, m.yz, dz});
+  const Vec3f bc = cross({m.xy, dy, m.yz}, {m.xz, m.yz, dz});
+  const float ab2 = squared_norm(ab), ac2 = squared_norm(ac), bc2 = squared_norm(bc);
   const bool use_ac = ac2 > ab2;
-  Vec3 best{use_ac ? ac.x : ab.x, use_ac ? ac.y : ab.y, use_ac ? ac.z : ab.z};
-  double best2 = use_ac ? ac2 : ab2;
+  Vec3f best{use_ac ? ac.x : ab.x, use_ac ? ac.y : ab.y, use_ac ? ac.z : ab.z};
+  float best2 = use_ac ? ac2 : ab2;
   const bool use_bc = bc2 > best2;
   best = {use_bc ? bc.x : best.x, use_bc ? bc.y : best.y, use_bc ? bc.z : best.z};
   best2 = use_bc ? bc2 : best2;
-  const double keep = best2 > kEigenNoise ? 1.0 : 0.0;
+  const float keep = best2 > kEigenNoise ? 1.0F : 0.0F;
   return {best.x * keep, best.y * keep, best.z * keep};
 }
 
@@ -260,11 +286,9 @@ template <class Real>
 }
 
 // Covariance in the camera's frame, over its trace, of what is seen about the pixel whose ray is
-// (rx, ry, 1).
-[[gnu::always_inline]] VPM_HD inline Symmetric3 covariance_of_moments(const Moments& m,
-                                                                      double per_fx, double per_fy,
-                                                                      double rx, double ry) {
-  const double per_n = 1 / m.n;
+// (rx, ry, 1). `per_n`: 1 / m.n.
+[[gnu::always_inline]] VPM_HD inline Symmetric3<float> covariance_of_moments(
+    const Moments& m, double per_n, double per_fx, double per_fy, double rx, double ry) {
   // Covariance (times n) in the centre's frame ...
   const double xx = m.xx - m.x * m.x * per_n, xy = m.xy - m.x * m.y * per_n,
                xz = m.xz - m.x * m.z * per_n, yy = m.yy - m.y * m.y * per_n,
@@ -277,18 +301,20 @@ template <class Real>
 }
 
 // The unit normal towards the sensor; `root`: the smallest of the covariance's characteristic.
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3& covariance,
-                                                                double root, double rx, double ry) {
-  const Vec3 direction = eigenvector(covariance, root);
-  const double away = direction.x * rx + direction.y * ry + direction.z;
-  const double length = std::sqrt(squared_norm(direction));
-  const double scale = (away > 0 ? -1.0 : 1.0) / (length > 0 ? length : 1.0);
-  return narrow(scale * direction);
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
+                                                                float root, float rx, float ry) {
+  const Vec3f n = eigenvector(covariance, root);
+  const float away = n.x * rx + n.y * ry + n.z;
+  const float length = square_root(n.x * n.x + n.y * n.y + n.z * n.z);
+  const float scale = (away > 0 ? -1.0F : 1.0F) * reciprocal(length > 0 ? length : 1.0F);
+  return {scale * n.x, scale * n.y, scale * n.z};
 }
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_moments(const Moments& m, double per_fx,
-                                                             double per_fy, double rx, double ry) {
-  const Symmetric3 covariance = covariance_of_moments(m, per_fx, per_fy, rx, ry);
-  return normal_of_covariance(covariance, smallest_root(characteristic_of(covariance)), rx, ry);
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_moments(const Moments& m, double per_n,
+                                                             double per_fx, double per_fy,
+                                                             double rx, double ry) {
+  const Symmetric3<float> covariance = covariance_of_moments(m, per_n, per_fx, per_fy, rx, ry);
+  return normal_of_covariance(covariance, smallest_root(characteristic_of(covariance)),
+                              static_cast<float>(rx), static_cast<float>(ry));
 }
 
 }  // namespace vpm

@@ -105,13 +105,14 @@ template <int Count>
 [[gnu::always_inline]] inline void fit_normals(const MomentLanes<Count>& m, const RowOfRays& row,
                                                int first, float* x, float* y, float* z) {
   const double per_fx = row.per_fx, per_fy = row.per_fy, cx = row.cx, fx = row.fx, ry = row.ry;
-  double rx[Count], minors[Count], determinants[Count], roots[Count];
-  double xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
+  double rx[Count];
+  float minors[Count], determinants[Count], roots[Count];
+  float xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
   for (int i = 0; i < Count; ++i) {
     rx[i] = (first + i - cx) / fx;
-    const Symmetric3 c = covariance_of_moments(
+    const Symmetric3<float> c = covariance_of_moments(
         {m.n[i], m.x[i], m.y[i], m.z[i], m.xx[i], m.xy[i], m.xz[i], m.yy[i], m.yz[i], m.zz[i]},
-        per_fx, per_fy, rx[i], ry);
+        1 / m.n[i], per_fx, per_fy, rx[i], ry);
     const Characteristic polynomial = characteristic_of(c);
     minors[i] = polynomial.minors, determinants[i] = polynomial.determinant, roots[i] = 0;
     xx[i] = c.xx, xy[i] = c.xy, xz[i] = c.xz, yy[i] = c.yy, yz[i] = c.yz, zz[i] = c.zz;
@@ -121,14 +122,14 @@ template <int Count>
     moving = 0;
     for (int i = 0; i < Count; ++i) {
       const Characteristic polynomial{minors[i], determinants[i]};
-      const double value = polynomial.at(roots[i]);
-      roots[i] = polynomial.next(roots[i], value);
-      moving |= value < 0;
+      const float next = polynomial.next(roots[i], polynomial.at(roots[i]));
+      moving |= next != roots[i];
+      roots[i] = next;
     }
   }
   for (int i = 0; i < Count; ++i) {
-    const Vec3f n =
-        normal_of_covariance({xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]}, roots[i], rx[i], ry);
+    const Vec3f n = normal_of_covariance({xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]}, roots[i],
+                                         static_cast<float>(rx[i]), static_cast<float>(ry));
     x[i] = n.x, y[i] = n.y, z[i] = n.z;
   }
 }

@@ -1,9 +1,10 @@
 // Quotients and square roots with the bits of IEEE 754 on host and device.
 //
 // A device has no instruction for either: the compiler makes a dozen, and a branch for operands
-// near the ends of the range of numbers, which every thread then jumps over. Lengths are far from
-// there (lengths.h): here are the dozen alone, Newton's steps with exact remainders (Markstein
-// 1990: "Computation of elementary functions on the IBM RISC System/6000 processor").
+// near the ends of the range of numbers, which every thread then jumps over, and across which it
+// moves nothing. Lengths are far from there (lengths.h): here are the dozen alone, Newton's steps
+// with exact remainders (Markstein 1990: "Computation of elementary functions on the IBM RISC
+// System/6000 processor").
 #pragma once
 
 #include <cmath>
@@ -13,7 +14,7 @@
 namespace vpm {
 
 // a / b, where |b| and |a / b| lie between 2^-900 and 2^900, or a is 0.
-VPM_HD inline double quotient(double a, double b) {
+[[gnu::always_inline]] VPM_HD inline double quotient(double a, double b) {
 #ifdef __CUDA_ARCH__
   double inverse;
   asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(b));
@@ -32,7 +33,7 @@ VPM_HD inline double quotient(double a, double b) {
 }
 
 // Of x between 2^-900 and 2^900, or 0, or what is not finite.
-VPM_HD inline double square_root(double x) {
+[[gnu::always_inline]] VPM_HD inline double square_root(double x) {
 #ifdef __CUDA_ARCH__
   double inverse;
   asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(x));
@@ -41,6 +42,40 @@ VPM_HD inline double square_root(double x) {
   const double rounded = __dmul_rn(x, inverse);
   const double root = __fma_rn(0.5 * inverse, __fma_rn(-rounded, rounded, x), rounded);
   return x > 0 && x < HUGE_VAL ? root : x;
+#else
+  return std::sqrt(x);
+#endif
+}
+
+// 1 / b, where |b| lies between 2^-100 and 2^100.
+[[gnu::always_inline]] VPM_HD inline float reciprocal(float b) {
+#ifdef __CUDA_ARCH__
+  float inverse;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(b));
+  return __fmaf_rn(inverse, __fmaf_rn(-b, inverse, 1), inverse);
+#else
+  return 1 / b;
+#endif
+}
+
+// a / b, where |b| and |a / b| lie there too, or a is 0.
+[[gnu::always_inline]] VPM_HD inline float quotient(float a, float b) {
+#ifdef __CUDA_ARCH__
+  const float inverse = reciprocal(b), rounded = __fmul_rn(a, inverse);
+  return __fmaf_rn(inverse, __fmaf_rn(-b, rounded, a), rounded);
+#else
+  return a / b;
+#endif
+}
+
+// Of x between 2^-100 and 2^100, or 0, or what is not finite.
+[[gnu::always_inline]] VPM_HD inline float square_root(float x) {
+#ifdef __CUDA_ARCH__
+  float inverse;
+  asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
+  const float rounded = __fmul_rn(x, inverse);
+  const float root = __fmaf_rn(__fmaf_rn(-rounded, rounded, x), 0.5F * inverse, rounded);
+  return x > 0 && x < HUGE_VALF ? root : x;
 #else
   return std::sqrt(x);
 #endif

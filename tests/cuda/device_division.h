@@ -5,14 +5,19 @@
 
 namespace vpm::testing {
 
+template <class Real>
 struct Operands {
-  double a = 0, b = 0;
+  Real a = 0, b = 0;
 };
+template <class Real>
 struct Divided {
-  double quotient = 0;     // of a and b
-  double square_root = 0;  // of |a|
+  Real quotient = 0;     // of a and b
+  Real square_root = 0;  // of |a|
+  Real reciprocal = 0;   // of b
 };
 
-std::vector<Divided> divide_on_device(const std::vector<Operands>& operands);
+// float and double.
+template <class Real>
+std::vector<Divided<Real>> divide_on_device(const std::vector<Operands<Real>>& operands);
 
 }  // namespace vpm::testing

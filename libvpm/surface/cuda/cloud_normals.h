@@ -3,6 +3,7 @@
 #pragma once
 
 #include "libvpm/surface/cuda/cloud_tile.h"
+#include "libvpm/surface/cuda/gated_window.h"
 
 namespace vpm::cuda {
 
@@ -22,91 +23,24 @@ struct Extent {
   }
 };
 
-// The plane of the pixels of one window that belong to the surface of its centre.
-template <class Frame>
-class GatedFit {
+// A tile's image about one of its pixels.
+class TileAround {
  public:
-  __device__ __forceinline__ GatedFit(const float* centre, const Frame& tile, const EdgeGate& edges)
-      : centre_(centre), tile_(tile), edges_(edges), middle_(*centre), unit_(1.0F / middle_) {}
+  __device__ TileAround(const float* centre, int pitch) : centre_(centre), pitch_(pitch) {}
+  class Column {
+   public:
+    __device__ Column(const float* middle, int pitch) : middle_(middle), pitch_(pitch) {}
+    __device__ __forceinline__ float value(int dv) const { return middle_[dv * pitch_]; }
 
-  // The last choice of pixels is by the gate about the plane `first`.
-  __device__ __forceinline__ WindowPlane run(WindowPlane& first) const {
-    WindowPlane plane;
-#pragma unroll 1
-    for (int choice = 0; choice < 2; ++choice) {
-      first = plane;
-      plane = fit(first, choice == 0 ? edges_.slope : 0);
-      if (!plane.found) break;
-    }
-    return plane;
-  }
-  __device__ __forceinline__ bool keeps(const WindowPlane& first, int du, int dv) const {
-    const float value = centre_[dv * tile_.pitch() + du];
-    const float expected =
-        first.c + first.a * static_cast<float>(du) + first.b * static_cast<float>(dv);
-    return is_in_gate(value, (value - middle_) * unit_, expected, edges_.gate);
-  }
+   private:
+    const float* middle_;
+    int pitch_;
+  };
+  __device__ __forceinline__ Column column(int du) const { return {centre_ + du, pitch_}; }
 
  private:
-  // Columns of a group are added pairwise; those that the window does not have are 0.
-  static constexpr int kGroup = 8;
-  struct ColumnSums {
-    float e = 0, ue = 0, ve = 0;
-    friend __device__ ColumnSums operator+(ColumnSums a, ColumnSums b) {
-      return {a.e + b.e, a.ue + b.ue, a.ve + b.ve};
-    }
-  };
-  struct Counts {  // integers, exact in any order
-    float n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
-  };
-
-  __device__ __forceinline__ ColumnSums add_column(int k, const WindowPlane& near, float slope,
-                                                   Counts& counts) const {
-    if (k > 2 * tile_.radius()) return {};
-    const int radius = tile_.radius(), du = k - radius;
-    const float x = static_cast<float>(du), predicted = near.c + near.a * x;
-    const float along = std::fabs(x);
-    float count = 0, y1 = 0, y2 = 0, e1 = 0, ye = 0;
-#pragma unroll
-    for (int dv = -radius; dv <= radius; ++dv) {
-      const float value = centre_[dv * tile_.pitch() + du], y = static_cast<float>(dv);
-      const float difference = (value - middle_) * unit_;
-      const float away = std::fabs(y), reach = along > away ? along : away;
-      const bool kept =
-          is_in_gate(value, difference, predicted + near.b * y, edges_.gate + slope * reach);
-      const float weight = kept ? 1.0F : 0.0F, e = kept ? difference : 0.0F;
-      count += weight, y1 += y * weight, y2 += y * y * weight;
-      e1 += e, ye += y * e;
-    }
-    counts.n += count, counts.u += x * count, counts.uu += x * x * count;
-    counts.v += y1, counts.uv += x * y1, counts.vv += y2;
-    return {e1, x * e1, ye};
-  }
-
-  __device__ __forceinline__ WindowPlane fit(const WindowPlane& near, float slope) const {
-    Counts counts;
-    double e = 0, ue = 0, ve = 0;
-    for (int group = 0; group <= 2 * tile_.radius(); group += kGroup) {
-      ColumnSums sum;
-#pragma unroll 1
-      for (int h = 0; h < 2; ++h) {
-        const auto pair = [&](int k) {
-          const ColumnSums first = add_column(group + k, near, slope, counts);
-          return first + add_column(group + k + kGroup / 2, near, slope, counts);
-        };
-        const ColumnSums even = pair(h), half = even + pair(h + 2);
-        sum = h == 0 ? half : sum + half;
-      }
-      e += sum.e, ue += sum.ue, ve += sum.ve;
-    }
-    return plane_of_sums(
-        {counts.n, counts.u, counts.v, counts.uu, counts.uv, counts.vv, e, ue, ve});
-  }
-
   const float* centre_;
-  const Frame& tile_;
-  const EdgeGate& edges_;
-  float middle_, unit_;
+  int pitch_;
 };
 
 // What a block knows of its tile when normals are estimated.
@@ -169,10 +103,11 @@ class InverseDepthNormals {
   }
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
-    const GatedFit<Frame> fit(image_.inverse + image_.frame.index(x, y), image_.frame,
-                              recipe_.edges);
+    const Frame& frame = image_.frame;
+    const GatedWindow<TileAround, Frame::kRadius> window(
+        {image_.inverse + frame.index(x, y), frame.pitch()}, frame.radius(), recipe_.edges);
     WindowPlane first;
-    return normal_of_window(fit.run(first), fx(), fy(), du_axis(x), dv_axis(y));
+    return normal_of_window(window.fit(first), fx(), fy(), du_axis(x), dv_axis(y));
   }
 
  private:
@@ -235,7 +170,8 @@ class PcaNormals {
     }
     if (!extent.is_smooth(image_.inverse[image_.frame.index(x, y)], recipe_.edges)) return false;
     Moments m;
-    m.n = recipe_.window * recipe_.window;
+    const int side = 2 * image_.frame.radius() + 1;
+    m.n = side * side;
     m.y = column->vz, m.z = column->z, m.yy = column->vvz2, m.yz = column->vz2, m.zz = column->z2;
 #pragma unroll
     for (int d = 1; d <= image_.frame.radius(); ++d) {
@@ -245,29 +181,25 @@ class PcaNormals {
       add_square_columns(r.z2, l.z2, distance, m.xx, m.xz, m.zz);
       add_tilted_columns(r.vz2, l.vz2, r.vvz2, l.vvz2, distance, m.xy, m.yz, m.yy);
     }
-    normal = normal_of(m, x, y);
+    normal = normal_of(m, 1 / m.n, x, y);
     return true;
   }
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
-    const int at = image_.frame.index(x, y), radius = image_.frame.radius();
-    const GatedFit<Frame> fit(image_.inverse + at, image_.frame, recipe_.edges);
+    const Frame& frame = image_.frame;
+    const int at = frame.index(x, y);
+    const GatedWindow<TileAround, Frame::kRadius> window({image_.inverse + at, frame.pitch()},
+                                                         frame.radius(), recipe_.edges);
     WindowPlane first;
-    if (!fit.run(first).found) return {};
-    Moments m;
-    for (int dv = -radius; dv <= radius; ++dv) {
-      for (int du = -radius; du <= radius; ++du) {
-        // What is not kept would add 0.
-        if (fit.keeps(first, du, dv))
-          add_pixel(m, 1, image_.depth[at + dv * image_.frame.pitch() + du], du, dv);
-      }
-    }
-    return normal_of(m, x, y);
+    if (!window.fit(first).found) return {};
+    const Moments m = window.moments(first, TileAround(image_.depth + at, frame.pitch()));
+    return normal_of(m, quotient(1, m.n), x, y);
   }
 
  private:
-  __device__ __forceinline__ Vec3f normal_of(const Moments& m, int x, int y) const {
-    return normal_of_moments(m, recipe_.per_fx, recipe_.per_fy, image_.ray_x[x], image_.ray_y[y]);
+  __device__ __forceinline__ Vec3f normal_of(const Moments& m, double per_n, int x, int y) const {
+    return normal_of_moments(m, per_n, recipe_.per_fx, recipe_.per_fy, image_.ray_x[x],
+                             image_.ray_y[y]);
   }
 
   const CloudRecipe& recipe_;

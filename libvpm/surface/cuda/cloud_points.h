@@ -157,8 +157,6 @@ class TileWork {
   __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
     const Rotation to_world = recipe_.camera.to_world.rotation;
     for_pixels(doubtful, [&](int k, int x, int y, Vec3f normal, Vec3f in_world) {
-      if (recipe_.room.estimated != nullptr && tile_.holds(x, y))
-        recipe_.room.estimated[tile_.pixel(x, y)] = normal;
       Vec3f position{CUDART_NAN_F, CUDART_NAN_F, CUDART_NAN_F};
       const bool is_point = !is_zero(normal);
       if (is_point) {

@@ -9,7 +9,6 @@ struct CloudRoom {
   Vec3f* positions = nullptr;      // about the camera, world axes; NaN where there is no point
   Vec3f* normals = nullptr;        // world axes
   Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
-  Vec3f* estimated = nullptr;      // camera axes, as estimate_normals() has them; may be null
   float* measured = nullptr;       // inverse depth without holes that are to be closed
   InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
   std::int32_t levels = 0;

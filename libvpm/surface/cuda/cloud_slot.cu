@@ -49,7 +49,9 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       answer_(1),
       source_(new_source()),
       source_on_device_(&source_, 1),
-      preparation_(preparation_of(options.normals)) {
+      preparation_(preparation_of(options.normals)),
+      plan_(plan_normals(options.normals)),
+      gated_(pixels()) {
   counters_.clear();
 }
 
@@ -119,14 +121,17 @@ void CloudSlot::take(const PixelRectangle& wanted, cudaStream_t stream) const {
              stream);
 }
 
-void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream, Vec3f* estimated) const {
-  CloudSource source = source_;
-  source.recipe.room.estimated = estimated;
-  prepare_on_device(source.recipe, pixels_to_prepare(source.recipe, {wanted, placed_}),
-                    options().normals.method, preparation_, source.counters, source.answer,
+void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream) const {
+  prepare_on_device(source_.recipe, pixels_to_prepare(source_.recipe, {wanted, placed_}),
+                    options().normals.method, preparation_, source_.counters, source_.answer,
                     sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
-  settle_on_device(source.recipe, {wanted, made_}, preparation_.overlaps, stream);
+  settle_on_device(source_.recipe, {wanted, made_}, preparation_.overlaps, stream);
+}
+
+void CloudSlot::estimate(Vec3f* normals, cudaStream_t stream) const {
+  const GatedList gated{gated_.get(), &counters_.get()->gated, &counters_.get()->gated_done};
+  estimate_on_device(source_.recipe, options().normals.method, plan_, gated, normals, stream);
 }
 
 // Images of which all is asked for are made by kernels that fill the device. What was launched in
@@ -151,7 +156,7 @@ std::vector<Vec3f> CloudSlot::estimate_normals() {
   const DeviceArray<Vec3f> estimated(pixels());
   const OtherWork other;
   take(whole(), stream_.get());
-  make(whole(), stream_.get(), estimated.get());
+  estimate(estimated.get(), stream_.get());
   check(cudaStreamSynchronize(stream_.get()));
   std::vector<Vec3f> normals(pixels());
   check(cudaMemcpy(normals.data(), estimated.get(), normals.size() * sizeof(Vec3f),
@@ -227,7 +232,9 @@ namespace vpm {
 std::vector<Vec3f> estimate_on_device(const DepthImage& depth, const Intrinsics& intrinsics,
                                       const NormalOptions& options, const Device& device) {
   const cuda::CurrentDevice current(device.first());
-  if (!cuda::preparation_of(options).fits) return estimate_normals(depth, intrinsics, options);
+  if (!cuda::plan_normals(options).fits ||
+      !cuda::is_plain({intrinsics, depth.width, depth.height, {}}))
+    return estimate_normals(depth, intrinsics, options);
   cuda::CloudSlot slot({intrinsics, depth.width, depth.height, std::nullopt, options, device});
   std::memcpy(slot.image(), depth.depth.data(), slot.image_bytes());
   return slot.estimate_normals();

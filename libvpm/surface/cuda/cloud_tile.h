@@ -86,6 +86,7 @@ template <class TheShape, int Radius>
 class TileFrame {
  public:
   using Shape = TheShape;
+  static constexpr int kRadius = Radius;
 
   int u0, v0, width, height;  // width, height: of the image
 
@@ -183,13 +184,20 @@ __device__ __forceinline__ void wait_for_last() {
 #endif
 }
 
-// A block for each of a step's tiles. `overlaps`: the kernel waits for the last one itself.
+// Of a kernel that waits in this way: lets the one after it in the stream take what room there is,
+// once all blocks of this one have their own.
+__device__ __forceinline__ void let_next_begin() {
+#if __CUDA_ARCH__ >= 900
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+
+// `overlaps`: the kernel waits for the last one itself.
 template <class... Parameters, class... Arguments>
-void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
-                       std::size_t shared, bool overlaps, cudaStream_t stream,
-                       const Arguments&... arguments) {
+void launch_kernel(void (*kernel)(Parameters...), dim3 blocks, unsigned threads, std::size_t shared,
+                   bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
   cudaLaunchConfig_t launch{};
-  launch.gridDim = static_cast<unsigned>(pixels.tile_count<LargeTile>());
+  launch.gridDim = blocks;
   launch.blockDim = threads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;
@@ -199,6 +207,15 @@ void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), 
   launch.attrs = &overlap;
   launch.numAttrs = overlaps ? 1 : 0;
   check(cudaLaunchKernelEx(&launch, kernel, arguments...));
+}
+
+// A block for each of a step's tiles.
+template <class... Parameters, class... Arguments>
+void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
+                       std::size_t shared, bool overlaps, cudaStream_t stream,
+                       const Arguments&... arguments) {
+  launch_kernel(kernel, static_cast<unsigned>(pixels.tile_count<LargeTile>()), threads, shared,
+                overlaps, stream, arguments...);
 }
 
 }  // namespace vpm::cuda

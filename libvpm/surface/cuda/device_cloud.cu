@@ -42,8 +42,7 @@ void DeviceCloud::stand_at(const Pose& camera_to_world) {
 }
 
 CloudRoom DeviceCloud::room() const {
-  CloudRoom room{positions_.get(), normals_.get(),  pixel_normals_.get(),
-                 nullptr,          measured_.get(), {},
+  CloudRoom room{positions_.get(), normals_.get(), pixel_normals_.get(), measured_.get(), {},
                  depth_.levels};
   for (int level = 0; level < depth_.levels; ++level)
     room.tiles[level] = tiles_.get() + tile_begin_[level];

@@ -1,6 +1,7 @@
 // frame-stages CLOUD.vpmc [JSON]: how long a device takes for the stages of a depth frame, by its
-// own clock: to copy the image (the floor of what follows), to take it, and to make its cloud.
-// Eight copies of everything take turns, so that no cache is flattered.
+// own clock: to launch nothing and to copy the image (the floors of what follows), to take it, to
+// make its cloud, and to estimate its normals alone. Eight copies of everything take turns, so that
+// no cache is flattered.
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -17,14 +18,36 @@ namespace device = vpm::cuda;
 
 constexpr int kCopies = 8, kLaunches = 40, kRounds = 50, kWarmUp = 10;
 
+// Launches in a row as one graph: what the host takes to launch them is not counted.
+class Graph {
+ public:
+  template <class Launch>
+  Graph(cudaStream_t stream, const Launch& launch) {
+    cudaGraph_t graph = nullptr;
+    device::check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+    for (int k = 0; k < kLaunches; ++k) launch(static_cast<std::size_t>(k % kCopies));
+    device::check(cudaStreamEndCapture(stream, &graph));
+    device::check(cudaGraphInstantiate(&executable_, graph, 0));
+    device::check(cudaGraphDestroy(graph));
+  }
+  Graph(const Graph&) = delete;
+  Graph& operator=(const Graph&) = delete;
+  ~Graph() { cudaGraphExecDestroy(executable_); }
+  void launch(cudaStream_t stream) const { device::check(cudaGraphLaunch(executable_, stream)); }
+
+ private:
+  cudaGraphExec_t executable_ = nullptr;
+};
+
 // Microseconds of one of many launches in a row, the median of rounds.
 template <class Launch>
 double time_of(cudaStream_t stream, const Launch& launch) {
+  const Graph graph(stream, launch);
   const device::Event begin, end;
   std::vector<double> times;
   for (int round = -kWarmUp; round < kRounds; ++round) {
     device::check(cudaEventRecord(begin.get(), stream));
-    for (int k = 0; k < kLaunches; ++k) launch(static_cast<std::size_t>(k % kCopies));
+    graph.launch(stream);
     device::check(cudaEventRecord(end.get(), stream));
     device::check(cudaEventSynchronize(end.get()));
     if (round >= 0) times.push_back(microseconds_between(begin, end) / kLaunches);
@@ -32,6 +55,8 @@ double time_of(cudaStream_t stream, const Launch& launch) {
   std::nth_element(times.begin(), times.begin() + kRounds / 2, times.end());
   return times[kRounds / 2];
 }
+
+__global__ void do_nothing() {}
 
 DepthFrameOptions options_of(const Camera& camera, NormalMethod method, bool in_counts) {
   constexpr double kCountsPerMetre = 5000;
@@ -66,8 +91,16 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
     device::check(cudaMemcpyAsync(copy.get() + k * bytes, slots[k]->image(), bytes,
                                   cudaMemcpyHostToDevice, stream.get()));
   });
+  const double launching = time_of(stream.get(), [&](std::size_t) {
+    do_nothing<<<1, 1, 0, stream.get()>>>();
+    device::check(cudaGetLastError());
+  });
   const double taking =
       time_of(stream.get(), [&](std::size_t k) { slots[k]->take(all, stream.get()); });
+  const device::DeviceArray<Vec3f> normals(sensor.depth.depth.size() * kCopies);
+  const double estimating = time_of(stream.get(), [&](std::size_t k) {
+    slots[k]->estimate(normals.get() + k * sensor.depth.depth.size(), stream.get());
+  });
   const double making =
       time_of(stream.get(), [&](std::size_t k) { slots[k]->make(all, stream.get()); });
   const double both = time_of(stream.get(), [&](std::size_t k) {
@@ -77,8 +110,10 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
   return {{"method", to_text(method)},
           {"image", in_counts ? "counts" : "metres"},
           {"bytes", bytes},
+          {"launch_us", launching},
           {"copy_us", copying},
           {"take_us", taking},
+          {"normals_us", estimating},
           {"make_us", making},
           {"take_and_make_us", both}};
 }
