@@ -14,7 +14,6 @@ __global__ void __launch_bounds__(LargeTile::kPointThreads, blocks_for_tiles(Nor
   const TileWork<Normals> work(recipe, pixels, static_cast<int>(blockIdx.x), shared_memory);
   if (threadIdx.x == 0) gated = points = doubtful = 0;
   work.find_rays();
-  let_next_begin();
   wait_for_last();
   if (!work.is_done()) {
     find_normals(work, gated);

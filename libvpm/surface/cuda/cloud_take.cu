@@ -10,7 +10,6 @@ __global__ void __launch_bounds__(kThreads)
     take(const __grid_constant__ DepthSource source, const __grid_constant__ TakenDepths taken,
          const __grid_constant__ StepPixels pixels, const __grid_constant__ Camera camera,
          const __grid_constant__ CloudRoom room, bool clears_tiles, CloudCounters* counters) {
-  let_next_begin();
   const unsigned thread = blockIdx.x * kThreads + threadIdx.x;
   const Work work(source, taken, pixels, camera.width);
   if (thread < work.groups()) work.take(thread);
