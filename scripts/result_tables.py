@@ -270,15 +270,18 @@ def cuda_new_images(report):
                  [[thousands(n)] + [r[kind] for kind in kinds] for n, r in cuda_frame_queries(report)])
 
 
+def cuda_frame_rows(report):
+    kinds = ("prepared", "counts standing", "counts", "metres standing", "metres", "pca", "whole", "behind")
+    return table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
+                  "launched", "of metres, standing by", "launched", "of counts, PCA", "made whole, of counts",
+                  "in the image before, while the new one is made whole"],
+                 [[thousands(n)] + [r[kind] for kind in kinds] for n, r in cuda_frame_queries(report)])
+
+
 def cuda_frames(report):
-    rows = [[thousands(n)] + [r[kind] for kind in ("prepared", "counts standing", "counts", "metres standing", "metres", "pca",
-                                                          "whole", "behind")]
-            for n, r in cuda_frame_queries(report)]
-    stages = [[r["method"], r["image"], f"{r['copy_us']:.1f}", f"{r['take_us']:.1f}", f"{r['make_us']:.1f}",
-               f"{r['normals_us']:.1f}"] for r in report["stages"]]
-    return (table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
-                   "launched", "of metres, standing by", "launched", "of counts, PCA", "made whole, of counts",
-                   "in the image before, while the new one is made whole"], rows)
+    keys = ("copy_us", "take_us", "make_us", "normals_us")
+    stages = [[r["method"], r["image"]] + [f"{r[key]:.1f}" for key in keys] for r in report["stages"]]
+    return (cuda_frame_rows(report)
             + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "whole image", "copy alone (the floor), µs",
                               "brought by the kernel", "normals and all that queries read", "normals alone"], stages))
 
@@ -323,6 +326,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "cuda": (cuda, "cuda"), "cuda new images": (cuda_new_images, "cuda_frames"), "scaling": (scaling, "scaling")},
          "libvpm/query/README.md": {"single precision": (single_precision, "single_precision"),
                                     "cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
+                                    "cuda million": (cuda_frame_rows, "cuda_frames_million"),
                                      "cuda devices": (cuda_devices, "cuda_devices")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
 
