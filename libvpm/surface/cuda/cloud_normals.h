@@ -4,6 +4,7 @@
 
 #include "libvpm/surface/cuda/cloud_tile.h"
 #include "libvpm/surface/cuda/gated_window.h"
+#include "libvpm/surface/cuda/image_around.h"
 
 namespace vpm::cuda {
 
@@ -21,26 +22,6 @@ struct Extent {
   __device__ bool is_smooth(float centre, const EdgeGate& edges) const {
     return low > 0 && low >= edges.lowest * centre && high <= edges.highest * centre;
   }
-};
-
-// A tile's image about one of its pixels.
-class TileAround {
- public:
-  __device__ TileAround(const float* centre, int pitch) : centre_(centre), pitch_(pitch) {}
-  class Column {
-   public:
-    __device__ Column(const float* middle, int pitch) : middle_(middle), pitch_(pitch) {}
-    __device__ __forceinline__ float value(int dv) const { return middle_[dv * pitch_]; }
-
-   private:
-    const float* middle_;
-    int pitch_;
-  };
-  __device__ __forceinline__ Column column(int du) const { return {centre_ + du, pitch_}; }
-
- private:
-  const float* centre_;
-  int pitch_;
 };
 
 // What a block knows of its tile when normals are estimated.

@@ -52,29 +52,12 @@ Choice choose(NormalMethod method, int radius) {
                                      : choose<InverseDepthNormals>(radius);
 }
 
-// Whether the kernel waits for its image itself, so that it may be launched before that is there.
-// Machine code made from older PTX does not.
-bool waits_for_image(Kernel kernel) {
-  cudaFuncAttributes attributes;
-  check(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)));
-  return attributes.ptxVersion >= 90 && attributes.binaryVersion >= 90;
-}
-
-// What every kernel may take without asking.
-constexpr std::size_t kSharedBytes = 48 * 1024;
-
 }  // namespace
 
 Preparation preparation_of(const NormalOptions& options) {
-  int most = 0;
-  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, current_device()));
   const Choice choice = choose(options.method, options.window / 2);
-  if (choice.bytes > static_cast<std::size_t>(most)) return {};
-  if (choice.bytes > kSharedBytes)
-    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(choice.kernel),
-                               cudaFuncAttributeMaxDynamicSharedMemorySize,
-                               static_cast<int>(choice.bytes)));
-  return {true, waits_for_image(choice.kernel)};
+  if (!has_shared_memory(choice.kernel, choice.bytes)) return {};
+  return {true, waits_for_last(choice.kernel)};
 }
 
 void prepare_on_device(const CloudRecipe& recipe, const StepPixels& pixels, NormalMethod method,

@@ -32,9 +32,6 @@ __device__ inline void answer_with(const volatile CloudCounters& counters, Cloud
   put(numbered(sequence, counters.points), answer->points);
 }
 
-// Of the default window: kernels know it beforehand.
-inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
-
 // What the current device can do with windows of this size.
 struct Preparation {
   bool fits = false;      // its shared memory holds them

@@ -40,6 +40,9 @@ VPM_HD constexpr int blocks_for_tiles(int wanted) {
 #endif
 }
 
+// Of the default window: kernels know it beforehand.
+inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
+
 // An image and how its cloud is made.
 struct CloudRecipe {
   const float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
@@ -191,6 +194,29 @@ __device__ __forceinline__ void let_next_begin() {
 #if __CUDA_ARCH__ >= 900
   cudaTriggerProgrammaticLaunchCompletion();
 #endif
+}
+
+// Whether a kernel waits in this way, so that it may be launched before what comes before it is
+// done. Machine code made from older PTX does not.
+template <class... Parameters>
+bool waits_for_last(void (*kernel)(Parameters...)) {
+  cudaFuncAttributes attributes;
+  check(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(kernel)));
+  return attributes.ptxVersion >= 90 && attributes.binaryVersion >= 90;
+}
+
+// Whether the current device has so much for a block of the kernel, which may take it then.
+template <class... Parameters>
+bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
+  constexpr std::size_t kWithoutAsking = 48 * 1024;
+  int most = 0;
+  check(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, current_device()));
+  if (bytes > static_cast<std::size_t>(most)) return false;
+  if (bytes > kWithoutAsking)
+    check(cudaFuncSetAttribute(reinterpret_cast<const void*>(kernel),
+                               cudaFuncAttributeMaxDynamicSharedMemorySize,
+                               static_cast<int>(bytes)));
+  return true;
 }
 
 // `overlaps`: the kernel waits for the last one itself.
