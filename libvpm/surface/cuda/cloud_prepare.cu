@@ -5,7 +5,8 @@ namespace vpm::cuda {
 namespace {
 
 template <class Normals>
-__global__ void __launch_bounds__(LargeTile::kPointThreads, blocks_for_tiles(Normals::kMostBlocks))
+__global__ void __launch_bounds__(LargeTile::kPointThreads,
+                                  blocks_at_once(Normals::kMostBlocks, LargeTile::kPointThreads))
     prepare_cloud(const __grid_constant__ CloudRecipe recipe,
                   const __grid_constant__ StepPixels pixels, CloudCounters* counters,
                   CloudAnswer* answer, unsigned sequence) {

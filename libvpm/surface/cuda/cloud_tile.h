@@ -31,13 +31,15 @@ using LargeTile = TileShape<kTileWidth, kTileHeight, 256, kTileWidth * kTileHeig
 using SmallTile = TileShape<16, 16, 128, 128, 1>;
 
 // Blocks of a multiprocessor: so many, if it has threads for them.
-VPM_HD constexpr int blocks_for_tiles(int wanted) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
-  constexpr int kMost = 1024 / LargeTile::kPointThreads;
-  return wanted < kMost ? wanted : kMost;
+VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || __CUDA_ARCH__ == 900 || __CUDA_ARCH__ == 1000
+  const int most = 2048 / threads;
+#elif __CUDA_ARCH__ >= 860
+  const int most = 1536 / threads;
 #else
-  return wanted;
+  const int most = 1024 / threads;
 #endif
+  return wanted < most ? wanted : most;
 }
 
 // Of the default window: kernels know it beforehand.

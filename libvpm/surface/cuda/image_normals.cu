@@ -9,7 +9,7 @@ namespace {
 constexpr int kSmoothBlocks = 5;  // of a multiprocessor: all that a usual image has, at once
 
 template <class Smooth>
-__global__ void __launch_bounds__(Smooth::kThreads, kSmoothBlocks)
+__global__ void __launch_bounds__(Smooth::kThreads, blocks_at_once(kSmoothBlocks, Smooth::kThreads))
     find_smooth(const __grid_constant__ CloudRecipe recipe, const GatedList gated, Vec3f* normals) {
   extern __shared__ double2 shared_memory[];
   const SmoothTile<Smooth> tile(recipe, shared_memory);
@@ -56,7 +56,7 @@ __device__ __forceinline__ unsigned take_count(const GatedList& gated) {
 // Two lanes take a window. Where there are more windows than pairs, they take two, one after the
 // other, and each finds the planes and the normal of one.
 template <NormalMethod kMethod, int Radius>
-__global__ void __launch_bounds__(kGatedThreads, kGatedBlocks)
+__global__ void __launch_bounds__(kGatedThreads, blocks_at_once(kGatedBlocks, kGatedThreads))
     fit_gated(const __grid_constant__ CloudRecipe recipe, const GatedList gated, Vec3f* normals) {
   constexpr unsigned kPairs = 32 / 2;  // of a warp
   const unsigned warp = threadIdx.x / 32 * gridDim.x + blockIdx.x;
