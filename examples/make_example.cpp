@@ -1,5 +1,5 @@
-// make-example FOLDER [SCENE]: a tool, what a noisy depth camera sees of a scene, a path of the tool
-// into it, and what is true on it. Scenes: libvpm/synthetic/scenes.h; by default a bowl.
+// make-example FOLDER [SCENE]: a tool, what a noisy depth camera sees of a scene, a path of the
+// tool into it, and what is true on it. Scenes: libvpm/synthetic/scenes.h; by default a bowl.
 //   tool.off      a twisted torus of 0.2 m
 //   depth.png     640 x 480 pixels, 5000 units per metre, f = 525 px, Kinect noise
 //   poses.jsonl   one pose per line: [tx,ty,tz,qx,qy,qz,qw]
