@@ -156,7 +156,8 @@ struct Symmetric3 {
 };
 
 // Newton steps from below to the smallest root of the characteristic polynomial. They double the
-// digits once past the first few; with the two small eigenvalues as 1 to 2, six reach a float's.
+// digits once past the first few; with the two small eigenvalues as 1 to 2, six reach a float's,
+// and these are enough for all that are not nearly the same.
 inline constexpr int kEigenSteps = 8;
 
 // For a matrix of trace 1 in floats: values of the polynomial that are rounding noise; squared

@@ -232,6 +232,7 @@ namespace vpm {
 std::vector<Vec3f> estimate_on_device(const DepthImage& depth, const Intrinsics& intrinsics,
                                       const NormalOptions& options, const Device& device) {
   const cuda::CurrentDevice current(device.first());
+  // Other cameras may lead to lengths beyond those that devices divide by (core/division.h).
   if (!cuda::plan_normals(options).fits ||
       !cuda::is_plain({intrinsics, depth.width, depth.height, {}}))
     return estimate_normals(depth, intrinsics, options);
