@@ -76,9 +76,20 @@ struct WholeWindow {
 // surface has there, relative to the centre's and minus 1, as is `difference`.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline auto is_in_gate(Real value, Real difference, Real expected,
-                                                     float allowed) {
+                                                     std::type_identity_t<Real> allowed) {
   const Real off = difference - expected;
   return (off <= allowed) & (off >= -allowed) & (value > 0.0F);
+}
+
+// Whether something that was measured is no part of the centre's surface, whatever its plane.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline auto is_beyond_gate(Real value, Real difference, Real gate) {
+  return ((difference > gate) | (difference < -gate)) & (value > 0.0F);
+}
+
+[[gnu::always_inline]] VPM_HD inline bool is_beyond_gate(float value, float difference,
+                                                         float gate) {
+  return std::fabs(difference) > gate && value > 0;
 }
 
 // Of one window; `allowed` is not below 0.
@@ -119,10 +130,11 @@ template <class Real>
   const auto found = static_cast<typename FittedPlane<Real>::Mask>(
       (s.n >= double{kMinSupport}) & (determinant >= kMinSpread * s.n * s.n * (uu + vv)));
   const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e;
-  const Real unit = ratio(Real{} + 1.0, determinant);
+  const Real both = ratio(Real{} + 1.0, determinant * s.n);  // one division instead of two
+  const Real unit = both * s.n, per_n = both * determinant;
   const Real a = (ue * vv - ve * uv) * unit;
   const Real b = (ve * uu - ue * uv) * unit;
-  const Real c = ratio(s.e - a * s.u - b * s.v, s.n);
+  const Real c = (s.e - a * s.u - b * s.v) * per_n;
   return {found, found ? a : Real{}, found ? b : Real{}, found ? c : Real{}};
 }
 
@@ -235,14 +247,25 @@ struct MomentsOf {
 };
 using Moments = MomentsOf<double>;
 
+// Of gated windows: sums of 1, z, v z, z^2, v z^2 and v^2 z^2 over what is kept of a column, from
+// its least dv on; then over columns, from the least du on.
 template <class Real>
-[[gnu::always_inline]] VPM_HD inline void add_pixel(MomentsOf<Real>& m,
-                                                    std::type_identity_t<Real> weight,
-                                                    std::type_identity_t<Real> depth, double du,
+struct KeptDepths {
+  Real n{}, z{}, vz{}, z2{}, vz2{}, vvz2{};
+};
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_depth(KeptDepths<Real>& column, const Real& depth,
                                                     double dv) {
-  const Real z = weight * depth, x = du * z, y = dv * z;
-  m.n += weight, m.x += x, m.y += y, m.z += z;
-  m.xx += x * x, m.xy += x * y, m.xz += x * z, m.yy += y * y, m.yz += y * z, m.zz += z * z;
+  const Real square = depth * depth;
+  column.z += depth, column.vz += dv * depth;
+  column.z2 += square, column.vz2 += dv * square, column.vvz2 += dv * dv * square;
+}
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_kept(MomentsOf<Real>& m,
+                                                   const KeptDepths<Real>& column, double du) {
+  m.n += column.n, m.x += du * column.z, m.y += column.vz, m.z += column.z;
+  m.xx += du * du * column.z2, m.xy += du * column.vz2, m.xz += du * column.z2;
+  m.yy += column.vvz2, m.yz += column.vz2, m.zz += column.z2;
 }
 
 // Of whole windows, in opposite pairs as above. Sums of z and v z, of z^2, v z^2 and v^2 z^2 in a

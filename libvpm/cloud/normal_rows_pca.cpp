@@ -140,13 +140,15 @@ void gated_moments(const PaddedImage& depth, const GatedWindows& windows, int ra
   constexpr int kHalf = kLanes / 2;  // as many doubles fill a vector
   for (int half = 0; half < kLanes; half += kHalf) {
     MomentsOf<Doubles> m;
-    for (int dv = -radius; dv <= radius; ++dv) {
-      const float* row = depth.at(u, v + dv);
-      for (int du = -radius; du <= radius; ++du) {
-        const Floats weights = load<Floats>(windows.weights(du, dv)),
-                     depths = load<Floats>(row + du);
-        add_pixel(m, doubles(weights, half), doubles(depths, half), du, dv);
+    for (int du = -radius; du <= radius; ++du) {
+      KeptDepths<Doubles> column;
+      for (int dv = -radius; dv <= radius; ++dv) {
+        const Doubles weights = doubles(load<Floats>(windows.weights(du, dv)), half),
+                      depths = doubles(load<Floats>(depth.at(u + du, v + dv)), half);
+        column.n += weights;
+        add_depth(column, weights * depths, dv);
       }
+      add_kept(m, column, du);
     }
     store(m.n, moments.n + half), store(m.x, moments.x + half), store(m.y, moments.y + half);
     store(m.z, moments.z + half), store(m.xx, moments.xx + half), store(m.xy, moments.xy + half);

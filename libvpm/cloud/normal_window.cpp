@@ -97,22 +97,22 @@ int SmoothWindows::next_rough(int u) const {
 
 GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& options,
                            const EdgeGate& edges)
-    : inverse_(inverse), radius_(options.window / 2) {
+    : inverse_(inverse), radius_(options.window / 2), gate_(edges.gate) {
   for (int du = -radius_; du <= radius_; ++du) {
     for (int dv = -radius_; dv <= radius_; ++dv) {
       const float reach = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
       wide_gates_.push_back(edges.gate + edges.slope * reach);
-      gates_.push_back(edges.gate);
     }
   }
-  weights_.resize(gates_.size() * kLanes);
+  weights_.resize(wide_gates_.size() * kLanes);
 }
 
 // What lies off the planes by no more than the gates, summed. The first time there are no planes.
 template <bool kFirst, class Radius>
 [[gnu::always_inline]] inline GatedWindows::Sums GatedWindows::sum_admitted(const float* centre,
                                                                             Radius radius) {
-  const float* gates = kFirst ? wide_gates_.data() : gates_.data();
+  const float* wide_gate = wide_gates_.data();
+  const Floats gate = kFirst ? Floats{} + gate_ : load<Floats>(gates_);
   float* weights = weights_.data();
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
   const Floats middle = load<Floats>(centre), unit = 1.0F / middle;
@@ -129,14 +129,16 @@ template <bool kFirst, class Radius>
     for (int row = 0; row <= 2 * radius; ++row) {
       const Floats value = load<Floats>(at), difference = (value - middle) * unit;
       const Floats expected = kFirst ? Floats{} : predicted + near_b * y;
-      const Ints kept = is_in_gate(value, difference, expected, *gates);
+      const Floats allowed = kFirst ? Floats{} + *wide_gate : gate;
+      const Ints kept = is_in_gate(value, difference, expected, allowed);
+      if constexpr (kFirst) sums.has_edge |= is_beyond_gate(value, difference, gate);
       const Floats weight = kept ? Floats{} + 1.0F : Floats{}, e = kept ? difference : Floats{};
-      if constexpr (!kFirst) store(weight, weights);
+      store(weight, weights);
       const Floats wy = y * weight;
       count += weight, y1 += wy, y2 += y * wy;
       e1 += e, ye += y * e;
       y += 1.0F;
-      at += stride, weights += kLanes, ++gates;
+      at += stride, weights += kLanes, ++wide_gate;
     }
     const int k = du + radius;
     sums.column_e[k] = e1, sums.column_ue[k] = x * e1, sums.column_ve[k] = ye;
@@ -149,6 +151,7 @@ template <bool kFirst, class Radius>
 template <bool kFirst, class Radius>
 [[gnu::always_inline]] inline void GatedWindows::fit_admitted(const float* centre, Radius radius) {
   const Sums s = sum_admitted<kFirst>(centre, radius);
+  if constexpr (kFirst) store(s.has_edge ? Floats{} + gate_ : Floats{} + kOpen, gates_);
   for (int first = 0; first < kLanes; first += kLanes / 2) {
     Doubles e{}, ue{}, ve{};
     for (int k = 0; k <= 2 * radius; k += kColumns) {
@@ -185,6 +188,11 @@ const GatedWindows::Planes& GatedWindows::fit(int u, int v) {
   planes_ = {};
   if (std::none_of(centre, centre + kLanes, [](float c) { return c > 0; })) return planes_;
   fit_first(centre);
+  if (std::none_of(gates_, gates_ + kLanes, [](float gate) { return gate < kOpen; })) {
+    for (int i = 0; i < kLanes; ++i)
+      if (!(centre[i] > 0)) planes_.found[i] = 0;
+    return planes_;
+  }
   std::int32_t found[kLanes];
   for (int i = 0; i < kLanes; ++i) found[i] = centre[i] > 0 ? planes_.found[i] : 0;
   fit_second(centre);

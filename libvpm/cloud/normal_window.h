@@ -65,8 +65,10 @@ inline void take_rough(const SmoothWindows& windows, int first, const float* x, 
 // The pixels that belong to the surface of their window's centre, and their plane: of kLanes
 // windows at once, whose centres are neighbours in a row.
 //
-// A first choice admits what the steepest plausible surface through the centre could reach; the
-// plane fitted to it then leaves only what lies within the edge gate of that plane.
+// A first choice admits what the steepest plausible surface through the centre could reach. Where
+// something of the window is beyond the edge gate of its centre, the plane fitted to that choice
+// leaves only what lies within the edge gate of that plane. Other windows have no edge, only holes
+// or the image's border: all that was measured belongs to them.
 class GatedWindows {
  public:
   GatedWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
@@ -91,6 +93,7 @@ class GatedWindows {
   // Over the admitted pixels: integers, exact in any order, and the sums of each column.
   struct Sums {
     Floats n{}, u{}, v{}, uu{}, uv{}, vv{};
+    Ints has_edge{};  // found by the first choice
     Floats column_e[kMostColumns], column_ue[kMostColumns], column_ve[kMostColumns];
   };
   template <bool kFirst, class Radius>
@@ -102,7 +105,9 @@ class GatedWindows {
 
   const PaddedImage& inverse_;
   int radius_;
-  std::vector<float> wide_gates_, gates_;  // of (du, dv): the first choice's, the second one's
+  float gate_;
+  std::vector<float> wide_gates_;  // of (du, dv): the first choice's
+  float gates_[kLanes];            // of the lanes' windows: the second one's
   Planes planes_;
   std::vector<float> weights_;
 };

@@ -7,7 +7,9 @@
 // - pca: eigenvector of the smallest eigenvalue of the points' covariance (section 3.1 of
 //   Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure for 6-DOF Haptic Rendering of
 //   Streaming Point Clouds", 2017).
-// Both leave out of a window what lies across a depth edge, seen from its centre.
+// Both leave out of a window what lies across a depth edge, seen from its centre: where something
+// differs from the centre's inverse depth by more than the edge gate, what is further than that
+// from the centre's surface. Windows without such an edge keep all that was measured.
 //
 // The same input gives the same bits for any number of threads and any IEEE compiler; depth scaled
 // by a power of two gives the same normals.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <random>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -190,6 +191,28 @@ TEST_P(Normals, DependOnTheWindowAlone) {
   for (std::uint32_t v = kMargin; v < kHeight - kMargin; ++v) {
     for (std::uint32_t u = kMargin; u < kWidth - kMargin; ++u)
       ASSERT_EQ(found[part.index(u, v)], whole[scene.depth.index(kU + u, kV + v)]);
+  }
+}
+
+TEST_P(Normals, WhereNothingIsAnEdgeTheGateChangesNothing) {
+  // Noise below the gate, and holes: all that was measured belongs to the surface.
+  DepthImage image = plane_image(kSmallCamera, Vec3{0.2, -0.1, -1} / norm({0.2, -0.1, -1}), 1);
+  std::mt19937 random(7);
+  for (float& depth : image.depth)
+    depth = random() % 5 == 0 ? 0 : depth * (1 + 0.007F * static_cast<float>(random() % 100) / 100);
+  EXPECT_TRUE(same_bits(normals(image, kSmallCamera),
+                        estimate_normals(image, kSmallCamera.intrinsics, options(7, 0))));
+  // An edge gates the windows that it crosses, and no others.
+  image.depth[image.index(16, 12)] *= 2;
+  const auto gated = normals(image, kSmallCamera),
+             open = estimate_normals(image, kSmallCamera.intrinsics, options(7, 0));
+  for (std::uint32_t v = 0; v < image.height; ++v) {
+    for (std::uint32_t u = 0; u < image.width; ++u) {
+      const bool crossed = u >= 13 && u <= 19 && v >= 9 && v <= 15;
+      const std::size_t i = image.index(u, v);
+      if (!exists(open[i])) continue;
+      EXPECT_EQ(gated[i] != open[i], crossed) << u << " " << v;
+    }
   }
 }
 

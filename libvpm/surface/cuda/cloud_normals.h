@@ -4,31 +4,14 @@
 
 #include "libvpm/surface/cuda/cloud_tile.h"
 #include "libvpm/surface/cuda/gated_window.h"
-#include "libvpm/surface/cuda/image_around.h"
 
 namespace vpm::cuda {
-
-// Least and greatest inverse depth of a column, then of a window.
-struct Extent {
-  float low, high;
-
-  __device__ explicit Extent(float value) : low(value), high(value) {}
-  __device__ Extent(float least, float most) : low(least), high(most) {}
-  __device__ void take(Extent other) {
-    low = other.low < low ? other.low : low;
-    high = other.high > high ? other.high : high;
-  }
-  // Whether a window is whole, measured everywhere and without an edge.
-  __device__ bool is_smooth(float centre, const EdgeGate& edges) const {
-    return low > 0 && low >= edges.lowest * centre && high <= edges.highest * centre;
-  }
-};
 
 // What a block knows of its tile when normals are estimated.
 template <class Frame>
 struct TileImage {
   Frame frame;
-  const float *inverse, *depth;  // with the margin; depth only where it is needed
+  const float *inverse, *depth;  // with the margin (tile_around.h); depth only where it is needed
   const double *ray_x, *ray_y;   // of the tile's columns and rows
 };
 
@@ -41,7 +24,8 @@ class InverseDepthNormals {
   static constexpr bool kNeedsDepth = false;
   static constexpr int kMostBlocks = 5;  // of a multiprocessor
   struct alignas(16) Column {
-    float low, high, s, vs;
+    int low, high;
+    float s, vs;
   };
 
   __device__ __forceinline__ InverseDepthNormals(const CloudRecipe& recipe,
@@ -58,8 +42,7 @@ class InverseDepthNormals {
     for (int d = 1; d <= frame.radius(); ++d) {
       const float below = middle[d * frame.pitch()], above = middle[-d * frame.pitch()];
       add_rows(below, above, static_cast<float>(d), s, vs);
-      extent.take(Extent(below));
-      extent.take(Extent(above));
+      extent.take(Extent(below), Extent(above));
     }
     return {extent.low, extent.high, s, vs};
   }
@@ -74,8 +57,7 @@ class InverseDepthNormals {
     for (int d = 1; d <= image_.frame.radius(); ++d) {
       const Column right = column[d], left = column[-d];
       add_columns(right.s, left.s, right.vs, left.vs, static_cast<float>(d), s, us, vs);
-      extent.take({right.low, right.high});
-      extent.take({left.low, left.high});
+      extent.take({right.low, right.high}, {left.low, left.high});
     }
     if (!extent.is_smooth(centre, recipe_.edges)) return false;
     normal = normal_of_plane<float>(recipe_.whole.plane(s, us, vs, centre), fx(), fy(), du_axis(x),
@@ -85,10 +67,10 @@ class InverseDepthNormals {
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
     const Frame& frame = image_.frame;
-    const GatedWindow<TileAround, Frame::kRadius> window(
-        {image_.inverse + frame.index(x, y), frame.pitch()}, frame.radius(), recipe_.edges);
-    WindowPlane first;
-    return normal_of_window(window.fit(first), fx(), fy(), du_axis(x), dv_axis(y));
+    const GatedWindow<Frame::kRadius> window({image_.inverse + frame.index(x, y), frame.pitch()},
+                                             frame.radius(), recipe_.edges);
+    LastChoice last;
+    return normal_of_window(window.fit(last), fx(), fy(), du_axis(x), dv_axis(y));
   }
 
  private:
@@ -117,7 +99,7 @@ class PcaNormals {
   static constexpr int kMostBlocks = 3;
   struct Column {
     double z, vz, z2, vz2, vvz2;
-    float low, high;
+    int low, high;
   };
 
   __device__ __forceinline__ PcaNormals(const CloudRecipe& recipe, const TileImage<Frame>& image)
@@ -135,8 +117,7 @@ class PcaNormals {
       const double below = image_.depth[b], above = image_.depth[a], distance = d;
       add_depth_rows(below, above, distance, z, vz);
       add_square_rows(below, above, distance, z2, vz2, vvz2);
-      extent.take(Extent(image_.inverse[b]));
-      extent.take(Extent(image_.inverse[a]));
+      extent.take(Extent(image_.inverse[b]), Extent(image_.inverse[a]));
     }
     return {z, vz, z2, vz2, vvz2, extent.low, extent.high};
   }
@@ -146,8 +127,7 @@ class PcaNormals {
     Extent extent(column->low, column->high);
 #pragma unroll
     for (int d = 1; d <= image_.frame.radius(); ++d) {
-      extent.take({column[d].low, column[d].high});
-      extent.take({column[-d].low, column[-d].high});
+      extent.take({column[d].low, column[d].high}, {column[-d].low, column[-d].high});
     }
     if (!extent.is_smooth(image_.inverse[image_.frame.index(x, y)], recipe_.edges)) return false;
     Moments m;
@@ -169,11 +149,11 @@ class PcaNormals {
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
     const Frame& frame = image_.frame;
     const int at = frame.index(x, y);
-    const GatedWindow<TileAround, Frame::kRadius> window({image_.inverse + at, frame.pitch()},
-                                                         frame.radius(), recipe_.edges);
-    WindowPlane first;
-    if (!window.fit(first).found) return {};
-    const Moments m = window.moments(first, TileAround(image_.depth + at, frame.pitch()));
+    const GatedWindow<Frame::kRadius> window({image_.inverse + at, frame.pitch()}, frame.radius(),
+                                             recipe_.edges);
+    LastChoice last;
+    if (!window.fit(last).found) return {};
+    const Moments m = window.moments(last, TileAround(image_.depth + at, frame.pitch()));
     return normal_of(m, quotient(1, m.n), x, y);
   }
 

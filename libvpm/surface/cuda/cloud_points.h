@@ -88,7 +88,7 @@ class TileWork {
         const int k = begin + i * Shape::kPointThreads;
         const int x = k % tile_.pitch() - tile_.margin(), y = k / tile_.pitch() - tile_.margin();
         const bool is_known = k < count && tile_.is_known(x, y);
-        inverse[i] = is_known ? inverses[tile_.pixel(x, y)] : 0.0F;
+        inverse[i] = is_known ? measured_or_none(inverses[tile_.pixel(x, y)]) : unmeasured();
         if constexpr (Normals::kNeedsDepth) depth[i] = is_known ? depths[tile_.pixel(x, y)] : 0.0F;
         unknown |= is_known && !(inverse[i] > 0);
       }

@@ -17,8 +17,7 @@ struct CloudAnswer {
 
 struct CloudCounters {
   unsigned points = 0, doubtful = 0;
-  unsigned done = 0;                   // blocks of a launch; 0 between launches
-  unsigned gated = 0, gated_done = 0;  // of image_normals.h
+  unsigned done = 0;  // blocks of a launch; 0 between launches
 };
 
 // By one thread of each block, with what it has counted; then, when all have come, by one.

@@ -50,8 +50,7 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       source_(new_source()),
       source_on_device_(&source_, 1),
       preparation_(preparation_of(options.normals)),
-      plan_(plan_normals(options.normals)),
-      gated_(pixels()) {
+      plan_(plan_normals(options.normals)) {
   counters_.clear();
 }
 
@@ -130,8 +129,7 @@ void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream) const {
 }
 
 void CloudSlot::estimate(Vec3f* normals, cudaStream_t stream) const {
-  const GatedList gated{gated_.get(), &counters_.get()->gated, &counters_.get()->gated_done};
-  estimate_on_device(source_.recipe, options().normals.method, plan_, gated, normals, stream);
+  estimate_on_device(source_.recipe, options().normals.method, plan_, normals, stream);
 }
 
 // Images of which all is asked for are made by kernels that fill the device. What was launched in

@@ -99,7 +99,6 @@ class CloudSlot : public FrameSlot {
   DeviceArray<CloudSource> source_on_device_;
   Preparation preparation_;
   NormalsPlan plan_;
-  DeviceArray<std::uint32_t> gated_;
   bool is_plain_ = false;
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
   mutable std::mutex making_;                                                     // of what follows

@@ -2,7 +2,7 @@
 // GatedWindows (libvpm/cloud/normal_window.h) in the same order.
 #pragma once
 
-#include "libvpm/cloud/normal_window.h"
+#include "libvpm/surface/cuda/tile_around.h"
 
 namespace vpm::cuda {
 
@@ -10,10 +10,9 @@ namespace vpm::cuda {
 // difference and dv times it. Counts are integers, exact in any order: they share a word.
 class KeptColumn {
  public:
-  __device__ __forceinline__ void add(bool is_kept, float difference, int dv) {
-    counts_ += is_kept ? (dv << kFirst) + (dv * dv << kSecond) + 1 : 0;
-    const float e = is_kept ? difference : 0.0F;
-    e_ += e, ye_ += static_cast<float>(dv) * e;
+  __device__ __forceinline__ void add(float difference, int dv) {
+    counts_ += (dv << kFirst) + (dv * dv << kSecond) + 1;
+    e_ += difference, ye_ += static_cast<float>(dv) * difference;
   }
   __device__ int pixels() const { return counts_ & ((1 << kSecond) - 1); }
   __device__ int y() const { return counts_ >> kFirst; }
@@ -43,44 +42,100 @@ struct KeptDifferences {
   }
 };
 
-// `Image` has the inverse depths about the window's centre: column(du).value(dv), 0 beyond the
-// image. `Radius`: 0 if it is known at run time only.
-template <class Image, int Radius>
+// Which pixels a window's last choice has kept: those no further from a plane than the gate.
+struct LastChoice {
+  WindowPlane near;
+  float gate = HUGE_VALF;
+};
+
+// Who adds up a window's columns, and then knows the sums: a lane, or two side by side that take
+// half of the columns each, whole warps. (To choose at run time makes slower code of both.)
+struct OneLane {
+  template <class Half>
+  __device__ __forceinline__ KeptDifferences add(const Half& half) const {
+    KeptDifferences both;
+#pragma unroll 1  // half as much code to read, where few windows share it
+    for (int k = 0; k < 2; ++k) {
+      const KeptDifferences one = half(k);
+      both = k == 0 ? one : both + one;
+    }
+    return both;
+  }
+  __device__ int add(int own) const {
+    return own;
+  }
+  __device__ bool any(bool own) const {
+    return own;
+  }
+};
+struct TwoLanes {
+  template <class Half>
+  __device__ __forceinline__ KeptDifferences add(const Half& half) const {
+    const KeptDifferences own = half(static_cast<int>(threadIdx.x) % 2);
+    return {own.e + other(own.e), own.ue + other(own.ue), own.ve + other(own.ve)};
+  }
+  __device__ int add(int own) const { return own + other(own); }
+  __device__ bool any(bool own) const { return (int{own} | other(int{own})) != 0; }
+
+ private:
+  template <class T>
+  __device__ static T other(T own) {
+    return __shfl_xor_sync(~0U, own, 1);
+  }
+};
+
+// `Radius`: 0 if it is known at run time only.
+template <int Radius>
 class GatedWindow {
  public:
-  __device__ __forceinline__ GatedWindow(const Image& image, int radius, const EdgeGate& edges)
+  __device__ __forceinline__ GatedWindow(const TileAround& image, int radius, const EdgeGate& edges)
       : image_(image),
         radius_(radius),
         edges_(edges),
-        middle_(image.column(0).value(0)),
+        middle_(image.at(0, 0)),
         unit_(reciprocal(middle_)) {}
 
-  // The last choice of pixels is by the gate about the plane `first`.
-  __device__ __forceinline__ WindowPlane fit(WindowPlane& first) const {
-    WindowPlane plane;
-#pragma unroll 1
-    for (int choice = 0; choice < 2; ++choice) {
-      first = plane;
-      plane = plane_of_sums(choose(first, choice == 0, OneLane()));
-      if (!plane.found) break;
-    }
-    return plane;
+  __device__ __forceinline__ WindowPlane fit(LastChoice& last) const {
+    bool has_edge;
+    const WindowPlane first = plane_of_sums(choose_first(OneLane(), has_edge));
+    last = {};
+    if (!has_edge || !first.found) return first;
+    last = {first, edges_.gate};
+    return plane_of_sums(choose_last(OneLane(), first));
   }
-  // Sums over what the steepest surface could reach, or over what lies near a plane; by two lanes
-  // side by side. By whole warps.
-  __device__ __forceinline__ PlaneSums choose_by_two(const WindowPlane& near, bool is_first) const {
-    return choose(near, is_first, TwoLanes());
+  // Sums over what the steepest surface could reach, and whether something is beyond the edge gate
+  // of the centre.
+  template <class Lanes>
+  __device__ __forceinline__ PlaneSums choose_first(const Lanes& lanes, bool& has_edge) const {
+    has_edge = false;
+    const PlaneSums sums = choose<true>({}, lanes, has_edge);
+    has_edge = lanes.any(has_edge);
+    return sums;
+  }
+  // Over what lies near a plane.
+  template <class Lanes>
+  __device__ __forceinline__ PlaneSums choose_last(const Lanes& lanes,
+                                                   const WindowPlane& near) const {
+    bool has_edge = false;
+    return choose<false>(near, lanes, has_edge);
   }
 
-  // Of the pixels of the last choice. `Depths`: as `Image`, of depths.
-  template <class Depths>
-  __device__ __forceinline__ Moments moments(const WindowPlane& first, const Depths& depths) const {
+  // Of the depths about the same centre.
+  __device__ __forceinline__ Moments moments(const LastChoice& last,
+                                             const TileAround& depths) const {
     Moments m;
 #pragma unroll 1
-    for (int dv = -radius(); dv <= radius(); ++dv) {
+    for (int du = -radius(); du <= radius(); ++du) {
+      KeptDepths<double> column;
+      int kept = 0;
 #pragma unroll
-      for (int du = -radius(); du <= radius(); ++du)
-        add_pixel(m, keeps(first, du, dv) ? 1.0 : 0.0, depths.column(du).value(dv), du, dv);
+      for (int dv = -radius(); dv <= radius(); ++dv) {
+        const bool is_kept = keeps(last, du, dv);
+        kept += is_kept ? 1 : 0;
+        add_depth<double>(column, is_kept ? depths.at(du, dv) : 0.0F, dv);
+      }
+      column.n = kept;
+      add_kept(m, column, du);
     }
     return m;
   }
@@ -92,44 +147,14 @@ class GatedWindow {
     return Radius > 0 ? Radius : radius_;
   }
 
-  // Who adds the halves of the columns, and then knows their sums.
-  struct OneLane {
-    template <class Half>
-    __device__ __forceinline__ KeptDifferences add(const Half& half) const {
-      KeptDifferences both;
-#pragma unroll 1  // half as much code to read, where few windows share it
-      for (int k = 0; k < 2; ++k) {
-        const KeptDifferences one = half(k);
-        both = k == 0 ? one : both + one;
-      }
-      return both;
-    }
-    __device__ int add(int own) const {
-      return own;
-    }
-  };
-  struct TwoLanes {
-    template <class Half>
-    __device__ __forceinline__ KeptDifferences add(const Half& half) const {
-      const KeptDifferences own = half(static_cast<int>(threadIdx.x) % 2);
-      return {own.e + other(own.e), own.ue + other(own.ue), own.ve + other(own.ve)};
-    }
-    __device__ int add(int own) const { return own + other(own); }
-    template <class T>
-    __device__ static T other(T own) {
-      return __shfl_xor_sync(~0U, own, 1);
-    }
-  };
-
-  template <class Lanes>
-  __device__ __forceinline__ PlaneSums choose(const WindowPlane& near, bool is_first,
-                                              const Lanes& lanes) const {
-    const float slope = is_first ? edges_.slope : 0;
+  template <bool kFirst, class Lanes>
+  __device__ __forceinline__ PlaneSums choose(const WindowPlane& near, const Lanes& lanes,
+                                              bool& has_edge) const {
     KeptCounts c;
     PlaneSums sums;
     for (int first = -radius(); first <= radius(); first += kGroup) {
       const KeptDifferences sum =
-          lanes.add([&](int half) { return add_half(first + half, near, slope, c); });
+          lanes.add([&](int half) { return add_half<kFirst>(first + half, near, c, has_edge); });
       sums.e += sum.e, sums.ue += sum.ue, sums.ve += sum.ve;
     }
     sums.n = lanes.add(c.n), sums.u = lanes.add(c.u), sums.v = lanes.add(c.v);
@@ -138,43 +163,52 @@ class GatedWindow {
   }
 
   // Every second of eight columns.
+  template <bool kFirst>
   __device__ __forceinline__ KeptDifferences add_half(int first, const WindowPlane& near,
-                                                      float slope, KeptCounts& counts) const {
+                                                      KeptCounts& counts, bool& has_edge) const {
     const auto pair = [&](int du) {
-      const KeptDifferences one = add_column(du, near, slope, counts);
-      return one + add_column(du + kGroup / 2, near, slope, counts);
+      const KeptDifferences one = add_column<kFirst>(du, near, counts, has_edge);
+      return one + add_column<kFirst>(du + kGroup / 2, near, counts, has_edge);
     };
     const KeptDifferences one = pair(first);
     return one + pair(first + 2);
   }
   // Columns that the window does not have are 0.
+  template <bool kFirst>
   __device__ __forceinline__ KeptDifferences add_column(int du, const WindowPlane& near,
-                                                        float slope, KeptCounts& counts) const {
+                                                        KeptCounts& counts, bool& has_edge) const {
     if (du > radius()) return {};
-    const auto column = image_.column(du);
     const float x = static_cast<float>(du), predicted = near.c + near.a * x;
-    const float along = edges_.gate + slope * std::fabs(x);
+    const float gate = edges_.gate, along = gate + edges_.slope * std::fabs(x);
     KeptColumn kept;
 #pragma unroll
     for (int dv = -radius(); dv <= radius(); ++dv) {
-      const float value = column.value(dv), y = static_cast<float>(dv);
-      const float difference = (value - middle_) * unit_;
-      // That of the greater distance: rounding keeps the order.
-      const float allowed = fmaxf(along, edges_.gate + slope * std::fabs(y));
-      kept.add(is_in_gate(value, difference, predicted + near.b * y, allowed), difference, dv);
+      const float difference = difference_at(du, dv), y = static_cast<float>(dv);
+      if constexpr (kFirst) {
+        has_edge |= std::fabs(difference) > gate;
+        // That of the greater distance: rounding keeps the order.
+        const float allowed = fmaxf(along, gate + edges_.slope * std::fabs(y));
+        if (std::fabs(difference) <= allowed) kept.add(difference, dv);
+      } else {
+        if (std::fabs(difference - (predicted + near.b * y)) <= gate) kept.add(difference, dv);
+      }
     }
     counts.n += kept.pixels(), counts.u += du * kept.pixels(), counts.uu += du * du * kept.pixels();
     counts.v += kept.y(), counts.uv += du * kept.y(), counts.vv += kept.yy();
     return {kept.e(), x * kept.e(), kept.ye()};
   }
-  __device__ __forceinline__ bool keeps(const WindowPlane& near, int du, int dv) const {
-    const float value = image_.column(du).value(dv);
+  __device__ __forceinline__ bool keeps(const LastChoice& last, int du, int dv) const {
+    const WindowPlane& near = last.near;
     const float expected =
         near.c + near.a * static_cast<float>(du) + near.b * static_cast<float>(dv);
-    return is_in_gate(value, (value - middle_) * unit_, expected, edges_.gate);
+    return std::fabs(difference_at(du, dv) - expected) <= last.gate;
+  }
+  // Not a number where nothing is measured.
+  __device__ __forceinline__ float difference_at(int du, int dv) const {
+    return (image_.at(du, dv) - middle_) * unit_;
   }
 
-  Image image_;
+  TileAround image_;
   int radius_;
   const EdgeGate& edges_;
   float middle_, unit_;

@@ -1,14 +1,19 @@
 // Normals of a block's tile of an image, where windows are smooth; the others are listed.
 #pragma once
 
-#include "libvpm/surface/cuda/image_normals.h"
 #include "libvpm/surface/cuda/smooth_windows.h"
 
 namespace vpm::cuda {
 
 // Pixels are read four at a time. So small that a device holds all blocks of a usual image at once.
 struct SmoothShape {
-  static constexpr int kWidth = 32, kHeight = 16, kPixels = kWidth * kHeight, kPack = 4;
+  static constexpr int kWidth = 32, kHeight = 8, kPixels = kWidth * kHeight, kPack = 4;
+};
+
+// Pixels of a tile whose windows are not smooth, in a block's shared memory: y * kWidth + x.
+struct RoughPixels {
+  unsigned count;
+  std::uint16_t of[SmoothShape::kPixels];
 };
 
 // Calls body(k) of 0 to `Count` - 1, by all of a block's threads.
@@ -40,6 +45,7 @@ class SmoothTile : private SmoothShape {
         arrays_(shared),
         inverse_(arrays_.take<float>(rows() * pitch())),
         depth_(arrays_.take<float>(Smooth::kNeedsDepth ? rows() * pitch() : 0)),
+        columns_(arrays_),
         smooth_(arrays_, kHeight * pitch(), inverse_, depth_),
         rays_(arrays_, kWidth, kHeight) {}
 
@@ -77,27 +83,54 @@ class SmoothTile : private SmoothShape {
       for (int i = 0; i < kInFlight; ++i) {
         const int k = begin + i * kThreads;
         if (k >= count) break;
+#pragma unroll
+        for (float& value : inverse[i].of) value = measured_or_none(value);
         put(inverse[i], inverse_, k);
         if constexpr (Smooth::kNeedsDepth) put(depth[i], depth_, k);
       }
     }
   }
   __device__ __forceinline__ void sum_columns() const {
-    for_each_of<kThreads, kHeight*(kWidth + 2 * whole_packs(Smooth::kRadius)) / kAtOnce>(
-        [&](int k) { sum_columns(k); });
     if constexpr (Smooth::kRadius == 0) {
-      for (int k = kPixels + static_cast<int>(threadIdx.x); k < kHeight * pitch(); k += kThreads)
-        sum_columns(k);
+      for (int k = static_cast<int>(threadIdx.x); k < kHeight * pitch(); k += kThreads)
+        sum_columns(k, 0);
+    } else {
+      constexpr int kGroups = (kWidth + 2 * whole_packs(Smooth::kRadius)) / kAtOnce;  // of a row
+      for_each_of<kThreads, kHeight / Smooth::kRows * kGroups>(
+          [&](int k) { sum_columns(k % kGroups * kAtOnce, k / kGroups * Smooth::kRows); });
     }
   }
   // Writes those of smooth windows, and lists the others.
-  __device__ __forceinline__ void find_smooth(const GatedList& gated, Vec3f* normals) const {
+  __device__ __forceinline__ void find_smooth(RoughPixels& rough, Vec3f* normals) const {
     constexpr int kGroups = kWidth / kAtOnce;  // of a row
     static_assert(kHeight * kGroups % 32 == 0, "whole warps list windows");
     for_each_of<kThreads, kHeight * kGroups>([&](int k) {
       const int x = k % kGroups * kAtOnce, y = k / kGroups;
-      list(find_smooth(x, y, normals), u0_ + x, v0_ + y, gated);
+      list(find_smooth(x, y, normals), x, y, rough);
     });
+  }
+
+  // Memory that is free once all normals of smooth windows are found.
+  __device__ SharedArrays columns() const {
+    return columns_;
+  }
+  static constexpr std::size_t kColumnBytes = Smooth::kBytes * kHeight * kWidth;  // of it, at least
+
+  __device__ TileAround inverse_around(int x, int y) const {
+    return {inverse_ + index(x, y), pitch()};
+  }
+  __device__ TileAround depth_around(int x, int y) const {
+    return {depth_ + index(x, y), pitch()};
+  }
+  __device__ const typename Smooth::Rays& rays() const {
+    return rays_;
+  }
+  __device__ int radius() const {
+    return radius_;
+  }
+  // Of a pixel of the tile, in the image.
+  __device__ std::ptrdiff_t pixel_of(int x, int y) const {
+    return pixel(u0_ + x, v0_ + y);
   }
 
  private:
@@ -112,6 +145,9 @@ class SmoothTile : private SmoothShape {
   }
   __device__ int rows() const {
     return kHeight + 2 * radius_;
+  }
+  __device__ int index(int x, int y) const {
+    return (y + radius_) * pitch() + side() + x;
   }
   __device__ std::ptrdiff_t pixel(int u, int v) const {
     return static_cast<std::ptrdiff_t>(v) * width_ + u;
@@ -130,8 +166,15 @@ class SmoothTile : private SmoothShape {
     reinterpret_cast<Pack<float, kPack>*>(image)[k] = pack;
   }
 
-  __device__ __forceinline__ void sum_columns(int group) const {
-    smooth_.sum_columns(group * kAtOnce + radius_ * pitch(), pitch(), radius_, group * kAtOnce);
+  // Of kAtOnce columns, from the tile's first with its margin on, about as many rows as `Smooth`
+  // takes together: they share most of what they read.
+  __device__ __forceinline__ void sum_columns(int column, int y) const {
+    typename Smooth::Columns sums[Smooth::kRows];
+#pragma unroll
+    for (int i = 0; i < Smooth::kRows; ++i)
+      sums[i] = smooth_.sum_columns((y + i + radius_) * pitch() + column, pitch(), radius_);
+#pragma unroll
+    for (int i = 0; i < Smooth::kRows; ++i) smooth_.put(sums[i], (y + i) * pitch() + column);
   }
   // Returns which windows of kAtOnce pixels are to be gated, a bit for each.
   __device__ __forceinline__ unsigned find_smooth(int x, int y, Vec3f* normals) const {
@@ -173,8 +216,8 @@ class SmoothTile : private SmoothShape {
       if (u + p < width_) to[p] = found[p];
   }
 
-  // By whole warps: the windows of kAtOnce pixels from (u, v) on that have a bit.
-  __device__ __forceinline__ void list(unsigned rough, int u, int v, const GatedList& gated) const {
+  // By whole warps: the windows of kAtOnce pixels from (x, y) on that have a bit.
+  __device__ __forceinline__ void list(unsigned rough, int x, int y, RoughPixels& pixels) const {
     if (__ballot_sync(~0U, rough != 0) == 0) return;
     const unsigned lane = threadIdx.x % 32;
     unsigned count = 0, place[kAtOnce];
@@ -185,18 +228,19 @@ class SmoothTile : private SmoothShape {
       count += static_cast<unsigned>(__popc(lanes));
     }
     unsigned begin = 0;
-    if (lane == 0) begin = atomicAdd(gated.count, count);
+    if (lane == 0) begin = atomicAdd(&pixels.count, count);
     begin = __shfl_sync(~0U, begin, 0);
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p)
       if ((rough >> p & 1) != 0)
-        gated.pixels[begin + place[p]] = static_cast<std::uint32_t>(pixel(u + p, v));
+        pixels.of[begin + place[p]] = static_cast<std::uint16_t>(y * kWidth + x + p);
   }
 
   const CloudRecipe& recipe_;
   int radius_, u0_, v0_, width_, height_;
   SharedArrays arrays_;
   float *inverse_, *depth_;
+  SharedArrays columns_;  // memory of what smooth_ knows of columns
   Smooth smooth_;
   typename Smooth::Rays rays_;
 };

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "libvpm/surface/cuda/cloud_tile.h"
+#include "libvpm/surface/cuda/tile_around.h"
 
 namespace vpm::cuda {
 
@@ -18,6 +19,10 @@ struct alignas(kCount * sizeof(Real)) Pack {
 template <int kCount, class Real>
 __device__ __forceinline__ Pack<Real, kCount> pack_at(const Real* values) {
   return *reinterpret_cast<const Pack<Real, kCount>*>(values);
+}
+template <int kCount, class Real>
+__device__ __forceinline__ void put_pack(const Pack<Real, kCount>& pack, Real* values) {
+  *reinterpret_cast<Pack<Real, kCount>*>(values) = pack;
 }
 
 // Values of a row, from Radius before the first of kAtOnce pixels to Radius beyond the last.
@@ -53,74 +58,76 @@ class RowValues<Real, 1, 0> {
   int radius_;
 };
 
-// The least, or the greatest, value of each pixel's window: pick(a, b) chooses.
+// The least, or the greatest, value of each pixel's window: pick(a, b, c) chooses.
 template <int kAtOnce, class Row, class Pick>
 __device__ __forceinline__ void pick_in_windows(const Row& row, const Pick& pick,
-                                                float (&picked)[kAtOnce]) {
+                                                int (&picked)[kAtOnce]) {
   const int radius = row.radius();
-  float common = row.at(kAtOnce - 1 - radius);
+  int common = row.at(kAtOnce - 1 - radius);
 #pragma unroll
-  for (int i = kAtOnce - radius; i <= radius; ++i) common = pick(common, row.at(i));
-  float left = common, right = common;
+  for (int i = kAtOnce - radius; i <= radius; i += 2)
+    common = pick(common, row.at(i), row.at(i < radius ? i + 1 : i));
+  int left = common, right = common;
   picked[kAtOnce - 1] = common;
 #pragma unroll
-  for (int p = kAtOnce - 2; p >= 0; --p) picked[p] = left = pick(left, row.at(p - radius));
+  for (int p = kAtOnce - 2; p >= 0; --p) picked[p] = left = pick(left, left, row.at(p - radius));
 #pragma unroll
   for (int p = 1; p < kAtOnce; ++p) {
-    right = pick(right, row.at(p + radius));
-    picked[p] = pick(picked[p], right);
+    right = pick(right, right, row.at(p + radius));
+    picked[p] = pick(picked[p], picked[p], right);
   }
 }
 
-// Least and greatest inverse depths. They are never NaN.
+// Extents of columns, then of windows.
 template <int kAtOnce, int Radius>
 class WindowExtents {
   struct Least {
-    __device__ float operator()(float a, float b) const { return fminf(a, b); }
+    __device__ int operator()(int a, int b, int c) const { return __vimin3_s32(a, b, c); }
   };
   struct Greatest {
-    __device__ float operator()(float a, float b) const { return fmaxf(a, b); }
+    __device__ int operator()(int a, int b, int c) const { return __vimax3_s32(a, b, c); }
   };
 
  public:
   __device__ WindowExtents(SharedArrays& arrays, int count)
-      : low_(arrays.take<float>(count)), high_(arrays.take<float>(count)) {}
-  static constexpr std::size_t kBytes = 2 * sizeof(float);  // of a column
+      : low_(arrays.take<int>(count)), high_(arrays.take<int>(count)) {}
+  static constexpr std::size_t kBytes = 2 * sizeof(int);  // of a column
 
   // What is known of kAtOnce columns while they are gone down.
   struct Down {
-    Pack<float, kAtOnce> low, high;
-    __device__ __forceinline__ explicit Down(const Pack<float, kAtOnce>& middle)
-        : low(middle), high(middle) {}
-    __device__ __forceinline__ void take(int p, float value) {
-      low.of[p] = fminf(low.of[p], value), high.of[p] = fmaxf(high.of[p], value);
+    Pack<int, kAtOnce> low, high;
+    Down() = default;
+    __device__ __forceinline__ explicit Down(const Pack<float, kAtOnce>& middle) {
+#pragma unroll
+      for (int p = 0; p < kAtOnce; ++p) low.of[p] = high.of[p] = __float_as_int(middle.of[p]);
+    }
+    __device__ __forceinline__ void take(int p, float below, float above) {
+      Extent extent(low.of[p], high.of[p]);
+      extent.take(Extent(below), Extent(above));
+      low.of[p] = extent.low, high.of[p] = extent.high;
     }
   };
   __device__ __forceinline__ void put(const Down& down, int at) const {
-    *reinterpret_cast<Pack<float, kAtOnce>*>(low_ + at) = down.low;
-    *reinterpret_cast<Pack<float, kAtOnce>*>(high_ + at) = down.high;
+    put_pack(down.low, low_ + at);
+    put_pack(down.high, high_ + at);
   }
 
   // Which of the pixels have a smooth window, a bit for each. `centres`: their inverse depths.
   __device__ __forceinline__ unsigned smooth(int at, int radius,
                                              const Pack<float, kAtOnce>& centres,
                                              const EdgeGate& edges) const {
-    float low[kAtOnce], high[kAtOnce];
-    pick_in_windows(RowValues<float, kAtOnce, Radius>(low_ + at, radius), Least(), low);
-    pick_in_windows(RowValues<float, kAtOnce, Radius>(high_ + at, radius), Greatest(), high);
+    int low[kAtOnce], high[kAtOnce];
+    pick_in_windows(RowValues<int, kAtOnce, Radius>(low_ + at, radius), Least(), low);
+    pick_in_windows(RowValues<int, kAtOnce, Radius>(high_ + at, radius), Greatest(), high);
     unsigned smooth = 0;
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      const float centre = centres.of[p];
-      const bool is_smooth =
-          low[p] > 0 && low[p] >= edges.lowest * centre && high[p] <= edges.highest * centre;
-      smooth |= (is_smooth ? 1U : 0U) << p;
-    }
+    for (int p = 0; p < kAtOnce; ++p)
+      smooth |= (Extent(low[p], high[p]).is_smooth(centres.of[p], edges) ? 1U : 0U) << p;
     return smooth;
   }
 
  private:
-  float *low_, *high_;
+  int *low_, *high_;
 };
 
 // Of a tile's columns and rows of pixels.
@@ -161,7 +168,8 @@ template <int TheAtOnce, int Radius>
 class SmoothInverseDepth {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 320;
+  static constexpr int kThreads = 128, kBlocks = 10;
+  static constexpr int kRows = 1;  // of sums down a column, by a thread together
   static constexpr bool kNeedsDepth = false;
   using Rays = PixelsToAxis;
   static constexpr std::size_t kBytes =
@@ -175,8 +183,12 @@ class SmoothInverseDepth {
         s_(arrays.take<float>(count)),
         vs_(arrays.take<float>(count)) {}
 
-  // Down the columns about the image's row at `from`; to `at`.
-  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
+  struct Columns {
+    typename WindowExtents<kAtOnce, Radius>::Down extents;
+    Pack<float, kAtOnce> s, vs;
+  };
+  // Down the columns about the image's row at `from`.
+  __device__ __forceinline__ Columns sum_columns(int from, int pitch, int radius) const {
     Pack<float, kAtOnce> s = pack_at<kAtOnce>(inverse_ + from), vs{};
     typename WindowExtents<kAtOnce, Radius>::Down extents(s);
 #pragma unroll
@@ -186,12 +198,15 @@ class SmoothInverseDepth {
 #pragma unroll
       for (int p = 0; p < kAtOnce; ++p) {
         add_rows(below.of[p], above.of[p], static_cast<float>(d), s.of[p], vs.of[p]);
-        extents.take(p, below.of[p]), extents.take(p, above.of[p]);
+        extents.take(p, below.of[p], above.of[p]);
       }
     }
-    extents_.put(extents, at);
-    *reinterpret_cast<Pack<float, kAtOnce>*>(s_ + at) = s;
-    *reinterpret_cast<Pack<float, kAtOnce>*>(vs_ + at) = vs;
+    return {extents, s, vs};
+  }
+  __device__ __forceinline__ void put(const Columns& columns, int at) const {
+    extents_.put(columns.extents, at);
+    put_pack(columns.s, s_ + at);
+    put_pack(columns.vs, vs_ + at);
   }
 
   // Which windows of the columns `at` and beside it are smooth.
@@ -231,7 +246,8 @@ template <int TheAtOnce, int Radius>
 class SmoothPca {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 128;
+  static constexpr int kThreads = 128, kBlocks = 6;
+  static constexpr int kRows = Radius > 0 ? 2 : 1;  // doubles and squares of most pixels serve both
   static constexpr bool kNeedsDepth = true;
   using Rays = UnitRays;
   static constexpr std::size_t kBytes = WindowExtents<kAtOnce, Radius>::kBytes + 5 * sizeof(double);
@@ -246,7 +262,11 @@ class SmoothPca {
         vvz2_(arrays.take<double>(count)),
         extents_(arrays, count) {}
 
-  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
+  struct Columns {
+    typename WindowExtents<kAtOnce, Radius>::Down extents;
+    Pack<double, kAtOnce> z, vz, z2, vz2, vvz2;
+  };
+  __device__ __forceinline__ Columns sum_columns(int from, int pitch, int radius) const {
     typename WindowExtents<kAtOnce, Radius>::Down extents(pack_at<kAtOnce>(inverse_ + from));
     const Pack<float, kAtOnce> middle = pack_at<kAtOnce>(depth_ + from);
     Pack<double, kAtOnce> z, vz{}, z2, vz2{}, vvz2{};
@@ -268,15 +288,15 @@ class SmoothPca {
         add_depth_rows<double>(below.of[p], above.of[p], distance, z.of[p], vz.of[p]);
         add_square_rows<double>(below.of[p], above.of[p], distance, z2.of[p], vz2.of[p],
                                 vvz2.of[p]);
-        extents.take(p, below_inverse.of[p]), extents.take(p, above_inverse.of[p]);
+        extents.take(p, below_inverse.of[p], above_inverse.of[p]);
       }
     }
-    extents_.put(extents, at);
-    *reinterpret_cast<Pack<double, kAtOnce>*>(z_ + at) = z;
-    *reinterpret_cast<Pack<double, kAtOnce>*>(vz_ + at) = vz;
-    *reinterpret_cast<Pack<double, kAtOnce>*>(z2_ + at) = z2;
-    *reinterpret_cast<Pack<double, kAtOnce>*>(vz2_ + at) = vz2;
-    *reinterpret_cast<Pack<double, kAtOnce>*>(vvz2_ + at) = vvz2;
+    return {extents, z, vz, z2, vz2, vvz2};
+  }
+  __device__ __forceinline__ void put(const Columns& columns, int at) const {
+    extents_.put(columns.extents, at);
+    put_pack(columns.z, z_ + at), put_pack(columns.vz, vz_ + at), put_pack(columns.z2, z2_ + at);
+    put_pack(columns.vz2, vz2_ + at), put_pack(columns.vvz2, vvz2_ + at);
   }
 
   __device__ __forceinline__ unsigned smooth(int at, int radius,

@@ -1,0 +1,125 @@
+// Normals of those windows of a block's tile that are not smooth.
+#pragma once
+
+#include "libvpm/surface/cuda/gated_window.h"
+#include "libvpm/surface/cuda/smooth_tile.h"
+
+namespace vpm::cuda {
+
+// What is known of them, in a block's shared memory: windows with an edge in front, the others at
+// the end, and the planes that their last choices are made by.
+struct RoughFits {
+  std::uint16_t pixel[SmoothShape::kPixels];
+  float a[SmoothShape::kPixels], b[SmoothShape::kPixels], c[SmoothShape::kPixels];
+};
+struct RoughCounts {
+  unsigned with_edge, without;
+};
+
+// By two lanes for each window, so that a block has use for all of its own: all of the first
+// choices, then the last choices of windows that have an edge.
+template <class Smooth, NormalMethod kMethod>
+class RoughTile {
+ public:
+  static constexpr int kThreads = Smooth::kThreads;
+
+  static_assert(sizeof(RoughFits) <= SmoothTile<Smooth>::kColumnBytes);
+
+  __device__ RoughTile(const CloudRecipe& recipe, const SmoothTile<Smooth>& tile,
+                       RoughCounts& counts, RoughFits& fits, Vec3f* normals)
+      : recipe_(recipe), tile_(tile), counts_(counts), fits_(fits), normals_(normals) {}
+
+  // By all threads of the block.
+  __device__ void find(const RoughPixels& rough) const {
+    choose_first(rough);
+    __syncthreads();
+    choose_last();
+    if constexpr (kMethod == NormalMethod::pca) {
+      __syncthreads();
+      find_moments();
+    }
+  }
+
+ private:
+  using Window = GatedWindow<Smooth::kRadius>;
+  static constexpr unsigned kNone = SmoothShape::kPixels;
+
+  __device__ Window window(unsigned pixel) const {
+    return Window(tile_.inverse_around(x(pixel), y(pixel)), tile_.radius(), recipe_.edges);
+  }
+  __device__ static int x(unsigned pixel) { return static_cast<int>(pixel % SmoothShape::kWidth); }
+  __device__ static int y(unsigned pixel) { return static_cast<int>(pixel / SmoothShape::kWidth); }
+
+  // Calls body(i, is_there) for each window, in whole warps; is_there: in one of its lanes, if
+  // there is such a window.
+  template <class Body>
+  __device__ __forceinline__ static void for_windows(unsigned count, const Body& body) {
+#pragma unroll 1
+    for (unsigned begin = threadIdx.x / 32 * 16; begin < count; begin += kThreads / 2) {
+      const unsigned i = begin + threadIdx.x % 32 / 2;
+      body(i < count ? i : count - 1, i < count && threadIdx.x % 2 == 0);
+    }
+  }
+
+  __device__ __forceinline__ void choose_first(const RoughPixels& rough) const {
+    for_windows(rough.count, [&](unsigned i, bool is_there) {
+      const unsigned pixel = rough.of[i];
+      bool has_edge;
+      const WindowPlane plane = plane_of_sums(window(pixel).choose_first(TwoLanes(), has_edge));
+      if (!is_there || !plane.found) return;
+      if (has_edge)
+        note(atomicAdd(&counts_.with_edge, 1U), pixel, plane);
+      else if constexpr (kMethod == NormalMethod::pca)
+        note(kNone - 1 - atomicAdd(&counts_.without, 1U), pixel, {});
+      else
+        write(pixel, plane);
+    });
+  }
+  __device__ __forceinline__ void choose_last() const {
+    for_windows(counts_.with_edge, [&](unsigned i, bool is_there) {
+      const unsigned pixel = fits_.pixel[i];
+      const WindowPlane plane = plane_of_sums(window(pixel).choose_last(TwoLanes(), near(i)));
+      if (!is_there) return;
+      if constexpr (kMethod == NormalMethod::pca) {
+        if (!plane.found) fits_.pixel[i] = kNone;
+      } else {
+        write(pixel, plane);
+      }
+    });
+  }
+  __device__ __forceinline__ void find_moments() const {
+    const unsigned with_edge = counts_.with_edge, count = with_edge + counts_.without;
+#pragma unroll 1
+    for (unsigned k = threadIdx.x; k < count; k += kThreads) {
+      const unsigned i = k < with_edge ? k : kNone - 1 - (k - with_edge), pixel = fits_.pixel[i];
+      if (pixel == kNone) continue;
+      const LastChoice last{near(i), k < with_edge ? recipe_.edges.gate : HUGE_VALF};
+      const Moments m = window(pixel).moments(last, tile_.depth_around(x(pixel), y(pixel)));
+      normals_[tile_.pixel_of(x(pixel), y(pixel))] =
+          normal_of_moments(m, quotient(1, m.n), recipe_.per_fx, recipe_.per_fy,
+                            tile_.rays().x(x(pixel)), tile_.rays().y(y(pixel)));
+    }
+  }
+
+  __device__ void note(unsigned i, unsigned pixel, const WindowPlane& plane) const {
+    fits_.pixel[i] = static_cast<std::uint16_t>(pixel);
+    fits_.a[i] = plane.a, fits_.b[i] = plane.b, fits_.c[i] = plane.c;
+  }
+  __device__ WindowPlane near(unsigned i) const {
+    return {true, fits_.a[i], fits_.b[i], fits_.c[i]};
+  }
+  __device__ void write(unsigned pixel, const WindowPlane& plane) const {
+    const Intrinsics& k = recipe_.camera.intrinsics;
+    normals_[tile_.pixel_of(x(pixel), y(pixel))] =
+        normal_of_window(plane, static_cast<float>(k.fx), static_cast<float>(k.fy),
+                         tile_.rays().x(x(pixel)), tile_.rays().y(y(pixel)));
+  }
+
+  const CloudRecipe& recipe_;
+  const SmoothTile<Smooth>& tile_;
+  RoughCounts& counts_;
+  RoughFits& fits_;
+  Vec3f* normals_;
+};
+
+}  // namespace vpm::cuda

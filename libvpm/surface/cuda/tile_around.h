@@ -1,0 +1,44 @@
+// A tile's inverse depths in a block's shared memory, about one of its pixels.
+#pragma once
+
+#include "libvpm/cloud/normal_window.h"
+
+namespace vpm::cuda {
+
+// What stands there for a pixel that is not measured, or beyond the image: not a number, so that it
+// is in no gate and beyond none. Its bits are the greatest integer.
+__device__ __forceinline__ float unmeasured() {
+  return __int_as_float(0x7fffffff);
+}
+__device__ __forceinline__ float measured_or_none(float inverse) {
+  return inverse > 0 ? inverse : unmeasured();
+}
+
+// Least and greatest inverse depth of some pixels, as integers, whose order is that of floats that
+// are not negative. If one of them is not measured, the greatest is no number.
+struct Extent {
+  int low, high;
+
+  __device__ __forceinline__ explicit Extent(float value) { low = high = __float_as_int(value); }
+  __device__ __forceinline__ Extent(int least, int greatest) : low(least), high(greatest) {}
+  __device__ __forceinline__ void take(Extent a, Extent b) {
+    low = __vimin3_s32(low, a.low, b.low), high = __vimax3_s32(high, a.high, b.high);
+  }
+  // Whether a window is measured everywhere and without an edge.
+  __device__ __forceinline__ bool is_smooth(float centre, const EdgeGate& edges) const {
+    return __int_as_float(low) >= edges.lowest * centre &&
+           __int_as_float(high) <= edges.highest * centre;
+  }
+};
+
+class TileAround {
+ public:
+  __device__ TileAround(const float* centre, int pitch) : centre_(centre), pitch_(pitch) {}
+  __device__ __forceinline__ float at(int du, int dv) const { return centre_[dv * pitch_ + du]; }
+
+ private:
+  const float* centre_;
+  int pitch_;
+};
+
+}  // namespace vpm::cuda
