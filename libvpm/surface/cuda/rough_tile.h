@@ -10,6 +10,7 @@ namespace vpm::cuda {
 // the end, and the planes that their last choices are made by.
 struct RoughFits {
   std::uint16_t pixel[SmoothShape::kPixels];
+  bool found[SmoothShape::kPixels];
   float a[SmoothShape::kPixels], b[SmoothShape::kPixels], c[SmoothShape::kPixels];
 };
 struct RoughCounts {
@@ -42,7 +43,7 @@ class RoughTile {
 
  private:
   using Window = GatedWindow<Smooth::kRadius>;
-  static constexpr unsigned kNone = SmoothShape::kPixels;
+  static constexpr unsigned kLast = SmoothShape::kPixels - 1;
 
   __device__ Window window(unsigned pixel) const {
     return Window(tile_.inverse_around(x(pixel), y(pixel)), tile_.radius(), recipe_.edges);
@@ -70,7 +71,7 @@ class RoughTile {
       if (has_edge)
         note(atomicAdd(&counts_.with_edge, 1U), pixel, plane);
       else if constexpr (kMethod == NormalMethod::pca)
-        note(kNone - 1 - atomicAdd(&counts_.without, 1U), pixel, {});
+        note(kLast - atomicAdd(&counts_.without, 1U), pixel, {});
       else
         write(pixel, plane);
     });
@@ -81,7 +82,7 @@ class RoughTile {
       const WindowPlane plane = plane_of_sums(window(pixel).choose_last(TwoLanes(), near(i)));
       if (!is_there) return;
       if constexpr (kMethod == NormalMethod::pca) {
-        if (!plane.found) fits_.pixel[i] = kNone;
+        fits_.found[i] = plane.found;
       } else {
         write(pixel, plane);
       }
@@ -91,8 +92,8 @@ class RoughTile {
     const unsigned with_edge = counts_.with_edge, count = with_edge + counts_.without;
 #pragma unroll 1
     for (unsigned k = threadIdx.x; k < count; k += kThreads) {
-      const unsigned i = k < with_edge ? k : kNone - 1 - (k - with_edge), pixel = fits_.pixel[i];
-      if (pixel == kNone) continue;
+      const unsigned i = k < with_edge ? k : kLast - (k - with_edge), pixel = fits_.pixel[i];
+      if (!fits_.found[i]) continue;
       const LastChoice last{near(i), k < with_edge ? recipe_.edges.gate : HUGE_VALF};
       const Moments m = window(pixel).moments(last, tile_.depth_around(x(pixel), y(pixel)));
       normals_[tile_.pixel_of(x(pixel), y(pixel))] =
@@ -102,7 +103,7 @@ class RoughTile {
   }
 
   __device__ void note(unsigned i, unsigned pixel, const WindowPlane& plane) const {
-    fits_.pixel[i] = static_cast<std::uint16_t>(pixel);
+    fits_.pixel[i] = static_cast<std::uint16_t>(pixel), fits_.found[i] = true;
     fits_.a[i] = plane.a, fits_.b[i] = plane.b, fits_.c[i] = plane.c;
   }
   __device__ WindowPlane near(unsigned i) const {
