@@ -87,17 +87,6 @@ template <class Real>
   return ((difference > gate) | (difference < -gate)) & (value > 0.0F);
 }
 
-[[gnu::always_inline]] VPM_HD inline bool is_beyond_gate(float value, float difference,
-                                                         float gate) {
-  return std::fabs(difference) > gate && value > 0;
-}
-
-// Of one window; `allowed` is not below 0.
-[[gnu::always_inline]] VPM_HD inline bool is_in_gate(float value, float difference, float expected,
-                                                     float allowed) {
-  return std::fabs(difference - expected) <= allowed && value > 0;
-}
-
 // Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
 template <class Real>
 struct SumsOfPlane {

@@ -188,14 +188,10 @@ const GatedWindows::Planes& GatedWindows::fit(int u, int v) {
   planes_ = {};
   if (std::none_of(centre, centre + kLanes, [](float c) { return c > 0; })) return planes_;
   fit_first(centre);
-  if (std::none_of(gates_, gates_ + kLanes, [](float gate) { return gate < kOpen; })) {
-    for (int i = 0; i < kLanes; ++i)
-      if (!(centre[i] > 0)) planes_.found[i] = 0;
-    return planes_;
-  }
   std::int32_t found[kLanes];
   for (int i = 0; i < kLanes; ++i) found[i] = centre[i] > 0 ? planes_.found[i] : 0;
-  fit_second(centre);
+  if (std::any_of(gates_, gates_ + kLanes, [](float gate) { return gate < kOpen; }))
+    fit_second(centre);
   for (int i = 0; i < kLanes; ++i) planes_.found[i] &= found[i];
   return planes_;
 }

@@ -5,7 +5,8 @@
 
 namespace vpm::cuda {
 
-// Pixels are read four at a time. So small that a device holds all blocks of a usual image at once.
+// Pixels are read four at a time. Windows that are not smooth lie together: the more blocks share
+// them, the shorter the longest takes.
 struct SmoothShape {
   static constexpr int kWidth = 32, kHeight = 8, kPixels = kWidth * kHeight, kPack = 4;
 };

@@ -168,8 +168,8 @@ template <int TheAtOnce, int Radius>
 class SmoothInverseDepth {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 128, kBlocks = 10;
-  static constexpr int kRows = 1;  // of sums down a column, by a thread together
+  static constexpr int kThreads = 128, kBlocks = 10;  // of a multiprocessor
+  static constexpr int kRows = 1;                     // of sums down a column, by a thread together
   static constexpr bool kNeedsDepth = false;
   using Rays = PixelsToAxis;
   static constexpr std::size_t kBytes =
@@ -246,7 +246,7 @@ template <int TheAtOnce, int Radius>
 class SmoothPca {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 128, kBlocks = 6;
+  static constexpr int kThreads = 128, kBlocks = 6;  // more leave doubles too few registers
   static constexpr int kRows = Radius > 0 ? 2 : 1;  // doubles and squares of most pixels serve both
   static constexpr bool kNeedsDepth = true;
   using Rays = UnitRays;
