@@ -8,7 +8,7 @@ inline constexpr int kMinWindow = 3, kMaxWindow = 31;
 // Fewest pixels of a window, and least spread (variance in px^2 along the narrowest direction:
 // two neighbouring diagonals have 1/8), that still tell a plane's two slopes.
 inline constexpr int kMinSupport = 6;
-inline constexpr double kMinSpread = 0.1;
+inline constexpr float kMinSpread = 0.1F;
 
 // Difference of inverse depth, as a fraction of the centre's, that noise alone explains: 4 sigma of
 // a Kinect at 3.5 m.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <memory>
 
 #include "libvpm/cloud/normals.h"
@@ -23,6 +25,11 @@ struct NormalRow {
     std::copy(nz, nz + count, z.begin() + first);
   }
 };
+
+// What stands for inverse depth beyond the image: not a number, so that it is in no gate and beyond
+// none, and its bits are the greatest unsigned integer and less than any that is signed and not
+// negative, so that it is neither the least nor the greatest of others.
+inline const float kBeyondImage = std::bit_cast<float>(0xffffffffU);
 
 // What the estimators read: the frame with a margin of half a window.
 struct NormalImages {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/core/vector_clones.h"
@@ -9,59 +8,91 @@
 namespace vpm {
 namespace {
 
-// Sums of whole windows along a row: first down each column, then across. Differences of opposite
-// pixels carry the slopes, so float keeps their digits.
+// Sums of windows along a row: first down each column, then across. Differences of opposite pixels
+// carry the slopes, so float keeps their digits.
 class WindowSums {
  public:
   struct Tile {
-    float sum[kTile], sum_u[kTile], sum_v[kTile];
+    float s[kTile], us[kTile], vs[kTile];
+
+    [[gnu::always_inline]] PlaneWindow<float> at(int i) const { return {s[i], us[i], vs[i]}; }
   };
 
-  explicit WindowSums(const PaddedImage& inverse)
-      : inverse_(inverse), column_(inverse.stride + kTile), column_v_(inverse.stride + kTile) {}
+  explicit WindowSums(const PaddedImage& inverse, int radius)
+      : inverse_(inverse),
+        radius_(radius),
+        s_(inverse.stride + kTile),
+        vs_(inverse.stride + kTile) {}
 
   template <class Radius>
   void sum_columns(int v, Radius radius);
+  void sum_columns(int v, Span down);
+  // Of a tile's windows, should they be whole across.
   template <class Radius>
   void sum_across(int first, Radius radius, Tile& tile) const;
+  // Of a column.
+  PlaneColumn<float> column(int u) const {
+    const auto i = static_cast<std::size_t>(u + radius_);
+    return {s_[i], vs_[i]};
+  }
 
  private:
+  // Calls sum(row) of the middle row, at places side by side, for all columns.
+  template <class Sum>
+  void for_columns(int v, const Sum& sum);
+
   const PaddedImage& inverse_;
-  std::vector<float> column_, column_v_;
+  int radius_;
+  std::vector<float> s_, vs_;
 };
+
+template <class Sum>
+[[gnu::always_inline]] inline void WindowSums::for_columns(int v, const Sum& sum) {
+  const int columns = inverse_.width + 2 * radius_;
+  for (int i = 0; i < columns; i += kWideLanes) {
+    const PlaneColumn<WideFloats> column = sum(inverse_.at(i - radius_, v));
+    store(column.s, s_.data() + i);
+    store(column.vs, vs_.data() + i);
+  }
+}
 
 template <class Radius>
 [[gnu::always_inline]] inline void WindowSums::sum_columns(int v, Radius radius) {
-  const int columns = inverse_.width + 2 * radius;
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  for (int i = 0; i < columns; i += kWideLanes) {
-    const float* middle = inverse_.at(i - radius, v);
-    WideFloats sum = load<WideFloats>(middle), sum_v{};
-    for (int d = 1; d <= radius; ++d) {
-      const WideFloats below = load<WideFloats>(middle + d * stride),
-                       above = load<WideFloats>(middle - d * stride);
-      add_rows(below, above, static_cast<float>(d), sum, sum_v);
-    }
-    store(sum, column_.data() + i);
-    store(sum_v, column_v_.data() + i);
-  }
+  for_columns(
+      v, [&](const float* middle) __attribute__((always_inline)) {
+        PlaneColumn<WideFloats> sums{load<WideFloats>(middle), {}};
+        for (int d = 1; d <= radius; ++d)
+          add_rows(load<WideFloats>(middle + d * stride), load<WideFloats>(middle - d * stride),
+                   static_cast<float>(d), sums);
+        return sums;
+      });
+}
+
+[[gnu::always_inline]] inline void WindowSums::sum_columns(int v, Span down) {
+  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
+  for_columns(
+      v, [&](const float* middle) __attribute__((always_inline)) {
+        return sum_rows<WideFloats>(
+            down, [&](int dv) __attribute__((always_inline)) {
+              return load<WideFloats>(middle + dv * stride);
+            });
+      });
 }
 
 template <class Radius>
 [[gnu::always_inline]] inline void WindowSums::sum_across(int first, Radius radius,
                                                           Tile& tile) const {
   for (int i = 0; i < kTile; i += kWideLanes) {
-    const float *column = column_.data() + radius + first + i,
-                *column_v = column_v_.data() + radius + first + i;
-    WideFloats sum = load<WideFloats>(column), sum_u{}, sum_v = load<WideFloats>(column_v);
-    for (int d = 1; d <= radius; ++d) {
-      const WideFloats right = load<WideFloats>(column + d), left = load<WideFloats>(column - d);
-      add_columns(right, left, load<WideFloats>(column_v + d), load<WideFloats>(column_v - d),
-                  static_cast<float>(d), sum, sum_u, sum_v);
-    }
-    store(sum, tile.sum + i);
-    store(sum_u, tile.sum_u + i);
-    store(sum_v, tile.sum_v + i);
+    const float *s = s_.data() + radius + first + i, *vs = vs_.data() + radius + first + i;
+    PlaneWindow<WideFloats> sums{load<WideFloats>(s), {}, load<WideFloats>(vs)};
+    for (int d = 1; d <= radius; ++d)
+      add_columns<WideFloats>({load<WideFloats>(s + d), load<WideFloats>(vs + d)},
+                              {load<WideFloats>(s - d), load<WideFloats>(vs - d)},
+                              static_cast<float>(d), sums);
+    store(sums.s, tile.s + i);
+    store(sums.us, tile.us + i);
+    store(sums.vs, tile.vs + i);
   }
 }
 
@@ -72,10 +103,9 @@ class InverseDepthRows final : public NormalRows {
         fx_(static_cast<float>(k.fx)),
         fy_(static_cast<float>(k.fy)),
         cy_(k.cy),
-        whole_(options.window),
         windows_(inverse, options, EdgeGate(options, k)),
         gated_(inverse, options, EdgeGate(options, k)),
-        sums_(inverse),
+        sums_(inverse, options.window / 2),
         radius_(options.window / 2) {
     to_axis_.resize(inverse.stride + kTile);
     for (int u = 0; u < inverse.width; ++u)
@@ -84,20 +114,20 @@ class InverseDepthRows final : public NormalRows {
 
   void estimate(int v, NormalRow& row) override {
     windows_.scan(v);
-    fit_whole_windows(v, row);
+    fit_smooth_windows(v, row);
     fit_gated_windows(v, row);
   }
 
  private:
   template <class Radius>
-  void fit_whole_windows(int v, Radius radius, NormalRow& row);
-  void fit_whole_windows(int v, NormalRow& row);
+  void fit_smooth_windows(int v, Radius radius, NormalRow& row);
+  void fit_smooth_windows(int v, NormalRow& row);
+  void fit_cut_window(int u, int v, NormalRow& row);
   void fit_gated_windows(int v, NormalRow& row);
 
   const PaddedImage& inverse_;
   float fx_, fy_;
   double cy_;
-  WholeWindow whole_;
   SmoothWindows windows_;
   GatedWindows gated_;
   WindowSums sums_;
@@ -106,30 +136,48 @@ class InverseDepthRows final : public NormalRows {
 };
 
 template <class Radius>
-[[gnu::always_inline]] inline void InverseDepthRows::fit_whole_windows(int v, Radius radius,
-                                                                       NormalRow& row) {
+[[gnu::always_inline]] inline void InverseDepthRows::fit_smooth_windows(int v, Radius radius,
+                                                                        NormalRow& row) {
+  const int width = inverse_.width;
   const float dv_axis = static_cast<float>(cy_ - v), fx = fx_, fy = fy_;
-  const WholeWindow whole = whole_;
-  sums_.sum_columns(v, radius);
-  for (int first = 0; first < inverse_.width; first += kTile) {
+  const Span down = span_of(v, inverse_.height, radius);
+  const WindowShape shape({radius, radius}, down);
+  if (down.is_whole(radius))
+    sums_.sum_columns(v, radius);
+  else
+    sums_.sum_columns(v, down);
+  for (int first = 0; first < width; first += kTile) {
     WindowSums::Tile t;
     sums_.sum_across(first, radius, t);
     const float *centre = inverse_.at(first, v), *du = to_axis_.data() + first;
     float x[kTile], y[kTile], z[kTile];
     for (int i = 0; i < kTile; ++i) {
-      const Vec3f n = normal_of_plane<float>(
-          whole.plane(t.sum[i], t.sum_u[i], t.sum_v[i], centre[i]), fx, fy, du[i], dv_axis);
+      const Vec3f n = normal_of_cut_window(shape, plane_of_sums(shape, t.at(i), centre[i]), fx, fy,
+                                           du[i], dv_axis);
       x[i] = n.x, y[i] = n.y, z[i] = n.z;
     }
-    row.take(first, x, y, z, std::min(kTile, inverse_.width - first));
+    row.take(first, x, y, z, std::min(kTile, width - first));
   }
+  for_ends(width, radius, [&](int u) {
+    if (windows_.smooth(u)) fit_cut_window(u, v, row);
+  });
+}
+
+void InverseDepthRows::fit_cut_window(int u, int v, NormalRow& row) {
+  const Span across = span_of(u, inverse_.width, radius_);
+  const WindowShape shape(across, span_of(v, inverse_.height, radius_));
+  const PlaneWindow<float> sums = sum_columns(across, [&](int du) { return sums_.column(u + du); });
+  const Vec3f n =
+      normal_of_cut_window(shape, plane_of_sums(shape, sums, *inverse_.at(u, v)), fx_, fy_,
+                           to_axis_[static_cast<std::size_t>(u)], static_cast<float>(cy_ - v));
+  row.take(u, &n.x, &n.y, &n.z, 1);
 }
 
 VPM_VECTOR_CLONES
-void InverseDepthRows::fit_whole_windows(int v, NormalRow& row) {
+void InverseDepthRows::fit_smooth_windows(int v, NormalRow& row) {
   with_radius(
       radius_, [&](auto radius)
-                   __attribute__((always_inline)) { fit_whole_windows(v, radius, row); });
+                   __attribute__((always_inline)) { fit_smooth_windows(v, radius, row); });
 }
 
 VPM_VECTOR_CLONES

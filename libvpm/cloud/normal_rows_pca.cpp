@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "libvpm/cloud/normal_fit.h"
+#include "libvpm/cloud/covariance_fit.h"
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/core/vector_clones.h"
@@ -9,146 +9,178 @@
 namespace vpm {
 namespace {
 
-// Moments of windows side by side.
-template <int Count>
-struct MomentLanes {
-  double n[Count], x[Count], y[Count], z[Count];
-  double xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
-};
-
-// Moments of whole windows along a row, with du and dv relative to each centre: first down each
-// column, then across. The second step and what follows it go by tiles of constant size on the
-// stack, which compilers turn into vector code.
-class WindowMoments {
+// Sums of windows along a row: first down each column, then across. The second step and what
+// follows it go by tiles of constant size on the stack, which compilers turn into vector code.
+class DepthOffsets {
  public:
-  using Tile = MomentLanes<kTile>;
+  struct Tile {
+    float w[kTile], uw[kTile], vw[kTile], uuw[kTile], uvw[kTile];
+    float w2[kTile], uw2[kTile], vw2[kTile], uuw2[kTile], uvw2[kTile], vvz2[kTile];
 
-  explicit WindowMoments(const PaddedImage& depth) : depth_(depth) {
-    for (auto* column : {&z_, &vz_, &z2_, &vz2_, &vvz2_})
+    [[gnu::always_inline]] WindowOffsets<float> at(int i) const {
+      return {w[i], uw[i], vw[i], uuw[i], uvw[i], w2[i], uw2[i], vw2[i], uuw2[i], uvw2[i], vvz2[i]};
+    }
+  };
+
+  DepthOffsets(const PaddedImage& depth, int radius) : depth_(depth), radius_(radius) {
+    for (auto* column : {&w_, &vw_, &w2_, &vw2_, &vvz2_})
       column->resize(depth.stride + std::size_t{kTile});
   }
 
   template <class Radius>
   void sum_columns(int v, Radius radius);
+  void sum_columns(int v, Span down);
+  // Of a tile's windows, should they be whole across. `rows`: of their columns.
   template <class Radius>
-  void sum_across(int first, Radius radius, Tile& tile) const;
+  void sum_across(int first, int v, Radius radius, float rows, Tile& tile) const;
+  // Of a column.
+  ColumnOffsets<float> column(int u) const {
+    const auto i = static_cast<std::size_t>(u + radius_);
+    return {w_[i], vw_[i], w2_[i], vw2_[i], vvz2_[i]};
+  }
 
  private:
+  // Calls sum(row) of the middle row, at places side by side, for all columns.
+  template <class Sum>
+  void for_columns(int v, const Sum& sum);
+  [[gnu::always_inline]] ColumnOffsets<WideFloats> columns(std::ptrdiff_t i) const {
+    return {load<WideFloats>(w_.data() + i), load<WideFloats>(vw_.data() + i),
+            load<WideFloats>(w2_.data() + i), load<WideFloats>(vw2_.data() + i),
+            load<WideFloats>(vvz2_.data() + i)};
+  }
+
   const PaddedImage& depth_;
-  std::vector<double> z_, vz_, z2_, vz2_, vvz2_;  // sums of z, dv z, z^2, dv z^2, dv^2 z^2
+  int radius_;
+  std::vector<float> w_, vw_, w2_, vw2_, vvz2_;
 };
 
+template <class Sum>
+[[gnu::always_inline]] inline void DepthOffsets::for_columns(int v, const Sum& sum) {
+  const int columns = depth_.width + 2 * radius_;
+  for (int i = 0; i < columns; i += kWideLanes) {
+    const ColumnOffsets<WideFloats> c = sum(depth_.at(i - radius_, v));
+    store(c.w, w_.data() + i), store(c.vw, vw_.data() + i), store(c.w2, w2_.data() + i);
+    store(c.vw2, vw2_.data() + i), store(c.vvz2, vvz2_.data() + i);
+  }
+}
+
 template <class Radius>
-[[gnu::always_inline]] inline void WindowMoments::sum_columns(int v, Radius radius) {
-  constexpr int kStep = kWideLanes / 2;
-  const int columns = depth_.width + 2 * radius;
+[[gnu::always_inline]] inline void DepthOffsets::sum_columns(int v, Radius radius) {
   const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
-  for (int i = 0; i < columns; i += kStep) {
-    const float* middle = depth_.at(i - radius, v);
-    WideDoubles z = wide_doubles(middle), z2 = z * z, vz{}, vz2{}, vvz2{};
-    for (int d = 1; d <= radius; ++d) {
-      const WideDoubles below = wide_doubles(middle + d * stride),
-                        above = wide_doubles(middle - d * stride);
-      const double distance = d;
-      add_depth_rows(below, above, distance, z, vz);
-      add_square_rows(below, above, distance, z2, vz2, vvz2);
-    }
-    store(z, z_.data() + i), store(vz, vz_.data() + i), store(z2, z2_.data() + i);
-    store(vz2, vz2_.data() + i), store(vvz2, vvz2_.data() + i);
-  }
+  for_columns(
+      v, [&](const float* at) __attribute__((always_inline)) {
+        const WideFloats middle = load<WideFloats>(at);
+        ColumnOffsets<WideFloats> sums;
+        for (int d = 1; d <= radius; ++d)
+          add_offset_rows(load<WideFloats>(at + d * stride), load<WideFloats>(at - d * stride),
+                          middle, static_cast<float>(d), sums);
+        return sums;
+      });
+}
+
+[[gnu::always_inline]] inline void DepthOffsets::sum_columns(int v, Span down) {
+  const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
+  for_columns(
+      v, [&](const float* at) __attribute__((always_inline)) {
+        return offsets_of_rows<WideFloats>(
+            down, [&](int dv) __attribute__((always_inline)) {
+              return load<WideFloats>(at + dv * stride);
+            });
+      });
 }
 
 template <class Radius>
-[[gnu::always_inline]] inline void WindowMoments::sum_across(int first, Radius radius,
-                                                             Tile& t) const {
-  constexpr int kStep = kWideLanes / 2;
-  const double count = (2 * radius + 1) * (2 * radius + 1);
-  for (int i = 0; i < kTile; i += kStep) {
-    store(WideDoubles{} + count, t.n + i);
+[[gnu::always_inline]] inline void DepthOffsets::sum_across(int first, int v, Radius radius,
+                                                            float rows, Tile& t) const {
+  for (int i = 0; i < kTile; i += kWideLanes) {
+    const float* middles = depth_.at(first + i, v);
     const std::ptrdiff_t centre = first + radius + i;
-    const double *z = z_.data() + centre, *vz = vz_.data() + centre;
-    WideDoubles sum_x{}, sum_y = load<WideDoubles>(vz), sum_z = load<WideDoubles>(z);
+    const WideFloats middle = load<WideFloats>(middles);
+    const auto column = [&](int du) __attribute__((always_inline)) {
+      return about_centre<WideFloats>(columns(centre + du), load<WideFloats>(middles + du) - middle,
+                                      rows);
+    };
+    WindowOffsets<WideFloats> sums = begin_with(columns(centre));
     for (int d = 1; d <= radius; ++d)
-      add_depth_columns(load<WideDoubles>(z + d), load<WideDoubles>(z - d),
-                        load<WideDoubles>(vz + d), load<WideDoubles>(vz - d), d, sum_x, sum_y,
-                        sum_z);
-    store(sum_x, t.x + i), store(sum_y, t.y + i), store(sum_z, t.z + i);
-
-    const double* z2 = z2_.data() + centre;
-    WideDoubles sum_xx{}, sum_xz{}, sum_zz = load<WideDoubles>(z2);
-    for (int d = 1; d <= radius; ++d)
-      add_square_columns(load<WideDoubles>(z2 + d), load<WideDoubles>(z2 - d), d, sum_xx, sum_xz,
-                         sum_zz);
-    store(sum_xx, t.xx + i), store(sum_xz, t.xz + i), store(sum_zz, t.zz + i);
-
-    const double *vz2 = vz2_.data() + centre, *vvz2 = vvz2_.data() + centre;
-    WideDoubles sum_xy{}, sum_yz = load<WideDoubles>(vz2), sum_yy = load<WideDoubles>(vvz2);
-    for (int d = 1; d <= radius; ++d)
-      add_tilted_columns(load<WideDoubles>(vz2 + d), load<WideDoubles>(vz2 - d),
-                         load<WideDoubles>(vvz2 + d), load<WideDoubles>(vvz2 - d), d, sum_xy,
-                         sum_yz, sum_yy);
-    store(sum_xy, t.xy + i), store(sum_yz, t.yz + i), store(sum_yy, t.yy + i);
+      add_offset_columns<WideFloats>(column(d), column(-d), static_cast<float>(d), sums);
+    store(sums.w, t.w + i), store(sums.uw, t.uw + i), store(sums.vw, t.vw + i);
+    store(sums.uuw, t.uuw + i), store(sums.uvw, t.uvw + i), store(sums.w2, t.w2 + i);
+    store(sums.uw2, t.uw2 + i), store(sums.vw2, t.vw2 + i), store(sums.uuw2, t.uuw2 + i);
+    store(sums.uvw2, t.uvw2 + i), store(sums.vvz2, t.vvz2 + i);
   }
 }
 
-// The camera, for a row of pixels.
-struct RowOfRays {
-  double per_fx, per_fy, cx, fx, ry;
-  RowOfRays(const Intrinsics& k, int v)
-      : per_fx(1 / k.fx), per_fy(1 / k.fy), cx(k.cx), fx(k.fx), ry((v - k.cy) / k.fy) {}
+// Covariances of windows side by side, and the rays of their centres.
+template <int Count>
+struct CovarianceLanes {
+  float xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
+
+  [[gnu::always_inline]] void set(int i, const Symmetric3<float>& c) {
+    xx[i] = c.xx, xy[i] = c.xy, xz[i] = c.xz, yy[i] = c.yy, yz[i] = c.yz, zz[i] = c.zz;
+  }
+  [[gnu::always_inline]] Symmetric3<float> at(int i) const {
+    return {xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]};
+  }
 };
 
-// Normals of windows whose centres are pixels `first`, `first` + 1, ... of a row. Steps to all
+// Normals of windows whose centres have the rays (rx[0], ry, 1), (rx[1], ry, 1), ... Steps to all
 // their roots are taken together until none has one to take: branches of each would keep compilers
 // from making vector code.
 template <int Count>
-[[gnu::always_inline]] inline void fit_normals(const MomentLanes<Count>& m, const RowOfRays& row,
-                                               int first, float* x, float* y, float* z) {
-  const double per_fx = row.per_fx, per_fy = row.per_fy, cx = row.cx, fx = row.fx, ry = row.ry;
-  double rx[Count];
+[[gnu::always_inline]] inline void find_normals(const CovarianceLanes<Count>& covariances,
+                                                const float* rx, float ry, float* x, float* y,
+                                                float* z) {
   float minors[Count], determinants[Count], roots[Count];
-  float xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
   for (int i = 0; i < Count; ++i) {
-    rx[i] = (first + i - cx) / fx;
-    const Symmetric3<float> c = covariance_of_moments(
-        {m.n[i], m.x[i], m.y[i], m.z[i], m.xx[i], m.xy[i], m.xz[i], m.yy[i], m.yz[i], m.zz[i]},
-        1 / m.n[i], per_fx, per_fy, rx[i], ry);
-    const Characteristic polynomial = characteristic_of(c);
-    minors[i] = polynomial.minors, determinants[i] = polynomial.determinant, roots[i] = 0;
-    xx[i] = c.xx, xy[i] = c.xy, xz[i] = c.xz, yy[i] = c.yy, yz[i] = c.yz, zz[i] = c.zz;
+    const Characteristic polynomial = characteristic_of(covariances.at(i));
+    minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
+    roots[i] = polynomial.begin();
   }
   int moving = 1;
-  for (int step = 0; step < kEigenSteps && moving != 0; ++step) {
+  for (int step = 1; step < kEigenSteps && moving != 0; ++step) {
     moving = 0;
     for (int i = 0; i < Count; ++i) {
-      const Characteristic polynomial{minors[i], determinants[i]};
-      const float next = polynomial.next(roots[i], polynomial.at(roots[i]));
+      const float next = Characteristic{minors[i], determinants[i]}.next(roots[i]);
       moving |= next != roots[i];
       roots[i] = next;
     }
   }
   for (int i = 0; i < Count; ++i) {
-    const Vec3f n = normal_of_covariance({xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]}, roots[i],
-                                         static_cast<float>(rx[i]), static_cast<float>(ry));
+    const Vec3f n = normal_of_covariance(covariances.at(i), roots[i], rx[i], ry);
     x[i] = n.x, y[i] = n.y, z[i] = n.z;
   }
 }
 
-// Moments of the pixels of gated windows.
+// Moments of gated windows side by side.
+struct MomentLanes {
+  double n[kLanes], x[kLanes], y[kLanes], z[kLanes];
+  double xx[kLanes], xy[kLanes], xz[kLanes], yy[kLanes], yz[kLanes], zz[kLanes];
+
+  [[gnu::always_inline]] Moments at(int i) const {
+    return {n[i], x[i], y[i], z[i], xx[i], xy[i], xz[i], yy[i], yz[i], zz[i]};
+  }
+};
+
 void gated_moments(const PaddedImage& depth, const GatedWindows& windows, int radius, int u, int v,
-                   MomentLanes<kLanes>& moments) {
+                   MomentLanes& moments) {
   constexpr int kHalf = kLanes / 2;  // as many doubles fill a vector
   for (int half = 0; half < kLanes; half += kHalf) {
-    MomentsOf<Doubles> m;
-    for (int du = -radius; du <= radius; ++du) {
-      KeptDepths<Doubles> column;
+    const auto column = [&](int du) {
+      KeptDepths<Doubles> kept;
+      if (du > radius) return moments_of_column(kept, du);
       for (int dv = -radius; dv <= radius; ++dv) {
         const Doubles weights = doubles(load<Floats>(windows.weights(du, dv)), half),
                       depths = doubles(load<Floats>(depth.at(u + du, v + dv)), half);
-        column.n += weights;
-        add_depth(column, weights * depths, dv);
+        kept.n += weights;
+        add_depth(kept, weights * depths, dv);
       }
-      add_kept(m, column, du);
+      return moments_of_column(kept, du);
+    };
+    MomentsOf<Doubles> m;
+    for (int du = -radius; du <= radius; du += kFoldedColumns) {
+      MomentsOf<Doubles> columns[kFoldedColumns];
+      for (int k = 0; k < kFoldedColumns; ++k) columns[k] = column(du + k);
+      m = m + fold(columns);
     }
     store(m.n, moments.n + half), store(m.x, moments.x + half), store(m.y, moments.y + half);
     store(m.z, moments.z + half), store(m.xx, moments.xx + half), store(m.xy, moments.xy + half);
@@ -166,61 +198,100 @@ class PcaRows final : public NormalRows {
         radius_(options.window / 2),
         windows_(images.inverse, options, EdgeGate(options, k)),
         gated_(images.inverse, options, EdgeGate(options, k)),
-        moments_(images.depth) {}
+        offsets_(images.depth, options.window / 2) {
+    rays_.resize(inverse_.stride + kTile);
+    for (int u = 0; u < inverse_.width; ++u)
+      rays_[static_cast<std::size_t>(u)] = static_cast<float>((u - k.cx) / k.fx);
+  }
 
   void estimate(int v, NormalRow& row) override {
     windows_.scan(v);
-    fit_whole_windows(v, row);
+    fit_smooth_windows(v, row);
     fit_gated_windows(v, row);
   }
 
  private:
   template <class Radius>
-  void fit_whole_windows(int v, Radius radius, NormalRow& row);
-  void fit_whole_windows(int v, NormalRow& row);
+  void fit_smooth_windows(int v, Radius radius, NormalRow& row);
+  void fit_smooth_windows(int v, NormalRow& row);
+  void fit_cut_window(int u, int v, NormalRow& row);
   void fit_gated_windows(int v, NormalRow& row);
+  float ray_of_row(int v) const { return static_cast<float>((v - k_.cy) / k_.fy); }
 
   const PaddedImage &depth_, &inverse_;
   Intrinsics k_;
   int radius_;
   SmoothWindows windows_;
   GatedWindows gated_;
-  WindowMoments moments_;
+  DepthOffsets offsets_;
+  std::vector<float> rays_;  // of columns
 };
 
-VPM_VECTOR_CLONES
-void PcaRows::fit_whole_windows(int v, NormalRow& row) {
-  with_radius(
-      radius_, [&](auto radius)
-                   __attribute__((always_inline)) { fit_whole_windows(v, radius, row); });
-}
-
 template <class Radius>
-[[gnu::always_inline]] inline void PcaRows::fit_whole_windows(int v, Radius radius,
-                                                              NormalRow& row) {
+[[gnu::always_inline]] inline void PcaRows::fit_smooth_windows(int v, Radius radius,
+                                                               NormalRow& row) {
   const int width = inverse_.width;
-  const RowOfRays rays(k_, v);
-  moments_.sum_columns(v, radius);
+  const float ry = ray_of_row(v);
+  const PixelScale<float> scale = pixel_scale_in_floats(k_);
+  const Span down = span_of(v, inverse_.height, radius);
+  const WindowShape shape({radius, radius}, down);
+  if (down.is_whole(radius))
+    offsets_.sum_columns(v, radius);
+  else
+    offsets_.sum_columns(v, down);
   for (int first = 0; first < width; first += kTile) {
-    WindowMoments::Tile moments;
-    moments_.sum_across(first, radius, moments);
+    DepthOffsets::Tile t;
+    offsets_.sum_across(first, v, radius, shape.rows, t);
+    const float *rx = rays_.data() + first, *centre = inverse_.at(first, v);
+    CovarianceLanes<kTile> covariances;
+    for (int i = 0; i < kTile; ++i)
+      covariances.set(i, covariance_of_cut_window(t.at(i), centre[i], shape, scale, rx[i], ry));
     float x[kTile], y[kTile], z[kTile];
-    fit_normals(moments, rays, first, x, y, z);
+    find_normals(covariances, rx, ry, x, y, z);
     row.take(first, x, y, z, std::min(kTile, width - first));
   }
+  for_ends(width, radius, [&](int u) {
+    if (windows_.smooth(u)) fit_cut_window(u, v, row);
+  });
+}
+
+void PcaRows::fit_cut_window(int u, int v, NormalRow& row) {
+  const Span across = span_of(u, inverse_.width, radius_);
+  const WindowShape shape(across, span_of(v, inverse_.height, radius_));
+  const float* const middle = depth_.at(u, v);
+  const WindowOffsets<float> sums = offsets_of_columns(across, [&](int du) {
+    return about_centre(offsets_.column(u + du), middle[du] - *middle, shape.rows);
+  });
+  const float rx = rays_[static_cast<std::size_t>(u)], ry = ray_of_row(v);
+  const Vec3f n = normal_of_covariance(
+      covariance_of_cut_window(sums, *inverse_.at(u, v), shape, pixel_scale_in_floats(k_), rx, ry),
+      rx, ry);
+  row.take(u, &n.x, &n.y, &n.z, 1);
+}
+
+VPM_VECTOR_CLONES
+void PcaRows::fit_smooth_windows(int v, NormalRow& row) {
+  with_radius(
+      radius_, [&](auto radius)
+                   __attribute__((always_inline)) { fit_smooth_windows(v, radius, row); });
 }
 
 VPM_VECTOR_CLONES
 void PcaRows::fit_gated_windows(int v, NormalRow& row) {
   const int width = inverse_.width;
-  const RowOfRays rays(k_, v);
+  const float ry = ray_of_row(v);
+  const PixelScale<double> scale = pixel_scale(k_);
   for (int first = windows_.next_rough(0); first < width;
        first = windows_.next_rough(std::min(first + kLanes, width))) {
     const GatedWindows::Planes planes = gated_.fit(first, v);
-    MomentLanes<kLanes> moments;
+    MomentLanes moments;
     gated_moments(depth_, gated_, radius_, first, v, moments);
+    const float* rx = rays_.data() + first;
+    CovarianceLanes<kLanes> covariances;
+    for (int i = 0; i < kLanes; ++i)
+      covariances.set(i, covariance_of_moments(moments.at(i), scale, rx[i], ry));
     float x[kLanes], y[kLanes], z[kLanes];
-    fit_normals(moments, rays, first, x, y, z);
+    find_normals(covariances, rx, ry, x, y, z);
     for (int i = 0; i < kLanes; ++i)
       if (planes.found[i] == 0) x[i] = y[i] = z[i] = 0;
     take_rough(windows_, first, x, y, z, row);

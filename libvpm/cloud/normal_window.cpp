@@ -16,10 +16,8 @@ constexpr double kSteepest = 5.7;
 
 constexpr float kOpen = std::numeric_limits<float>::infinity();
 
-// Eight columns, pairwise.
-[[gnu::always_inline]] inline Floats fold(const Floats* c) {
-  return ((c[0] + c[4]) + (c[2] + c[6])) + ((c[1] + c[5]) + (c[3] + c[7]));
-}
+// Of PCA's whole windows: their squares, in floats, are far from the ends of their range.
+constexpr float kMostRelative = 16, kLeastInverse = 0x1p-44F, kMostInverse = 0x1p42F;
 
 }  // namespace
 
@@ -28,6 +26,11 @@ EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
   // Without a gate every measured pixel passes; 0 stands for what was not measured.
   lowest = width > 0 ? static_cast<float>(1 - width) : 0.0F;
   highest = width > 0 ? static_cast<float>(1 + width) : kOpen;
+  least = std::numeric_limits<float>::min(), greatest = kOpen;
+  if (options.method == NormalMethod::pca) {
+    lowest = std::max(lowest, 1 / kMostRelative), highest = std::min(highest, kMostRelative);
+    least = kLeastInverse, greatest = kMostInverse;
+  }
   gate = width > 0 ? static_cast<float>(width) : kOpen;
   slope = static_cast<float>(kSteepest / std::min(k.fx, k.fy));
 }
@@ -41,18 +44,20 @@ SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& op
 }
 
 // Floats that are not negative are in the order of their bits, and integers have a minimum that is
-// one instruction.
+// one instruction. Unsigned for the least and signed for the greatest: kBeyondImage is neither.
 template <class Radius>
 [[gnu::always_inline]] inline void SmoothWindows::scan(int v, Radius radius) {
   const int columns = inverse_.width + 2 * radius, rows = 2 * radius;
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
   for (int i = 0; i < columns; i += kWideLanes) {
     const float* row = inverse_.at(i - radius, v - radius);
-    WideInts low = load<WideInts>(row), high = low;
+    WideUnsigned low = load<WideUnsigned>(row);
+    WideInts high = load<WideInts>(row);
     for (int k = 1; k <= rows; ++k) {
-      const WideInts value = load<WideInts>(row + k * stride);
-      low = value < low ? value : low;
-      high = value > high ? value : high;
+      const WideUnsigned least = load<WideUnsigned>(row + k * stride);
+      const WideInts most = load<WideInts>(row + k * stride);
+      low = least < low ? least : low;
+      high = most > high ? most : high;
     }
     store(low, column_min_.data() + i);
     store(high, column_max_.data() + i);
@@ -61,11 +66,13 @@ template <class Radius>
   for (int first = 0; first < inverse_.width; first += kTile) {
     float window_min[kTile], window_max[kTile];
     for (int i = 0; i < kTile; i += kWideLanes) {
-      const std::int32_t *mins = column_min_.data() + first + i,
-                         *maxs = column_max_.data() + first + i;
-      WideInts low = load<WideInts>(mins), high = load<WideInts>(maxs);
+      const std::uint32_t* mins = column_min_.data() + first + i;
+      const std::int32_t* maxs = column_max_.data() + first + i;
+      WideUnsigned low = load<WideUnsigned>(mins);
+      WideInts high = load<WideInts>(maxs);
       for (int k = 1; k <= rows; ++k) {
-        const WideInts least = load<WideInts>(mins + k), most = load<WideInts>(maxs + k);
+        const WideUnsigned least = load<WideUnsigned>(mins + k);
+        const WideInts most = load<WideInts>(maxs + k);
         low = least < low ? least : low;
         high = most > high ? most : high;
       }
@@ -75,8 +82,8 @@ template <class Radius>
     std::uint8_t* smooth = smooth_.data() + first;
     for (int i = 0; i < kTile; ++i) {
       const float at = centre[first + i];
-      smooth[i] = (window_min[i] > 0) & (window_min[i] >= edges_.lowest * at) &
-                  (window_max[i] <= edges_.highest * at);
+      smooth[i] = (window_min[i] >= edges_.least) & (window_max[i] <= edges_.greatest) &
+                  (window_min[i] >= edges_.lowest * at) & (window_max[i] <= edges_.highest * at);
     }
   }
 }
@@ -85,6 +92,15 @@ VPM_VECTOR_CLONES
 void SmoothWindows::scan(int v) {
   with_radius(
       radius_, [&](auto radius) __attribute__((always_inline)) { scan(v, radius); });
+  leave_out_what_tells_no_plane(v);
+}
+
+void SmoothWindows::leave_out_what_tells_no_plane(int v) {
+  const Span down = span_of(v, inverse_.height, radius_);
+  if (down.is_whole(radius_) && inverse_.width > radius_) return;
+  for (int u = 0; u < inverse_.width; ++u)
+    if (!tells_plane(span_of(u, inverse_.width, radius_), down))
+      smooth_[static_cast<std::size_t>(u)] = 0;
 }
 
 int SmoothWindows::next_rough(int u) const {
@@ -152,21 +168,12 @@ template <bool kFirst, class Radius>
 [[gnu::always_inline]] inline void GatedWindows::fit_admitted(const float* centre, Radius radius) {
   const Sums s = sum_admitted<kFirst>(centre, radius);
   if constexpr (kFirst) store(s.has_edge ? Floats{} + gate_ : Floats{} + kOpen, gates_);
-  for (int first = 0; first < kLanes; first += kLanes / 2) {
-    Doubles e{}, ue{}, ve{};
-    for (int k = 0; k <= 2 * radius; k += kColumns) {
-      e += doubles(fold(s.column_e + k), first);
-      ue += doubles(fold(s.column_ue + k), first);
-      ve += doubles(fold(s.column_ve + k), first);
-    }
-    const FittedPlane<Doubles> plane = fit_plane<Doubles>(
-        {doubles(s.n, first), doubles(s.u, first), doubles(s.v, first), doubles(s.uu, first),
-         doubles(s.uv, first), doubles(s.vv, first), e, ue, ve});
-    store(floats(plane.a), planes_.a + first);
-    store(floats(plane.b), planes_.b + first);
-    store(floats(plane.c), planes_.c + first);
-    store(__builtin_convertvector(plane.found, HalfInts), planes_.found + first);
-  }
+  Floats e{}, ue{}, ve{};
+  for (int k = 0; k <= 2 * radius; k += kColumns)
+    e += fold(s.column_e + k), ue += fold(s.column_ue + k), ve += fold(s.column_ve + k);
+  const FittedPlane<Floats> plane = fit_plane<Floats>({s.n, s.u, s.v, s.uu, s.uv, s.vv, e, ue, ve});
+  store(plane.a, planes_.a), store(plane.b, planes_.b), store(plane.c, planes_.c);
+  store(plane.found, planes_.found);
 }
 
 VPM_VECTOR_CLONES

@@ -7,10 +7,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "libvpm/cloud/normal_fit.h"
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/padded_image.h"
+#include "libvpm/cloud/plane_fit.h"
 #include "libvpm/core/lanes.h"
 
 namespace vpm {
@@ -25,16 +25,18 @@ template <class Body>
     body(radius);
 }
 
-// Bounds of inverse depth by the options' edge gate.
+// Bounds of inverse depth by the options' edge gate, and by what floats can hold of a smooth
+// window: others are gated, which is done in doubles.
 struct EdgeGate {
   float lowest, highest;  // of a smooth window, relative to its centre's
+  float least, greatest;  // of a smooth window
   float gate, slope;      // of a gated one: difference from a plane, and more of it per pixel from
                           // the centre where the plane is not known yet
   EdgeGate(const NormalOptions& options, const Intrinsics& k);
 };
 
-// Tells the windows of a row that are whole, measured everywhere and without an edge: there, plain
-// sums over all pixels will do. They are most of a usual image.
+// Tells the windows of a row that are measured everywhere, as far as the image goes, and without an
+// edge: there, plain sums over all pixels will do. They are most of a usual image.
 class SmoothWindows {
  public:
   SmoothWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
@@ -46,13 +48,22 @@ class SmoothWindows {
  private:
   template <class Radius>
   void scan(int v, Radius radius);
+  void leave_out_what_tells_no_plane(int v);
 
   const PaddedImage& inverse_;
   int radius_;
   EdgeGate edges_;
-  std::vector<std::int32_t> column_min_, column_max_;  // as integers, see scan()
+  std::vector<std::uint32_t> column_min_;  // as integers, see scan()
+  std::vector<std::int32_t> column_max_;
   std::vector<std::uint8_t> smooth_;
 };
+
+// Calls body(u) for the pixels of a row whose windows its ends cut.
+template <class Body>
+[[gnu::always_inline]] inline void for_ends(int width, int radius, const Body& body) {
+  for (int u = 0; u < std::min(radius, width); ++u) body(u);
+  for (int u = std::max(radius, width - radius); u < width; ++u) body(u);
+}
 
 // Takes those of kLanes normals from pixel `first` on whose windows are not smooth.
 inline void take_rough(const SmoothWindows& windows, int first, const float* x, const float* y,
@@ -88,7 +99,7 @@ class GatedWindows {
   }
 
  private:
-  static constexpr int kColumns = 8;  // of windows are added pairwise; those beyond are zero
+  static constexpr int kColumns = kFoldedColumns;
   static constexpr int kMostColumns = (kMaxWindow + kColumns - 1) / kColumns * kColumns;
   // Over the admitted pixels: integers, exact in any order, and the sums of each column.
   struct Sums {

@@ -30,7 +30,7 @@ void store_normals(const NormalRow& row, Vec3f* to) {
 }  // namespace
 
 void NormalImages::resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options) {
-  inverse.resize(width, height, options.window / 2);
+  inverse.resize(width, height, options.window / 2, kBeyondImage);
   if (options.method == NormalMethod::pca) depth.resize(width, height, options.window / 2);
 }
 

@@ -5,14 +5,15 @@
 
 namespace vpm {
 
-void PaddedImage::resize(std::uint32_t new_width, std::uint32_t new_height, int frame) {
+void PaddedImage::resize(std::uint32_t new_width, std::uint32_t new_height, int frame,
+                         float beyond) {
   const int w = static_cast<int>(new_width), h = static_cast<int>(new_height);
   const std::size_t tiles = (std::size_t{new_width} + kTile - 1) / kTile,
                     around = 2 * static_cast<std::size_t>(frame),
                     row = tiles * kTile + around + kWideLanes,
                     count = row * (std::size_t{new_height} + around);
   if (w == width && h == height && frame == margin && values.size() == count) return;
-  values.assign(count, 0.0F);
+  values.assign(count, beyond);
   width = w, height = h, margin = frame, stride = row;
 }
 

@@ -1,4 +1,4 @@
-// An image with zeros around it, for loops over the neighbours of pixels.
+// An image with a margin around it, for loops over the neighbours of pixels.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,8 @@ struct PaddedImage {
   std::vector<float> values;
 
   // Takes this size; allocates nothing where it has it. What was in the image itself stays there.
-  void resize(std::uint32_t width, std::uint32_t height, int margin);
+  // `beyond`: what stands in the margin, always the same for an image.
+  void resize(std::uint32_t width, std::uint32_t height, int margin, float beyond = 0);
   const float* at(int u, int v) const { return values.data() + offset(u, v); }
   float* at(int u, int v) { return values.data() + offset(u, v); }
 

@@ -20,6 +20,7 @@ using Ints = std::int32_t __attribute__((vector_size(32)));
 using WideFloats = float __attribute__((vector_size(64)));
 using WideDoubles = double __attribute__((vector_size(64)));
 using WideInts = std::int32_t __attribute__((vector_size(64)));
+using WideUnsigned = std::uint32_t __attribute__((vector_size(64)));
 using HalfFloats = float __attribute__((vector_size(16)));
 using HalfInts = std::int32_t __attribute__((vector_size(16)));
 

@@ -13,7 +13,33 @@ struct TileImage {
   Frame frame;
   const float *inverse, *depth;  // with the margin (tile_around.h); depth only where it is needed
   const double *ray_x, *ray_y;   // of the tile's columns and rows
+
+  __device__ TileAround inverse_around(int x, int y) const {
+    return {inverse + frame.index(x, y), frame.pitch()};
+  }
+  __device__ TileAround depth_around(int x, int y) const {
+    return {depth + frame.index(x, y), frame.pitch()};
+  }
+  // What the image has of the windows about a column, and a row.
+  __device__ Span across(int x) const { return span_of(frame.u0 + x, frame.width, frame.radius()); }
+  __device__ Span down(int y) const { return span_of(frame.v0 + y, frame.height, frame.radius()); }
 };
+
+// Of inverse depth down a column about its middle; of a window about its middle column.
+__device__ __forceinline__ Extent extent_of_column(const TileAround& inverse, int radius) {
+  Extent extent(inverse.at(0, 0));
+#pragma unroll
+  for (int d = 1; d <= radius; ++d)
+    extent.take(Extent(inverse.at(0, d)), Extent(inverse.at(0, -d)));
+  return extent;
+}
+template <class Column>
+__device__ __forceinline__ Extent extent_of_window(const Column* column, int radius) {
+  Extent extent = column->extent;
+#pragma unroll
+  for (int d = 1; d <= radius; ++d) extent.take(column[d].extent, column[-d].extent);
+  return extent;
+}
 
 // How a tile's normals are estimated. Each has: what is kept of a column, the sums down a column,
 // the normal of a smooth window from them, and that of a gated one.
@@ -24,8 +50,8 @@ class InverseDepthNormals {
   static constexpr bool kNeedsDepth = false;
   static constexpr int kMostBlocks = 5;  // of a multiprocessor
   struct alignas(16) Column {
-    int low, high;
-    float s, vs;
+    PlaneColumn<float> sums;
+    Extent extent;
   };
 
   __device__ __forceinline__ InverseDepthNormals(const CloudRecipe& recipe,
@@ -34,46 +60,55 @@ class InverseDepthNormals {
 
   // Down the column x (from -radius on) around the row y.
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    const Frame& frame = image_.frame;
-    const float* const middle = image_.inverse + frame.index(x, y);
-    float s = *middle, vs = 0;
-    Extent extent(s);
-#pragma unroll
-    for (int d = 1; d <= frame.radius(); ++d) {
-      const float below = middle[d * frame.pitch()], above = middle[-d * frame.pitch()];
-      add_rows(below, above, static_cast<float>(d), s, vs);
-      extent.take(Extent(below), Extent(above));
-    }
-    return {extent.low, extent.high, s, vs};
+    const TileAround inverse = image_.inverse_around(x, y);
+    return {sums_of_column(inverse, image_.down(y)), extent_of_column(inverse, radius())};
   }
 
   // `column`: that of the pixel; false where its window is not smooth.
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {
-    const float centre = image_.inverse[image_.frame.index(x, y)];
-    float s = column->s, us = 0, vs = column->vs;
-    Extent extent(column->low, column->high);
+    const float centre = image_.inverse_around(x, y).at(0, 0);
+    if (!extent_of_window(column, radius()).is_smooth(centre, recipe_.edges)) return false;
+    const Span across = image_.across(x), down = image_.down(y);
+    WindowShape shape = recipe_.whole;
+    PlaneWindow<float> sums;
+    if (across.is_whole(radius())) {
+      sums = {column->sums.s, 0, column->sums.vs};
 #pragma unroll
-    for (int d = 1; d <= image_.frame.radius(); ++d) {
-      const Column right = column[d], left = column[-d];
-      add_columns(right.s, left.s, right.vs, left.vs, static_cast<float>(d), s, us, vs);
-      extent.take({right.low, right.high}, {left.low, left.high});
+      for (int d = 1; d <= radius(); ++d)
+        add_columns(column[d].sums, column[-d].sums, static_cast<float>(d), sums);
+    } else {
+      sums = sum_columns(across, [&](int du) { return column[du].sums; });
     }
-    if (!extent.is_smooth(centre, recipe_.edges)) return false;
-    normal = normal_of_plane<float>(recipe_.whole.plane(s, us, vs, centre), fx(), fy(), du_axis(x),
-                                    dv_axis(y));
+    if (!across.is_whole(radius()) || !down.is_whole(radius())) {
+      if (!tells_plane(across, down)) return false;
+      shape = WindowShape(across, down);
+    }
+    normal = normal_of_cut_window(shape, plane_of_sums(shape, sums, centre), fx(), fy(), du_axis(x),
+                                  dv_axis(y));
     return true;
   }
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
-    const Frame& frame = image_.frame;
-    const GatedWindow<Frame::kRadius> window({image_.inverse + frame.index(x, y), frame.pitch()},
-                                             frame.radius(), recipe_.edges);
+    const GatedWindow<Frame::kRadius> window(image_.inverse_around(x, y), radius(), recipe_.edges);
     LastChoice last;
-    return normal_of_window(window.fit(last), fx(), fy(), du_axis(x), dv_axis(y));
+    return normal_of_window(window.fit(Lanes<1>(), last), fx(), fy(), du_axis(x), dv_axis(y));
   }
 
  private:
+  __device__ int radius() const {
+    return image_.frame.radius();
+  }
+  __device__ __forceinline__ PlaneColumn<float> sums_of_column(const TileAround& inverse,
+                                                               Span down) const {
+    if (!down.is_whole(radius()))
+      return sum_rows<float>(down, [&](int dv) { return inverse.at(0, dv); });
+    PlaneColumn<float> sums{inverse.at(0, 0), 0};
+#pragma unroll
+    for (int d = 1; d <= radius(); ++d)
+      add_rows(inverse.at(0, d), inverse.at(0, -d), static_cast<float>(d), sums);
+    return sums;
+  }
   __device__ __forceinline__ float fx() const {
     return static_cast<float>(recipe_.camera.intrinsics.fx);
   }
@@ -96,71 +131,81 @@ class PcaNormals {
  public:
   using Frame = Tile;
   static constexpr bool kNeedsDepth = true;
-  static constexpr int kMostBlocks = 3;
+  static constexpr int kMostBlocks = 4;
   struct Column {
-    double z, vz, z2, vz2, vvz2;
-    int low, high;
+    ColumnOffsets<float> sums;
+    Extent extent;
   };
 
   __device__ __forceinline__ PcaNormals(const CloudRecipe& recipe, const TileImage<Frame>& image)
       : recipe_(recipe), image_(image) {}
 
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    const Frame& frame = image_.frame;
-    const int at = frame.index(x, y);
-    const double middle = image_.depth[at];
-    double z = middle, vz = 0, z2 = middle * middle, vz2 = 0, vvz2 = 0;
-    Extent extent(image_.inverse[at]);
-#pragma unroll
-    for (int d = 1; d <= frame.radius(); ++d) {
-      const int b = at + d * frame.pitch(), a = at - d * frame.pitch();
-      const double below = image_.depth[b], above = image_.depth[a], distance = d;
-      add_depth_rows(below, above, distance, z, vz);
-      add_square_rows(below, above, distance, z2, vz2, vvz2);
-      extent.take(Extent(image_.inverse[b]), Extent(image_.inverse[a]));
-    }
-    return {z, vz, z2, vz2, vvz2, extent.low, extent.high};
+    return {sums_of_column(image_.depth_around(x, y), image_.down(y)),
+            extent_of_column(image_.inverse_around(x, y), radius())};
   }
 
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {
-    Extent extent(column->low, column->high);
-#pragma unroll
-    for (int d = 1; d <= image_.frame.radius(); ++d) {
-      extent.take({column[d].low, column[d].high}, {column[-d].low, column[-d].high});
+    const float inverse = image_.inverse_around(x, y).at(0, 0);
+    const Extent extent = extent_of_window(column, radius());
+    if (!extent.is_smooth(inverse, recipe_.edges) || !extent.is_in_floats(recipe_.edges))
+      return false;
+    const Span across = image_.across(x), down = image_.down(y);
+    WindowShape shape = recipe_.whole;
+    if (!across.is_whole(radius()) || !down.is_whole(radius())) {
+      if (!tells_plane(across, down)) return false;
+      shape = WindowShape(across, down);
     }
-    if (!extent.is_smooth(image_.inverse[image_.frame.index(x, y)], recipe_.edges)) return false;
-    Moments m;
-    const int side = 2 * image_.frame.radius() + 1;
-    m.n = side * side;
-    m.y = column->vz, m.z = column->z, m.yy = column->vvz2, m.yz = column->vz2, m.zz = column->z2;
+    const TileAround depth = image_.depth_around(x, y);
+    const float centre = depth.at(0, 0);
+    const auto about = [&](int du) {
+      return about_centre(column[du].sums, depth.at(du, 0) - centre, shape.rows);
+    };
+    WindowOffsets<float> sums;
+    if (across.is_whole(radius())) {
+      sums = begin_with(column->sums);
 #pragma unroll
-    for (int d = 1; d <= image_.frame.radius(); ++d) {
-      const Column &r = column[d], &l = column[-d];
-      const double distance = d;
-      add_depth_columns(r.z, l.z, r.vz, l.vz, distance, m.x, m.y, m.z);
-      add_square_columns(r.z2, l.z2, distance, m.xx, m.xz, m.zz);
-      add_tilted_columns(r.vz2, l.vz2, r.vvz2, l.vvz2, distance, m.xy, m.yz, m.yy);
+      for (int d = 1; d <= radius(); ++d)
+        add_offset_columns(about(d), about(-d), static_cast<float>(d), sums);
+    } else {
+      sums = offsets_of_columns(across, about);
     }
-    normal = normal_of(m, 1 / m.n, x, y);
+    const float rx = ray_x(x), ry = ray_y(y);
+    normal = normal_of_covariance(
+        covariance_of_cut_window(sums, inverse, shape, recipe_.scale, rx, ry), rx, ry);
     return true;
   }
 
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
-    const Frame& frame = image_.frame;
-    const int at = frame.index(x, y);
-    const GatedWindow<Frame::kRadius> window({image_.inverse + at, frame.pitch()}, frame.radius(),
-                                             recipe_.edges);
+    const GatedWindow<Frame::kRadius> window(image_.inverse_around(x, y), radius(), recipe_.edges);
     LastChoice last;
-    if (!window.fit(last).found) return {};
-    const Moments m = window.moments(last, TileAround(image_.depth + at, frame.pitch()));
-    return normal_of(m, quotient(1, m.n), x, y);
+    if (!window.fit(Lanes<1>(), last).found) return {};
+    const Moments m = window.moments(Lanes<1>(), last, image_.depth_around(x, y));
+    const float rx = ray_x(x), ry = ray_y(y);
+    return normal_of_covariance(covariance_of_moments(m, recipe_.exact_scale, rx, ry), rx, ry);
   }
 
  private:
-  __device__ __forceinline__ Vec3f normal_of(const Moments& m, double per_n, int x, int y) const {
-    return normal_of_moments(m, per_n, recipe_.per_fx, recipe_.per_fy, image_.ray_x[x],
-                             image_.ray_y[y]);
+  __device__ int radius() const {
+    return image_.frame.radius();
+  }
+  __device__ __forceinline__ ColumnOffsets<float> sums_of_column(const TileAround& depth,
+                                                                 Span down) const {
+    if (!down.is_whole(radius()))
+      return offsets_of_rows<float>(down, [&](int dv) { return depth.at(0, dv); });
+    const float middle = depth.at(0, 0);
+    ColumnOffsets<float> sums;
+#pragma unroll
+    for (int d = 1; d <= radius(); ++d)
+      add_offset_rows(depth.at(0, d), depth.at(0, -d), middle, static_cast<float>(d), sums);
+    return sums;
+  }
+  __device__ __forceinline__ float ray_x(int x) const {
+    return static_cast<float>(image_.ray_x[x]);
+  }
+  __device__ __forceinline__ float ray_y(int y) const {
+    return static_cast<float>(image_.ray_y[y]);
   }
 
   const CloudRecipe& recipe_;

@@ -88,7 +88,8 @@ class TileWork {
         const int k = begin + i * Shape::kPointThreads;
         const int x = k % tile_.pitch() - tile_.margin(), y = k / tile_.pitch() - tile_.margin();
         const bool is_known = k < count && tile_.is_known(x, y);
-        inverse[i] = is_known ? measured_or_none(inverses[tile_.pixel(x, y)]) : unmeasured();
+        inverse[i] = is_known ? measured_or_none(inverses[tile_.pixel(x, y)])
+                              : (tile_.is_in_image(x, y) ? unmeasured() : beyond_image());
         if constexpr (Normals::kNeedsDepth) depth[i] = is_known ? depths[tile_.pixel(x, y)] : 0.0F;
         unknown |= is_known && !(inverse[i] > 0);
       }

@@ -1,6 +1,7 @@
 // What is known of an image that becomes a cloud, and of the tile of it that a block works on.
 #pragma once
 
+#include "libvpm/cloud/covariance_fit.h"
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/device/cuda/device_array.h"
@@ -50,11 +51,12 @@ struct CloudRecipe {
   const float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
   const float* inverse = nullptr;  // of that
   Camera camera;
-  Rotation to_camera;  // from the cloud's axes
-  double per_fx = 0, per_fy = 0;
+  Rotation to_camera;                // from the cloud's axes
+  PixelScale<float> scale{};         // of whole windows
+  PixelScale<double> exact_scale{};  // of gated ones
   int window = 0;
   EdgeGate edges;
-  WholeWindow whole;
+  WindowShape whole;       // windows that the image's border does not cut
   float4* seen = nullptr;  // of the pixels: normals in camera axes, turned back from the world's,
                            // and inverse depth without holes
   PointReading points = PointReading::settled;

@@ -31,14 +31,14 @@ class KeptColumn {
   float e_ = 0, ye_ = 0;
 };
 
-// Sums over the pixels that are kept: of those that are integers, and of the difference.
-struct KeptCounts {
-  int n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0;
-};
-struct KeptDifferences {
+// Sums over the pixels that are kept: of the difference, and of those that are integers; how many
+// columns have an edge.
+struct KeptSums {
   float e = 0, ue = 0, ve = 0;
-  friend __device__ KeptDifferences operator+(const KeptDifferences& a, const KeptDifferences& b) {
-    return {a.e + b.e, a.ue + b.ue, a.ve + b.ve};
+  int n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, edges = 0;
+  __device__ KeptSums operator+(const KeptSums& b) const {
+    return {e + b.e, ue + b.ue, ve + b.ve, n + b.n,   u + b.u,
+            v + b.v, uu + b.uu, uv + b.uv, vv + b.vv, edges + b.edges};
   }
 };
 
@@ -48,39 +48,58 @@ struct LastChoice {
   float gate = HUGE_VALF;
 };
 
-// Who adds up a window's columns, and then knows the sums: a lane, or two side by side that take
-// half of the columns each, whole warps. (To choose at run time makes slower code of both.)
-struct OneLane {
-  template <class Half>
-  __device__ __forceinline__ KeptDifferences add(const Half& half) const {
-    KeptDifferences both;
+// Who adds up eight of a window's columns, column(0) to column(7), in the order of fold(), and then
+// knows the sum: some lanes side by side, whole warps.
+template <int Count>
+struct Lanes {
+  static constexpr int kCount = Count;
+
+  // Whether it is so of any window of the warp.
+  __device__ __forceinline__ static bool any(bool own) {
+    return kCount > 1 ? __any_sync(~0U, own) != 0 : own;
+  }
+  template <class Column>
+  __device__ __forceinline__ auto fold(const Column& column) const {
+    const int lane = static_cast<int>(threadIdx.x) % kCount;
+    if constexpr (kCount == kFoldedColumns) {
+      auto sum = column(lane);
+      sum = sum + other(sum, 4);
+      sum = sum + other(sum, 2);
+      return sum + other(sum, 1);
+    } else {
+      // Every second of the columns.
+      const auto half = [&](int first) {
+        const auto one = column(first) + column(first + 4);
+        return one + (column(first + 2) + column(first + 6));
+      };
+      if constexpr (kCount == 2) {
+        const auto sum = half(lane);
+        return sum + other(sum, 1);
+      } else {
+        decltype(half(0)) both;
 #pragma unroll 1  // half as much code to read, where few windows share it
-    for (int k = 0; k < 2; ++k) {
-      const KeptDifferences one = half(k);
-      both = k == 0 ? one : both + one;
+        for (int k = 0; k < 2; ++k) {
+          const auto one = half(k);
+          both = k == 0 ? one : both + one;
+        }
+        return both;
+      }
     }
-    return both;
   }
-  __device__ int add(int own) const {
-    return own;
-  }
-  __device__ bool any(bool own) const {
-    return own;
-  }
-};
-struct TwoLanes {
-  template <class Half>
-  __device__ __forceinline__ KeptDifferences add(const Half& half) const {
-    const KeptDifferences own = half(static_cast<int>(threadIdx.x) % 2);
-    return {own.e + other(own.e), own.ue + other(own.ue), own.ve + other(own.ve)};
-  }
-  __device__ int add(int own) const { return own + other(own); }
-  __device__ bool any(bool own) const { return (int{own} | other(int{own})) != 0; }
 
  private:
-  template <class T>
-  __device__ static T other(T own) {
-    return __shfl_xor_sync(~0U, own, 1);
+  static_assert(kCount == 1 || kCount == 2 || kCount == kFoldedColumns);
+
+  template <class Sums>
+  __device__ static Sums other(const Sums& own, int distance) {
+    constexpr int kWords = sizeof(Sums) / sizeof(int);
+    struct Words {
+      int of[kWords];
+    };
+    Words words = __builtin_bit_cast(Words, own);
+#pragma unroll
+    for (int& word : words.of) word = __shfl_xor_sync(~0U, word, distance);
+    return __builtin_bit_cast(Sums, words);
   }
 };
 
@@ -95,91 +114,68 @@ class GatedWindow {
         middle_(image.at(0, 0)),
         unit_(reciprocal(middle_)) {}
 
-  __device__ __forceinline__ WindowPlane fit(LastChoice& last) const {
+  // By whole warps, unless one lane is enough.
+  template <class Lanes>
+  __device__ __forceinline__ WindowPlane fit(const Lanes& lanes, LastChoice& last) const {
     bool has_edge;
-    const WindowPlane first = plane_of_sums(choose_first(OneLane(), has_edge));
+    const WindowPlane first = choose_first(lanes, has_edge);
+    const bool is_gated = has_edge && first.found;
     last = {};
-    if (!has_edge || !first.found) return first;
+    if (!lanes.any(is_gated)) return first;
+    const WindowPlane second = choose_last(lanes, first);
+    if (!is_gated) return first;
     last = {first, edges_.gate};
-    return plane_of_sums(choose_last(OneLane(), first));
+    return second;
   }
-  // Sums over what the steepest surface could reach, and whether something is beyond the edge gate
-  // of the centre.
+  // Of what the steepest surface could reach, and whether something is beyond the edge gate of the
+  // centre.
   template <class Lanes>
-  __device__ __forceinline__ PlaneSums choose_first(const Lanes& lanes, bool& has_edge) const {
-    has_edge = false;
-    const PlaneSums sums = choose<true>({}, lanes, has_edge);
-    has_edge = lanes.any(has_edge);
-    return sums;
+  __device__ __forceinline__ WindowPlane choose_first(const Lanes& lanes, bool& has_edge) const {
+    return choose<true>({}, lanes, has_edge);
   }
-  // Over what lies near a plane.
+  // Of what lies near a plane.
   template <class Lanes>
-  __device__ __forceinline__ PlaneSums choose_last(const Lanes& lanes,
-                                                   const WindowPlane& near) const {
-    bool has_edge = false;
+  __device__ __forceinline__ WindowPlane choose_last(const Lanes& lanes,
+                                                     const WindowPlane& near) const {
+    bool has_edge;
     return choose<false>(near, lanes, has_edge);
   }
 
   // Of the depths about the same centre.
-  __device__ __forceinline__ Moments moments(const LastChoice& last,
+  template <class Lanes>
+  __device__ __forceinline__ Moments moments(const Lanes& lanes, const LastChoice& last,
                                              const TileAround& depths) const {
     Moments m;
 #pragma unroll 1
-    for (int du = -radius(); du <= radius(); ++du) {
-      KeptDepths<double> column;
-      int kept = 0;
-#pragma unroll
-      for (int dv = -radius(); dv <= radius(); ++dv) {
-        const bool is_kept = keeps(last, du, dv);
-        kept += is_kept ? 1 : 0;
-        add_depth<double>(column, is_kept ? depths.at(du, dv) : 0.0F, dv);
-      }
-      column.n = kept;
-      add_kept(m, column, du);
-    }
+    for (int first = -radius(); first <= radius(); first += kFoldedColumns)
+      m = m + lanes.fold([&](int k) { return moments_of_column(last, first + k, depths); });
     return m;
   }
 
  private:
-  static constexpr int kGroup = 8;  // columns are added pairwise, so many at a time
-
   __device__ __forceinline__ int radius() const {
     return Radius > 0 ? Radius : radius_;
   }
 
   template <bool kFirst, class Lanes>
-  __device__ __forceinline__ PlaneSums choose(const WindowPlane& near, const Lanes& lanes,
-                                              bool& has_edge) const {
-    KeptCounts c;
-    PlaneSums sums;
-    for (int first = -radius(); first <= radius(); first += kGroup) {
-      const KeptDifferences sum =
-          lanes.add([&](int half) { return add_half<kFirst>(first + half, near, c, has_edge); });
-      sums.e += sum.e, sums.ue += sum.ue, sums.ve += sum.ve;
-    }
-    sums.n = lanes.add(c.n), sums.u = lanes.add(c.u), sums.v = lanes.add(c.v);
-    sums.uu = lanes.add(c.uu), sums.uv = lanes.add(c.uv), sums.vv = lanes.add(c.vv);
-    return sums;
+  __device__ __forceinline__ WindowPlane choose(const WindowPlane& near, const Lanes& lanes,
+                                                bool& has_edge) const {
+    KeptSums sums;
+    for (int first = -radius(); first <= radius(); first += kFoldedColumns)
+      sums = sums + lanes.fold([&](int k) { return sum_column<kFirst>(first + k, near); });
+    has_edge = sums.edges != 0;
+    const auto exact = [](int count) { return static_cast<float>(count); };
+    return fit_plane<float>({exact(sums.n), exact(sums.u), exact(sums.v), exact(sums.uu),
+                             exact(sums.uv), exact(sums.vv), sums.e, sums.ue, sums.ve});
   }
 
-  // Every second of eight columns.
-  template <bool kFirst>
-  __device__ __forceinline__ KeptDifferences add_half(int first, const WindowPlane& near,
-                                                      KeptCounts& counts, bool& has_edge) const {
-    const auto pair = [&](int du) {
-      const KeptDifferences one = add_column<kFirst>(du, near, counts, has_edge);
-      return one + add_column<kFirst>(du + kGroup / 2, near, counts, has_edge);
-    };
-    const KeptDifferences one = pair(first);
-    return one + pair(first + 2);
-  }
   // Columns that the window does not have are 0.
   template <bool kFirst>
-  __device__ __forceinline__ KeptDifferences add_column(int du, const WindowPlane& near,
-                                                        KeptCounts& counts, bool& has_edge) const {
+  __device__ __forceinline__ KeptSums sum_column(int du, const WindowPlane& near) const {
     if (du > radius()) return {};
     const float x = static_cast<float>(du), predicted = near.c + near.a * x;
     const float gate = edges_.gate, along = gate + edges_.slope * std::fabs(x);
+    bool has_edge = false;
     KeptColumn kept;
 #pragma unroll
     for (int dv = -radius(); dv <= radius(); ++dv) {
@@ -193,9 +189,31 @@ class GatedWindow {
         if (std::fabs(difference - (predicted + near.b * y)) <= gate) kept.add(difference, dv);
       }
     }
-    counts.n += kept.pixels(), counts.u += du * kept.pixels(), counts.uu += du * du * kept.pixels();
-    counts.v += kept.y(), counts.uv += du * kept.y(), counts.vv += kept.yy();
-    return {kept.e(), x * kept.e(), kept.ye()};
+    return {kept.e(),
+            x * kept.e(),
+            kept.ye(),
+            kept.pixels(),
+            du * kept.pixels(),
+            kept.y(),
+            du * du * kept.pixels(),
+            du * kept.y(),
+            kept.yy(),
+            has_edge ? 1 : 0};
+  }
+  __device__ __forceinline__ Moments moments_of_column(const LastChoice& last, int du,
+                                                       const TileAround& depths) const {
+    KeptDepths<double> column;
+    int kept = 0;
+    if (du <= radius()) {
+#pragma unroll
+      for (int dv = -radius(); dv <= radius(); ++dv) {
+        const bool is_kept = keeps(last, du, dv);
+        kept += is_kept ? 1 : 0;
+        add_depth<double>(column, is_kept ? depths.at(du, dv) : 0.0F, dv);
+      }
+    }
+    column.n = kept;
+    return vpm::moments_of_column(column, du);
   }
   __device__ __forceinline__ bool keeps(const LastChoice& last, int du, int dv) const {
     const WindowPlane& near = last.near;

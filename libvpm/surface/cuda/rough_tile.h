@@ -17,7 +17,8 @@ struct RoughCounts {
   unsigned with_edge, without;
 };
 
-// By two lanes for each window, so that a block has use for all of its own: all of the first
+// Few windows by eight lanes each, so that they take no longer than they must: everybody waits for
+// the slowest block. Many by two, so that a block has use for all of its own: all of the first
 // choices, then the last choices of windows that have an edge.
 template <class Smooth, NormalMethod kMethod>
 class RoughTile {
@@ -32,13 +33,10 @@ class RoughTile {
 
   // By all threads of the block.
   __device__ void find(const RoughPixels& rough) const {
-    choose_first(rough);
-    __syncthreads();
-    choose_last();
-    if constexpr (kMethod == NormalMethod::pca) {
-      __syncthreads();
-      find_moments();
-    }
+    if (rough.count <= kThreads / kFoldedColumns)
+      find_few(rough);
+    else
+      find_many(rough);
   }
 
  private:
@@ -51,22 +49,50 @@ class RoughTile {
   __device__ static int x(unsigned pixel) { return static_cast<int>(pixel % SmoothShape::kWidth); }
   __device__ static int y(unsigned pixel) { return static_cast<int>(pixel / SmoothShape::kWidth); }
 
+  __device__ __forceinline__ void find_few(const RoughPixels& rough) const {
+    const Lanes<kFoldedColumns> lanes;
+    for_windows(rough.count, lanes, [&](unsigned i, bool is_there) {
+      const unsigned pixel = rough.of[i];
+      LastChoice last;
+      const WindowPlane plane = window(pixel).fit(lanes, last);
+      if constexpr (kMethod == NormalMethod::pca) {
+        const Moments m = window(pixel).moments(lanes, last, depth_around(pixel));
+        if (is_there && plane.found) write(pixel, m);
+      } else {
+        if (is_there) write(pixel, plane);
+      }
+    });
+  }
+  __device__ __forceinline__ void find_many(const RoughPixels& rough) const {
+    choose_first(rough);
+    __syncthreads();
+    choose_last();
+    if constexpr (kMethod == NormalMethod::pca) {
+      __syncthreads();
+      find_moments();
+    }
+  }
+
   // Calls body(i, is_there) for each window, in whole warps; is_there: in one of its lanes, if
   // there is such a window.
-  template <class Body>
-  __device__ __forceinline__ static void for_windows(unsigned count, const Body& body) {
+  template <class Lanes, class Body>
+  __device__ __forceinline__ static void for_windows(unsigned count, const Lanes& lanes,
+                                                     const Body& body) {
+    constexpr unsigned kLanes = lanes.kCount;
 #pragma unroll 1
-    for (unsigned begin = threadIdx.x / 32 * 16; begin < count; begin += kThreads / 2) {
-      const unsigned i = begin + threadIdx.x % 32 / 2;
-      body(i < count ? i : count - 1, i < count && threadIdx.x % 2 == 0);
+    for (unsigned begin = threadIdx.x / 32 * 32 / kLanes; begin < count;
+         begin += kThreads / kLanes) {
+      const unsigned i = begin + threadIdx.x % 32 / kLanes;
+      body(i < count ? i : count - 1, i < count && threadIdx.x % kLanes == 0);
     }
   }
 
   __device__ __forceinline__ void choose_first(const RoughPixels& rough) const {
-    for_windows(rough.count, [&](unsigned i, bool is_there) {
+    const Lanes<2> lanes;
+    for_windows(rough.count, lanes, [&](unsigned i, bool is_there) {
       const unsigned pixel = rough.of[i];
       bool has_edge;
-      const WindowPlane plane = plane_of_sums(window(pixel).choose_first(TwoLanes(), has_edge));
+      const WindowPlane plane = window(pixel).choose_first(lanes, has_edge);
       if (!is_there || !plane.found) return;
       if (has_edge)
         note(atomicAdd(&counts_.with_edge, 1U), pixel, plane);
@@ -77,9 +103,10 @@ class RoughTile {
     });
   }
   __device__ __forceinline__ void choose_last() const {
-    for_windows(counts_.with_edge, [&](unsigned i, bool is_there) {
+    const Lanes<2> lanes;
+    for_windows(counts_.with_edge, lanes, [&](unsigned i, bool is_there) {
       const unsigned pixel = fits_.pixel[i];
-      const WindowPlane plane = plane_of_sums(window(pixel).choose_last(TwoLanes(), near(i)));
+      const WindowPlane plane = window(pixel).choose_last(lanes, near(i));
       if (!is_there) return;
       if constexpr (kMethod == NormalMethod::pca) {
         fits_.found[i] = plane.found;
@@ -95,10 +122,7 @@ class RoughTile {
       const unsigned i = k < with_edge ? k : kLast - (k - with_edge), pixel = fits_.pixel[i];
       if (!fits_.found[i]) continue;
       const LastChoice last{near(i), k < with_edge ? recipe_.edges.gate : HUGE_VALF};
-      const Moments m = window(pixel).moments(last, tile_.depth_around(x(pixel), y(pixel)));
-      normals_[tile_.pixel_of(x(pixel), y(pixel))] =
-          normal_of_moments(m, quotient(1, m.n), recipe_.per_fx, recipe_.per_fy,
-                            tile_.rays().x(x(pixel)), tile_.rays().y(y(pixel)));
+      write(pixel, window(pixel).moments(Lanes<1>(), last, depth_around(pixel)));
     }
   }
 
@@ -114,6 +138,15 @@ class RoughTile {
     normals_[tile_.pixel_of(x(pixel), y(pixel))] =
         normal_of_window(plane, static_cast<float>(k.fx), static_cast<float>(k.fy),
                          tile_.rays().x(x(pixel)), tile_.rays().y(y(pixel)));
+  }
+
+  __device__ TileAround depth_around(unsigned pixel) const {
+    return tile_.depth_around(x(pixel), y(pixel));
+  }
+  __device__ void write(unsigned pixel, const Moments& m) const {
+    const float rx = tile_.rays().x(x(pixel)), ry = tile_.rays().y(y(pixel));
+    normals_[tile_.pixel_of(x(pixel), y(pixel))] =
+        normal_of_covariance(covariance_of_moments(m, recipe_.exact_scale, rx, ry), rx, ry);
   }
 
   const CloudRecipe& recipe_;

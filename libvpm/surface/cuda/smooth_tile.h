@@ -35,6 +35,8 @@ template <class Smooth>
 class SmoothTile : private SmoothShape {
  public:
   static constexpr int kAtOnce = Smooth::kAtOnce, kThreads = Smooth::kThreads;
+  using Extents = WindowExtents<kAtOnce, Smooth::kRadius>;
+  static constexpr std::size_t kColumn = Extents::kBytes + Smooth::kBytes;
 
   __device__ SmoothTile(const CloudRecipe& recipe, void* shared)
       : recipe_(recipe),
@@ -47,6 +49,7 @@ class SmoothTile : private SmoothShape {
         inverse_(arrays_.take<float>(rows() * pitch())),
         depth_(arrays_.take<float>(Smooth::kNeedsDepth ? rows() * pitch() : 0)),
         columns_(arrays_),
+        extents_(arrays_, kHeight * pitch()),
         smooth_(arrays_, kHeight * pitch(), inverse_, depth_),
         rays_(arrays_, kWidth, kHeight) {}
 
@@ -56,7 +59,7 @@ class SmoothTile : private SmoothShape {
       return of_one * static_cast<std::size_t>(count);
     };
     return size(sizeof(float) * (Smooth::kNeedsDepth ? 2 : 1), (kHeight + 2 * radius) * pitch) +
-           size(Smooth::kBytes, kHeight * pitch) + size(Smooth::Rays::kBytes, kWidth + kHeight);
+           size(kColumn, kHeight * pitch) + size(Smooth::Rays::kBytes, kWidth + kHeight);
   }
 
   // Does not need the image.
@@ -76,9 +79,9 @@ class SmoothTile : private SmoothShape {
         const int k = begin + i * kThreads;
         const int u = u0_ - side() + k % packs * kPack, v = v0_ - radius_ + k / packs;
         const bool is_there = k < count && v >= 0 && v < height_ && u >= 0 && u < width_;
-        inverse[i] = is_there ? read(recipe_.inverse, u, v) : Pack<float, kPack>{};
+        inverse[i] = is_there ? read(recipe_.inverse, u, v, beyond_image()) : beyond();
         if constexpr (Smooth::kNeedsDepth)
-          depth[i] = is_there ? read(recipe_.depth, u, v) : Pack<float, kPack>{};
+          depth[i] = is_there ? read(recipe_.depth, u, v, 0) : Pack<float, kPack>{};
       }
 #pragma unroll
       for (int i = 0; i < kInFlight; ++i) {
@@ -94,11 +97,11 @@ class SmoothTile : private SmoothShape {
   __device__ __forceinline__ void sum_columns() const {
     if constexpr (Smooth::kRadius == 0) {
       for (int k = static_cast<int>(threadIdx.x); k < kHeight * pitch(); k += kThreads)
-        sum_columns(k, 0);
+        sum_columns(k % pitch(), k / pitch());
     } else {
       constexpr int kGroups = (kWidth + 2 * whole_packs(Smooth::kRadius)) / kAtOnce;  // of a row
-      for_each_of<kThreads, kHeight / Smooth::kRows * kGroups>(
-          [&](int k) { sum_columns(k % kGroups * kAtOnce, k / kGroups * Smooth::kRows); });
+      for_each_of<kThreads, kHeight * kGroups>(
+          [&](int k) { sum_columns(k % kGroups * kAtOnce, k / kGroups); });
     }
   }
   // Writes those of smooth windows, and lists the others.
@@ -115,7 +118,7 @@ class SmoothTile : private SmoothShape {
   __device__ SharedArrays columns() const {
     return columns_;
   }
-  static constexpr std::size_t kColumnBytes = Smooth::kBytes * kHeight * kWidth;  // of it, at least
+  static constexpr std::size_t kColumnBytes = kColumn * kHeight * kWidth;  // of it, at least
 
   __device__ TileAround inverse_around(int x, int y) const {
     return {inverse_ + index(x, y), pitch()};
@@ -154,37 +157,62 @@ class SmoothTile : private SmoothShape {
     return static_cast<std::ptrdiff_t>(v) * width_ + u;
   }
 
-  __device__ __forceinline__ Pack<float, kPack> read(const float* image, int u, int v) const {
+  // Whether the image's border cuts windows of the tile.
+  __device__ bool may_be_cut() const {
+    return u0_ < radius_ || v0_ < radius_ || u0_ + kWidth + radius_ > width_ ||
+           v0_ + kHeight + radius_ > height_;
+  }
+  __device__ Span down(int y) const {
+    return span_of(v0_ + y, height_, radius_);
+  }
+
+  // `beyond`: what is read beyond the image.
+  __device__ __forceinline__ Pack<float, kPack> read(const float* image, int u, int v,
+                                                     float beyond) const {
     const float* const from = image + pixel(u, v);
     if (width_ % kPack == 0) return pack_at<kPack>(from);
-    Pack<float, kPack> pack{};
+    Pack<float, kPack> pack;
 #pragma unroll
-    for (int p = 0; p < kPack; ++p)
-      if (u + p < width_) pack.of[p] = from[p];
+    for (int p = 0; p < kPack; ++p) pack.of[p] = u + p < width_ ? from[p] : beyond;
     return pack;
+  }
+  __device__ static Pack<float, kPack> beyond() {
+    return {beyond_image(), beyond_image(), beyond_image(), beyond_image()};
   }
   __device__ static void put(const Pack<float, kPack>& pack, float* image, int k) {
     reinterpret_cast<Pack<float, kPack>*>(image)[k] = pack;
   }
 
-  // Of kAtOnce columns, from the tile's first with its margin on, about as many rows as `Smooth`
-  // takes together: they share most of what they read.
+  // Of kAtOnce columns, from the tile's first with its margin on, about a row.
   __device__ __forceinline__ void sum_columns(int column, int y) const {
-    typename Smooth::Columns sums[Smooth::kRows];
-#pragma unroll
-    for (int i = 0; i < Smooth::kRows; ++i)
-      sums[i] = smooth_.sum_columns((y + i + radius_) * pitch() + column, pitch(), radius_);
-#pragma unroll
-    for (int i = 0; i < Smooth::kRows; ++i) smooth_.put(sums[i], (y + i) * pitch() + column);
+    const int at = y * pitch() + column, from = at + radius_ * pitch();
+    const auto extents = Extents::of_columns(inverse_ + from, pitch(), radius_);
+    if (may_be_cut() && !down(y).is_whole(radius_)) {
+      if (v0_ + y < height_) smooth_.sum_cut_columns(from, pitch(), down(y), at);
+    } else {
+      smooth_.sum_columns(from, pitch(), radius_, at);
+    }
+    extents_.put(extents, at);
   }
   // Returns which windows of kAtOnce pixels are to be gated, a bit for each.
   __device__ __forceinline__ unsigned find_smooth(int x, int y, Vec3f* normals) const {
     const int u = u0_ + x, v = v0_ + y, at = y * pitch() + side() + x;
     if (v >= height_ || u >= width_) return 0;
     const Pack<float, kAtOnce> centres = pack_at<kAtOnce>(inverse_ + at + radius_ * pitch());
-    const unsigned smooth = smooth_.smooth(at, radius_, centres, recipe_.edges);
+    unsigned smooth =
+        extents_.template smooth<Smooth::kInFloats>(at, radius_, centres, recipe_.edges);
     Vec3f found[kAtOnce];
-    if (smooth != 0) smooth_.normals(recipe_, at, radius_, centres, rays_, x, y, found);
+    const auto find = [&](const auto& windows) {
+      if (smooth != 0)
+        smooth_.normals(recipe_, at, pitch(), radius_, centres, rays_, x, y, windows, found);
+    };
+    if (may_be_cut()) {
+      const CutWindows<kAtOnce> windows = cut_windows(x, y);
+      smooth &= windows.that_tell_planes();
+      find(windows);
+    } else {
+      find(WholeWindows());
+    }
     unsigned measured = 0;  // none beyond the image
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
@@ -193,6 +221,16 @@ class SmoothTile : private SmoothShape {
     }
     write(found, u, normals + pixel(u, v));
     return measured & ~smooth;
+  }
+  __device__ __forceinline__ CutWindows<kAtOnce> cut_windows(int x, int y) const {
+    CutWindows<kAtOnce> windows;
+    windows.down = down(y), windows.whole_across = true;
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) {
+      windows.across[p] = span_of(u0_ + x + p, width_, radius_);
+      windows.whole_across &= windows.across[p].is_whole(radius_);
+    }
+    return windows;
   }
   // kAtOnce normals, as far as the image goes.
   __device__ __forceinline__ void write(const Vec3f (&found)[kAtOnce], int u, Vec3f* to) const {
@@ -241,7 +279,8 @@ class SmoothTile : private SmoothShape {
   int radius_, u0_, v0_, width_, height_;
   SharedArrays arrays_;
   float *inverse_, *depth_;
-  SharedArrays columns_;  // memory of what smooth_ knows of columns
+  SharedArrays columns_;  // memory of what is known of columns
+  Extents extents_;
   Smooth smooth_;
   typename Smooth::Rays rays_;
 };

@@ -1,12 +1,13 @@
-// Windows that are measured everywhere and cross no edge: sums over all their pixels, down each
-// column and then across, in the order of libvpm/cloud/normal_rows_*.cpp. A thread takes kAtOnce
-// pixels side by side, whose windows share most of what they read; kAtOnce and Radius are known
-// beforehand, or the radius is at run time only: Radius is 0 and kAtOnce 1 then.
+// Windows that are measured as far as the image goes and cross no edge: sums over all their pixels,
+// down each column and then across, in the order of libvpm/cloud/normal_rows_*.cpp. A thread takes
+// kAtOnce pixels side by side, whose windows share most of what they read; kAtOnce and Radius are
+// known beforehand, or the radius is at run time only: Radius is 0 and kAtOnce 1 then.
 //
 // The columns lie in a block's shared memory beside the image, row by row with the same pitch, so
 // that one index serves for both. Rows begin where kAtOnce values lie together.
 #pragma once
 
+#include "libvpm/cloud/covariance_fit.h"
 #include "libvpm/surface/cuda/cloud_tile.h"
 #include "libvpm/surface/cuda/tile_around.h"
 
@@ -59,15 +60,15 @@ class RowValues<Real, 1, 0> {
 };
 
 // The least, or the greatest, value of each pixel's window: pick(a, b, c) chooses.
-template <int kAtOnce, class Row, class Pick>
+template <int kAtOnce, class Row, class Pick, class Integer>
 __device__ __forceinline__ void pick_in_windows(const Row& row, const Pick& pick,
-                                                int (&picked)[kAtOnce]) {
+                                                Integer (&picked)[kAtOnce]) {
   const int radius = row.radius();
-  int common = row.at(kAtOnce - 1 - radius);
+  Integer common = row.at(kAtOnce - 1 - radius);
 #pragma unroll
   for (int i = kAtOnce - radius; i <= radius; i += 2)
     common = pick(common, row.at(i), row.at(i < radius ? i + 1 : i));
-  int left = common, right = common;
+  Integer left = common, right = common;
   picked[kAtOnce - 1] = common;
 #pragma unroll
   for (int p = kAtOnce - 2; p >= 0; --p) picked[p] = left = pick(left, left, row.at(p - radius));
@@ -82,7 +83,9 @@ __device__ __forceinline__ void pick_in_windows(const Row& row, const Pick& pick
 template <int kAtOnce, int Radius>
 class WindowExtents {
   struct Least {
-    __device__ int operator()(int a, int b, int c) const { return __vimin3_s32(a, b, c); }
+    __device__ unsigned operator()(unsigned a, unsigned b, unsigned c) const {
+      return __vimin3_u32(a, b, c);
+    }
   };
   struct Greatest {
     __device__ int operator()(int a, int b, int c) const { return __vimax3_s32(a, b, c); }
@@ -90,69 +93,92 @@ class WindowExtents {
 
  public:
   __device__ WindowExtents(SharedArrays& arrays, int count)
-      : low_(arrays.take<int>(count)), high_(arrays.take<int>(count)) {}
-  static constexpr std::size_t kBytes = 2 * sizeof(int);  // of a column
+      : low_(arrays.take<unsigned>(count)), high_(arrays.take<int>(count)) {}
+  static constexpr std::size_t kBytes = sizeof(unsigned) + sizeof(int);  // of a column
 
-  // What is known of kAtOnce columns while they are gone down.
-  struct Down {
-    Pack<int, kAtOnce> low, high;
-    Down() = default;
-    __device__ __forceinline__ explicit Down(const Pack<float, kAtOnce>& middle) {
-#pragma unroll
-      for (int p = 0; p < kAtOnce; ++p) low.of[p] = high.of[p] = __float_as_int(middle.of[p]);
-    }
-    __device__ __forceinline__ void take(int p, float below, float above) {
-      Extent extent(low.of[p], high.of[p]);
-      extent.take(Extent(below), Extent(above));
-      low.of[p] = extent.low, high.of[p] = extent.high;
-    }
+  struct Columns {
+    Pack<unsigned, kAtOnce> low;
+    Pack<int, kAtOnce> high;
   };
-  __device__ __forceinline__ void put(const Down& down, int at) const {
-    put_pack(down.low, low_ + at);
-    put_pack(down.high, high_ + at);
+  // Down kAtOnce columns about the image's row at `middle`.
+  __device__ __forceinline__ static Columns of_columns(const float* middle, int pitch, int radius) {
+    Columns columns;
+    const Pack<float, kAtOnce> values = pack_at<kAtOnce>(middle);
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) {
+      const Extent extent(values.of[p]);
+      columns.low.of[p] = extent.low, columns.high.of[p] = extent.high;
+    }
+#pragma unroll
+    for (int d = 1; d <= radius; ++d) {
+      const Pack<float, kAtOnce> below = pack_at<kAtOnce>(middle + d * pitch),
+                                 above = pack_at<kAtOnce>(middle - d * pitch);
+#pragma unroll
+      for (int p = 0; p < kAtOnce; ++p) {
+        Extent extent(columns.low.of[p], columns.high.of[p]);
+        extent.take(Extent(below.of[p]), Extent(above.of[p]));
+        columns.low.of[p] = extent.low, columns.high.of[p] = extent.high;
+      }
+    }
+    return columns;
+  }
+  __device__ __forceinline__ void put(const Columns& columns, int at) const {
+    put_pack(columns.low, low_ + at);
+    put_pack(columns.high, high_ + at);
   }
 
-  // Which of the pixels have a smooth window, a bit for each. `centres`: their inverse depths.
+  // Which of the pixels have a smooth window, a bit for each; kInFloats: whose squares floats hold.
+  // `centres`: their inverse depths.
+  template <bool kInFloats>
   __device__ __forceinline__ unsigned smooth(int at, int radius,
                                              const Pack<float, kAtOnce>& centres,
                                              const EdgeGate& edges) const {
-    int low[kAtOnce], high[kAtOnce];
-    pick_in_windows(RowValues<int, kAtOnce, Radius>(low_ + at, radius), Least(), low);
+    unsigned low[kAtOnce];
+    int high[kAtOnce];
+    pick_in_windows(RowValues<unsigned, kAtOnce, Radius>(low_ + at, radius), Least(), low);
     pick_in_windows(RowValues<int, kAtOnce, Radius>(high_ + at, radius), Greatest(), high);
     unsigned smooth = 0;
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p)
-      smooth |= (Extent(low[p], high[p]).is_smooth(centres.of[p], edges) ? 1U : 0U) << p;
+    for (int p = 0; p < kAtOnce; ++p) {
+      const Extent extent(low[p], high[p]);
+      const bool is_smooth =
+          extent.is_smooth(centres.of[p], edges) && (!kInFloats || extent.is_in_floats(edges));
+      smooth |= (is_smooth ? 1U : 0U) << p;
+    }
     return smooth;
   }
 
  private:
-  int *low_, *high_;
+  unsigned* low_;
+  int* high_;
 };
 
 // Of a tile's columns and rows of pixels.
-template <class Real>
 class TileRays {
  public:
   __device__ TileRays(SharedArrays& arrays, int width, int height)
-      : x_(arrays.take<Real>(width)), y_(arrays.take<Real>(height)) {}
-  static constexpr std::size_t kBytes = sizeof(Real);  // of a column or row
+      : x_(arrays.take<float>(width)), y_(arrays.take<float>(height)) {}
+  static constexpr std::size_t kBytes = sizeof(float);  // of a column or row
 
-  __device__ const Real& x(int column) const { return x_[column]; }
-  __device__ Real y(int row) const { return y_[row]; }
+  __device__ const float& x(int column) const { return x_[column]; }
+  __device__ float y(int row) const { return y_[row]; }
 
  protected:
-  Real *x_, *y_;
+  float *x_, *y_;
 };
 // Of each, the ray at depth 1.
-class UnitRays : public TileRays<double> {
+class UnitRays : public TileRays {
  public:
   using TileRays::TileRays;
-  __device__ void set_column(int i, int u, const Intrinsics& k) const { x_[i] = (u - k.cx) / k.fx; }
-  __device__ void set_row(int i, int v, const Intrinsics& k) const { y_[i] = (v - k.cy) / k.fy; }
+  __device__ void set_column(int i, int u, const Intrinsics& k) const {
+    x_[i] = static_cast<float>((u - k.cx) / k.fx);
+  }
+  __device__ void set_row(int i, int v, const Intrinsics& k) const {
+    y_[i] = static_cast<float>((v - k.cy) / k.fy);
+  }
 };
 // Of each, how far the camera's axis is, in pixels.
-class PixelsToAxis : public TileRays<float> {
+class PixelsToAxis : public TileRays {
  public:
   using TileRays::TileRays;
   __device__ void set_column(int i, int u, const Intrinsics& k) const {
@@ -163,82 +189,125 @@ class PixelsToAxis : public TileRays<float> {
   }
 };
 
+// Windows of kAtOnce pixels side by side: how far the image lets them go. The tile's windows are
+// whole ...
+struct WholeWindows {
+  static constexpr bool kMayBeCut = false;
+};
+// ... or the image's border cuts some of them.
+template <int kAtOnce>
+struct CutWindows {
+  static constexpr bool kMayBeCut = true;
+  Span across[kAtOnce], down;
+  bool whole_across;  // all of them
+
+  __device__ WindowShape shape(int p) const { return {across[p], down}; }
+  // A bit for each.
+  __device__ unsigned that_tell_planes() const {
+    unsigned windows = 0;
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) windows |= (tells_plane(across[p], down) ? 1U : 0U) << p;
+    return windows;
+  }
+};
+
 // Of a tile that has the image's inverse depth at `inverse`, each with what normals need of it.
 template <int TheAtOnce, int Radius>
 class SmoothInverseDepth {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
   static constexpr int kThreads = 128, kBlocks = 10;  // of a multiprocessor
-  static constexpr int kRows = 1;                     // of sums down a column, by a thread together
-  static constexpr bool kNeedsDepth = false;
+  static constexpr bool kNeedsDepth = false, kInFloats = false;
   using Rays = PixelsToAxis;
-  static constexpr std::size_t kBytes =
-      WindowExtents<kAtOnce, Radius>::kBytes + 2 * sizeof(float);  // of a column
+  static constexpr std::size_t kBytes = 2 * sizeof(float);  // of a column
 
   // `count`: of columns in all rows.
   __device__ SmoothInverseDepth(SharedArrays& arrays, int count, const float* inverse,
                                 const float* /*depth*/)
-      : inverse_(inverse),
-        extents_(arrays, count),
-        s_(arrays.take<float>(count)),
-        vs_(arrays.take<float>(count)) {}
+      : inverse_(inverse), s_(arrays.take<float>(count)), vs_(arrays.take<float>(count)) {}
 
-  struct Columns {
-    typename WindowExtents<kAtOnce, Radius>::Down extents;
-    Pack<float, kAtOnce> s, vs;
-  };
-  // Down the columns about the image's row at `from`.
-  __device__ __forceinline__ Columns sum_columns(int from, int pitch, int radius) const {
-    Pack<float, kAtOnce> s = pack_at<kAtOnce>(inverse_ + from), vs{};
-    typename WindowExtents<kAtOnce, Radius>::Down extents(s);
+  // Down kAtOnce columns about the image's row at `from`.
+  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
+    PlaneColumn<float> sums[kAtOnce];
+    const Pack<float, kAtOnce> middle = pack_at<kAtOnce>(inverse_ + from);
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) sums[p].s = middle.of[p];
 #pragma unroll
     for (int d = 1; d <= radius; ++d) {
       const Pack<float, kAtOnce> below = pack_at<kAtOnce>(inverse_ + from + d * pitch),
                                  above = pack_at<kAtOnce>(inverse_ + from - d * pitch);
 #pragma unroll
-      for (int p = 0; p < kAtOnce; ++p) {
-        add_rows(below.of[p], above.of[p], static_cast<float>(d), s.of[p], vs.of[p]);
-        extents.take(p, below.of[p], above.of[p]);
-      }
+      for (int p = 0; p < kAtOnce; ++p)
+        add_rows(below.of[p], above.of[p], static_cast<float>(d), sums[p]);
     }
-    return {extents, s, vs};
+    put(sums, at);
   }
-  __device__ __forceinline__ void put(const Columns& columns, int at) const {
-    extents_.put(columns.extents, at);
-    put_pack(columns.s, s_ + at);
-    put_pack(columns.vs, vs_ + at);
+  // As far as the image goes.
+  __device__ __forceinline__ void sum_cut_columns(int from, int pitch, Span down, int at) const {
+    PlaneColumn<float> sums[kAtOnce];
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p)
+      sums[p] = sum_rows<float>(down, [&](int dv) { return inverse_[from + dv * pitch + p]; });
+    put(sums, at);
   }
 
-  // Which windows of the columns `at` and beside it are smooth.
-  __device__ __forceinline__ unsigned smooth(int at, int radius,
-                                             const Pack<float, kAtOnce>& centres,
-                                             const EdgeGate& edges) const {
-    return extents_.smooth(at, radius, centres, edges);
-  }
-  // Normals, should they be. (x, y): the first pixel.
-  __device__ __forceinline__ void normals(const CloudRecipe& recipe, int at, int radius,
-                                          const Pack<float, kAtOnce>& centres, const Rays& rays,
-                                          int x, int y, Vec3f (&normals)[kAtOnce]) const {
-    const RowValues<float, kAtOnce, Radius> of_s(s_ + at, radius), of_vs(vs_ + at, radius);
+  // Normals of windows that are smooth. (x, y): the first pixel.
+  template <class Windows>
+  __device__ __forceinline__ void normals(const CloudRecipe& recipe, int at, int /*pitch*/,
+                                          int radius, const Pack<float, kAtOnce>& centres,
+                                          const Rays& rays, int x, int y, const Windows& windows,
+                                          Vec3f (&normals)[kAtOnce]) const {
+    PlaneWindow<float> sums[kAtOnce];
+    sum_across(at, radius, windows, sums);
     const Pack<float, kAtOnce> du_axis = pack_at<kAtOnce>(&rays.x(x));
     const float dv_axis = rays.y(y);
     const Intrinsics& k = recipe.camera.intrinsics;
     const auto fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy);
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
-      float s = of_s.at(p), us = 0, vs = of_vs.at(p);
-#pragma unroll
-      for (int d = 1; d <= radius; ++d)
-        add_columns(of_s.at(p + d), of_s.at(p - d), of_vs.at(p + d), of_vs.at(p - d),
-                    static_cast<float>(d), s, us, vs);
-      normals[p] = normal_of_plane<float>(recipe.whole.plane(s, us, vs, centres.of[p]), fx, fy,
-                                          du_axis.of[p], dv_axis);
+      if constexpr (Windows::kMayBeCut) {
+        const WindowShape shape = windows.shape(p);
+        normals[p] = normal_of_cut_window(shape, plane_of_sums(shape, sums[p], centres.of[p]), fx,
+                                          fy, du_axis.of[p], dv_axis);
+      } else {
+        normals[p] = normal_of_plane<float>(plane_of_sums(recipe.whole, sums[p], centres.of[p]), fx,
+                                            fy, du_axis.of[p], dv_axis);
+      }
     }
   }
 
  private:
+  __device__ __forceinline__ void put(const PlaneColumn<float>* sums, int at) const {
+    Pack<float, kAtOnce> s, vs;
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) s.of[p] = sums[p].s, vs.of[p] = sums[p].vs;
+    put_pack(s, s_ + at), put_pack(vs, vs_ + at);
+  }
+  template <class Windows>
+  __device__ __forceinline__ void sum_across(int at, int radius, const Windows& windows,
+                                             PlaneWindow<float>* sums) const {
+    if constexpr (Windows::kMayBeCut) {
+      if (!windows.whole_across) {
+#pragma unroll
+        for (int p = 0; p < kAtOnce; ++p)
+          sums[p] = vpm::sum_columns(windows.across[p], [&](int du) {
+            return PlaneColumn<float>{s_[at + p + du], vs_[at + p + du]};
+          });
+        return;
+      }
+    }
+    const RowValues<float, kAtOnce, Radius> s(s_ + at, radius), vs(vs_ + at, radius);
+    const auto column = [&](int i) { return PlaneColumn<float>{s.at(i), vs.at(i)}; };
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) {
+      sums[p] = {s.at(p), 0, vs.at(p)};
+#pragma unroll
+      for (int d = 1; d <= radius; ++d)
+        add_columns(column(p + d), column(p - d), static_cast<float>(d), sums[p]);
+    }
+  }
+
   const float* inverse_;
-  WindowExtents<kAtOnce, Radius> extents_;
   float *s_, *vs_;
 };
 
@@ -246,122 +315,112 @@ template <int TheAtOnce, int Radius>
 class SmoothPca {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 128, kBlocks = 6;  // more leave doubles too few registers
-  static constexpr int kRows = Radius > 0 ? 2 : 1;  // doubles and squares of most pixels serve both
-  static constexpr bool kNeedsDepth = true;
+  static constexpr int kThreads = 128, kBlocks = 6;  // more leave too few registers
+  static constexpr bool kNeedsDepth = true, kInFloats = true;
   using Rays = UnitRays;
-  static constexpr std::size_t kBytes = WindowExtents<kAtOnce, Radius>::kBytes + 5 * sizeof(double);
+  static constexpr std::size_t kBytes = 5 * sizeof(float);
 
-  __device__ SmoothPca(SharedArrays& arrays, int count, const float* inverse, const float* depth)
-      : inverse_(inverse),
-        depth_(depth),
-        z_(arrays.take<double>(count)),
-        vz_(arrays.take<double>(count)),
-        z2_(arrays.take<double>(count)),
-        vz2_(arrays.take<double>(count)),
-        vvz2_(arrays.take<double>(count)),
-        extents_(arrays, count) {}
+  __device__ SmoothPca(SharedArrays& arrays, int count, const float* /*inverse*/,
+                       const float* depth)
+      : depth_(depth),
+        w_(arrays.take<float>(count)),
+        vw_(arrays.take<float>(count)),
+        w2_(arrays.take<float>(count)),
+        vw2_(arrays.take<float>(count)),
+        vvz2_(arrays.take<float>(count)) {}
 
-  struct Columns {
-    typename WindowExtents<kAtOnce, Radius>::Down extents;
-    Pack<double, kAtOnce> z, vz, z2, vz2, vvz2;
-  };
-  __device__ __forceinline__ Columns sum_columns(int from, int pitch, int radius) const {
-    typename WindowExtents<kAtOnce, Radius>::Down extents(pack_at<kAtOnce>(inverse_ + from));
+  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
     const Pack<float, kAtOnce> middle = pack_at<kAtOnce>(depth_ + from);
-    Pack<double, kAtOnce> z, vz{}, z2, vz2{}, vvz2{};
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      z.of[p] = middle.of[p];
-      z2.of[p] = z.of[p] * z.of[p];
-    }
+    ColumnOffsets<float> sums[kAtOnce];
 #pragma unroll
     for (int d = 1; d <= radius; ++d) {
-      const int b = from + d * pitch, a = from - d * pitch;
-      const Pack<float, kAtOnce> below = pack_at<kAtOnce>(depth_ + b),
-                                 above = pack_at<kAtOnce>(depth_ + a);
-      const Pack<float, kAtOnce> below_inverse = pack_at<kAtOnce>(inverse_ + b),
-                                 above_inverse = pack_at<kAtOnce>(inverse_ + a);
-      const double distance = d;
+      const Pack<float, kAtOnce> below = pack_at<kAtOnce>(depth_ + from + d * pitch),
+                                 above = pack_at<kAtOnce>(depth_ + from - d * pitch);
 #pragma unroll
-      for (int p = 0; p < kAtOnce; ++p) {
-        add_depth_rows<double>(below.of[p], above.of[p], distance, z.of[p], vz.of[p]);
-        add_square_rows<double>(below.of[p], above.of[p], distance, z2.of[p], vz2.of[p],
-                                vvz2.of[p]);
-        extents.take(p, below_inverse.of[p], above_inverse.of[p]);
-      }
+      for (int p = 0; p < kAtOnce; ++p)
+        add_offset_rows(below.of[p], above.of[p], middle.of[p], static_cast<float>(d), sums[p]);
     }
-    return {extents, z, vz, z2, vz2, vvz2};
+    put(sums, at);
   }
-  __device__ __forceinline__ void put(const Columns& columns, int at) const {
-    extents_.put(columns.extents, at);
-    put_pack(columns.z, z_ + at), put_pack(columns.vz, vz_ + at), put_pack(columns.z2, z2_ + at);
-    put_pack(columns.vz2, vz2_ + at), put_pack(columns.vvz2, vvz2_ + at);
+  __device__ __forceinline__ void sum_cut_columns(int from, int pitch, Span down, int at) const {
+    ColumnOffsets<float> sums[kAtOnce];
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p)
+      sums[p] = offsets_of_rows<float>(down, [&](int dv) { return depth_[from + dv * pitch + p]; });
+    put(sums, at);
   }
 
-  __device__ __forceinline__ unsigned smooth(int at, int radius,
-                                             const Pack<float, kAtOnce>& centres,
-                                             const EdgeGate& edges) const {
-    return extents_.smooth(at, radius, centres, edges);
-  }
-  __device__ __forceinline__ void normals(const CloudRecipe& recipe, int at, int radius,
-                                          const Pack<float, kAtOnce>& /*centres*/, const Rays& rays,
-                                          int x, int y, Vec3f (&normals)[kAtOnce]) const {
-    Moments moments[kAtOnce];
-    add_depths(at, radius, moments);
-    add_squares(at, radius, moments);
-    add_tilted(at, radius, moments);
-    const int side = 2 * radius + 1;
+  template <class Windows>
+  __device__ __forceinline__ void normals(const CloudRecipe& recipe, int at, int pitch, int radius,
+                                          const Pack<float, kAtOnce>& centres, const Rays& rays,
+                                          int x, int y, const Windows& windows,
+                                          Vec3f (&normals)[kAtOnce]) const {
+    WindowOffsets<float> sums[kAtOnce];
+    sum_across(at, depth_ + at + radius * pitch, radius, recipe, windows, sums);
+    const Pack<float, kAtOnce> rx = pack_at<kAtOnce>(&rays.x(x));
+    const float ry = rays.y(y);
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
-      moments[p].n = side * side;
-      normals[p] = normal_of_moments(moments[p], 1.0 / (side * side), recipe.per_fx, recipe.per_fy,
-                                     rays.x(x + p), rays.y(y));
+      Symmetric3<float> covariance;
+      if constexpr (Windows::kMayBeCut)
+        covariance = covariance_of_cut_window(sums[p], centres.of[p], windows.shape(p),
+                                              recipe.scale, rx.of[p], ry);
+      else
+        covariance =
+            covariance_of_offsets(sums[p], centres.of[p], recipe.whole, recipe.scale, rx.of[p], ry);
+      normals[p] = normal_of_covariance(covariance, rx.of[p], ry);
     }
   }
 
  private:
-  using Row = RowValues<double, kAtOnce, Radius>;
+  using Row = RowValues<float, kAtOnce, Radius>;
 
-  __device__ __forceinline__ void add_depths(int at, int radius, Moments* moments) const {
-    const Row z(z_ + at, radius), vz(vz_ + at, radius);
+  __device__ __forceinline__ void put(const ColumnOffsets<float>* sums, int at) const {
+    Pack<float, kAtOnce> w, vw, w2, vw2, vvz2;
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
-      Moments& m = moments[p];
-      m.z = z.at(p), m.y = vz.at(p);
-#pragma unroll
-      for (int d = 1; d <= radius; ++d)
-        add_depth_columns(z.at(p + d), z.at(p - d), vz.at(p + d), vz.at(p - d), double(d), m.x, m.y,
-                          m.z);
+      w.of[p] = sums[p].w, vw.of[p] = sums[p].vw, w2.of[p] = sums[p].w2;
+      vw2.of[p] = sums[p].vw2, vvz2.of[p] = sums[p].vvz2;
     }
+    put_pack(w, w_ + at), put_pack(vw, vw_ + at), put_pack(w2, w2_ + at);
+    put_pack(vw2, vw2_ + at), put_pack(vvz2, vvz2_ + at);
   }
-  __device__ __forceinline__ void add_squares(int at, int radius, Moments* moments) const {
-    const Row z2(z2_ + at, radius);
+  // `middles`: the depths of the pixels themselves.
+  template <class Windows>
+  __device__ __forceinline__ void sum_across(int at, const float* middles, int radius,
+                                             const CloudRecipe& recipe, const Windows& windows,
+                                             WindowOffsets<float>* sums) const {
+    float rows = recipe.whole.rows;
+    if constexpr (Windows::kMayBeCut) {
+      rows = static_cast<float>(windows.down.count());
+      if (!windows.whole_across) {
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      Moments& m = moments[p];
-      m.zz = z2.at(p);
-#pragma unroll
-      for (int d = 1; d <= radius; ++d)
-        add_square_columns(z2.at(p + d), z2.at(p - d), double(d), m.xx, m.xz, m.zz);
+        for (int p = 0; p < kAtOnce; ++p)
+          sums[p] = offsets_of_columns(windows.across[p], [&](int du) {
+            const int i = at + p + du;
+            return about_centre<float>({w_[i], vw_[i], w2_[i], vw2_[i], vvz2_[i]},
+                                       middles[p + du] - middles[p], rows);
+          });
+        return;
+      }
     }
-  }
-  __device__ __forceinline__ void add_tilted(int at, int radius, Moments* moments) const {
-    const Row vz2(vz2_ + at, radius), vvz2(vvz2_ + at, radius);
+    const Row z(middles, radius), w(w_ + at, radius), w2(w2_ + at, radius), vw(vw_ + at, radius),
+        vw2(vw2_ + at, radius), vvz2(vvz2_ + at, radius);
+    const auto column = [&](int i) {
+      return ColumnOffsets<float>{w.at(i), vw.at(i), w2.at(i), vw2.at(i), vvz2.at(i)};
+    };
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
-      Moments& m = moments[p];
-      m.yz = vz2.at(p), m.yy = vvz2.at(p);
+      sums[p] = begin_with(column(p));
+      const auto about = [&](int i) { return about_centre(column(i), z.at(i) - z.at(p), rows); };
 #pragma unroll
       for (int d = 1; d <= radius; ++d)
-        add_tilted_columns(vz2.at(p + d), vz2.at(p - d), vvz2.at(p + d), vvz2.at(p - d), double(d),
-                           m.xy, m.yz, m.yy);
+        add_offset_columns(about(p + d), about(p - d), static_cast<float>(d), sums[p]);
     }
   }
 
-  const float *inverse_, *depth_;
-  double *z_, *vz_, *z2_, *vz2_, *vvz2_;
-  WindowExtents<kAtOnce, Radius> extents_;
+  const float* depth_;
+  float *w_, *vw_, *w2_, *vw2_, *vvz2_;
 };
 
 }  // namespace vpm::cuda

@@ -5,29 +5,42 @@
 
 namespace vpm::cuda {
 
-// What stands there for a pixel that is not measured, or beyond the image: not a number, so that it
-// is in no gate and beyond none. Its bits are the greatest integer.
+// What stands there for a pixel that is not measured: not a number, so that it is in no gate and
+// beyond none, whose bits are the greatest integer. Beyond the image stands what does on the host
+// (kBeyondImage).
 __device__ __forceinline__ float unmeasured() {
   return __int_as_float(0x7fffffff);
 }
+__device__ __forceinline__ float beyond_image() {
+  return __int_as_float(-1);
+}
+// `inverse`: 0 where nothing is measured.
 __device__ __forceinline__ float measured_or_none(float inverse) {
-  return inverse > 0 ? inverse : unmeasured();
+  return inverse == 0 ? unmeasured() : inverse;
 }
 
 // Least and greatest inverse depth of some pixels, as integers, whose order is that of floats that
-// are not negative. If one of them is not measured, the greatest is no number.
+// are not negative. If one of them is not measured, the greatest is no number; those beyond the
+// image are neither.
 struct Extent {
-  int low, high;
+  unsigned low;
+  int high;
 
-  __device__ __forceinline__ explicit Extent(float value) { low = high = __float_as_int(value); }
-  __device__ __forceinline__ Extent(int least, int greatest) : low(least), high(greatest) {}
+  __device__ __forceinline__ explicit Extent(float value) {
+    low = __float_as_uint(value), high = __float_as_int(value);
+  }
+  __device__ __forceinline__ Extent(unsigned least, int greatest) : low(least), high(greatest) {}
   __device__ __forceinline__ void take(Extent a, Extent b) {
-    low = __vimin3_s32(low, a.low, b.low), high = __vimax3_s32(high, a.high, b.high);
+    low = __vimin3_u32(low, a.low, b.low), high = __vimax3_s32(high, a.high, b.high);
   }
   // Whether a window is measured everywhere and without an edge.
   __device__ __forceinline__ bool is_smooth(float centre, const EdgeGate& edges) const {
-    return __int_as_float(low) >= edges.lowest * centre &&
+    return __uint_as_float(low) >= edges.lowest * centre &&
            __int_as_float(high) <= edges.highest * centre;
+  }
+  // And whether floats can hold its squares.
+  __device__ __forceinline__ bool is_in_floats(const EdgeGate& edges) const {
+    return __uint_as_float(low) >= edges.least && __int_as_float(high) <= edges.greatest;
   }
 };
 

@@ -1,0 +1,176 @@
+// The arithmetic of normals: from a window's sums to a unit vector. IEEE operations and square
+// roots only, in a written order, so that every compiler and device gives the same bits. Inlined
+// without exception, since a call inside a loop over pixels keeps compilers from making vector
+// code.
+//
+// Real: float or double, or a vector of such (core/lanes.h).
+#pragma once
+
+#include <type_traits>
+
+#include "libvpm/cloud/camera.h"
+#include "libvpm/cloud/window_span.h"
+
+namespace vpm {
+
+// Of the inverse depth s: in a column; in a window.
+template <class Real>
+struct PlaneColumn {
+  Real s{}, vs{};
+};
+template <class Real>
+struct PlaneWindow {
+  Real s{}, us{}, vs{};
+};
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_rows(const Real& below, const Real& above,
+                                                   float distance, PlaneColumn<Real>& sums) {
+  sums.s += below + above;
+  add_times<Real>(distance, below - above, sums.vs);
+}
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline void add_columns(const PlaneColumn<Real>& right,
+                                                      const PlaneColumn<Real>& left, float distance,
+                                                      PlaneWindow<Real>& sums) {
+  sums.s += right.s + left.s;
+  add_times<Real>(distance, right.s - left.s, sums.us);
+  sums.vs += right.vs + left.vs;
+}
+// at(dv), column(du): from the window's centre on.
+template <class Real, class At>
+[[gnu::always_inline]] VPM_HD inline PlaneColumn<Real> sum_rows(Span down, const At& at) {
+  PlaneColumn<Real> sums;
+  for_pairs(
+      down, [&](int dv) __attribute__((always_inline)) { sums.s = at(dv); },
+      [&](int below, int above, float distance)
+          __attribute__((always_inline)) { add_rows<Real>(at(below), at(above), distance, sums); });
+  return sums;
+}
+template <class Column>
+[[gnu::always_inline]] VPM_HD inline PlaneWindow<float> sum_columns(Span across,
+                                                                    const Column& column) {
+  PlaneWindow<float> sums;
+  for_pairs(
+      across,
+      [&](int du) __attribute__((always_inline)) {
+        const PlaneColumn<float> middle = column(du);
+        sums = {middle.s, 0, middle.vs};
+      },
+      [&](int right, int left, float distance) __attribute__((always_inline)) {
+        add_columns<float>(column(right), column(left), distance, sums);
+      });
+  return sums;
+}
+
+// The normal towards the sensor of the plane whose inverse depth is a du + b dv + c at the offset
+// (du, dv) from pixel (u, v): with u = fx X/Z + cx the plane is
+// a fx X + b fy Y + (a (cx - u) + b (cy - v) + c) Z = 1.
+template <class Real>
+struct PlaneSlopes {
+  Real a, b, c;
+};
+
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_plane(const PlaneSlopes<Real>& plane, Real fx,
+                                                           Real fy, Real du_axis, Real dv_axis) {
+  const Real x = plane.a * fx, y = plane.b * fy;
+  const Real z = plane.a * du_axis + plane.b * dv_axis + plane.c;
+  const Real scale = -reciprocal(square_root(x * x + y * y + z * z));
+  return {static_cast<float>(x * scale), static_cast<float>(y * scale),
+          static_cast<float>(z * scale)};
+}
+
+// The slopes by a window's sums, and the height in its middle, relative to the inverse depth of its
+// centre.
+[[gnu::always_inline]] VPM_HD inline PlaneSlopes<float> plane_of_sums(
+    const WindowShape& shape, const PlaneWindow<float>& sums, float centre) {
+  const float unit = reciprocal(centre);
+  return {sums.us * shape.per_us * unit, sums.vs * shape.per_vs * unit,
+          sums.s * shape.per_count * unit};
+}
+// Of a window that the image's border cuts. Zero where the plane, wild without an edge gate, is
+// behind the sensor at the window's centre: it says nothing.
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_cut_window(const WindowShape& shape,
+                                                                const PlaneSlopes<float>& plane,
+                                                                float fx, float fy, float du_axis,
+                                                                float dv_axis) {
+  const bool found = plane.c - (plane.a * shape.u + plane.b * shape.v) > 0;
+  const Vec3f n = normal_of_plane<float>(plane, fx, fy, du_axis - shape.u, dv_axis - shape.v);
+  return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
+}
+
+// Whether a gated window keeps a pixel. `value` is its inverse depth, `expected` what the centre's
+// surface has there, relative to the centre's and minus 1, as is `difference`.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline auto is_in_gate(Real value, Real difference, Real expected,
+                                                     std::type_identity_t<Real> allowed) {
+  const Real off = difference - expected;
+  return (off <= allowed) & (off >= -allowed) & (value > 0.0F);
+}
+
+// Whether something that was measured is no part of the centre's surface, whatever its plane.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline auto is_beyond_gate(Real value, Real difference, Real gate) {
+  return ((difference > gate) | (difference < -gate)) & (value > 0.0F);
+}
+
+// Columns of a gated window are added pairwise, eight at a time; those that it does not have are 0.
+inline constexpr int kFoldedColumns = 8;
+template <class Sums>
+[[gnu::always_inline]] VPM_HD inline Sums fold(const Sums* c) {
+  return ((c[0] + c[4]) + (c[2] + c[6])) + ((c[1] + c[5]) + (c[3] + c[7]));
+}
+
+// Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
+template <class Real>
+struct SumsOfPlane {
+  Real n{}, u{}, v{}, uu{}, uv{}, vv{}, e{}, ue{}, ve{};
+};
+
+// Inverse depth relative to the centre's, minus 1: c + a du + b dv; 0 where it is not found, since
+// too few pixels remain, or they lie on a line.
+template <class Real>
+struct FittedPlane {
+  using Mask = decltype(Real() < Real());
+  Mask found{};
+  Real a{}, b{}, c{};
+};
+using WindowPlane = FittedPlane<float>;
+
+// Devices have none of the vectors.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline Real one_over(const Real& a) {
+  if constexpr (std::is_same_v<Real, float>)
+    return quotient(1.0F, a);
+  else
+    return 1.0F / a;
+}
+
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline FittedPlane<Real> fit_plane(const SumsOfPlane<Real>& s) {
+  // Moments about the pixels' mean, times n: of points on a line, both products are the same.
+  const Real uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v, vv = s.n * s.vv - s.v * s.v;
+  const Real determinant = uu * vv - uv * uv;
+  const auto found = static_cast<typename FittedPlane<Real>::Mask>(
+      (s.n >= float{kMinSupport}) & (determinant >= kMinSpread * s.n * s.n * (uu + vv)));
+  const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e;
+  const Real both = one_over<Real>(determinant * s.n);  // one division instead of two
+  const Real unit = both * s.n, per_n = both * determinant;
+  const Real a = (ue * vv - ve * uv) * unit;
+  const Real b = (ve * uu - ue * uv) * unit;
+  const Real c = (s.e - a * s.u - b * s.v) * per_n;
+  return {found, found ? a : Real{}, found ? b : Real{}, found ? c : Real{}};
+}
+
+// Zero where no plane was found. An extrapolated plane may pass behind the sensor's centre: it says
+// nothing either.
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_window(const WindowPlane& plane, float fx,
+                                                            float fy, float du_axis,
+                                                            float dv_axis) {
+  const float height = 1 + plane.c;
+  const bool found = plane.found & (height > 0);
+  const Vec3f n = normal_of_plane<float>({plane.a, plane.b, height}, fx, fy, du_axis, dv_axis);
+  return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
+}
+
+}  // namespace vpm
