@@ -13,9 +13,9 @@ struct Symmetric3 {
   Real xx, xy, xz, yy, yz, zz;
 };
 
-// Newton steps to the smallest root of the characteristic polynomial. They double the digits once
-// past the first few; with the two small eigenvalues as 1 to 2, four reach a float's, and these are
-// enough for all that are not nearly the same.
+// Most of Newton's steps to the smallest root of the characteristic polynomial. They double the
+// digits: with the two small eigenvalues as 1 to 8 the first is enough for floats, as 1 to 2 three,
+// and these are for all that are not nearly the same.
 inline constexpr int kEigenSteps = 8;
 
 // For a matrix of trace 1 in floats: values of the polynomial that are rounding noise; squared
@@ -28,32 +28,56 @@ inline constexpr float kRootNoise = 0x1p-60F, kEigenNoise = 1e-10F;
 struct Characteristic {
   float minors, determinant;
 
-  // The first step, from the smaller root of the quadratic that is left without the cube, which is
-  // no less than the one sought.
-  [[gnu::always_inline]] VPM_HD inline float begin() const {
-    const float under = minors * minors - 4 * determinant;
-    const float sum = minors + square_root(under > kLeastUnderRoot ? under : 0.0F);
-    const float above = quotient(2 * determinant, sum > kRootNoise ? sum : 1.0F);
-    const float root = determinant > kRootNoise ? above : 0.0F, value = at(root);
-    return root - ((value > kRootNoise) | (value < -kRootNoise) ? step(root, value) : 0.0F);
+  // A first guess: exact but for the cube, and for terms of the third order of determinant over the
+  // square of minors.
+  [[gnu::always_inline]] VPM_HD inline float guess() const {
+    const float rest = minors * minors - determinant;
+    const float top = determinant > kRootNoise ? determinant * minors : 0.0F;
+    return quotient(top, rest > kRootNoise ? rest : 1.0F);
   }
-  // From there on no step passes the root; once one would, all are done.
-  [[gnu::always_inline]] VPM_HD inline float next(float x) const {
-    const float value = at(x);
-    return x - (value < -kRootNoise ? step(x, value) : 0.0F);
+  // What Newton's step takes from x. From the second on none passes the root, nor is it positive.
+  [[gnu::always_inline]] VPM_HD inline float step(float x) const {
+    const float value = ((x - 1) * x + minors) * x - determinant;
+    const float slope = (3 * x - 2) * x + minors;
+    const bool is_noise = (value <= kRootNoise) & (value >= -kRootNoise);
+    return quotient(is_noise ? 0.0F : value, slope > kRootNoise ? slope : 1.0F);
+  }
+  // Whether floats hold nothing of what remains to the root after a step: its square over the
+  // minors.
+  [[gnu::always_inline]] VPM_HD inline bool is_last(float step) const {
+    const float most = kLastStep * minors;
+    return (step <= most) & (step >= -most);
   }
 
  private:
-  static constexpr float kLeastUnderRoot = 0x1p-100F;  // of which the square root is exact
-
-  [[gnu::always_inline]] VPM_HD inline float at(float x) const {
-    return ((x - 1) * x + minors) * x - determinant;
-  }
-  [[gnu::always_inline]] VPM_HD inline float step(float x, float value) const {
-    const float slope = (3 * x - 2) * x + minors;
-    return quotient(value, slope > kRootNoise ? slope : 1.0F);
-  }
+  static constexpr float kLastStep = 0x1p-12F;
 };
+
+// Of several at once, each as if alone: branches of each would keep compilers from making vector
+// code, and a device from working on two.
+template <int Count>
+[[gnu::always_inline]] VPM_HD inline void find_smallest_roots(const float (&minors)[Count],
+                                                              const float (&determinants)[Count],
+                                                              float (&roots)[Count]) {
+  int is_moving[Count], are_moving = 1;
+  for (int i = 0; i < Count; ++i) {
+    roots[i] = Characteristic{minors[i], determinants[i]}.guess();
+    is_moving[i] = 1;
+  }
+#ifdef __CUDA_ARCH__
+#pragma unroll 1  // most leave at once
+#endif
+  for (int k = 0; k < kEigenSteps && are_moving != 0; ++k) {
+    are_moving = 0;
+    for (int i = 0; i < Count; ++i) {
+      const Characteristic polynomial{minors[i], determinants[i]};
+      const float by = polynomial.step(roots[i]);
+      roots[i] -= is_moving[i] != 0 ? by : 0.0F;
+      is_moving[i] &= polynomial.is_last(by) ? 0 : 1;
+      are_moving |= is_moving[i];
+    }
+  }
+}
 
 // A positive semidefinite matrix over its trace. What is known of it in floats then gives the
 // direction of a plane's normal to some 1e-7, over what its second eigenvalue is of the trace.
@@ -69,37 +93,47 @@ template <class Real>
           m.xx * (m.yy * m.zz - m.yz * m.yz) - m.xy * (m.xy * m.zz - m.yz * m.xz) +
               m.xz * (m.xy * m.yz - m.yy * m.xz)};
 }
-[[gnu::always_inline]] VPM_HD inline float smallest_root(const Characteristic& polynomial) {
-  float root = polynomial.begin();
-  for (int step = 1; step < kEigenSteps; ++step) {
-    const float next = polynomial.next(root);
-    if (next == root) break;
-    root = next;
-  }
-  return root;
-}
 
-// Eigenvector of an eigenvalue, of any length; zero where there is no single one.
-[[gnu::always_inline]] VPM_HD inline Vec3f eigenvector(const Symmetric3<float>& m, float root) {
-  const auto cross = [](const Vec3f& a, const Vec3f& b) __attribute__((always_inline)) {
-    return Vec3f{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  };
-  const auto squared_norm = [](const Vec3f& a) __attribute__((always_inline)) {
-    return a.x * a.x + a.y * a.y + a.z * a.z;
-  };
-  const float dx = m.xx - root, dy = m.yy - root, dz = m.zz - root;
-  const Vec3f ab = cross({dx, m.xy, m.xz}, {m.xy, dy, m.yz});
-  const Vec3f ac = cross({dx, m.xy, m.xz}, {m.xz, m.yz, dz});
-  const Vec3f bc = cross({m.xy, dy, m.yz}, {m.xz, m.yz, dz});
-  const float ab2 = squared_norm(ab), ac2 = squared_norm(ac), bc2 = squared_norm(bc);
-  const bool use_ac = ac2 > ab2;
-  Vec3f best{use_ac ? ac.x : ab.x, use_ac ? ac.y : ab.y, use_ac ? ac.z : ab.z};
-  float best2 = use_ac ? ac2 : ab2;
-  const bool use_bc = bc2 > best2;
-  best = {use_bc ? bc.x : best.x, use_bc ? bc.y : best.y, use_bc ? bc.z : best.z};
-  best2 = use_bc ? bc2 : best2;
-  const float keep = best2 > kEigenNoise ? 1.0F : 0.0F;
-  return {best.x * keep, best.y * keep, best.z * keep};
+// The unit normal towards the sensor: the eigenvector of the smallest eigenvalue, which is `root`;
+// zero where there is no single one. The adjugate of what is left without the eigenvalue has it in
+// each row, the longest where the diagonal is greatest.
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& m,
+                                                                float root, float rx, float ry) {
+  const float x = m.xx - root, y = m.yy - root, z = m.zz - root;
+  const float xx = y * z - m.yz * m.yz, yy = x * z - m.xz * m.xz, zz = x * y - m.xy * m.xy;
+  const float xy = m.xz * m.yz - m.xy * z, xz = m.xy * m.yz - m.xz * y, yz = m.xy * m.xz - m.yz * x;
+  const bool use_y = yy > xx, use_z = zz > (use_y ? yy : xx);
+  const Vec3f n{use_z   ? xz
+                : use_y ? xy
+                        : xx,
+                use_z   ? yz
+                : use_y ? yy
+                        : xy,
+                use_z   ? zz
+                : use_y ? yz
+                        : xz};
+  const float squared = n.x * n.x + n.y * n.y + n.z * n.z;
+  const bool found = squared > kEigenNoise;
+  const float away = n.x * rx + n.y * ry + n.z;
+  const float unit = reciprocal(square_root(found ? squared : 1.0F));
+  const float scale = found ? (away > 0 ? -unit : unit) : 0.0F;
+  return {scale * n.x, scale * n.y, scale * n.z};
+}
+template <int Count>
+[[gnu::always_inline]] VPM_HD inline void find_roots(const Symmetric3<float> (&covariances)[Count],
+                                                     float (&roots)[Count]) {
+  float minors[Count], determinants[Count];
+  for (int i = 0; i < Count; ++i) {
+    const Characteristic polynomial = characteristic_of(covariances[i]);
+    minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
+  }
+  find_smallest_roots(minors, determinants, roots);
+}
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
+                                                                float rx, float ry) {
+  float roots[1];
+  find_roots<1>({covariance}, roots);
+  return normal_of_covariance(covariance, roots[0], rx, ry);
 }
 
 // Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
@@ -171,95 +205,89 @@ template <class Real>
 }
 
 // Of windows that are not gated, in floats: sums of what depth differs from that of a pixel, w, so
-// that its digits are kept, and of v^2 z^2.
+// that its digits are kept, and of v^2 z^2. Offsets are from the window's centre.
 //
-// Of a column, about its pixel beside the window's centre.
+// Of a column, about its pixel beside the centre.
 template <class Real>
 struct ColumnOffsets {
   Real w{}, vw{}, w2{}, vw2{}, vvz2{};
 };
+// Down a column, from that pixel on. What stands there for pixels beyond the image is the same as
+// that, and has no v^2 z^2.
 template <class Real>
-[[gnu::always_inline]] VPM_HD inline void add_offset_rows(const Real& below, const Real& above,
-                                                          const Real& reference, float distance,
-                                                          ColumnOffsets<Real>& c) {
-  const Real b = below - reference, a = above - reference, b2 = b * b, a2 = a * a;
-  c.w += b + a, c.w2 += b2 + a2;
-  add_times<Real>(distance, b - a, c.vw), add_times<Real>(distance, b2 - a2, c.vw2);
-  add_times<Real>(distance * distance, below * below + above * above, c.vvz2);
+struct OffsetRows {
+  Real reference{};
+  ColumnOffsets<Real> sums{};
+
+  [[gnu::always_inline]] VPM_HD void add(const Real& below, const Real& above, bool has_below,
+                                         bool has_above, float distance) {
+    const Real b = below - reference, a = above - reference, b2 = b * b, a2 = a * a;
+    sums.w += b + a, sums.w2 += b2 + a2;
+    add_times<Real>(distance, b - a, sums.vw), add_times<Real>(distance, b2 - a2, sums.vw2);
+    add_times<Real>(distance * distance,
+                    (has_below ? below * below : Real{}) + (has_above ? above * above : Real{}),
+                    sums.vvz2);
+  }
+};
+// About the reference of a window instead, which is the same for two pixels side by side: they
+// share what is made of a column. `offset`: how much the column's pixel differs from it.
+[[gnu::always_inline]] VPM_HD inline int reference_of(int u) {
+  return u & ~1;
 }
-// at(dv): the depth, from the window's centre on.
-template <class Real, class At>
-[[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> offsets_of_rows(Span down, const At& at) {
-  ColumnOffsets<Real> c;
-  const Real reference = at(0);
-  for_pairs(
-      down,
-      [&](int dv) __attribute__((always_inline)) {
-        c.w = at(dv) - reference;
-        c.w2 = c.w * c.w;
-      },
-      [&](int below, int above, float distance) __attribute__((always_inline)) {
-        add_offset_rows<Real>(at(below), at(above), reference, distance, c);
-      });
-  return c;
-}
-// About the window's centre instead. `offset`: how much the pixel beside it differs from that one.
-template <class Real>
-[[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> about_centre(const ColumnOffsets<Real>& c,
-                                                                      const Real& offset,
-                                                                      float rows) {
-  const Real w = c.w + rows * offset;
-  return {w, c.vw, c.w2 + offset * (c.w + w), c.vw2 + offset * (c.vw + c.vw), c.vvz2};
+template <class Real, class Down>
+[[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> about_reference(
+    const ColumnOffsets<Real>& c, const Real& offset, const Down& down) {
+  const Real w = c.w + static_cast<float>(down.count()) * offset;
+  const Real vw = down.with_greater(c.vw, offset);
+  return {w, vw, c.w2 + offset * (c.w + w), c.vw2 + offset * (c.vw + vw), c.vvz2};
 }
 
-// Of a window. Begins with the middle one of an odd number of columns.
+// Of a window.
 template <class Real>
 struct WindowOffsets {
   Real w{}, uw{}, vw{}, uuw{}, uvw{}, w2{}, uw2{}, vw2{}, uuw2{}, uvw2{}, vvz2{};
+
+  [[gnu::always_inline]] VPM_HD void add(const ColumnOffsets<Real>& right,
+                                         const ColumnOffsets<Real>& left, float distance) {
+    const Real one = right.w + left.w, two = right.w2 + left.w2;
+    const float square = distance * distance;
+    w += one, w2 += two;
+    add_times<Real>(distance, right.w - left.w, uw), add_times<Real>(square, one, uuw);
+    add_times<Real>(distance, right.w2 - left.w2, uw2), add_times<Real>(square, two, uuw2);
+    vw += right.vw + left.vw, vw2 += right.vw2 + left.vw2;
+    add_times<Real>(distance, right.vw - left.vw, uvw);
+    add_times<Real>(distance, right.vw2 - left.vw2, uvw2);
+    vvz2 += right.vvz2 + left.vvz2;
+  }
 };
-template <class Real>
-[[gnu::always_inline]] VPM_HD inline WindowOffsets<Real> begin_with(
-    const ColumnOffsets<Real>& middle) {
-  return {.w = middle.w, .vw = middle.vw, .w2 = middle.w2, .vw2 = middle.vw2, .vvz2 = middle.vvz2};
-}
-template <class Real>
-[[gnu::always_inline]] VPM_HD inline void add_offset_columns(const ColumnOffsets<Real>& right,
-                                                             const ColumnOffsets<Real>& left,
-                                                             float distance,
-                                                             WindowOffsets<Real>& sums) {
-  const Real w = right.w + left.w, w2 = right.w2 + left.w2;
-  const float square = distance * distance;
-  sums.w += w, sums.w2 += w2;
-  add_times<Real>(distance, right.w - left.w, sums.uw), add_times<Real>(square, w, sums.uuw);
-  add_times<Real>(distance, right.w2 - left.w2, sums.uw2), add_times<Real>(square, w2, sums.uuw2);
-  sums.vw += right.vw + left.vw, sums.vw2 += right.vw2 + left.vw2;
-  add_times<Real>(distance, right.vw - left.vw, sums.uvw);
-  add_times<Real>(distance, right.vw2 - left.vw2, sums.uvw2);
-  sums.vvz2 += right.vvz2 + left.vvz2;
-}
-// column(du) is about the centre.
-template <class Column>
-[[gnu::always_inline]] VPM_HD inline WindowOffsets<float> offsets_of_columns(Span across,
-                                                                             const Column& column) {
-  WindowOffsets<float> sums;
-  for_pairs(
-      across, [&](int du) __attribute__((always_inline)) { sums = begin_with<float>(column(du)); },
-      [&](int right, int left, float distance) __attribute__((always_inline)) {
-        add_offset_columns<float>(column(right), column(left), distance, sums);
-      });
+// column(du): of those that there are, about the reference.
+template <class Real, class Across, class Column>
+[[gnu::always_inline]] VPM_HD inline WindowOffsets<Real> sum_offset_columns(const Across& across,
+                                                                            int radius,
+                                                                            const Column& column) {
+  const auto held = [&](int du) __attribute__((always_inline)) {
+    return across.has(du) ? column(du) : ColumnOffsets<Real>{};
+  };
+  const ColumnOffsets<Real> middle = column(0);
+  WindowOffsets<Real> sums{
+      .w = middle.w, .vw = middle.vw, .w2 = middle.w2, .vw2 = middle.vw2, .vvz2 = middle.vvz2};
+#ifdef __CUDA_ARCH__
+#pragma unroll
+#endif
+  for (int d = 1; d <= radius; ++d) sums.add(held(d), held(-d), static_cast<float>(d));
   return sums;
 }
 
-// Moments where z is relative to the centre's, and minus 1 in z itself. `inverse`: the centre's.
+// Moments where z is relative to the reference's, and minus 1 in z itself. `inverse`: that one's.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline MomentsOf<Real> moments_of_offsets(
     const WindowOffsets<Real>& s, const Real& inverse, const WindowShape& shape) {
   return {shape.count,
-          s.uw * inverse,
-          s.vw * inverse,
+          shape.du + s.uw * inverse,
+          shape.dv + s.vw * inverse,
           s.w * inverse,
-          shape.squares + (s.uuw + s.uuw + s.uuw2 * inverse) * inverse,
-          (s.uvw + s.uvw + s.uvw2 * inverse) * inverse,
+          shape.dudu + (s.uuw + s.uuw + s.uuw2 * inverse) * inverse,
+          shape.dudv + (s.uvw + s.uvw + s.uvw2 * inverse) * inverse,
           (s.uw + s.uw2 * inverse) * inverse,
           s.vvz2 * inverse * inverse,
           (s.vw + s.vw2 * inverse) * inverse,
@@ -277,25 +305,5 @@ template <class Real>
   return covariance_in_camera(centred(moments_of_offsets(s, inverse, shape), shape.per_count),
                               scale, rx, ry);
 }
-// Of a window that the image's border cuts: its frame is that of its middle.
-[[gnu::always_inline]] VPM_HD inline Symmetric3<float> covariance_of_cut_window(
-    const WindowOffsets<float>& s, float inverse, const WindowShape& shape,
-    const PixelScale<float>& scale, float rx, float ry) {
-  return covariance_of_offsets(s, inverse, shape, scale, rx + shape.u * quotient(scale.x, scale.z),
-                               ry + shape.v * quotient(scale.y, scale.z));
-}
 
-// The unit normal towards the sensor; `root`: the smallest of the covariance's characteristic.
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
-                                                                float root, float rx, float ry) {
-  const Vec3f n = eigenvector(covariance, root);
-  const float away = n.x * rx + n.y * ry + n.z;
-  const float length = square_root(n.x * n.x + n.y * n.y + n.z * n.z);
-  const float scale = (away > 0 ? -1.0F : 1.0F) * reciprocal(length > 0 ? length : 1.0F);
-  return {scale * n.x, scale * n.y, scale * n.z};
-}
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
-                                                                float rx, float ry) {
-  return normal_of_covariance(covariance, smallest_root(characteristic_of(covariance)), rx, ry);
-}
 }  // namespace vpm

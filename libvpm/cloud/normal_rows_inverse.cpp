@@ -24,9 +24,9 @@ class WindowSums {
         s_(inverse.stride + kTile),
         vs_(inverse.stride + kTile) {}
 
-  template <class Radius>
-  void sum_columns(int v, Radius radius);
-  void sum_columns(int v, Span down);
+  // `down`: what the image has of windows about row v.
+  template <class Down, class Radius>
+  void sum_columns(int v, const Down& down, Radius radius);
   // Of a tile's windows, should they be whole across.
   template <class Radius>
   void sum_across(int first, Radius radius, Tile& tile) const;
@@ -37,47 +37,26 @@ class WindowSums {
   }
 
  private:
-  // Calls sum(row) of the middle row, at places side by side, for all columns.
-  template <class Sum>
-  void for_columns(int v, const Sum& sum);
-
   const PaddedImage& inverse_;
   int radius_;
   std::vector<float> s_, vs_;
 };
 
-template <class Sum>
-[[gnu::always_inline]] inline void WindowSums::for_columns(int v, const Sum& sum) {
+template <class Down, class Radius>
+[[gnu::always_inline]] inline void WindowSums::sum_columns(int v, const Down& down, Radius radius) {
   const int columns = inverse_.width + 2 * radius_;
+  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
   for (int i = 0; i < columns; i += kWideLanes) {
-    const PlaneColumn<WideFloats> column = sum(inverse_.at(i - radius_, v));
+    const float* const middle = inverse_.at(i - radius_, v);
+    PlaneRows<WideFloats> rows{.centre = load<WideFloats>(middle)};
+    const auto held = [&](int dv) __attribute__((always_inline)) {
+      return down.has(dv) ? load<WideFloats>(middle + dv * stride) : rows.centre;
+    };
+    for (int d = 1; d <= radius; ++d) rows.add(held(d), held(-d), static_cast<float>(d));
+    const PlaneColumn<WideFloats> column = rows.sums(down);
     store(column.s, s_.data() + i);
     store(column.vs, vs_.data() + i);
   }
-}
-
-template <class Radius>
-[[gnu::always_inline]] inline void WindowSums::sum_columns(int v, Radius radius) {
-  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  for_columns(
-      v, [&](const float* middle) __attribute__((always_inline)) {
-        PlaneColumn<WideFloats> sums{load<WideFloats>(middle), {}};
-        for (int d = 1; d <= radius; ++d)
-          add_rows(load<WideFloats>(middle + d * stride), load<WideFloats>(middle - d * stride),
-                   static_cast<float>(d), sums);
-        return sums;
-      });
-}
-
-[[gnu::always_inline]] inline void WindowSums::sum_columns(int v, Span down) {
-  const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
-  for_columns(
-      v, [&](const float* middle) __attribute__((always_inline)) {
-        return sum_rows<WideFloats>(
-            down, [&](int dv) __attribute__((always_inline)) {
-              return load<WideFloats>(middle + dv * stride);
-            });
-      });
 }
 
 template <class Radius>
@@ -85,11 +64,10 @@ template <class Radius>
                                                           Tile& tile) const {
   for (int i = 0; i < kTile; i += kWideLanes) {
     const float *s = s_.data() + radius + first + i, *vs = vs_.data() + radius + first + i;
-    PlaneWindow<WideFloats> sums{load<WideFloats>(s), {}, load<WideFloats>(vs)};
-    for (int d = 1; d <= radius; ++d)
-      add_columns<WideFloats>({load<WideFloats>(s + d), load<WideFloats>(vs + d)},
-                              {load<WideFloats>(s - d), load<WideFloats>(vs - d)},
-                              static_cast<float>(d), sums);
+    const PlaneWindow<WideFloats> sums = vpm::sum_columns<WideFloats>(
+        WholeSpan{radius}, radius, [&](int du) __attribute__((always_inline)) {
+          return PlaneColumn<WideFloats>{load<WideFloats>(s + du), load<WideFloats>(vs + du)};
+        });
     store(sums.s, tile.s + i);
     store(sums.us, tile.us + i);
     store(sums.vs, tile.vs + i);
@@ -143,17 +121,17 @@ template <class Radius>
   const Span down = span_of(v, inverse_.height, radius);
   const WindowShape shape({radius, radius}, down);
   if (down.is_whole(radius))
-    sums_.sum_columns(v, radius);
+    sums_.sum_columns(v, WholeSpan{radius}, radius);
   else
-    sums_.sum_columns(v, down);
+    sums_.sum_columns(v, down, radius);
   for (int first = 0; first < width; first += kTile) {
     WindowSums::Tile t;
     sums_.sum_across(first, radius, t);
     const float *centre = inverse_.at(first, v), *du = to_axis_.data() + first;
     float x[kTile], y[kTile], z[kTile];
     for (int i = 0; i < kTile; ++i) {
-      const Vec3f n = normal_of_cut_window(shape, plane_of_sums(shape, t.at(i), centre[i]), fx, fy,
-                                           du[i], dv_axis);
+      const Vec3f n = normal_of_smooth_window(shape, plane_of_sums(shape, t.at(i), centre[i]), fx,
+                                              fy, du[i], dv_axis);
       x[i] = n.x, y[i] = n.y, z[i] = n.z;
     }
     row.take(first, x, y, z, std::min(kTile, width - first));
@@ -166,10 +144,11 @@ template <class Radius>
 void InverseDepthRows::fit_cut_window(int u, int v, NormalRow& row) {
   const Span across = span_of(u, inverse_.width, radius_);
   const WindowShape shape(across, span_of(v, inverse_.height, radius_));
-  const PlaneWindow<float> sums = sum_columns(across, [&](int du) { return sums_.column(u + du); });
+  const PlaneWindow<float> sums =
+      sum_columns<float>(across, radius_, [&](int du) { return sums_.column(u + du); });
   const Vec3f n =
-      normal_of_cut_window(shape, plane_of_sums(shape, sums, *inverse_.at(u, v)), fx_, fy_,
-                           to_axis_[static_cast<std::size_t>(u)], static_cast<float>(cy_ - v));
+      normal_of_smooth_window(shape, plane_of_sums(shape, sums, *inverse_.at(u, v)), fx_, fy_,
+                              to_axis_[static_cast<std::size_t>(u)], static_cast<float>(cy_ - v));
   row.take(u, &n.x, &n.y, &n.z, 1);
 }
 

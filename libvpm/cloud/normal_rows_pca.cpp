@@ -23,26 +23,20 @@ class DepthOffsets {
   };
 
   DepthOffsets(const PaddedImage& depth, int radius) : depth_(depth), radius_(radius) {
-    for (auto* column : {&w_, &vw_, &w2_, &vw2_, &vvz2_})
+    for (auto* column : {&w_, &vw_, &w2_, &vw2_, &vvz2_, &references_})
       column->resize(depth.stride + std::size_t{kTile});
   }
 
-  template <class Radius>
-  void sum_columns(int v, Radius radius);
-  void sum_columns(int v, Span down);
-  // Of a tile's windows, should they be whole across. `rows`: of their columns.
-  template <class Radius>
-  void sum_across(int first, int v, Radius radius, float rows, Tile& tile) const;
-  // Of a column.
-  ColumnOffsets<float> column(int u) const {
-    const auto i = static_cast<std::size_t>(u + radius_);
-    return {w_[i], vw_[i], w2_[i], vw2_[i], vvz2_[i]};
-  }
+  // `down`: what the image has of windows about row v.
+  template <class Down, class Radius>
+  void sum_columns(int v, const Down& down, Radius radius);
+  // After that: of a tile's windows, should they be whole across.
+  template <class Down, class Radius>
+  void sum_across(int first, int v, const Down& down, Radius radius, Tile& tile) const;
+  // Of one window, that the image may cut.
+  WindowOffsets<float> window(int u, int v, Span across, Span down) const;
 
  private:
-  // Calls sum(row) of the middle row, at places side by side, for all columns.
-  template <class Sum>
-  void for_columns(int v, const Sum& sum);
   [[gnu::always_inline]] ColumnOffsets<WideFloats> columns(std::ptrdiff_t i) const {
     return {load<WideFloats>(w_.data() + i), load<WideFloats>(vw_.data() + i),
             load<WideFloats>(w2_.data() + i), load<WideFloats>(vw2_.data() + i),
@@ -52,62 +46,60 @@ class DepthOffsets {
   const PaddedImage& depth_;
   int radius_;
   std::vector<float> w_, vw_, w2_, vw2_, vvz2_;
+  std::vector<float> references_;  // of the row's pixels
 };
 
-template <class Sum>
-[[gnu::always_inline]] inline void DepthOffsets::for_columns(int v, const Sum& sum) {
+// Of a row's pixels, what it has at their references.
+void take_references(const float* row, int width, float* references) {
+  for (int u = 0; u < width; ++u) references[u] = row[reference_of(u)];
+}
+
+template <class Down, class Radius>
+[[gnu::always_inline]] inline void DepthOffsets::sum_columns(int v, const Down& down,
+                                                             Radius radius) {
   const int columns = depth_.width + 2 * radius_;
+  const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
   for (int i = 0; i < columns; i += kWideLanes) {
-    const ColumnOffsets<WideFloats> c = sum(depth_.at(i - radius_, v));
+    const float* const middle = depth_.at(i - radius_, v);
+    OffsetRows<WideFloats> rows{.reference = load<WideFloats>(middle)};
+    const auto held = [&](int dv) __attribute__((always_inline)) {
+      return down.has(dv) ? load<WideFloats>(middle + dv * stride) : rows.reference;
+    };
+    for (int d = 1; d <= radius; ++d)
+      rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
+    const ColumnOffsets<WideFloats>& c = rows.sums;
     store(c.w, w_.data() + i), store(c.vw, vw_.data() + i), store(c.w2, w2_.data() + i);
     store(c.vw2, vw2_.data() + i), store(c.vvz2, vvz2_.data() + i);
   }
+  take_references(depth_.at(0, v), depth_.width, references_.data());
 }
 
-template <class Radius>
-[[gnu::always_inline]] inline void DepthOffsets::sum_columns(int v, Radius radius) {
-  const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
-  for_columns(
-      v, [&](const float* at) __attribute__((always_inline)) {
-        const WideFloats middle = load<WideFloats>(at);
-        ColumnOffsets<WideFloats> sums;
-        for (int d = 1; d <= radius; ++d)
-          add_offset_rows(load<WideFloats>(at + d * stride), load<WideFloats>(at - d * stride),
-                          middle, static_cast<float>(d), sums);
-        return sums;
-      });
-}
-
-[[gnu::always_inline]] inline void DepthOffsets::sum_columns(int v, Span down) {
-  const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
-  for_columns(
-      v, [&](const float* at) __attribute__((always_inline)) {
-        return offsets_of_rows<WideFloats>(
-            down, [&](int dv) __attribute__((always_inline)) {
-              return load<WideFloats>(at + dv * stride);
-            });
-      });
-}
-
-template <class Radius>
-[[gnu::always_inline]] inline void DepthOffsets::sum_across(int first, int v, Radius radius,
-                                                            float rows, Tile& t) const {
+template <class Down, class Radius>
+[[gnu::always_inline]] inline void DepthOffsets::sum_across(int first, int v, const Down& down,
+                                                            Radius radius, Tile& t) const {
   for (int i = 0; i < kTile; i += kWideLanes) {
     const float* middles = depth_.at(first + i, v);
     const std::ptrdiff_t centre = first + radius + i;
-    const WideFloats middle = load<WideFloats>(middles);
-    const auto column = [&](int du) __attribute__((always_inline)) {
-      return about_centre<WideFloats>(columns(centre + du), load<WideFloats>(middles + du) - middle,
-                                      rows);
-    };
-    WindowOffsets<WideFloats> sums = begin_with(columns(centre));
-    for (int d = 1; d <= radius; ++d)
-      add_offset_columns<WideFloats>(column(d), column(-d), static_cast<float>(d), sums);
+    const WideFloats reference = load<WideFloats>(references_.data() + first + i);
+    const WindowOffsets<WideFloats> sums = sum_offset_columns<WideFloats>(
+        WholeSpan{radius}, radius, [&](int du) __attribute__((always_inline)) {
+          return about_reference(columns(centre + du), load<WideFloats>(middles + du) - reference,
+                                 down);
+        });
     store(sums.w, t.w + i), store(sums.uw, t.uw + i), store(sums.vw, t.vw + i);
     store(sums.uuw, t.uuw + i), store(sums.uvw, t.uvw + i), store(sums.w2, t.w2 + i);
     store(sums.uw2, t.uw2 + i), store(sums.vw2, t.vw2 + i), store(sums.uuw2, t.uuw2 + i);
     store(sums.uvw2, t.uvw2 + i), store(sums.vvz2, t.vvz2 + i);
   }
+}
+
+WindowOffsets<float> DepthOffsets::window(int u, int v, Span across, Span down) const {
+  const float *const middle = depth_.at(u, v), reference = *depth_.at(reference_of(u), v);
+  return sum_offset_columns<float>(across, radius_, [&](int du) {
+    const auto i = static_cast<std::size_t>(u + du + radius_);
+    return about_reference<float>({w_[i], vw_[i], w2_[i], vw2_[i], vvz2_[i]},
+                                  middle[du] - reference, down);
+  });
 }
 
 // Covariances of windows side by side, and the rays of their centres.
@@ -123,9 +115,7 @@ struct CovarianceLanes {
   }
 };
 
-// Normals of windows whose centres have the rays (rx[0], ry, 1), (rx[1], ry, 1), ... Steps to all
-// their roots are taken together until none has one to take: branches of each would keep compilers
-// from making vector code.
+// Normals of windows whose centres have the rays (rx[0], ry, 1), (rx[1], ry, 1), ...
 template <int Count>
 [[gnu::always_inline]] inline void find_normals(const CovarianceLanes<Count>& covariances,
                                                 const float* rx, float ry, float* x, float* y,
@@ -134,17 +124,8 @@ template <int Count>
   for (int i = 0; i < Count; ++i) {
     const Characteristic polynomial = characteristic_of(covariances.at(i));
     minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
-    roots[i] = polynomial.begin();
   }
-  int moving = 1;
-  for (int step = 1; step < kEigenSteps && moving != 0; ++step) {
-    moving = 0;
-    for (int i = 0; i < Count; ++i) {
-      const float next = Characteristic{minors[i], determinants[i]}.next(roots[i]);
-      moving |= next != roots[i];
-      roots[i] = next;
-    }
-  }
+  find_smallest_roots(minors, determinants, roots);
   for (int i = 0; i < Count; ++i) {
     const Vec3f n = normal_of_covariance(covariances.at(i), roots[i], rx[i], ry);
     x[i] = n.x, y[i] = n.y, z[i] = n.z;
@@ -200,6 +181,7 @@ class PcaRows final : public NormalRows {
         gated_(images.inverse, options, EdgeGate(options, k)),
         offsets_(images.depth, options.window / 2) {
     rays_.resize(inverse_.stride + kTile);
+    inverse_references_.resize(inverse_.stride + kTile);
     for (int u = 0; u < inverse_.width; ++u)
       rays_[static_cast<std::size_t>(u)] = static_cast<float>((u - k.cx) / k.fx);
   }
@@ -211,8 +193,8 @@ class PcaRows final : public NormalRows {
   }
 
  private:
-  template <class Radius>
-  void fit_smooth_windows(int v, Radius radius, NormalRow& row);
+  template <class Down, class Radius>
+  void fit_smooth_windows(int v, const Down& down, Radius radius, NormalRow& row);
   void fit_smooth_windows(int v, NormalRow& row);
   void fit_cut_window(int u, int v, NormalRow& row);
   void fit_gated_windows(int v, NormalRow& row);
@@ -225,27 +207,25 @@ class PcaRows final : public NormalRows {
   GatedWindows gated_;
   DepthOffsets offsets_;
   std::vector<float> rays_;  // of columns
+  std::vector<float> inverse_references_;
 };
 
-template <class Radius>
-[[gnu::always_inline]] inline void PcaRows::fit_smooth_windows(int v, Radius radius,
-                                                               NormalRow& row) {
+template <class Down, class Radius>
+[[gnu::always_inline]] inline void PcaRows::fit_smooth_windows(int v, const Down& down,
+                                                               Radius radius, NormalRow& row) {
   const int width = inverse_.width;
   const float ry = ray_of_row(v);
   const PixelScale<float> scale = pixel_scale_in_floats(k_);
-  const Span down = span_of(v, inverse_.height, radius);
-  const WindowShape shape({radius, radius}, down);
-  if (down.is_whole(radius))
-    offsets_.sum_columns(v, radius);
-  else
-    offsets_.sum_columns(v, down);
+  const WindowShape shape({radius, radius}, span_of(v, inverse_.height, radius));
+  offsets_.sum_columns(v, down, radius);
+  take_references(inverse_.at(0, v), width, inverse_references_.data());
   for (int first = 0; first < width; first += kTile) {
     DepthOffsets::Tile t;
-    offsets_.sum_across(first, v, radius, shape.rows, t);
-    const float *rx = rays_.data() + first, *centre = inverse_.at(first, v);
+    offsets_.sum_across(first, v, down, radius, t);
+    const float *rx = rays_.data() + first, *inverse = inverse_references_.data() + first;
     CovarianceLanes<kTile> covariances;
     for (int i = 0; i < kTile; ++i)
-      covariances.set(i, covariance_of_cut_window(t.at(i), centre[i], shape, scale, rx[i], ry));
+      covariances.set(i, covariance_of_offsets(t.at(i), inverse[i], shape, scale, rx[i], ry));
     float x[kTile], y[kTile], z[kTile];
     find_normals(covariances, rx, ry, x, y, z);
     row.take(first, x, y, z, std::min(kTile, width - first));
@@ -256,24 +236,27 @@ template <class Radius>
 }
 
 void PcaRows::fit_cut_window(int u, int v, NormalRow& row) {
-  const Span across = span_of(u, inverse_.width, radius_);
-  const WindowShape shape(across, span_of(v, inverse_.height, radius_));
-  const float* const middle = depth_.at(u, v);
-  const WindowOffsets<float> sums = offsets_of_columns(across, [&](int du) {
-    return about_centre(offsets_.column(u + du), middle[du] - *middle, shape.rows);
-  });
+  const Span across = span_of(u, inverse_.width, radius_),
+             down = span_of(v, inverse_.height, radius_);
+  const WindowOffsets<float> sums = offsets_.window(u, v, across, down);
   const float rx = rays_[static_cast<std::size_t>(u)], ry = ray_of_row(v);
-  const Vec3f n = normal_of_covariance(
-      covariance_of_cut_window(sums, *inverse_.at(u, v), shape, pixel_scale_in_floats(k_), rx, ry),
-      rx, ry);
+  const Vec3f n =
+      normal_of_covariance(covariance_of_offsets(sums, *inverse_.at(reference_of(u), v),
+                                                 {across, down}, pixel_scale_in_floats(k_), rx, ry),
+                           rx, ry);
   row.take(u, &n.x, &n.y, &n.z, 1);
 }
 
 VPM_VECTOR_CLONES
 void PcaRows::fit_smooth_windows(int v, NormalRow& row) {
+  const Span down = span_of(v, inverse_.height, radius_);
   with_radius(
-      radius_, [&](auto radius)
-                   __attribute__((always_inline)) { fit_smooth_windows(v, radius, row); });
+      radius_, [&](auto radius) __attribute__((always_inline)) {
+        if (down.is_whole(radius))
+          fit_smooth_windows(v, WholeSpan{radius}, radius, row);
+        else
+          fit_smooth_windows(v, down, radius, row);
+      });
 }
 
 VPM_VECTOR_CLONES

@@ -13,7 +13,8 @@
 
 namespace vpm {
 
-// Of the inverse depth s: in a column; in a window.
+// Sums of the inverse depth s, and of it times the offset from the middle: in a column; in a
+// window. They are made of differences from the centre, whose digits floats keep.
 template <class Real>
 struct PlaneColumn {
   Real s{}, vs{};
@@ -22,44 +23,55 @@ template <class Real>
 struct PlaneWindow {
   Real s{}, us{}, vs{};
 };
+
+// Down a column, from its pixel beside the window's centre on. What stands there for pixels beyond
+// the image is the same as that.
 template <class Real>
-[[gnu::always_inline]] VPM_HD inline void add_rows(const Real& below, const Real& above,
-                                                   float distance, PlaneColumn<Real>& sums) {
-  sums.s += below + above;
-  add_times<Real>(distance, below - above, sums.vs);
-}
+struct PlaneRows {
+  Real centre{}, off{}, v_off{};
+
+  [[gnu::always_inline]] VPM_HD void add(const Real& below, const Real& above, float distance) {
+    const Real b = below - centre, a = above - centre;
+    off += b + a;
+    add_times<Real>(distance, b - a, v_off);
+  }
+  template <class Down>
+  [[gnu::always_inline]] VPM_HD PlaneColumn<Real> sums(const Down& down) const {
+    return {off + static_cast<float>(down.count()) * centre, down.about_middle(v_off, off)};
+  }
+};
+// Across, likewise; the columns that stand there have no v s.
 template <class Real>
-[[gnu::always_inline]] VPM_HD inline void add_columns(const PlaneColumn<Real>& right,
-                                                      const PlaneColumn<Real>& left, float distance,
-                                                      PlaneWindow<Real>& sums) {
-  sums.s += right.s + left.s;
-  add_times<Real>(distance, right.s - left.s, sums.us);
-  sums.vs += right.vs + left.vs;
-}
-// at(dv), column(du): from the window's centre on.
-template <class Real, class At>
-[[gnu::always_inline]] VPM_HD inline PlaneColumn<Real> sum_rows(Span down, const At& at) {
-  PlaneColumn<Real> sums;
-  for_pairs(
-      down, [&](int dv) __attribute__((always_inline)) { sums.s = at(dv); },
-      [&](int below, int above, float distance)
-          __attribute__((always_inline)) { add_rows<Real>(at(below), at(above), distance, sums); });
-  return sums;
-}
-template <class Column>
-[[gnu::always_inline]] VPM_HD inline PlaneWindow<float> sum_columns(Span across,
-                                                                    const Column& column) {
-  PlaneWindow<float> sums;
-  for_pairs(
-      across,
-      [&](int du) __attribute__((always_inline)) {
-        const PlaneColumn<float> middle = column(du);
-        sums = {middle.s, 0, middle.vs};
-      },
-      [&](int right, int left, float distance) __attribute__((always_inline)) {
-        add_columns<float>(column(right), column(left), distance, sums);
-      });
-  return sums;
+struct PlaneColumns {
+  Real centre, off{}, u_off{}, vs;
+
+  [[gnu::always_inline]] VPM_HD explicit PlaneColumns(const PlaneColumn<Real>& column)
+      : centre(column.s), vs(column.vs) {}
+  [[gnu::always_inline]] VPM_HD void add(const PlaneColumn<Real>& right,
+                                         const PlaneColumn<Real>& left, float distance) {
+    const Real r = right.s - centre, l = left.s - centre;
+    off += r + l;
+    add_times<Real>(distance, r - l, u_off);
+    vs += right.vs + left.vs;
+  }
+  template <class Across>
+  [[gnu::always_inline]] VPM_HD PlaneWindow<Real> sums(const Across& across) const {
+    return {off + static_cast<float>(across.count()) * centre, across.about_middle(u_off, off), vs};
+  }
+};
+// column(du): of those that there are.
+template <class Real, class Across, class Column>
+[[gnu::always_inline]] VPM_HD inline PlaneWindow<Real> sum_columns(const Across& across, int radius,
+                                                                   const Column& column) {
+  PlaneColumns<Real> sums(column(0));
+  const auto held = [&](int du) __attribute__((always_inline)) {
+    return across.has(du) ? column(du) : PlaneColumn<Real>{sums.centre, {}};
+  };
+#ifdef __CUDA_ARCH__
+#pragma unroll
+#endif
+  for (int d = 1; d <= radius; ++d) sums.add(held(d), held(-d), static_cast<float>(d));
+  return sums.sums(across);
 }
 
 // The normal towards the sensor of the plane whose inverse depth is a du + b dv + c at the offset
@@ -88,12 +100,12 @@ template <class Real>
   return {sums.us * shape.per_us * unit, sums.vs * shape.per_vs * unit,
           sums.s * shape.per_count * unit};
 }
-// Of a window that the image's border cuts. Zero where the plane, wild without an edge gate, is
-// behind the sensor at the window's centre: it says nothing.
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_cut_window(const WindowShape& shape,
-                                                                const PlaneSlopes<float>& plane,
-                                                                float fx, float fy, float du_axis,
-                                                                float dv_axis) {
+// Zero where the plane, wild without an edge gate, is behind the sensor at the centre of a window
+// that the image's border cuts: it says nothing.
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_smooth_window(const WindowShape& shape,
+                                                                   const PlaneSlopes<float>& plane,
+                                                                   float fx, float fy,
+                                                                   float du_axis, float dv_axis) {
   const bool found = plane.c - (plane.a * shape.u + plane.b * shape.v) > 0;
   const Vec3f n = normal_of_plane<float>(plane, fx, fy, du_axis - shape.u, dv_axis - shape.v);
   return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};

@@ -20,9 +20,24 @@ struct TileImage {
   __device__ TileAround depth_around(int x, int y) const {
     return {depth + frame.index(x, y), frame.pitch()};
   }
-  // What the image has of the windows about a column, and a row.
-  __device__ Span across(int x) const { return span_of(frame.u0 + x, frame.width, frame.radius()); }
-  __device__ Span down(int y) const { return span_of(frame.v0 + y, frame.height, frame.radius()); }
+  // What the image has of the windows about a column, and a row: all, or it may cut them.
+  template <bool kMayBeCut>
+  __device__ auto across(int x) const {
+    return span<kMayBeCut>(frame.u0 + x, frame.width);
+  }
+  template <bool kMayBeCut>
+  __device__ auto down(int y) const {
+    return span<kMayBeCut>(frame.v0 + y, frame.height);
+  }
+
+ private:
+  template <bool kMayBeCut>
+  __device__ auto span(int at, int size) const {
+    if constexpr (kMayBeCut)
+      return span_of(at, size, frame.radius());
+    else
+      return WholeSpan{frame.radius()};
+  }
 };
 
 // Of inverse depth down a column about its middle; of a window about its middle column.
@@ -59,33 +74,30 @@ class InverseDepthNormals {
       : recipe_(recipe), image_(image) {}
 
   // Down the column x (from -radius on) around the row y.
+  template <bool kMayBeCut>
   __device__ __forceinline__ Column sum_column(int x, int y) const {
     const TileAround inverse = image_.inverse_around(x, y);
-    return {sums_of_column(inverse, image_.down(y)), extent_of_column(inverse, radius())};
+    return {sums_of_column(inverse, image_.template down<kMayBeCut>(y)),
+            extent_of_column(inverse, radius())};
   }
 
   // `column`: that of the pixel; false where its window is not smooth.
+  template <bool kMayBeCut>
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {
     const float centre = image_.inverse_around(x, y).at(0, 0);
     if (!extent_of_window(column, radius()).is_smooth(centre, recipe_.edges)) return false;
-    const Span across = image_.across(x), down = image_.down(y);
+    const auto across = image_.template across<kMayBeCut>(x);
+    const auto down = image_.template down<kMayBeCut>(y);
     WindowShape shape = recipe_.whole;
-    PlaneWindow<float> sums;
-    if (across.is_whole(radius())) {
-      sums = {column->sums.s, 0, column->sums.vs};
-#pragma unroll
-      for (int d = 1; d <= radius(); ++d)
-        add_columns(column[d].sums, column[-d].sums, static_cast<float>(d), sums);
-    } else {
-      sums = sum_columns(across, [&](int du) { return column[du].sums; });
-    }
-    if (!across.is_whole(radius()) || !down.is_whole(radius())) {
+    if constexpr (kMayBeCut) {
       if (!tells_plane(across, down)) return false;
       shape = WindowShape(across, down);
     }
-    normal = normal_of_cut_window(shape, plane_of_sums(shape, sums, centre), fx(), fy(), du_axis(x),
-                                  dv_axis(y));
+    const PlaneWindow<float> sums =
+        sum_columns<float>(across, radius(), [&](int du) { return column[du].sums; });
+    normal = normal_of_smooth_window(shape, plane_of_sums(shape, sums, centre), fx(), fy(),
+                                     du_axis(x), dv_axis(y));
     return true;
   }
 
@@ -96,18 +108,15 @@ class InverseDepthNormals {
   }
 
  private:
-  __device__ int radius() const {
-    return image_.frame.radius();
-  }
+  __device__ int radius() const { return image_.frame.radius(); }
+  template <class Down>
   __device__ __forceinline__ PlaneColumn<float> sums_of_column(const TileAround& inverse,
-                                                               Span down) const {
-    if (!down.is_whole(radius()))
-      return sum_rows<float>(down, [&](int dv) { return inverse.at(0, dv); });
-    PlaneColumn<float> sums{inverse.at(0, 0), 0};
+                                                               const Down& down) const {
+    PlaneRows<float> rows{.centre = inverse.at(0, 0)};
+    const auto held = [&](int dv) { return down.has(dv) ? inverse.at(0, dv) : rows.centre; };
 #pragma unroll
-    for (int d = 1; d <= radius(); ++d)
-      add_rows(inverse.at(0, d), inverse.at(0, -d), static_cast<float>(d), sums);
-    return sums;
+    for (int d = 1; d <= radius(); ++d) rows.add(held(d), held(-d), static_cast<float>(d));
+    return rows.sums(down);
   }
   __device__ __forceinline__ float fx() const {
     return static_cast<float>(recipe_.camera.intrinsics.fx);
@@ -140,40 +149,37 @@ class PcaNormals {
   __device__ __forceinline__ PcaNormals(const CloudRecipe& recipe, const TileImage<Frame>& image)
       : recipe_(recipe), image_(image) {}
 
+  template <bool kMayBeCut>
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    return {sums_of_column(image_.depth_around(x, y), image_.down(y)),
+    return {sums_of_column(image_.depth_around(x, y), image_.template down<kMayBeCut>(y)),
             extent_of_column(image_.inverse_around(x, y), radius())};
   }
 
+  template <bool kMayBeCut>
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {
     const float inverse = image_.inverse_around(x, y).at(0, 0);
     const Extent extent = extent_of_window(column, radius());
     if (!extent.is_smooth(inverse, recipe_.edges) || !extent.is_in_floats(recipe_.edges))
       return false;
-    const Span across = image_.across(x), down = image_.down(y);
+    const auto across = image_.template across<kMayBeCut>(x);
+    const auto down = image_.template down<kMayBeCut>(y);
     WindowShape shape = recipe_.whole;
-    if (!across.is_whole(radius()) || !down.is_whole(radius())) {
+    if constexpr (kMayBeCut) {
       if (!tells_plane(across, down)) return false;
       shape = WindowShape(across, down);
     }
     const TileAround depth = image_.depth_around(x, y);
-    const float centre = depth.at(0, 0);
-    const auto about = [&](int du) {
-      return about_centre(column[du].sums, depth.at(du, 0) - centre, shape.rows);
-    };
-    WindowOffsets<float> sums;
-    if (across.is_whole(radius())) {
-      sums = begin_with(column->sums);
-#pragma unroll
-      for (int d = 1; d <= radius(); ++d)
-        add_offset_columns(about(d), about(-d), static_cast<float>(d), sums);
-    } else {
-      sums = offsets_of_columns(across, about);
-    }
+    const int side = reference_of(x) - x;
+    const float reference = depth.at(side, 0);
+    const WindowOffsets<float> sums = sum_offset_columns<float>(across, radius(), [&](int du) {
+      return about_reference(column[du].sums, depth.at(du, 0) - reference, down);
+    });
     const float rx = ray_x(x), ry = ray_y(y);
-    normal = normal_of_covariance(
-        covariance_of_cut_window(sums, inverse, shape, recipe_.scale, rx, ry), rx, ry);
+    normal =
+        normal_of_covariance(covariance_of_offsets(sums, image_.inverse_around(x, y).at(side, 0),
+                                                   shape, recipe_.scale, rx, ry),
+                             rx, ry);
     return true;
   }
 
@@ -187,19 +193,16 @@ class PcaNormals {
   }
 
  private:
-  __device__ int radius() const {
-    return image_.frame.radius();
-  }
+  __device__ int radius() const { return image_.frame.radius(); }
+  template <class Down>
   __device__ __forceinline__ ColumnOffsets<float> sums_of_column(const TileAround& depth,
-                                                                 Span down) const {
-    if (!down.is_whole(radius()))
-      return offsets_of_rows<float>(down, [&](int dv) { return depth.at(0, dv); });
-    const float middle = depth.at(0, 0);
-    ColumnOffsets<float> sums;
+                                                                 const Down& down) const {
+    OffsetRows<float> rows{.reference = depth.at(0, 0)};
+    const auto held = [&](int dv) { return down.has(dv) ? depth.at(0, dv) : rows.reference; };
 #pragma unroll
     for (int d = 1; d <= radius(); ++d)
-      add_offset_rows(depth.at(0, d), depth.at(0, -d), middle, static_cast<float>(d), sums);
-    return sums;
+      rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
+    return rows.sums;
   }
   __device__ __forceinline__ float ray_x(int x) const {
     return static_cast<float>(image_.ray_x[x]);

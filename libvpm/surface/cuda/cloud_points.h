@@ -105,10 +105,10 @@ class TileWork {
   }
 
   __device__ __forceinline__ void sum_columns() const {
-#pragma unroll Shape::kUnroll
-    for (int k = thread(); k < Shape::kHeight * tile_.columns(); k += Shape::kPointThreads)
-      arrays_.columns[k] =
-          normals_.sum_column(k % tile_.columns() - tile_.radius(), k / tile_.columns());
+    if (tile_.may_be_cut())
+      sum_columns<true>();
+    else
+      sum_columns<false>();
   }
 
   // The first pass of closing holes, of the tile and the pixels beside it.
@@ -129,18 +129,10 @@ class TileWork {
 
   // Normals of smooth windows; the others are listed. The surface without holes.
   __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
-#pragma unroll Shape::kUnroll
-    for (int k = thread(); k < Shape::kPixels; k += Shape::kPointThreads) {
-      const int x = k % Shape::kWidth, y = k / Shape::kWidth;
-      const float inverse = arrays_.inverse[tile_.index(x, y)];
-      Vec3f normal;
-      if (tile_.holds(x, y) && inverse > 0 &&
-          !normals_.smooth_normal(arrays_.columns + y * tile_.columns() + x + tile_.radius(), x, y,
-                                  normal))
-        arrays_.gated[atomicAdd(&gated, 1U)] = static_cast<std::uint16_t>(k);
-      arrays_.normals[k] = normal;
-      arrays_.measured[k] = has_holes ? closed_twice(x, y) : inverse;
-    }
+    if (tile_.may_be_cut())
+      find_normals<true>(has_holes, gated);
+    else
+      find_normals<false>(has_holes, gated);
   }
   __device__ __forceinline__ void find_gated_normals(unsigned count) const {
 #pragma unroll 1
@@ -175,6 +167,29 @@ class TileWork {
   }
 
  private:
+  template <bool kMayBeCut>
+  __device__ __forceinline__ void sum_columns() const {
+#pragma unroll kMayBeCut ? 1 : Shape::kUnroll
+    for (int k = thread(); k < Shape::kHeight * tile_.columns(); k += Shape::kPointThreads)
+      arrays_.columns[k] = normals_.template sum_column<kMayBeCut>(
+          k % tile_.columns() - tile_.radius(), k / tile_.columns());
+  }
+  template <bool kMayBeCut>
+  __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
+#pragma unroll kMayBeCut ? 1 : Shape::kUnroll
+    for (int k = thread(); k < Shape::kPixels; k += Shape::kPointThreads) {
+      const int x = k % Shape::kWidth, y = k / Shape::kWidth;
+      const float inverse = arrays_.inverse[tile_.index(x, y)];
+      Vec3f normal;
+      if (tile_.holds(x, y) && inverse > 0 &&
+          !normals_.template smooth_normal<kMayBeCut>(
+              arrays_.columns + y * tile_.columns() + x + tile_.radius(), x, y, normal))
+        arrays_.gated[atomicAdd(&gated, 1U)] = static_cast<std::uint16_t>(k);
+      arrays_.normals[k] = normal;
+      arrays_.measured[k] = has_holes ? closed_twice(x, y) : inverse;
+    }
+  }
+
   using Arrays = TileArrays<Normals>;
   static constexpr int kClosedWidth = Arrays::kClosedWidth;
 

@@ -140,6 +140,11 @@ class TileFrame {
   __device__ bool is_known(int x, int y) const {
     return is_in_image(x, y) && x < end_x() + margin() && y < end_y() + margin();
   }
+  // Whether the image's border cuts windows.
+  __device__ bool may_be_cut() const {
+    return u0 < radius() || v0 < radius() || u0 + Shape::kWidth + radius() > width ||
+           v0 + Shape::kHeight + radius() > height;
+  }
   // Of rows and columns that have pixels to be made, the ends.
   __device__ int end_x() const { return end_x_; }
   __device__ int end_y() const { return end_y_; }

@@ -31,14 +31,18 @@ class KeptColumn {
   float e_ = 0, ye_ = 0;
 };
 
-// Sums over the pixels that are kept: of the difference, and of those that are integers; how many
-// columns have an edge.
-struct KeptSums {
+// Sums over the pixels that are kept: of the difference; of what is an integer, and how many
+// columns have an edge, which may be added up in any order.
+struct KeptDifferences {
   float e = 0, ue = 0, ve = 0;
+  __device__ KeptDifferences operator+(const KeptDifferences& b) const {
+    return {e + b.e, ue + b.ue, ve + b.ve};
+  }
+};
+struct KeptCounts {
   int n = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, edges = 0;
-  __device__ KeptSums operator+(const KeptSums& b) const {
-    return {e + b.e, ue + b.ue, ve + b.ve, n + b.n,   u + b.u,
-            v + b.v, uu + b.uu, uv + b.uv, vv + b.vv, edges + b.edges};
+  __device__ KeptCounts operator+(const KeptCounts& b) const {
+    return {n + b.n, u + b.u, v + b.v, uu + b.uu, uv + b.uv, vv + b.vv, edges + b.edges};
   }
 };
 
@@ -62,10 +66,7 @@ struct Lanes {
   __device__ __forceinline__ auto fold(const Column& column) const {
     const int lane = static_cast<int>(threadIdx.x) % kCount;
     if constexpr (kCount == kFoldedColumns) {
-      auto sum = column(lane);
-      sum = sum + other(sum, 4);
-      sum = sum + other(sum, 2);
-      return sum + other(sum, 1);
+      return total(column(lane));
     } else {
       // Every second of the columns.
       const auto half = [&](int first) {
@@ -73,8 +74,7 @@ struct Lanes {
         return one + (column(first + 2) + column(first + 6));
       };
       if constexpr (kCount == 2) {
-        const auto sum = half(lane);
-        return sum + other(sum, 1);
+        return total(half(lane));
       } else {
         decltype(half(0)) both;
 #pragma unroll 1  // half as much code to read, where few windows share it
@@ -85,6 +85,13 @@ struct Lanes {
         return both;
       }
     }
+  }
+  // Of all lanes.
+  template <class Sums>
+  __device__ __forceinline__ Sums total(Sums own) const {
+#pragma unroll
+    for (int distance = kCount / 2; distance > 0; distance /= 2) own = own + other(own, distance);
+    return own;
   }
 
  private:
@@ -160,18 +167,21 @@ class GatedWindow {
   template <bool kFirst, class Lanes>
   __device__ __forceinline__ WindowPlane choose(const WindowPlane& near, const Lanes& lanes,
                                                 bool& has_edge) const {
-    KeptSums sums;
+    KeptDifferences sums;
+    KeptCounts counts;
     for (int first = -radius(); first <= radius(); first += kFoldedColumns)
-      sums = sums + lanes.fold([&](int k) { return sum_column<kFirst>(first + k, near); });
-    has_edge = sums.edges != 0;
+      sums = sums + lanes.fold([&](int k) { return sum_column<kFirst>(first + k, near, counts); });
+    counts = lanes.total(counts);
+    has_edge = counts.edges != 0;
     const auto exact = [](int count) { return static_cast<float>(count); };
-    return fit_plane<float>({exact(sums.n), exact(sums.u), exact(sums.v), exact(sums.uu),
-                             exact(sums.uv), exact(sums.vv), sums.e, sums.ue, sums.ve});
+    return fit_plane<float>({exact(counts.n), exact(counts.u), exact(counts.v), exact(counts.uu),
+                             exact(counts.uv), exact(counts.vv), sums.e, sums.ue, sums.ve});
   }
 
   // Columns that the window does not have are 0.
   template <bool kFirst>
-  __device__ __forceinline__ KeptSums sum_column(int du, const WindowPlane& near) const {
+  __device__ __forceinline__ KeptDifferences sum_column(int du, const WindowPlane& near,
+                                                        KeptCounts& counts) const {
     if (du > radius()) return {};
     const float x = static_cast<float>(du), predicted = near.c + near.a * x;
     const float gate = edges_.gate, along = gate + edges_.slope * std::fabs(x);
@@ -189,16 +199,10 @@ class GatedWindow {
         if (std::fabs(difference - (predicted + near.b * y)) <= gate) kept.add(difference, dv);
       }
     }
-    return {kept.e(),
-            x * kept.e(),
-            kept.ye(),
-            kept.pixels(),
-            du * kept.pixels(),
-            kept.y(),
-            du * du * kept.pixels(),
-            du * kept.y(),
-            kept.yy(),
-            has_edge ? 1 : 0};
+    const int n = kept.pixels();
+    counts = counts + KeptCounts{n,         du * n,          kept.y(), du * du * n, du * kept.y(),
+                                 kept.yy(), has_edge ? 1 : 0};
+    return {kept.e(), x * kept.e(), kept.ye()};
   }
   __device__ __forceinline__ Moments moments_of_column(const LastChoice& last, int du,
                                                        const TileAround& depths) const {

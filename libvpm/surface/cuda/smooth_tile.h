@@ -41,8 +41,8 @@ class SmoothTile : private SmoothShape {
   __device__ SmoothTile(const CloudRecipe& recipe, void* shared)
       : recipe_(recipe),
         radius_(Smooth::kRadius > 0 ? Smooth::kRadius : recipe.window / 2),
-        u0_(static_cast<int>(blockIdx.x) * kWidth),
-        v0_(static_cast<int>(blockIdx.y) * kHeight),
+        u0_(last_first(blockIdx.x, gridDim.x) * kWidth),
+        v0_(last_first(blockIdx.y, gridDim.y) * kHeight),
         width_(static_cast<int>(recipe.camera.width)),
         height_(static_cast<int>(recipe.camera.height)),
         arrays_(shared),
@@ -157,6 +157,10 @@ class SmoothTile : private SmoothShape {
     return static_cast<std::ptrdiff_t>(v) * width_ + u;
   }
 
+  // Blocks begin in their order: so, tiles at the image's border, which take longest, are not last.
+  __device__ static int last_first(unsigned block, unsigned blocks) {
+    return static_cast<int>(block == 0 ? blocks - 1 : block - 1);
+  }
   // Whether the image's border cuts windows of the tile.
   __device__ bool may_be_cut() const {
     return u0_ < radius_ || v0_ < radius_ || u0_ + kWidth + radius_ > width_ ||
@@ -187,11 +191,10 @@ class SmoothTile : private SmoothShape {
   __device__ __forceinline__ void sum_columns(int column, int y) const {
     const int at = y * pitch() + column, from = at + radius_ * pitch();
     const auto extents = Extents::of_columns(inverse_ + from, pitch(), radius_);
-    if (may_be_cut() && !down(y).is_whole(radius_)) {
-      if (v0_ + y < height_) smooth_.sum_cut_columns(from, pitch(), down(y), at);
-    } else {
-      smooth_.sum_columns(from, pitch(), radius_, at);
-    }
+    if (may_be_cut())
+      smooth_.sum_columns(from, pitch(), down(y), radius_, at);
+    else
+      smooth_.sum_columns(from, pitch(), WholeSpan{radius_}, radius_, at);
     extents_.put(extents, at);
   }
   // Returns which windows of kAtOnce pixels are to be gated, a bit for each.
@@ -211,7 +214,7 @@ class SmoothTile : private SmoothShape {
       smooth &= windows.that_tell_planes();
       find(windows);
     } else {
-      find(WholeWindows());
+      find(WholeWindows{radius_});
     }
     unsigned measured = 0;  // none beyond the image
 #pragma unroll
@@ -224,12 +227,9 @@ class SmoothTile : private SmoothShape {
   }
   __device__ __forceinline__ CutWindows<kAtOnce> cut_windows(int x, int y) const {
     CutWindows<kAtOnce> windows;
-    windows.down = down(y), windows.whole_across = true;
+    windows.upright = down(y);
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      windows.across[p] = span_of(u0_ + x + p, width_, radius_);
-      windows.whole_across &= windows.across[p].is_whole(radius_);
-    }
+    for (int p = 0; p < kAtOnce; ++p) windows.spans[p] = span_of(u0_ + x + p, width_, radius_);
     return windows;
   }
   // kAtOnce normals, as far as the image goes.

@@ -59,6 +59,16 @@ class RowValues<Real, 1, 0> {
   int radius_;
 };
 
+// Those at `values`, should they be there.
+template <int kCount>
+__device__ __forceinline__ Pack<float, kCount> pack_or(bool is_there, const float* values,
+                                                       const Pack<float, kCount>& other) {
+  Pack<float, kCount> pack = pack_at<kCount>(values);
+#pragma unroll
+  for (int p = 0; p < kCount; ++p) pack.of[p] = is_there ? pack.of[p] : other.of[p];
+  return pack;
+}
+
 // The least, or the greatest, value of each pixel's window: pick(a, b, c) chooses.
 template <int kAtOnce, class Row, class Pick, class Integer>
 __device__ __forceinline__ void pick_in_windows(const Row& row, const Pick& pick,
@@ -189,24 +199,29 @@ class PixelsToAxis : public TileRays {
   }
 };
 
-// Windows of kAtOnce pixels side by side: how far the image lets them go. The tile's windows are
-// whole ...
+// Windows of kAtOnce pixels side by side: what the image has of them. The tile's windows are whole
+// ...
 struct WholeWindows {
   static constexpr bool kMayBeCut = false;
+  int radius;
+
+  __device__ WholeSpan across(int /*p*/) const { return {radius}; }
+  __device__ WholeSpan down() const { return {radius}; }
 };
 // ... or the image's border cuts some of them.
 template <int kAtOnce>
 struct CutWindows {
   static constexpr bool kMayBeCut = true;
-  Span across[kAtOnce], down;
-  bool whole_across;  // all of them
+  Span spans[kAtOnce], upright;
 
-  __device__ WindowShape shape(int p) const { return {across[p], down}; }
+  __device__ Span across(int p) const { return spans[p]; }
+  __device__ Span down() const { return upright; }
+  __device__ WindowShape shape(int p) const { return {spans[p], upright}; }
   // A bit for each.
   __device__ unsigned that_tell_planes() const {
     unsigned windows = 0;
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) windows |= (tells_plane(across[p], down) ? 1U : 0U) << p;
+    for (int p = 0; p < kAtOnce; ++p) windows |= (tells_plane(spans[p], upright) ? 1U : 0U) << p;
     return windows;
   }
 };
@@ -227,28 +242,28 @@ class SmoothInverseDepth {
       : inverse_(inverse), s_(arrays.take<float>(count)), vs_(arrays.take<float>(count)) {}
 
   // Down kAtOnce columns about the image's row at `from`.
-  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
-    PlaneColumn<float> sums[kAtOnce];
+  template <class Down>
+  __device__ __forceinline__ void sum_columns(int from, int pitch, const Down& down, int radius,
+                                              int at) const {
     const Pack<float, kAtOnce> middle = pack_at<kAtOnce>(inverse_ + from);
+    PlaneRows<float> rows[kAtOnce];
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) sums[p].s = middle.of[p];
+    for (int p = 0; p < kAtOnce; ++p) rows[p].centre = middle.of[p];
 #pragma unroll
     for (int d = 1; d <= radius; ++d) {
-      const Pack<float, kAtOnce> below = pack_at<kAtOnce>(inverse_ + from + d * pitch),
-                                 above = pack_at<kAtOnce>(inverse_ + from - d * pitch);
+      const Pack<float, kAtOnce> below = pack_or(down.has(d), inverse_ + from + d * pitch, middle),
+                                 above = pack_or(down.has(-d), inverse_ + from - d * pitch, middle);
 #pragma unroll
       for (int p = 0; p < kAtOnce; ++p)
-        add_rows(below.of[p], above.of[p], static_cast<float>(d), sums[p]);
+        rows[p].add(below.of[p], above.of[p], static_cast<float>(d));
     }
-    put(sums, at);
-  }
-  // As far as the image goes.
-  __device__ __forceinline__ void sum_cut_columns(int from, int pitch, Span down, int at) const {
-    PlaneColumn<float> sums[kAtOnce];
+    Pack<float, kAtOnce> s, vs;
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p)
-      sums[p] = sum_rows<float>(down, [&](int dv) { return inverse_[from + dv * pitch + p]; });
-    put(sums, at);
+    for (int p = 0; p < kAtOnce; ++p) {
+      const PlaneColumn<float> column = rows[p].sums(down);
+      s.of[p] = column.s, vs.of[p] = column.vs;
+    }
+    put_pack(s, s_ + at), put_pack(vs, vs_ + at);
   }
 
   // Normals of windows that are smooth. (x, y): the first pixel.
@@ -257,8 +272,13 @@ class SmoothInverseDepth {
                                           int radius, const Pack<float, kAtOnce>& centres,
                                           const Rays& rays, int x, int y, const Windows& windows,
                                           Vec3f (&normals)[kAtOnce]) const {
+    const RowValues<float, kAtOnce, Radius> s(s_ + at, radius), vs(vs_ + at, radius);
     PlaneWindow<float> sums[kAtOnce];
-    sum_across(at, radius, windows, sums);
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p)
+      sums[p] = vpm::sum_columns<float>(windows.across(p), radius, [&](int du) {
+        return PlaneColumn<float>{s.at(p + du), vs.at(p + du)};
+      });
     const Pack<float, kAtOnce> du_axis = pack_at<kAtOnce>(&rays.x(x));
     const float dv_axis = rays.y(y);
     const Intrinsics& k = recipe.camera.intrinsics;
@@ -267,8 +287,8 @@ class SmoothInverseDepth {
     for (int p = 0; p < kAtOnce; ++p) {
       if constexpr (Windows::kMayBeCut) {
         const WindowShape shape = windows.shape(p);
-        normals[p] = normal_of_cut_window(shape, plane_of_sums(shape, sums[p], centres.of[p]), fx,
-                                          fy, du_axis.of[p], dv_axis);
+        normals[p] = normal_of_smooth_window(shape, plane_of_sums(shape, sums[p], centres.of[p]),
+                                             fx, fy, du_axis.of[p], dv_axis);
       } else {
         normals[p] = normal_of_plane<float>(plane_of_sums(recipe.whole, sums[p], centres.of[p]), fx,
                                             fy, du_axis.of[p], dv_axis);
@@ -277,36 +297,6 @@ class SmoothInverseDepth {
   }
 
  private:
-  __device__ __forceinline__ void put(const PlaneColumn<float>* sums, int at) const {
-    Pack<float, kAtOnce> s, vs;
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) s.of[p] = sums[p].s, vs.of[p] = sums[p].vs;
-    put_pack(s, s_ + at), put_pack(vs, vs_ + at);
-  }
-  template <class Windows>
-  __device__ __forceinline__ void sum_across(int at, int radius, const Windows& windows,
-                                             PlaneWindow<float>* sums) const {
-    if constexpr (Windows::kMayBeCut) {
-      if (!windows.whole_across) {
-#pragma unroll
-        for (int p = 0; p < kAtOnce; ++p)
-          sums[p] = vpm::sum_columns(windows.across[p], [&](int du) {
-            return PlaneColumn<float>{s_[at + p + du], vs_[at + p + du]};
-          });
-        return;
-      }
-    }
-    const RowValues<float, kAtOnce, Radius> s(s_ + at, radius), vs(vs_ + at, radius);
-    const auto column = [&](int i) { return PlaneColumn<float>{s.at(i), vs.at(i)}; };
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      sums[p] = {s.at(p), 0, vs.at(p)};
-#pragma unroll
-      for (int d = 1; d <= radius; ++d)
-        add_columns(column(p + d), column(p - d), static_cast<float>(d), sums[p]);
-    }
-  }
-
   const float* inverse_;
   float *s_, *vs_;
 };
@@ -320,34 +310,40 @@ class SmoothPca {
   using Rays = UnitRays;
   static constexpr std::size_t kBytes = 5 * sizeof(float);
 
-  __device__ SmoothPca(SharedArrays& arrays, int count, const float* /*inverse*/,
-                       const float* depth)
-      : depth_(depth),
+  __device__ SmoothPca(SharedArrays& arrays, int count, const float* inverse, const float* depth)
+      : inverse_(inverse),
+        depth_(depth),
         w_(arrays.take<float>(count)),
         vw_(arrays.take<float>(count)),
         w2_(arrays.take<float>(count)),
         vw2_(arrays.take<float>(count)),
         vvz2_(arrays.take<float>(count)) {}
 
-  __device__ __forceinline__ void sum_columns(int from, int pitch, int radius, int at) const {
+  template <class Down>
+  __device__ __forceinline__ void sum_columns(int from, int pitch, const Down& down, int radius,
+                                              int at) const {
     const Pack<float, kAtOnce> middle = pack_at<kAtOnce>(depth_ + from);
-    ColumnOffsets<float> sums[kAtOnce];
+    OffsetRows<float> rows[kAtOnce];
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p) rows[p].reference = middle.of[p];
 #pragma unroll
     for (int d = 1; d <= radius; ++d) {
-      const Pack<float, kAtOnce> below = pack_at<kAtOnce>(depth_ + from + d * pitch),
-                                 above = pack_at<kAtOnce>(depth_ + from - d * pitch);
+      const bool has_below = down.has(d), has_above = down.has(-d);
+      const Pack<float, kAtOnce> below = pack_or(has_below, depth_ + from + d * pitch, middle),
+                                 above = pack_or(has_above, depth_ + from - d * pitch, middle);
 #pragma unroll
       for (int p = 0; p < kAtOnce; ++p)
-        add_offset_rows(below.of[p], above.of[p], middle.of[p], static_cast<float>(d), sums[p]);
+        rows[p].add(below.of[p], above.of[p], has_below, has_above, static_cast<float>(d));
     }
-    put(sums, at);
-  }
-  __device__ __forceinline__ void sum_cut_columns(int from, int pitch, Span down, int at) const {
-    ColumnOffsets<float> sums[kAtOnce];
+    Pack<float, kAtOnce> w, vw, w2, vw2, vvz2;
 #pragma unroll
-    for (int p = 0; p < kAtOnce; ++p)
-      sums[p] = offsets_of_rows<float>(down, [&](int dv) { return depth_[from + dv * pitch + p]; });
-    put(sums, at);
+    for (int p = 0; p < kAtOnce; ++p) {
+      const ColumnOffsets<float>& sums = rows[p].sums;
+      w.of[p] = sums.w, vw.of[p] = sums.vw, w2.of[p] = sums.w2;
+      vw2.of[p] = sums.vw2, vvz2.of[p] = sums.vvz2;
+    }
+    put_pack(w, w_ + at), put_pack(vw, vw_ + at), put_pack(w2, w2_ + at);
+    put_pack(vw2, vw2_ + at), put_pack(vvz2, vvz2_ + at);
   }
 
   template <class Windows>
@@ -355,71 +351,42 @@ class SmoothPca {
                                           const Pack<float, kAtOnce>& centres, const Rays& rays,
                                           int x, int y, const Windows& windows,
                                           Vec3f (&normals)[kAtOnce]) const {
-    WindowOffsets<float> sums[kAtOnce];
-    sum_across(at, depth_ + at + radius * pitch, radius, recipe, windows, sums);
+    const Row z(depth_ + at + radius * pitch, radius), w(w_ + at, radius), vw(vw_ + at, radius),
+        w2(w2_ + at, radius), vw2(vw2_ + at, radius), vvz2(vvz2_ + at, radius);
     const Pack<float, kAtOnce> rx = pack_at<kAtOnce>(&rays.x(x));
     const float ry = rays.y(y);
+    // All pixels have the same reference, or one of them has it beside.
+    const int side = kAtOnce == 1 ? reference_of(x) - x : 0;
+    const float reference = depth_[at + radius * pitch + side];
+    const float inverse = kAtOnce == 1 ? inverse_[at + radius * pitch + side] : centres.of[0];
+    const auto column = [&](int i) {
+      const ColumnOffsets<float> own{w.at(i), vw.at(i), w2.at(i), vw2.at(i), vvz2.at(i)};
+      return about_reference(own, z.at(i) - reference, windows.down());
+    };
+    Symmetric3<float> covariances[kAtOnce];
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
-      Symmetric3<float> covariance;
+      const WindowOffsets<float> sums = sum_offset_columns<float>(
+          windows.across(p), radius, [&](int du) { return column(p + du); });
+      const auto covariance_of = [&](const WindowShape& shape) {
+        return covariance_of_offsets(sums, inverse, shape, recipe.scale, rx.of[p], ry);
+      };
       if constexpr (Windows::kMayBeCut)
-        covariance = covariance_of_cut_window(sums[p], centres.of[p], windows.shape(p),
-                                              recipe.scale, rx.of[p], ry);
+        covariances[p] = covariance_of(windows.shape(p));
       else
-        covariance =
-            covariance_of_offsets(sums[p], centres.of[p], recipe.whole, recipe.scale, rx.of[p], ry);
-      normals[p] = normal_of_covariance(covariance, rx.of[p], ry);
+        covariances[p] = covariance_of(recipe.whole);
     }
+    float roots[kAtOnce];
+    find_roots(covariances, roots);
+#pragma unroll
+    for (int p = 0; p < kAtOnce; ++p)
+      normals[p] = normal_of_covariance(covariances[p], roots[p], rx.of[p], ry);
   }
 
  private:
   using Row = RowValues<float, kAtOnce, Radius>;
 
-  __device__ __forceinline__ void put(const ColumnOffsets<float>* sums, int at) const {
-    Pack<float, kAtOnce> w, vw, w2, vw2, vvz2;
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      w.of[p] = sums[p].w, vw.of[p] = sums[p].vw, w2.of[p] = sums[p].w2;
-      vw2.of[p] = sums[p].vw2, vvz2.of[p] = sums[p].vvz2;
-    }
-    put_pack(w, w_ + at), put_pack(vw, vw_ + at), put_pack(w2, w2_ + at);
-    put_pack(vw2, vw2_ + at), put_pack(vvz2, vvz2_ + at);
-  }
-  // `middles`: the depths of the pixels themselves.
-  template <class Windows>
-  __device__ __forceinline__ void sum_across(int at, const float* middles, int radius,
-                                             const CloudRecipe& recipe, const Windows& windows,
-                                             WindowOffsets<float>* sums) const {
-    float rows = recipe.whole.rows;
-    if constexpr (Windows::kMayBeCut) {
-      rows = static_cast<float>(windows.down.count());
-      if (!windows.whole_across) {
-#pragma unroll
-        for (int p = 0; p < kAtOnce; ++p)
-          sums[p] = offsets_of_columns(windows.across[p], [&](int du) {
-            const int i = at + p + du;
-            return about_centre<float>({w_[i], vw_[i], w2_[i], vw2_[i], vvz2_[i]},
-                                       middles[p + du] - middles[p], rows);
-          });
-        return;
-      }
-    }
-    const Row z(middles, radius), w(w_ + at, radius), w2(w2_ + at, radius), vw(vw_ + at, radius),
-        vw2(vw2_ + at, radius), vvz2(vvz2_ + at, radius);
-    const auto column = [&](int i) {
-      return ColumnOffsets<float>{w.at(i), vw.at(i), w2.at(i), vw2.at(i), vvz2.at(i)};
-    };
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p) {
-      sums[p] = begin_with(column(p));
-      const auto about = [&](int i) { return about_centre(column(i), z.at(i) - z.at(p), rows); };
-#pragma unroll
-      for (int d = 1; d <= radius; ++d)
-        add_offset_columns(about(p + d), about(p - d), static_cast<float>(d), sums[p]);
-    }
-  }
-
-  const float* depth_;
+  const float *inverse_, *depth_;
   float *w_, *vw_, *w2_, *vw2_, *vvz2_;
 };
 
