@@ -305,7 +305,7 @@ template <int TheAtOnce, int Radius>
 class SmoothPca {
  public:
   static constexpr int kAtOnce = TheAtOnce, kRadius = Radius;
-  static constexpr int kThreads = 128, kBlocks = 6;  // more leave too few registers
+  static constexpr int kThreads = 128, kBlocks = 5;  // more leave too few registers
   static constexpr bool kNeedsDepth = true, kInFloats = true;
   using Rays = UnitRays;
   static constexpr std::size_t kBytes = 5 * sizeof(float);
