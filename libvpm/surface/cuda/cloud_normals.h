@@ -170,7 +170,7 @@ class PcaNormals {
       shape = WindowShape(across, down);
     }
     const TileAround depth = image_.depth_around(x, y);
-    const int side = reference_of(x) - x;
+    const int u = image_.frame.u0 + x, side = reference_of(u) - u;
     const float reference = depth.at(side, 0);
     const WindowOffsets<float> sums = sum_offset_columns<float>(across, radius(), [&](int du) {
       return about_reference(column[du].sums, depth.at(du, 0) - reference, down);

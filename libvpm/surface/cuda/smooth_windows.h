@@ -355,7 +355,7 @@ class SmoothPca {
         w2(w2_ + at, radius), vw2(vw2_ + at, radius), vvz2(vvz2_ + at, radius);
     const Pack<float, kAtOnce> rx = pack_at<kAtOnce>(&rays.x(x));
     const float ry = rays.y(y);
-    // All pixels have the same reference, or one of them has it beside.
+    // All pixels have the same reference, or one of them has it beside: tiles begin at even ones.
     const int side = kAtOnce == 1 ? reference_of(x) - x : 0;
     const float reference = depth_[at + radius * pitch + side];
     const float inverse = kAtOnce == 1 ? inverse_[at + radius * pitch + side] : centres.of[0];
