@@ -80,7 +80,7 @@ template <int Count>
 }
 
 // A positive semidefinite matrix over its trace. What is known of it in floats then gives the
-// direction of a plane's normal to some 1e-7, over what its second eigenvalue is of the trace.
+// direction of a plane's normal to some 1e-6, over what its second eigenvalue is of the trace.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Symmetric3<float> over_trace(const Symmetric3<Real>& m) {
   const Real trace = m.xx + m.yy + m.zz;
@@ -96,9 +96,11 @@ template <class Real>
 
 // The unit normal towards the sensor: the eigenvector of the smallest eigenvalue, which is `root`;
 // zero where there is no single one. The adjugate of what is left without the eigenvalue has it in
-// each row, the longest where the diagonal is greatest.
+// each row, the longest where the diagonal is greatest. No smallest eigenvalue is more than the
+// `minors`: a root that is was made of noise.
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& m,
-                                                                float root, float rx, float ry) {
+                                                                float minors, float root, float rx,
+                                                                float ry) {
   const float x = m.xx - root, y = m.yy - root, z = m.zz - root;
   const float xx = y * z - m.yz * m.yz, yy = x * z - m.xz * m.xz, zz = x * y - m.xy * m.xy;
   const float xy = m.xz * m.yz - m.xy * z, xz = m.xy * m.yz - m.xz * y, yz = m.xy * m.xz - m.yz * x;
@@ -113,27 +115,31 @@ template <class Real>
                 : use_y ? yz
                         : xz};
   const float squared = n.x * n.x + n.y * n.y + n.z * n.z;
-  const bool found = squared > kEigenNoise;
+  const bool found = (squared > kEigenNoise) & (root <= minors) & (root >= -minors);
   const float away = n.x * rx + n.y * ry + n.z;
   const float unit = reciprocal(square_root(found ? squared : 1.0F));
   const float scale = found ? (away > 0 ? -unit : unit) : 0.0F;
   return {scale * n.x, scale * n.y, scale * n.z};
 }
+// Of several at once, whose rays are (rx[0], ry, 1), (rx[1], ry, 1), ...
 template <int Count>
-[[gnu::always_inline]] VPM_HD inline void find_roots(const Symmetric3<float> (&covariances)[Count],
-                                                     float (&roots)[Count]) {
-  float minors[Count], determinants[Count];
+[[gnu::always_inline]] VPM_HD inline void find_normals_of(
+    const Symmetric3<float> (&covariances)[Count], const float (&rx)[Count], float ry,
+    Vec3f (&normals)[Count]) {
+  float minors[Count], determinants[Count], roots[Count];
   for (int i = 0; i < Count; ++i) {
     const Characteristic polynomial = characteristic_of(covariances[i]);
     minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
   }
   find_smallest_roots(minors, determinants, roots);
+  for (int i = 0; i < Count; ++i)
+    normals[i] = normal_of_covariance(covariances[i], minors[i], roots[i], rx[i], ry);
 }
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
                                                                 float rx, float ry) {
-  float roots[1];
-  find_roots<1>({covariance}, roots);
-  return normal_of_covariance(covariance, roots[0], rx, ry);
+  Vec3f normals[1];
+  find_normals_of<1>({covariance}, {rx}, ry, normals);
+  return normals[0];
 }
 
 // Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they

@@ -127,7 +127,7 @@ template <int Count>
   }
   find_smallest_roots(minors, determinants, roots);
   for (int i = 0; i < Count; ++i) {
-    const Vec3f n = normal_of_covariance(covariances.at(i), roots[i], rx[i], ry);
+    const Vec3f n = normal_of_covariance(covariances.at(i), minors[i], roots[i], rx[i], ry);
     x[i] = n.x, y[i] = n.y, z[i] = n.z;
   }
 }

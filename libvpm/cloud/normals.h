@@ -9,10 +9,12 @@
 //   Streaming Point Clouds", 2017).
 // Both leave out of a window what lies across a depth edge, seen from its centre: where something
 // differs from the centre's inverse depth by more than the edge gate, what is further than that
-// from the centre's surface. Windows without such an edge keep all that was measured.
+// from the centre's surface. Windows without such an edge keep all that was measured. What the
+// image's border leaves of a window is a window too.
 //
 // The same input gives the same bits for any number of threads and any IEEE compiler; depth scaled
-// by a power of two gives the same normals.
+// by a power of two gives the same normals. Of a part of an image, pca's last bits are the same if
+// the part begins at an even column.
 #pragma once
 
 #include <string>

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -175,22 +176,100 @@ TEST_P(Normals, DoNotChangeABitWithScaleOrThreads) {
 }
 
 TEST_P(Normals, DependOnTheWindowAlone) {
-  // Whatever lies outside of a pixel's window, and where the image ends, changes nothing.
+  // Whatever lies outside of a pixel's window, and where the image ends, changes nothing; whether
+  // its column is even, PCA's last bits.
   const NormalScene scene = see(room());
   const auto whole = normals(scene.depth, scene.camera);
-  constexpr std::uint32_t kU = 200, kV = 150, kWidth = 60, kHeight = 50, kMargin = 3;
-  DepthImage part{kWidth, kHeight, {}};
-  for (std::uint32_t v = 0; v < kHeight; ++v) {
-    for (std::uint32_t u = 0; u < kWidth; ++u)
-      part.depth.push_back(scene.depth.depth[scene.depth.index(kU + u, kV + v)]);
+  constexpr std::uint32_t kV = 151, kWidth = 60, kHeight = 50, kMargin = 3;
+  for (const std::uint32_t first : {200U, 201U}) {
+    DepthImage part{kWidth, kHeight, {}};
+    for (std::uint32_t v = 0; v < kHeight; ++v) {
+      for (std::uint32_t u = 0; u < kWidth; ++u)
+        part.depth.push_back(scene.depth.depth[scene.depth.index(first + u, kV + v)]);
+    }
+    Intrinsics k = scene.camera.intrinsics;
+    k.cx -= first;
+    k.cy -= kV;
+    const bool has_same_bits = GetParam() != NormalMethod::pca || first % 2 == 0;
+    const auto found = estimate_normals(part, k, options());
+    for (std::uint32_t v = kMargin; v < kHeight - kMargin; ++v) {
+      for (std::uint32_t u = kMargin; u < kWidth - kMargin; ++u) {
+        const Vec3f n = found[part.index(u, v)], m = whole[scene.depth.index(first + u, kV + v)];
+        if (has_same_bits)
+          ASSERT_EQ(n, m);
+        else
+          ASSERT_LT(angle_between(n, widen(m)), 1e-5);
+      }
+    }
   }
-  Intrinsics k = scene.camera.intrinsics;
-  k.cx -= kU;
-  k.cy -= kV;
-  const auto found = estimate_normals(part, k, options());
-  for (std::uint32_t v = kMargin; v < kHeight - kMargin; ++v) {
-    for (std::uint32_t u = kMargin; u < kWidth - kMargin; ++u)
-      ASSERT_EQ(found[part.index(u, v)], whole[scene.depth.index(kU + u, kV + v)]);
+}
+
+// The plane of inverse depth that is nearest to a window's pixels, or the direction in which their
+// points vary least, in doubles from the definitions.
+Vec3 plane_by_definition(const std::vector<Vec3>& pixels, const Intrinsics& k) {
+  Vec3 mean{};
+  for (const Vec3& p : pixels)
+    mean = mean + (1.0 / static_cast<double>(pixels.size())) * Vec3{p.x, p.y, 1 / p.z};
+  double uu = 0, uv = 0, vv = 0, us = 0, vs = 0;
+  for (const Vec3& p : pixels) {
+    const Vec3 d = Vec3{p.x, p.y, 1 / p.z} - mean;
+    uu += d.x * d.x, uv += d.x * d.y, vv += d.y * d.y, us += d.x * d.z, vs += d.y * d.z;
+  }
+  const double determinant = uu * vv - uv * uv;
+  const double a = (us * vv - vs * uv) / determinant, b = (vs * uu - us * uv) / determinant;
+  const Vec3 n{a * k.fx, b * k.fy, a * (k.cx - mean.x) + b * (k.cy - mean.y) + mean.z};
+  return (-1 / norm(n)) * n;
+}
+Vec3 least_variance_by_definition(const std::vector<Vec3>& pixels, const Intrinsics& k) {
+  std::vector<Vec3> points;
+  Vec3 mean{};
+  for (const Vec3& p : pixels) {
+    points.push_back(unproject(k, p.x, p.y, p.z));
+    mean = mean + (1.0 / static_cast<double>(pixels.size())) * points.back();
+  }
+  Vec3 x{}, y{}, z{};  // columns of the covariance
+  for (const Vec3& point : points) {
+    const Vec3 d = point - mean;
+    x = x + d.x * d, y = y + d.y * d, z = z + d.z * d;
+  }
+  // The adjugate's powers turn to the eigenvector of the least eigenvalue.
+  Vec3 n{0, 0, -1};
+  for (int i = 0; i < 100; ++i) {
+    n = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
+    n = (1 / norm(n)) * n;
+  }
+  return dot(n, mean) > 0 ? -1.0 * n : n;
+}
+
+TEST_P(Normals, AreThoseOfAWindowsPixelsWhereverTheBorderCutsIt) {
+  DepthImage image = plane_image(kSmallCamera, Vec3{0.3, -0.4, -1} / norm({0.3, -0.4, -1}), 1);
+  std::mt19937 random(11);
+  for (float& depth : image.depth) depth *= 1 + 4e-6F * static_cast<float>(random() % 100);
+  const Intrinsics& k = kSmallCamera.intrinsics;
+  const auto definition =
+      GetParam() == NormalMethod::pca ? least_variance_by_definition : plane_by_definition;
+  const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+  for (const int window : {3, 5, 7, 15, 31}) {
+    const auto found = estimate_normals(image, k, options(window));
+    const int r = window / 2;
+    for (int v = 0; v < height; ++v) {
+      for (int u = 0; u < width; ++u) {
+        std::vector<Vec3> pixels;
+        for (int y = std::max(0, v - r); y <= std::min(height - 1, v + r); ++y) {
+          for (int x = std::max(0, u - r); x <= std::min(width - 1, u + r); ++x) {
+            const auto i = static_cast<std::size_t>(y * width + x);
+            pixels.push_back({double(x), double(y), double{image.depth[i]}});
+          }
+        }
+        const Vec3f n = found[static_cast<std::size_t>(v * width + u)];
+        if (pixels.size() < kMinSupport) {
+          ASSERT_FALSE(exists(n));
+        } else {
+          ASSERT_LT(angle_between(n, definition(pixels, k)), 2e-4)
+              << "window " << window << " pixel " << u << " " << v;
+        }
+      }
+    }
   }
 }
 

@@ -376,11 +376,7 @@ class SmoothPca {
       else
         covariances[p] = covariance_of(recipe.whole);
     }
-    float roots[kAtOnce];
-    find_roots(covariances, roots);
-#pragma unroll
-    for (int p = 0; p < kAtOnce; ++p)
-      normals[p] = normal_of_covariance(covariances[p], roots[p], rx.of[p], ry);
+    find_normals_of(covariances, rx.of, ry, normals);
   }
 
  private:

@@ -1,0 +1,1 @@
+// What vpm_gtest_header is made of: nothing but its precompiled header.
