@@ -121,25 +121,27 @@ template <class Real>
   const float scale = found ? (away > 0 ? -unit : unit) : 0.0F;
   return {scale * n.x, scale * n.y, scale * n.z};
 }
-// Of several at once, whose rays are (rx[0], ry, 1), (rx[1], ry, 1), ...
-template <int Count>
-[[gnu::always_inline]] VPM_HD inline void find_normals_of(
-    const Symmetric3<float> (&covariances)[Count], const float (&rx)[Count], float ry,
-    Vec3f (&normals)[Count]) {
+// Of several at once, whose rays are (rx[0], ry, 1), (rx[1], ry, 1), ... covariance(i) tells one,
+// take(i, normal) is called for each.
+template <int Count, class Covariance, class Take>
+[[gnu::always_inline]] VPM_HD inline void find_normals_of(const Covariance& covariance,
+                                                          const float* rx, float ry,
+                                                          const Take& take) {
   float minors[Count], determinants[Count], roots[Count];
   for (int i = 0; i < Count; ++i) {
-    const Characteristic polynomial = characteristic_of(covariances[i]);
+    const Characteristic polynomial = characteristic_of(covariance(i));
     minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
   }
   find_smallest_roots(minors, determinants, roots);
   for (int i = 0; i < Count; ++i)
-    normals[i] = normal_of_covariance(covariances[i], minors[i], roots[i], rx[i], ry);
+    take(i, normal_of_covariance(covariance(i), minors[i], roots[i], rx[i], ry));
 }
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& covariance,
                                                                 float rx, float ry) {
-  Vec3f normals[1];
-  find_normals_of<1>({covariance}, {rx}, ry, normals);
-  return normals[0];
+  Vec3f normal;
+  find_normals_of<1>([&](int) { return covariance; }, &rx, ry,
+                     [&](int, const Vec3f& found) { normal = found; });
+  return normal;
 }
 
 // Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
@@ -172,7 +174,7 @@ struct PixelScale {
   return {1 / k.fx, 1 / k.fy, 1};
 }
 // So that none of what is made by it leaves the range of floats, where z is relative to the
-// centre's: x and y no more than 1.
+// reference's: x and y no more than 1.
 [[gnu::always_inline]] VPM_HD inline PixelScale<float> pixel_scale_in_floats(const Intrinsics& k) {
   const double least = k.fx < k.fy ? k.fx : k.fy;
   return {static_cast<float>(least / k.fx), static_cast<float>(least / k.fy),
@@ -235,6 +237,21 @@ struct OffsetRows {
                     sums.vvz2);
   }
 };
+// at(dv): of the pixels that there are.
+template <class Real, class Down, class At>
+[[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> sum_offset_rows(const Down& down,
+                                                                         int radius, const At& at) {
+  OffsetRows<Real> rows{.reference = at(0)};
+  const auto held = [&](int dv) __attribute__((always_inline)) {
+    return down.has(dv) ? at(dv) : rows.reference;
+  };
+#ifdef __CUDA_ARCH__
+#pragma unroll
+#endif
+  for (int d = 1; d <= radius; ++d)
+    rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
+  return rows.sums;
+}
 // About the reference of a window instead, which is the same for two pixels side by side: they
 // share what is made of a column. `offset`: how much the column's pixel differs from it.
 [[gnu::always_inline]] VPM_HD inline int reference_of(int u) {
@@ -285,9 +302,8 @@ template <class Real, class Across, class Column>
 }
 
 // Moments where z is relative to the reference's, and minus 1 in z itself. `inverse`: that one's.
-template <class Real>
-[[gnu::always_inline]] VPM_HD inline MomentsOf<Real> moments_of_offsets(
-    const WindowOffsets<Real>& s, const Real& inverse, const WindowShape& shape) {
+[[gnu::always_inline]] VPM_HD inline MomentsOf<float> moments_of_offsets(
+    const WindowOffsets<float>& s, float inverse, const WindowShape& shape) {
   return {shape.count,
           shape.du + s.uw * inverse,
           shape.dv + s.vw * inverse,

@@ -48,12 +48,10 @@ template <class Down, class Radius>
   const auto stride = static_cast<std::ptrdiff_t>(inverse_.stride);
   for (int i = 0; i < columns; i += kWideLanes) {
     const float* const middle = inverse_.at(i - radius_, v);
-    PlaneRows<WideFloats> rows{.centre = load<WideFloats>(middle)};
-    const auto held = [&](int dv) __attribute__((always_inline)) {
-      return down.has(dv) ? load<WideFloats>(middle + dv * stride) : rows.centre;
-    };
-    for (int d = 1; d <= radius; ++d) rows.add(held(d), held(-d), static_cast<float>(d));
-    const PlaneColumn<WideFloats> column = rows.sums(down);
+    const PlaneColumn<WideFloats> column = sum_rows<WideFloats>(
+        down, radius, [&](int dv) __attribute__((always_inline)) {
+          return load<WideFloats>(middle + dv * stride);
+        });
     store(column.s, s_.data() + i);
     store(column.vs, vs_.data() + i);
   }

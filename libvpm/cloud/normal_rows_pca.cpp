@@ -61,13 +61,10 @@ template <class Down, class Radius>
   const auto stride = static_cast<std::ptrdiff_t>(depth_.stride);
   for (int i = 0; i < columns; i += kWideLanes) {
     const float* const middle = depth_.at(i - radius_, v);
-    OffsetRows<WideFloats> rows{.reference = load<WideFloats>(middle)};
-    const auto held = [&](int dv) __attribute__((always_inline)) {
-      return down.has(dv) ? load<WideFloats>(middle + dv * stride) : rows.reference;
-    };
-    for (int d = 1; d <= radius; ++d)
-      rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
-    const ColumnOffsets<WideFloats>& c = rows.sums;
+    const ColumnOffsets<WideFloats> c = sum_offset_rows<WideFloats>(
+        down, radius, [&](int dv) __attribute__((always_inline)) {
+          return load<WideFloats>(middle + dv * stride);
+        });
     store(c.w, w_.data() + i), store(c.vw, vw_.data() + i), store(c.w2, w2_.data() + i);
     store(c.vw2, vw2_.data() + i), store(c.vvz2, vvz2_.data() + i);
   }
@@ -120,16 +117,10 @@ template <int Count>
 [[gnu::always_inline]] inline void find_normals(const CovarianceLanes<Count>& covariances,
                                                 const float* rx, float ry, float* x, float* y,
                                                 float* z) {
-  float minors[Count], determinants[Count], roots[Count];
-  for (int i = 0; i < Count; ++i) {
-    const Characteristic polynomial = characteristic_of(covariances.at(i));
-    minors[i] = polynomial.minors, determinants[i] = polynomial.determinant;
-  }
-  find_smallest_roots(minors, determinants, roots);
-  for (int i = 0; i < Count; ++i) {
-    const Vec3f n = normal_of_covariance(covariances.at(i), minors[i], roots[i], rx[i], ry);
-    x[i] = n.x, y[i] = n.y, z[i] = n.z;
-  }
+  find_normals_of<Count>(
+      [&](int i) __attribute__((always_inline)) { return covariances.at(i); }, rx, ry,
+      [&](int i, const Vec3f& n)
+          __attribute__((always_inline)) { x[i] = n.x, y[i] = n.y, z[i] = n.z; });
 }
 
 // Moments of gated windows side by side.

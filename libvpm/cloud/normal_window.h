@@ -26,7 +26,7 @@ template <class Body>
 }
 
 // Bounds of inverse depth by the options' edge gate, and by what floats can hold of a smooth
-// window: others are gated, which is done in doubles.
+// window: of others, which are gated, PCA is done in doubles.
 struct EdgeGate {
   float lowest, highest;  // of a smooth window, relative to its centre's
   float least, greatest;  // of a smooth window

@@ -40,6 +40,20 @@ struct PlaneRows {
     return {off + static_cast<float>(down.count()) * centre, down.about_middle(v_off, off)};
   }
 };
+// at(dv): of the pixels that there are.
+template <class Real, class Down, class At>
+[[gnu::always_inline]] VPM_HD inline PlaneColumn<Real> sum_rows(const Down& down, int radius,
+                                                                const At& at) {
+  PlaneRows<Real> rows{.centre = at(0)};
+  const auto held = [&](int dv) __attribute__((always_inline)) {
+    return down.has(dv) ? at(dv) : rows.centre;
+  };
+#ifdef __CUDA_ARCH__
+#pragma unroll
+#endif
+  for (int d = 1; d <= radius; ++d) rows.add(held(d), held(-d), static_cast<float>(d));
+  return rows.sums(down);
+}
 // Across, likewise; the columns that stand there have no v s.
 template <class Real>
 struct PlaneColumns {
@@ -77,25 +91,23 @@ template <class Real, class Across, class Column>
 // The normal towards the sensor of the plane whose inverse depth is a du + b dv + c at the offset
 // (du, dv) from pixel (u, v): with u = fx X/Z + cx the plane is
 // a fx X + b fy Y + (a (cx - u) + b (cy - v) + c) Z = 1.
-template <class Real>
 struct PlaneSlopes {
-  Real a, b, c;
+  float a, b, c;
 };
 
-template <class Real>
-[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_plane(const PlaneSlopes<Real>& plane, Real fx,
-                                                           Real fy, Real du_axis, Real dv_axis) {
-  const Real x = plane.a * fx, y = plane.b * fy;
-  const Real z = plane.a * du_axis + plane.b * dv_axis + plane.c;
-  const Real scale = -reciprocal(square_root(x * x + y * y + z * z));
-  return {static_cast<float>(x * scale), static_cast<float>(y * scale),
-          static_cast<float>(z * scale)};
+[[gnu::always_inline]] VPM_HD inline Vec3f normal_of_plane(const PlaneSlopes& plane, float fx,
+                                                           float fy, float du_axis, float dv_axis) {
+  const float x = plane.a * fx, y = plane.b * fy;
+  const float z = plane.a * du_axis + plane.b * dv_axis + plane.c;
+  const float scale = -reciprocal(square_root(x * x + y * y + z * z));
+  return {x * scale, y * scale, z * scale};
 }
 
 // The slopes by a window's sums, and the height in its middle, relative to the inverse depth of its
 // centre.
-[[gnu::always_inline]] VPM_HD inline PlaneSlopes<float> plane_of_sums(
-    const WindowShape& shape, const PlaneWindow<float>& sums, float centre) {
+[[gnu::always_inline]] VPM_HD inline PlaneSlopes plane_of_sums(const WindowShape& shape,
+                                                               const PlaneWindow<float>& sums,
+                                                               float centre) {
   const float unit = reciprocal(centre);
   return {sums.us * shape.per_us * unit, sums.vs * shape.per_vs * unit,
           sums.s * shape.per_count * unit};
@@ -103,11 +115,11 @@ template <class Real>
 // Zero where the plane, wild without an edge gate, is behind the sensor at the centre of a window
 // that the image's border cuts: it says nothing.
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_smooth_window(const WindowShape& shape,
-                                                                   const PlaneSlopes<float>& plane,
+                                                                   const PlaneSlopes& plane,
                                                                    float fx, float fy,
                                                                    float du_axis, float dv_axis) {
   const bool found = plane.c - (plane.a * shape.u + plane.b * shape.v) > 0;
-  const Vec3f n = normal_of_plane<float>(plane, fx, fy, du_axis - shape.u, dv_axis - shape.v);
+  const Vec3f n = normal_of_plane(plane, fx, fy, du_axis - shape.u, dv_axis - shape.v);
   return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
 }
 
@@ -181,7 +193,7 @@ template <class Real>
                                                             float dv_axis) {
   const float height = 1 + plane.c;
   const bool found = plane.found & (height > 0);
-  const Vec3f n = normal_of_plane<float>({plane.a, plane.b, height}, fx, fy, du_axis, dv_axis);
+  const Vec3f n = normal_of_plane({plane.a, plane.b, height}, fx, fy, du_axis, dv_axis);
   return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
 }
 

@@ -34,6 +34,10 @@ VPM_HD inline Span span_of(int at, int size, int radius) {
   const int beyond = size - 1 - at;
   return {at < radius ? at : radius, beyond < radius ? beyond : radius};
 }
+// Whether an image's border cuts windows about `count` pixels in a row.
+VPM_HD inline bool cuts_windows(int first, int count, int size, int radius) {
+  return first < radius || first + count + radius > size;
+}
 // One that is known to be whole.
 struct WholeSpan {
   int radius;

@@ -18,11 +18,9 @@ using Floats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(32)));
 using Ints = std::int32_t __attribute__((vector_size(32)));
 using WideFloats = float __attribute__((vector_size(64)));
-using WideDoubles = double __attribute__((vector_size(64)));
 using WideInts = std::int32_t __attribute__((vector_size(64)));
 using WideUnsigned = std::uint32_t __attribute__((vector_size(64)));
 using HalfFloats = float __attribute__((vector_size(16)));
-using HalfInts = std::int32_t __attribute__((vector_size(16)));
 
 template <class Vector, class Number>
 [[gnu::always_inline]] inline Vector load(const Number* from) {
@@ -38,18 +36,11 @@ template <class Vector, class Number>
   std::memcpy(to, &vector, sizeof vector);
 }
 
-// The half of the floats that begins at a lane, as doubles; and such a half rounded.
+// The half of the floats that begins at a lane, as doubles.
 [[gnu::always_inline]] inline Doubles doubles(const Floats& from, int first) {
   HalfFloats half;
   std::memcpy(&half, reinterpret_cast<const float*>(&from) + first, sizeof half);
   return __builtin_convertvector(half, Doubles);
-}
-[[gnu::always_inline]] inline HalfFloats floats(const Doubles& from) {
-  return __builtin_convertvector(from, HalfFloats);
-}
-// Floats in memory as doubles.
-[[gnu::always_inline]] inline WideDoubles wide_doubles(const float* from) {
-  return __builtin_convertvector(load<Floats>(from), WideDoubles);
 }
 
 }  // namespace vpm

@@ -29,6 +29,17 @@ struct TileImage {
   __device__ auto down(int y) const {
     return span<kMayBeCut>(frame.v0 + y, frame.height);
   }
+  // Whether a pixel's window tells a plane, should it be smooth. `shape`: that of a whole one, then
+  // its own.
+  template <bool kMayBeCut>
+  __device__ __forceinline__ bool tells_plane(int x, int y, WindowShape& shape) const {
+    if constexpr (kMayBeCut) {
+      const Span along = across<true>(x), upright = down<true>(y);
+      if (!vpm::tells_plane(along, upright)) return false;
+      shape = WindowShape(along, upright);
+    }
+    return true;
+  }
 
  private:
   template <bool kMayBeCut>
@@ -77,7 +88,8 @@ class InverseDepthNormals {
   template <bool kMayBeCut>
   __device__ __forceinline__ Column sum_column(int x, int y) const {
     const TileAround inverse = image_.inverse_around(x, y);
-    return {sums_of_column(inverse, image_.template down<kMayBeCut>(y)),
+    return {sum_rows<float>(image_.template down<kMayBeCut>(y), radius(),
+                            [&](int dv) { return inverse.at(0, dv); }),
             extent_of_column(inverse, radius())};
   }
 
@@ -87,15 +99,10 @@ class InverseDepthNormals {
                                                 Vec3f& normal) const {
     const float centre = image_.inverse_around(x, y).at(0, 0);
     if (!extent_of_window(column, radius()).is_smooth(centre, recipe_.edges)) return false;
-    const auto across = image_.template across<kMayBeCut>(x);
-    const auto down = image_.template down<kMayBeCut>(y);
     WindowShape shape = recipe_.whole;
-    if constexpr (kMayBeCut) {
-      if (!tells_plane(across, down)) return false;
-      shape = WindowShape(across, down);
-    }
-    const PlaneWindow<float> sums =
-        sum_columns<float>(across, radius(), [&](int du) { return column[du].sums; });
+    if (!image_.template tells_plane<kMayBeCut>(x, y, shape)) return false;
+    const PlaneWindow<float> sums = sum_columns<float>(
+        image_.template across<kMayBeCut>(x), radius(), [&](int du) { return column[du].sums; });
     normal = normal_of_smooth_window(shape, plane_of_sums(shape, sums, centre), fx(), fy(),
                                      du_axis(x), dv_axis(y));
     return true;
@@ -109,15 +116,6 @@ class InverseDepthNormals {
 
  private:
   __device__ int radius() const { return image_.frame.radius(); }
-  template <class Down>
-  __device__ __forceinline__ PlaneColumn<float> sums_of_column(const TileAround& inverse,
-                                                               const Down& down) const {
-    PlaneRows<float> rows{.centre = inverse.at(0, 0)};
-    const auto held = [&](int dv) { return down.has(dv) ? inverse.at(0, dv) : rows.centre; };
-#pragma unroll
-    for (int d = 1; d <= radius(); ++d) rows.add(held(d), held(-d), static_cast<float>(d));
-    return rows.sums(down);
-  }
   __device__ __forceinline__ float fx() const {
     return static_cast<float>(recipe_.camera.intrinsics.fx);
   }
@@ -151,7 +149,9 @@ class PcaNormals {
 
   template <bool kMayBeCut>
   __device__ __forceinline__ Column sum_column(int x, int y) const {
-    return {sums_of_column(image_.depth_around(x, y), image_.template down<kMayBeCut>(y)),
+    const TileAround depth = image_.depth_around(x, y);
+    return {sum_offset_rows<float>(image_.template down<kMayBeCut>(y), radius(),
+                                   [&](int dv) { return depth.at(0, dv); }),
             extent_of_column(image_.inverse_around(x, y), radius())};
   }
 
@@ -162,19 +162,16 @@ class PcaNormals {
     const Extent extent = extent_of_window(column, radius());
     if (!extent.is_smooth(inverse, recipe_.edges) || !extent.is_in_floats(recipe_.edges))
       return false;
-    const auto across = image_.template across<kMayBeCut>(x);
-    const auto down = image_.template down<kMayBeCut>(y);
     WindowShape shape = recipe_.whole;
-    if constexpr (kMayBeCut) {
-      if (!tells_plane(across, down)) return false;
-      shape = WindowShape(across, down);
-    }
+    if (!image_.template tells_plane<kMayBeCut>(x, y, shape)) return false;
     const TileAround depth = image_.depth_around(x, y);
     const int u = image_.frame.u0 + x, side = reference_of(u) - u;
     const float reference = depth.at(side, 0);
-    const WindowOffsets<float> sums = sum_offset_columns<float>(across, radius(), [&](int du) {
-      return about_reference(column[du].sums, depth.at(du, 0) - reference, down);
-    });
+    const auto down = image_.template down<kMayBeCut>(y);
+    const WindowOffsets<float> sums =
+        sum_offset_columns<float>(image_.template across<kMayBeCut>(x), radius(), [&](int du) {
+          return about_reference(column[du].sums, depth.at(du, 0) - reference, down);
+        });
     const float rx = ray_x(x), ry = ray_y(y);
     normal =
         normal_of_covariance(covariance_of_offsets(sums, image_.inverse_around(x, y).at(side, 0),
@@ -194,16 +191,6 @@ class PcaNormals {
 
  private:
   __device__ int radius() const { return image_.frame.radius(); }
-  template <class Down>
-  __device__ __forceinline__ ColumnOffsets<float> sums_of_column(const TileAround& depth,
-                                                                 const Down& down) const {
-    OffsetRows<float> rows{.reference = depth.at(0, 0)};
-    const auto held = [&](int dv) { return down.has(dv) ? depth.at(0, dv) : rows.reference; };
-#pragma unroll
-    for (int d = 1; d <= radius(); ++d)
-      rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
-    return rows.sums;
-  }
   __device__ __forceinline__ float ray_x(int x) const {
     return static_cast<float>(image_.ray_x[x]);
   }

@@ -142,8 +142,8 @@ class TileFrame {
   }
   // Whether the image's border cuts windows.
   __device__ bool may_be_cut() const {
-    return u0 < radius() || v0 < radius() || u0 + Shape::kWidth + radius() > width ||
-           v0 + Shape::kHeight + radius() > height;
+    return cuts_windows(u0, Shape::kWidth, width, radius()) ||
+           cuts_windows(v0, Shape::kHeight, height, radius());
   }
   // Of rows and columns that have pixels to be made, the ends.
   __device__ int end_x() const { return end_x_; }

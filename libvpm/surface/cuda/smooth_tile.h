@@ -163,8 +163,8 @@ class SmoothTile : private SmoothShape {
   }
   // Whether the image's border cuts windows of the tile.
   __device__ bool may_be_cut() const {
-    return u0_ < radius_ || v0_ < radius_ || u0_ + kWidth + radius_ > width_ ||
-           v0_ + kHeight + radius_ > height_;
+    return cuts_windows(u0_, kWidth, width_, radius_) ||
+           cuts_windows(v0_, kHeight, height_, radius_);
   }
   __device__ Span down(int y) const {
     return span_of(v0_ + y, height_, radius_);

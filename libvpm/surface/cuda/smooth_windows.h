@@ -69,6 +69,17 @@ __device__ __forceinline__ Pack<float, kCount> pack_or(bool is_there, const floa
   return pack;
 }
 
+// Calls body(below, above, d) for each pair of rows as far from the one at `row`; what stands there
+// beyond the image is `middle`, which that has.
+template <int kCount, class Down, class Body>
+__device__ __forceinline__ void for_rows(const float* row, int pitch, const Down& down, int radius,
+                                         const Pack<float, kCount>& middle, const Body& body) {
+#pragma unroll
+  for (int d = 1; d <= radius; ++d)
+    body(pack_or(down.has(d), row + d * pitch, middle),
+         pack_or(down.has(-d), row - d * pitch, middle), d);
+}
+
 // The least, or the greatest, value of each pixel's window: pick(a, b, c) chooses.
 template <int kAtOnce, class Row, class Pick, class Integer>
 __device__ __forceinline__ void pick_in_windows(const Row& row, const Pick& pick,
@@ -249,14 +260,12 @@ class SmoothInverseDepth {
     PlaneRows<float> rows[kAtOnce];
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) rows[p].centre = middle.of[p];
+    for_rows(inverse_ + from, pitch, down, radius, middle,
+             [&](const auto& below, const auto& above, int d) {
 #pragma unroll
-    for (int d = 1; d <= radius; ++d) {
-      const Pack<float, kAtOnce> below = pack_or(down.has(d), inverse_ + from + d * pitch, middle),
-                                 above = pack_or(down.has(-d), inverse_ + from - d * pitch, middle);
-#pragma unroll
-      for (int p = 0; p < kAtOnce; ++p)
-        rows[p].add(below.of[p], above.of[p], static_cast<float>(d));
-    }
+               for (int p = 0; p < kAtOnce; ++p)
+                 rows[p].add(below.of[p], above.of[p], static_cast<float>(d));
+             });
     Pack<float, kAtOnce> s, vs;
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
@@ -290,8 +299,8 @@ class SmoothInverseDepth {
         normals[p] = normal_of_smooth_window(shape, plane_of_sums(shape, sums[p], centres.of[p]),
                                              fx, fy, du_axis.of[p], dv_axis);
       } else {
-        normals[p] = normal_of_plane<float>(plane_of_sums(recipe.whole, sums[p], centres.of[p]), fx,
-                                            fy, du_axis.of[p], dv_axis);
+        normals[p] = normal_of_plane(plane_of_sums(recipe.whole, sums[p], centres.of[p]), fx, fy,
+                                     du_axis.of[p], dv_axis);
       }
     }
   }
@@ -326,15 +335,13 @@ class SmoothPca {
     OffsetRows<float> rows[kAtOnce];
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) rows[p].reference = middle.of[p];
+    for_rows(depth_ + from, pitch, down, radius, middle,
+             [&](const auto& below, const auto& above, int d) {
 #pragma unroll
-    for (int d = 1; d <= radius; ++d) {
-      const bool has_below = down.has(d), has_above = down.has(-d);
-      const Pack<float, kAtOnce> below = pack_or(has_below, depth_ + from + d * pitch, middle),
-                                 above = pack_or(has_above, depth_ + from - d * pitch, middle);
-#pragma unroll
-      for (int p = 0; p < kAtOnce; ++p)
-        rows[p].add(below.of[p], above.of[p], has_below, has_above, static_cast<float>(d));
-    }
+               for (int p = 0; p < kAtOnce; ++p)
+                 rows[p].add(below.of[p], above.of[p], down.has(d), down.has(-d),
+                             static_cast<float>(d));
+             });
     Pack<float, kAtOnce> w, vw, w2, vw2, vvz2;
 #pragma unroll
     for (int p = 0; p < kAtOnce; ++p) {
@@ -376,7 +383,8 @@ class SmoothPca {
       else
         covariances[p] = covariance_of(recipe.whole);
     }
-    find_normals_of(covariances, rx.of, ry, normals);
+    find_normals_of<kAtOnce>([&](int p) { return covariances[p]; }, rx.of, ry,
+                             [&](int p, const Vec3f& normal) { normals[p] = normal; });
   }
 
  private:
