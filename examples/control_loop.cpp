@@ -96,13 +96,34 @@ Path make_path(Query& query, const PreparedCloud& cloud, const ToolModel& tool) 
   return path;
 }
 
+using Clock = std::chrono::steady_clock;
+double microseconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
+}
+
 struct Figures {
-  std::vector<double> microseconds;
-  double fraction = 0;  // mean part of the tool that was inside
-  double quantile(double q) const {
-    return microseconds[static_cast<std::size_t>(q * static_cast<double>(microseconds.size() - 1))];
-  }
+  std::vector<double> microseconds;  // sorted
+  std::vector<double> steady;        // of those, what was measured while the host kept its pace
+  double fraction = 0;               // mean part of the tool that was inside
 };
+
+// Some machines slow down as a whole for some hundredths of a second, tenfold and more. What the
+// host does before each query, without libvpm and the same each time, tells: twice the usual time
+// is no chance then. `host_us[k]`: how long that took before `microseconds[k]`.
+std::vector<double> while_host_keeps_pace(const std::vector<double>& microseconds,
+                                          const std::vector<double>& host_us) {
+  constexpr double kSlowed = 2;
+  std::vector<double> usual = host_us, steady;
+  std::sort(usual.begin(), usual.end());
+  for (std::size_t k = 0; k < microseconds.size(); ++k)
+    if (host_us[k] <= kSlowed * quantile(usual, 0.5)) steady.push_back(microseconds[k]);
+  std::sort(steady.begin(), steady.end());
+  return steady;
+}
 
 // Poses per second, asked `batch` at a time.
 double run_batches(Query& query, const PreparedCloud& cloud, const ToolModel& tool,
@@ -111,27 +132,35 @@ double run_batches(Query& query, const PreparedCloud& cloud, const ToolModel& to
   for (int k = 0; k < batch; ++k) poses[static_cast<std::size_t>(k)] = path.at(tool, k);
   std::vector<Result> results(poses.size());
   query.run(cloud, poses, results);
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   const int batches = (count + batch - 1) / batch;
   for (int k = 0; k < batches; ++k) query.run(cloud, poses, results);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  return static_cast<double>(batches) * batch / took.count();
+  return 1e6 * batches * batch / microseconds_since(begin);
 }
 
 Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
+  constexpr int kPaceOf =
+      32;  // poses: only the last is asked, but one takes no longer than the clock
   Figures figures;
+  std::vector<double> host_us;
+  host_us.reserve(static_cast<std::size_t>(count));
   figures.microseconds.reserve(static_cast<std::size_t>(count));
   for (int k = -kWarmUp; k < count; ++k) {
     const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
-    const Pose pose = path.at(tool, k);
-    const auto begin = std::chrono::steady_clock::now();
+    Pose pose;
+    const auto asked = Clock::now();
+    for (int before = kPaceOf; before > 0; --before) pose = path.at(tool, k + 1 - before);
+    const double host = microseconds_since(asked);
+    const auto begin = Clock::now();
     const Result result = queries[copy].run(clouds[copy], pose);
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    const double took = microseconds_since(begin);
     if (k < 0) continue;
-    figures.microseconds.push_back(took.count());
+    host_us.push_back(host);
+    figures.microseconds.push_back(took);
     figures.fraction += result.volume_fraction / count;
   }
+  figures.steady = while_host_keeps_pace(figures.microseconds, host_us);
   std::sort(figures.microseconds.begin(), figures.microseconds.end());
   return figures;
 }
@@ -169,43 +198,47 @@ class CameraStream {
 Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
                    const ToolModel& tool, const Path& path, int count, bool behind) {
   Figures figures;
+  std::vector<double> host_us;
   std::optional<DepthFrame> last;
   for (int k = -kWarmUp; k < count; ++k) {
     const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
+    const auto asked = Clock::now();
     const Pose pose = path.at(tool, k);
     cameras[copy].receive();
-    const auto begin = std::chrono::steady_clock::now();
+    const double host = microseconds_since(asked);
+    const auto begin = Clock::now();
     const DepthFrame newest = cameras[copy].prepare();
     const Result result = queries[copy].run(behind && last ? *last : newest, pose);
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    const double took = microseconds_since(begin);
     last = newest;
     if (k < 0) continue;
-    figures.microseconds.push_back(took.count());
+    host_us.push_back(host);
+    figures.microseconds.push_back(took);
     figures.fraction += result.volume_fraction / count;
   }
+  figures.steady = while_host_keeps_pace(figures.microseconds, host_us);
   std::sort(figures.microseconds.begin(), figures.microseconds.end());
   return figures;
 }
 
 // Until an image is ready, without a query.
 double prepare_microseconds(std::deque<CameraStream>& cameras, int count) {
-  Figures figures;
+  std::vector<double> microseconds;
   for (int k = -kWarmUp; k < count; ++k) {
     CameraStream& camera = cameras[static_cast<std::size_t>(k + kWarmUp) % cameras.size()];
     camera.receive();
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = Clock::now();
     camera.prepare().points();
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
-    if (k >= 0) figures.microseconds.push_back(took.count());
+    const double took = microseconds_since(begin);
+    if (k >= 0) microseconds.push_back(took);
   }
-  std::sort(figures.microseconds.begin(), figures.microseconds.end());
-  return figures.quantile(0.5);
+  std::sort(microseconds.begin(), microseconds.end());
+  return quantile(microseconds, 0.5);
 }
 
 // What the machine takes of a thread that only looks at the clock: a query can be interrupted as
 // well, and no library can help it.
 nlohmann::json interruptions() {
-  using Clock = std::chrono::steady_clock;
   using Microseconds = std::chrono::duration<double, std::micro>;
   constexpr double kLeast = 5, kWatched = 5e5;  // us
   const Clock::time_point begin = Clock::now();
@@ -229,7 +262,7 @@ nlohmann::json interruptions() {
 // Bars over classes that widen by a fifth.
 void print_histogram(const Figures& figures) {
   const std::vector<double>& times = figures.microseconds;
-  double low = figures.quantile(0.001);
+  double low = quantile(times, 0.001);
   for (std::size_t at = 0; at < times.size(); low *= 1.2) {
     const auto end = static_cast<std::size_t>(
         std::upper_bound(times.begin(), times.end(), low * 1.2) - times.begin());
@@ -251,9 +284,15 @@ nlohmann::json about(const QueryOptions& options, const Level& level, const Prep
 }
 
 nlohmann::json to_json(const Figures& figures) {
-  return {{"queries", figures.microseconds.size()}, {"mean_fraction", figures.fraction},
-          {"median_us", figures.quantile(0.5)},     {"p99_us", figures.quantile(0.99)},
-          {"min_us", figures.quantile(0)},          {"max_us", figures.quantile(1)}};
+  const std::vector<double>& times = figures.microseconds;
+  return {{"queries", times.size()},
+          {"mean_fraction", figures.fraction},
+          {"median_us", quantile(times, 0.5)},
+          {"p99_us", quantile(times, 0.99)},
+          {"min_us", times.front()},
+          {"max_us", times.back()},
+          {"host_slowed", times.size() - figures.steady.size()},
+          {"p99_steady_us", quantile(figures.steady, 0.99)}};
 }
 
 void write_poses(const std::string& name, const ToolModel& tool, const Path& path, int count) {

@@ -74,6 +74,7 @@ for r in report["stages"]:
 for r in report["control_loop"]:
     what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
     what += ", standing by" if r["standby_us"] else ""
-    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+    steady = f", {r['p99_steady_us']:.1f} but for {r['host_slowed']} with a slow host" if r.get("host_slowed") else ""
+    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us{steady}")
 PYTHON
 exit $failed

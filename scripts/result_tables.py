@@ -242,14 +242,19 @@ def single_precision(report):
                   "torque, of V times reach"], rows)
 
 
+def median_and_p99(r):
+    """In brackets p99 of the queries before which the host kept its pace, where that makes a difference."""
+    text, steady = f"{r['median_us']:.0f} / {r['p99_us']:.0f}", r.get("p99_steady_us", r["p99_us"])
+    return text if text.endswith(f" {steady:.0f}") else text + f" ({steady:.0f})"
+
+
 def cuda(report):
     rates = {(r["measure"], r["spheres"]): r["poses_per_second"] for r in report["batch"]}
     copies = max(r["copies"] for r in report["control_loop"])
     rotated = [r for r in report["control_loop"] if r["copies"] == copies]
-    micro = lambda r: f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
-    standing = {r["spheres"]: micro(r) for r in rotated if r["standby_us"] > 0}
+    standing = {r["spheres"]: median_and_p99(r) for r in rotated if r["standby_us"] > 0}
     return table(["measure", "spheres", "query, µs median / p99", "standing by", "batches, poses/s"],
-                 [[r["measure"], thousands(r["spheres"]), micro(r),
+                 [[r["measure"], thousands(r["spheres"]), median_and_p99(r),
                    standing[r["spheres"]] if r["measure"] == "refined" else "",
                    thousands(int(float(f"{rates[r['measure'], r['spheres']]:.3g}")))]
                   for r in rotated if r["standby_us"] == 0])
@@ -260,7 +265,7 @@ def cuda_frame_queries(report):
     for r in report["control_loop"]:
         kind = ("prepared" if "frames" not in r else "behind" if r["behind"] else "whole" if r["making"] == "whole"
                 else "pca" if r["method"] == "pca" else r["frames"] + (" standing" if r["standby_us"] else ""))
-        of.setdefault(r["spheres"], {})[kind] = f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
+        of.setdefault(r["spheres"], {})[kind] = median_and_p99(r)
     return sorted(of.items())
 
 
