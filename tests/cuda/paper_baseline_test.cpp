@@ -24,11 +24,12 @@ struct Met {
   int boundary = 0, inside = 0;
 };
 
-Met expect_same(const PreparedCloud& cloud, const ToolModel& tool, int poses) {
+Met expect_same(const PreparedCloud& cloud, const ToolModel& tool, int poses,
+                bench::Traversals traversals) {
   QueryOptions options;
   options.measure = Measure::paper;
   Query on_cpu(tool, options);
-  const auto baseline = bench::make_paper_baseline(tool, on_cpu.level(), cloud, 0);
+  const auto baseline = bench::make_paper_baseline(tool, on_cpu.level(), cloud, traversals, 0);
   Met met;
   for (int k = 0; k < poses; ++k) {
     SCOPED_TRACE(k);
@@ -52,14 +53,14 @@ class PaperBaseline : public ::testing::Test {
   }
 };
 
-TEST_F(PaperBaseline, FindsWhatTheMeasureAsPrintedFinds) {
+void expect_what_the_measure_finds(bench::Traversals traversals) {
   for (const char* scene : {"wall", "groove", "block"}) {
     SCOPED_TRACE(scene);
     const PreparedCloud cloud(testing::see(synthetic::make_scene(scene)));
     Met met;
     for (const ToolModel& tool :
          {testing::lattice_cube(0.2, 9, 1), testing::lattice_cube(0.25, 20, 1)}) {
-      const Met here = expect_same(cloud, tool, 24);
+      const Met here = expect_same(cloud, tool, 24, traversals);
       met.boundary += here.boundary;
       met.inside += here.inside;
     }
@@ -68,15 +69,26 @@ TEST_F(PaperBaseline, FindsWhatTheMeasureAsPrintedFinds) {
   }
 }
 
-// Small enough for compute-sanitizer.
+TEST_F(PaperBaseline, FindsWhatTheMeasureAsPrintedFinds) {
+  expect_what_the_measure_finds(bench::Traversals::in_one_kernel);
+}
+
+TEST_F(PaperBaseline, FindsTheSameByTraversalsThatTheDeviceLaunches) {
+  expect_what_the_measure_finds(bench::Traversals::launched);
+}
+
+// Small enough for compute-sanitizer, of which only memcheck knows kernels that launch kernels.
 TEST_F(PaperBaseline, SmallQuery) {
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
-  EXPECT_GT(expect_same(cloud, testing::lattice_cube(0.2, 4, 1), 4).boundary, 1);
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 1);
+  EXPECT_GT(expect_same(cloud, tool, 4, bench::Traversals::in_one_kernel).boundary, 1);
 }
 
 TEST_F(PaperBaseline, InAnEmptyCloud) {
   const PreparedCloud cloud{Cloud{}};
-  expect_same(cloud, testing::lattice_cube(0.2, 4, 1), 1);
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 1);
+  expect_same(cloud, tool, 1, bench::Traversals::in_one_kernel);
+  expect_same(cloud, tool, 1, bench::Traversals::launched);
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 //
 // One thread per point of the cloud walks the inner sphere tree and adds to each sphere that it
 // meets by atomics; then one thread per boundary sphere floods the graph from there, depth first,
-// claiming spheres by atomics. Unlike the print it computes in double precision and sums in fixed
-// point, as PaperMeasure does, so that both can be compared bit by bit.
+// claiming spheres by atomics: by threads of one kernel, or each by a kernel that the device
+// launches (dynamic parallelism), with a thread for each neighbour. Unlike the print it computes in
+// double precision and sums in fixed point, as PaperMeasure does, so that both can be compared bit
+// by bit.
 #pragma once
 
 #include <memory>
@@ -16,6 +18,8 @@
 #include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm::bench {
+
+enum class Traversals { in_one_kernel, launched };
 
 class PaperBaseline {
  public:
@@ -39,6 +43,7 @@ class PaperBaseline {
 // Throws Error(unavailable) where there is no device, Error(refused) for a tree of more than 64
 // levels.
 std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel& tool, const Level& level,
-                                                   const PreparedCloud& cloud, int device);
+                                                   const PreparedCloud& cloud,
+                                                   Traversals traversals, int device);
 
 }  // namespace vpm::bench

@@ -5,7 +5,7 @@
 namespace vpm::bench {
 
 std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel&, const Level&,
-                                                   const PreparedCloud&, int) {
+                                                   const PreparedCloud&, Traversals, int) {
   throw Error(ErrorKind::unavailable, "this build of vpm-bench has no CUDA");
 }
 

@@ -16,6 +16,7 @@ using cuda::DeviceArray;
 using cuda::Event;
 
 constexpr unsigned kThreads = 256;
+constexpr std::uint32_t kPendingLaunches = 2048;  // what the device has room for anyway
 
 unsigned blocks_for(std::size_t threads) {
   return static_cast<unsigned>(std::max<std::size_t>(1, (threads + kThreads - 1) / kThreads));
@@ -37,8 +38,10 @@ int depth_of(const Hierarchy& tree) {
 class PaperOnDevice : public PaperBaseline {
  public:
   // The device must be the current one.
-  PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud, int device)
+  PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
+                Traversals traversals, int device)
       : device_(device),
+        traversals_(traversals),
         tool_(tool),
         cloud_(cloud),
         spheres_(tool.spheres.data(), level.sphere_count),
@@ -64,6 +67,10 @@ class PaperOnDevice : public PaperBaseline {
              contacts_.get(),       states_.get(),
              sphere_normals_.get(), below_.get(),
              totals_.get()};
+    // Each takes memory of the device; there can be a launch for every sphere.
+    if (traversals == Traversals::launched)
+      check(cudaDeviceSetLimit(cudaLimitDevRuntimePendingLaunchCount,
+                               std::max(kPendingLaunches, level.sphere_count)));
   }
 
   Result run(const Pose& pose) override {
@@ -107,11 +114,13 @@ class PaperOnDevice : public PaperBaseline {
   }
 
   void launch_flood() {
-    flood<<<blocks_for(view_.sphere_count), kThreads>>>(view_);
+    const auto kernel = traversals_ == Traversals::launched ? flood_by_launches : flood;
+    kernel<<<blocks_for(view_.sphere_count), kThreads>>>(view_);
     check(cudaGetLastError());
   }
 
   int device_;
+  Traversals traversals_;
   const ToolModel& tool_;
   const PreparedCloud& cloud_;
   DeviceArray<Sphere> spheres_;
@@ -129,9 +138,10 @@ class PaperOnDevice : public PaperBaseline {
 }  // namespace
 
 std::unique_ptr<PaperBaseline> make_paper_baseline(const ToolModel& tool, const Level& level,
-                                                   const PreparedCloud& cloud, int device) {
+                                                   const PreparedCloud& cloud,
+                                                   Traversals traversals, int device) {
   const CurrentDevice current(device);
-  return std::make_unique<PaperOnDevice>(tool, level, cloud, device);
+  return std::make_unique<PaperOnDevice>(tool, level, cloud, traversals, device);
 }
 
 }  // namespace vpm::bench

@@ -118,14 +118,12 @@ struct Traversal {
   }
 };
 
-// Steps 4 and 5: a traversal for each boundary sphere.
-__global__ void flood(PaperView view) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  // A boundary sphere stays one, and no other becomes one: to read while others claim is safe.
-  if (i >= view.sphere_count || view.contacts[i].points == 0) return;
+// From the neighbours first, first + step, ... of a boundary sphere.
+__device__ void flood_from(const PaperView& view, std::uint32_t i, std::uint32_t first,
+                           std::uint32_t step) {
   Traversal traversal{view};
   const Vec3 normal = view.sphere_normals[i];
-  for (std::uint32_t k = view.graph_begin[i]; k < view.graph_begin[i + 1]; ++k) {
+  for (std::uint32_t k = view.graph_begin[i] + first; k < view.graph_begin[i + 1]; k += step) {
     const std::uint32_t j = view.neighbors[k];
     if (!lets_in(view.spheres[i], normal, view.spheres[j])) continue;
     traversal.claim(j, normal);
@@ -138,6 +136,39 @@ __global__ void flood(PaperView view) {
   if (traversal.claimed == 0) return;
   cuda::add_atomically(traversal.sum, view.totals->sum);
   atomicAdd(&view.totals->inside, traversal.claimed);
+}
+
+// A boundary sphere stays one, and no other becomes one: to read while others claim is safe.
+__device__ bool is_boundary(const PaperView& view, std::uint32_t i) {
+  return i < view.sphere_count && view.contacts[i].points != 0;
+}
+
+// Steps 4 and 5: a traversal for each boundary sphere.
+__global__ void flood(PaperView view) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (is_boundary(view, i)) flood_from(view, i, 0, 1);
+}
+
+// The traversal of one boundary sphere, by a thread for each of its neighbours.
+__global__ void flood_of_sphere(PaperView view, std::uint32_t i) {
+  flood_from(view, i, threadIdx.x, blockDim.x);
+}
+
+// Steps 4 and 5 with dynamic parallelism: the thread of a boundary sphere launches its traversal,
+// if there is one.
+__global__ void flood_by_launches(PaperView view) {
+  constexpr std::uint32_t kMostThreads = 256;
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (!is_boundary(view, i)) return;
+  const std::uint32_t begin = view.graph_begin[i], end = view.graph_begin[i + 1];
+  const Vec3 normal = view.sphere_normals[i];
+  bool enters = false;
+  for (std::uint32_t k = begin; k < end && !enters; ++k)
+    enters = lets_in(view.spheres[i], normal, view.spheres[view.neighbors[k]]);
+  if (!enters) return;
+  flood_of_sphere<<<1, min(end - begin, kMostThreads), 0, cudaStreamFireAndForget>>>(view, i);
+  // More launches wait than the device has room for.
+  if (cudaGetLastError() != cudaSuccess) flood_from(view, i, 0, 1);
 }
 
 }  // namespace vpm::bench
