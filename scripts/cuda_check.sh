@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_tests, frame-stages, vpm-normals and vpm-query; LEVELS
+# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-normals and vpm-query; LEVELS
 # are like 1000,17000. The README's tool is bunny.off of `vpm-pack --spheres 100000` and `vpm-graph --levels 1000,17000`, its cloud
 # what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
-# 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools; 3. CPU and device results of one path
+# 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one, in batches and standing by; 4. ten thousand queries at each level, with
 # the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches;
 # 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
@@ -14,20 +14,22 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 verdict() { if "$@" >"$work/log" 2>&1; then echo pass; else tail -20 "$work/log" >&2; echo FAIL; fi; }
 
-tests=$(verdict "$bundle/bin/cuda_tests" --gtest_brief=1)
+tests=$(verdict bash -c "$bundle/bin/cuda_tests --gtest_brief=1 && $bundle/bin/cuda_baseline_tests --gtest_brief=1")
 sanitizers=()
-for sanitizer in memcheck racecheck initcheck synccheck; do
-  command -v compute-sanitizer >/dev/null || continue
-  sanitizers+=("$sanitizer=$(verdict compute-sanitizer --tool "$sanitizer" --error-exitcode 1 \
-    "$bundle/bin/cuda_tests" --gtest_brief=1 --gtest_filter='*SmallQuery*')")
-done
+sanitize() {  # TOOL PROGRAM NAME
+  command -v compute-sanitizer >/dev/null || return 0
+  sanitizers+=("$3=$(verdict compute-sanitizer --tool "$1" --error-exitcode 1 \
+    "$bundle/bin/$2" --gtest_brief=1 --gtest_filter='*SmallQuery*')")
+}
+for sanitizer in memcheck racecheck initcheck synccheck; do sanitize $sanitizer cuda_tests $sanitizer; done
+sanitize memcheck cuda_baseline_tests memcheck-baseline
 
 "$bundle/bin/control-loop" "$tool" "$cloud" device=cpu queries=1 poses="$work/poses.jsonl" path=400 >/dev/null
 query=("$bundle/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet)
 same=()
 for measure in refined paper; do
   for level in ${levels//,/ }; do
-    ask=("${query[@]}" --measure $measure --level "$level" --poses "$work/poses.jsonl")
+    ask=("${query[@]}" --measure "$measure" --level "$level" --poses "$work/poses.jsonl")
     "${ask[@]}" --device cpu -o "$work/cpu.jsonl"
     "${ask[@]}" --device cuda -o "$work/one.jsonl"
     "${ask[@]}" --device cuda --batch 128 -o "$work/many.jsonl"

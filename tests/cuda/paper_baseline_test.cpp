@@ -77,11 +77,12 @@ TEST_F(PaperBaseline, FindsTheSameByTraversalsThatTheDeviceLaunches) {
   expect_what_the_measure_finds(bench::Traversals::launched);
 }
 
-// Small enough for compute-sanitizer, of which only memcheck knows kernels that launch kernels.
+// Small enough for compute-sanitizer.
 TEST_F(PaperBaseline, SmallQuery) {
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.2, 4, 1);
   EXPECT_GT(expect_same(cloud, tool, 4, bench::Traversals::in_one_kernel).boundary, 1);
+  EXPECT_GT(expect_same(cloud, tool, 4, bench::Traversals::launched).boundary, 1);
 }
 
 TEST_F(PaperBaseline, InAnEmptyCloud) {
