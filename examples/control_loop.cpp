@@ -11,7 +11,7 @@
 //   making=whole  of a new image, or as-asked: only what the tool can reach (FrameMaking)
 //   behind=0      1: a query looks at the image before the newest, which is made ready meanwhile
 //   method=inverse-depth   of the images' normals; or pca
-//   batch=1       so many poses are asked at once, as planners do
+//   batch=1       so many poses are asked at once, as planners do; copies of the tool share them
 //   points=0      1: also counts the cloud's points in spheres, which no control loop needs
 //   standby=0     microseconds that the device stays ready for the next pose
 //   json=FILE     the figures, also as JSON
@@ -125,16 +125,29 @@ std::vector<double> while_host_keeps_pace(const std::vector<double>& microsecond
   return steady;
 }
 
-// Poses per second, asked `batch` at a time.
-double run_batches(Query& query, const PreparedCloud& cloud, const ToolModel& tool,
+// Poses per second, asked `batch` at a time. Several tools take turns.
+double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
-  std::vector<Pose> poses(static_cast<std::size_t>(batch));
-  for (int k = 0; k < batch; ++k) poses[static_cast<std::size_t>(k)] = path.at(tool, k);
+  std::vector<Query*> together;
+  for (Query& query : tools) together.push_back(&query);
+  std::vector<Pose> poses;
+  std::vector<ToolPose> of_tools;
+  for (int k = 0; k < batch; ++k) {
+    poses.push_back(path.at(tool, k));
+    of_tools.push_back(
+        {static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(tools.size()), poses.back()});
+  }
   std::vector<Result> results(poses.size());
-  query.run(cloud, poses, results);
+  const auto run = [&] {
+    if (tools.size() == 1)
+      tools.front().run(cloud, poses, results);
+    else
+      Query::run_together(together, cloud, of_tools, results);
+  };
+  run();
   const auto begin = Clock::now();
   const int batches = (count + batch - 1) / batch;
-  for (int k = 0; k < batches; ++k) query.run(cloud, poses, results);
+  for (int k = 0; k < batches; ++k) run();
   return 1e6 * batches * batch / microseconds_since(begin);
 }
 
@@ -367,7 +380,8 @@ void control(int argc, char** argv) {
   if (batch > 1) {
     json["batch"] = batch;
     json["poses"] = count;
-    json["poses_per_second"] = run_batches(queries[0], clouds[0], tool, path, count, batch);
+    json["tools"] = copies;
+    json["poses_per_second"] = run_batches(queries, clouds[0], tool, path, count, batch);
   } else {
     const std::string& frames = options.at("frames");
     std::deque<CameraStream> cameras;

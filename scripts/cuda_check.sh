@@ -5,7 +5,7 @@
 # what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one, in batches and standing by; 4. ten thousand queries at each level, with
-# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches;
+# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches, of one tool and of eight;
 # 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
@@ -49,6 +49,7 @@ for level in ${levels//,/ }; do
   "${loop[@]}" rotate=8 queries=10000 standby=2000 json="$work/loop-$level-standby.json" >/dev/null
   "${loop[@]}" rotate=8 queries=4000 measure=paper json="$work/loop-$level-paper.json" >/dev/null
   "${loop[@]}" batch=16384 queries=114688 json="$work/batch-$level.json" >/dev/null
+  "${loop[@]}" batch=16384 queries=114688 rotate=8 json="$work/batch-$level-tools.json" >/dev/null
   "${loop[@]}" batch=16384 queries=16384 measure=paper json="$work/batch-$level-paper.json" >/dev/null
 done
 
@@ -63,14 +64,14 @@ report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),
     "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["measure"] != "refined", r["standby_us"], r["spheres"], r["copies"])),
-    "batch": sorted(load("batch-*.json"), key=lambda r: (r["measure"] != "refined", r["spheres"])),
+    "batch": sorted(load("batch-*.json"), key=lambda r: (r["measure"] != "refined", r["tools"], r["spheres"])),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{smi}, commit {commit}: tests {tests}, compute-sanitizer {sanitizers}, CPU and device the same {same}")
 for r in report["control_loop"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies{', standing by' if r['standby_us'] else ''}  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
 for r in report["batch"]:
-    print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}  {r['poses_per_second']:9.0f} poses/s")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}, tools {r['tools']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON
 "$(dirname "$0")/cuda_frames_check.sh" "$bundle" "${out%.json}_frames.json" "$tool" "$cloud" "$levels" "$commit" || failed=1
 [[ "$tests ${sanitizers[*]} ${same[*]}" != *FAIL* ]] || failed=1

@@ -249,14 +249,15 @@ def median_and_p99(r):
 
 
 def cuda(report):
-    rates = {(r["measure"], r["spheres"]): r["poses_per_second"] for r in report["batch"]}
+    rates = {(r["measure"], r["spheres"], r["tools"] > 1): r["poses_per_second"] for r in report["batch"]}
+    rate = lambda *key: thousands(int(float(f"{rates[key]:.3g}"))) if key in rates else ""
     copies = max(r["copies"] for r in report["control_loop"])
     rotated = [r for r in report["control_loop"] if r["copies"] == copies]
     standing = {r["spheres"]: median_and_p99(r) for r in rotated if r["standby_us"] > 0}
-    return table(["measure", "spheres", "query, µs median / p99", "standing by", "batches, poses/s"],
+    return table(["measure", "spheres", "query, µs median / p99", "standing by", "batches, poses/s", "of eight tools"],
                  [[r["measure"], thousands(r["spheres"]), median_and_p99(r),
                    standing[r["spheres"]] if r["measure"] == "refined" else "",
-                   thousands(int(float(f"{rates[r['measure'], r['spheres']]:.3g}")))]
+                   rate(r["measure"], r["spheres"], False), rate(r["measure"], r["spheres"], True)]
                   for r in rotated if r["standby_us"] == 0])
 
 

@@ -13,6 +13,7 @@ struct Device {
 
   bool is_cuda() const { return kind == Kind::cuda; }
   int first() const { return index == kAll ? 0 : index; }
+  friend bool operator==(const Device&, const Device&) = default;
 };
 
 // CUDA devices that queries can run on; 0 where libvpm was built without CUDA, and on a machine

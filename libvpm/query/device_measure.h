@@ -9,6 +9,7 @@
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
+#include "libvpm/query/tool_pose.h"
 #include "libvpm/surface/depth_frames.h"
 #include "libvpm/surface/prepared_cloud.h"
 
@@ -35,6 +36,18 @@ class DeviceMeasure {
   virtual void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
                          std::span<Result> results) {
     run(frame.cloud(), poses, results);
+  }
+
+  // Of several tools: `measures` are this one and others that were made with the same options, but
+  // for the level. Poses of many tools share a launch.
+  virtual void run_together(std::span<DeviceMeasure* const> measures, const PreparedCloud& cloud,
+                            std::span<const ToolPose> poses, std::span<Result> results) {
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      results[k] = measures[poses[k].tool]->run(cloud, poses[k].pose);
+  }
+  virtual void run_frame_together(std::span<DeviceMeasure* const> measures, const DepthFrame& frame,
+                                  std::span<const ToolPose> poses, std::span<Result> results) {
+    run_together(measures, frame.cloud(), poses, results);
   }
 
   // Of the last single run.

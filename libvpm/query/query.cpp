@@ -25,7 +25,43 @@ Pose sound(const Pose& pose) {
   return {exact_rotation(pose.rotation), pose.translation};
 }
 
+// Of what a device would wait for.
+constexpr std::size_t kPosesPerTask = 4096;
+
+void check_room(std::size_t poses, std::size_t results) {
+  if (poses == results) return;
+  throw Error(ErrorKind::usage, "query: " + std::to_string(poses) + " poses, but room for " +
+                                    std::to_string(results) + " results");
+}
+
+// Whether one launch can answer for both.
+bool go_together(const QueryOptions& a, const QueryOptions& b) {
+  return a.measure == b.measure && a.device == b.device && a.counts_points == b.counts_points &&
+         a.shadows == b.shadows;
+}
+
 }  // namespace
+
+void Query::check_together(std::span<Query* const> queries, std::span<const ToolPose> poses,
+                           std::span<Result> results) {
+  check_room(poses.size(), results.size());
+  for (const Query* query : queries) {
+    if (query->options_.coherent)
+      throw Error(ErrorKind::usage, "coherent poses follow each other: ask for them one by one");
+    if (!go_together(query->options_, queries.front()->options_)) {
+      throw Error(ErrorKind::usage,
+                  "tools that are queried together need the same measure, device, shadows and "
+                  "points; make their queries with the same options");
+    }
+  }
+  for (const ToolPose& pose : poses) {
+    if (pose.tool >= queries.size()) {
+      throw Error(ErrorKind::usage, "a pose is of tool " + std::to_string(pose.tool) +
+                                        ", counted from 0, but there are " +
+                                        std::to_string(queries.size()));
+    }
+  }
+}
 
 Query::Query(const ToolModel& tool, const QueryOptions& options)
     : level_(tool.level(options.level)), options_(options), states_(level_.sphere_count) {
@@ -102,17 +138,11 @@ void Query::forget() {
 template <class OnDevice>
 void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
                       std::span<Result> results, const OnDevice& on_device) {
-  if (results.size() != poses.size()) {
-    throw Error(ErrorKind::usage, "query: " + std::to_string(poses.size()) +
-                                      " poses, but room for " + std::to_string(results.size()) +
-                                      " results");
-  }
+  check_room(poses.size(), results.size());
   if (!device_) {
     for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(*cloud, poses[k]);
     return;
   }
-  // What a device would wait for.
-  constexpr std::size_t kPosesPerTask = 4096;
   sound_.resize(poses.size());
   parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) sound_[k] = sound(poses[k]);
@@ -133,6 +163,45 @@ void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
 void Query::run(const DepthFrame& frame, std::span<const Pose> poses, std::span<Result> results) {
   run_batch(device_ ? nullptr : &frame.cloud(), poses, results,
             [&](std::span<const Pose> sound) { device_->run_frame(frame, sound, results); });
+}
+
+template <class Scene, class OnDevice>
+void Query::run_tools(std::span<Query* const> queries, const Scene& scene,
+                      std::span<const ToolPose> poses, std::span<Result> results,
+                      const OnDevice& on_device) {
+  check_together(queries, poses, results);
+  if (poses.empty()) return;
+  if (!queries.front()->device_) {
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      results[k] = queries[poses[k].tool]->run(scene, poses[k].pose);
+    return;
+  }
+  std::vector<ToolPose> sound_poses(poses.size());
+  parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      sound_poses[k] = {poses[k].tool, sound(poses[k].pose)};
+  });
+  std::vector<DeviceMeasure*> measures;
+  for (const Query* query : queries) measures.push_back(query->device_.get());
+  on_device(std::span<DeviceMeasure* const>(measures), std::span<const ToolPose>(sound_poses));
+  parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) queries[poses[k].tool]->finish(results[k]);
+  });
+}
+
+void Query::run_together(std::span<Query* const> queries, const PreparedCloud& cloud,
+                         std::span<const ToolPose> poses, std::span<Result> results) {
+  for (const Query* query : queries) query->check_cloud(cloud);
+  run_tools(queries, cloud, poses, results, [&](auto measures, auto sound_poses) {
+    measures.front()->run_together(measures, cloud, sound_poses, results);
+  });
+}
+
+void Query::run_together(std::span<Query* const> queries, const DepthFrame& frame,
+                         std::span<const ToolPose> poses, std::span<Result> results) {
+  run_tools(queries, frame, poses, results, [&](auto measures, auto sound_poses) {
+    measures.front()->run_frame_together(measures, frame, sound_poses, results);
+  });
 }
 
 std::span<const SphereState> Query::states() const {

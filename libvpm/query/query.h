@@ -49,6 +49,15 @@ class Query {
   Result run(const DepthFrame& frame, const Pose& pose);
   void run(const DepthFrame& frame, std::span<const Pose> poses, std::span<Result> results);
 
+  // Many poses of several tools, each with a query of its own; `queries` were made with the same
+  // options, but for level and stiffness. The bits of one by one; a device takes thousands of poses
+  // of up to 16 tools in one launch, of the measure as printed in one for each tool. Throws
+  // Error(usage) where options differ, or a pose has no such tool.
+  static void run_together(std::span<Query* const> queries, const PreparedCloud& cloud,
+                           std::span<const ToolPose> poses, std::span<Result> results);
+  static void run_together(std::span<Query* const> queries, const DepthFrame& frame,
+                           std::span<const ToolPose> poses, std::span<Result> results);
+
   // Of coherent poses: the next one does not follow from the last.
   void forget();
 
@@ -59,9 +68,15 @@ class Query {
 
  private:
   void check_cloud(const PreparedCloud& cloud) const;
+  static void check_together(std::span<Query* const> queries, std::span<const ToolPose> poses,
+                             std::span<Result> results);
   template <class OnDevice>
   void run_batch(const PreparedCloud* cloud, std::span<const Pose> poses, std::span<Result> results,
                  const OnDevice& on_device);
+  template <class Scene, class OnDevice>
+  static void run_tools(std::span<Query* const> queries, const Scene& scene,
+                        std::span<const ToolPose> poses, std::span<Result> results,
+                        const OnDevice& on_device);
   void finish(Result& result) const;
 
   const Level& level_;

@@ -33,18 +33,36 @@ class Rest {
 
 }  // namespace
 
-void SpreadMeasure::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                        std::span<Result> results) {
-  Rest rest(poses.size(), measures_.size());
+template <class Run>
+void SpreadMeasure::deal_out(std::size_t poses, const Run& run) {
+  Rest rest(poses, measures_.size());
   std::vector<std::future<void>> runs;
-  for (const auto& measure : measures_) {
-    runs.push_back(std::async(std::launch::async, [&] {
+  for (std::size_t device = 0; device < measures_.size(); ++device) {
+    runs.push_back(std::async(std::launch::async, [&, device] {
       for (auto part = rest.take(); part.count > 0; part = rest.take())
-        measure->run(cloud, poses.subspan(part.begin, part.count),
-                     results.subspan(part.begin, part.count));
+        run(device, part.begin, part.count);
     }));
   }
-  for (auto& run : runs) run.get();  // throws what the run threw
+  for (auto& each : runs) each.get();  // throws what the run threw
+}
+
+void SpreadMeasure::run(const PreparedCloud& cloud, std::span<const Pose> poses,
+                        std::span<Result> results) {
+  deal_out(poses.size(), [&](std::size_t device, std::size_t begin, std::size_t count) {
+    measures_[device]->run(cloud, poses.subspan(begin, count), results.subspan(begin, count));
+  });
+}
+
+void SpreadMeasure::run_together(std::span<DeviceMeasure* const> measures,
+                                 const PreparedCloud& cloud, std::span<const ToolPose> poses,
+                                 std::span<Result> results) {
+  deal_out(poses.size(), [&](std::size_t device, std::size_t begin, std::size_t count) {
+    std::vector<DeviceMeasure*> there;
+    for (DeviceMeasure* measure : measures)
+      there.push_back(dynamic_cast<SpreadMeasure&>(*measure).measures_[device].get());
+    measures_[device]->run_together(there, cloud, poses.subspan(begin, count),
+                                    results.subspan(begin, count));
+  });
 }
 
 }  // namespace vpm

@@ -29,8 +29,14 @@ class SpreadMeasure : public DeviceMeasure {
   // any: a device with dear poses takes fewer.
   void run(const PreparedCloud& cloud, std::span<const Pose> poses,
            std::span<Result> results) override;
+  void run_together(std::span<DeviceMeasure* const> measures, const PreparedCloud& cloud,
+                    std::span<const ToolPose> poses, std::span<Result> results) override;
 
  private:
+  // Calls run(device, begin, count) for parts of so many poses until all are answered.
+  template <class Run>
+  void deal_out(std::size_t poses, const Run& run);
+
   std::vector<std::unique_ptr<DeviceMeasure>> measures_;
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <set>
 
 #include "libvpm/query/query.h"
@@ -264,6 +265,93 @@ TEST(SolidShadowsOnDevice, GiveTheSame) {
     expect_same_batch(on_device, cloud, poses, expected);
   }
   EXPECT_GT(hidden, 30);
+}
+
+// Small and large tools by turns, more than one launch takes, and one without a pose.
+class ToolsTogether : public ::testing::TestWithParam<std::tuple<bool, Measure>> {
+ protected:
+  void SetUp() override {
+    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  }
+};
+
+TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
+  const auto [camera, measure] = GetParam();
+  const Cloud seen = testing::see(synthetic::make_scene("step"));
+  const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  constexpr std::uint32_t kTools = 19;
+  std::deque<ToolModel> tools;
+  std::deque<Query> on_cpu, on_device;
+  std::vector<Query*> together;
+  for (std::uint32_t t = 0; t < kTools; ++t) {
+    const std::uint32_t side = 2 + 5 * t % 12;
+    tools.push_back(testing::lattice_cube(0.15 + 0.01 * t, side, side < 6 ? 4 : 1));
+    on_cpu.emplace_back(tools.back(), QueryOptions{.measure = measure});
+    on_device.emplace_back(tools.back(),
+                           QueryOptions{.measure = measure, .device = {Device::Kind::cuda, 0}});
+    together.push_back(&on_device.back());
+  }
+  std::vector<ToolPose> poses;
+  std::vector<Result> expected;
+  std::set<std::uint32_t> touching;
+  constexpr std::uint32_t kPoses = 3000, kNever = 7;
+  for (std::uint32_t k = 0; k < kPoses; ++k) {
+    const std::uint32_t tool = k * k % kTools;
+    if (tool == kNever) continue;
+    poses.push_back({tool, pose_of(static_cast<int>(k))});
+    expected.push_back(on_cpu[tool].run(cloud, poses.back().pose));
+    if (expected.back().volume > 0) touching.insert(tool);
+  }
+  EXPECT_GT(touching.size(), 8U);
+  // Twice: a launch leaves the memory of its teams as it found it. Then alone, in memory that
+  // has room for larger ones.
+  for (int turn = 0; turn < 2; ++turn) {
+    std::vector<Result> results(poses.size());
+    Query::run_together(together, cloud, poses, results);
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      SCOPED_TRACE(k);
+      expect_equal(expected[k], results[k]);
+    }
+  }
+  for (const std::uint32_t tool : {0U, 1U, 4U}) {
+    std::vector<Pose> own;
+    std::vector<Result> results;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      if (poses[k].tool != tool) continue;
+      own.push_back(poses[k].pose);
+      results.push_back(expected[k]);
+    }
+    expect_same_batch(on_device[tool], cloud, own, results);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether,
+                         ::testing::Combine(::testing::Bool(),
+                                            ::testing::Values(Measure::refined, Measure::paper)),
+                         [](const auto& tested) {
+                           return std::string(std::get<0>(tested.param) ? "camera" : "points") +
+                                  (std::get<1>(tested.param) == Measure::paper ? "_paper"
+                                                                               : "_refined");
+                         });
+
+// Small enough for compute-sanitizer.
+TEST(ToolsTogetherSmall, SmallQuery) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  std::deque<ToolModel> tools;
+  std::deque<Query> queries;
+  std::vector<Query*> together;
+  for (const std::uint32_t side : {2U, 4U, 3U}) {
+    tools.push_back(testing::lattice_cube(0.2, side, 1));
+    queries.emplace_back(tools.back(), QueryOptions{.device = {Device::Kind::cuda, 0}});
+    together.push_back(&queries.back());
+  }
+  std::vector<ToolPose> poses;
+  for (std::uint32_t k = 0; k < 12; ++k) poses.push_back({k % 3, pose_of(static_cast<int>(k))});
+  std::vector<Result> results(poses.size());
+  Query::run_together(together, cloud, poses, results);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    expect_equal(queries[poses[k].tool].run(cloud, poses[k].pose), results[k]);
 }
 
 // More poses than one device takes at a time.

@@ -35,6 +35,22 @@ class EchoMeasure : public DeviceMeasure {
   std::atomic<std::size_t>& answered_;
 };
 
+// Answers with the tool's place, too.
+class EchoTool : public EchoMeasure {
+ public:
+  EchoTool(std::atomic<std::size_t>& answered, double place)
+      : EchoMeasure(answered), place_(place) {}
+  using EchoMeasure::run;
+  Result run(const PreparedCloud& cloud, const Pose& pose) override {
+    Result result = EchoMeasure::run(cloud, pose);
+    result.volume_fraction = place_;
+    return result;
+  }
+
+ private:
+  double place_;
+};
+
 class BrokenMeasure : public DeviceMeasure {
  public:
   Result run(const PreparedCloud&, const Pose&) override { return {}; }
@@ -62,6 +78,32 @@ TEST(SpreadMeasure, AnswersEveryPoseOnceInItsPlace) {
       for (std::size_t k = 0; k < count; ++k)
         ASSERT_EQ(results[k].volume, static_cast<double>(k) + 1);
     }
+  }
+}
+
+TEST(SpreadMeasure, AsksEveryToolForItsPoses) {
+  const PreparedCloud cloud{Cloud{}};
+  constexpr std::size_t kTools = 5, kDevices = 3, kPoses = 5000;
+  std::atomic<std::size_t> answered{0};
+  std::vector<std::unique_ptr<SpreadMeasure>> tools;
+  std::vector<DeviceMeasure*> together;
+  for (std::size_t t = 0; t < kTools; ++t) {
+    std::vector<std::unique_ptr<DeviceMeasure>> measures;
+    for (std::size_t k = 0; k < kDevices; ++k)
+      measures.push_back(std::make_unique<EchoTool>(answered, static_cast<double>(t)));
+    tools.push_back(std::make_unique<SpreadMeasure>(std::move(measures)));
+    together.push_back(tools.back().get());
+  }
+  std::vector<ToolPose> poses(kPoses);
+  for (std::size_t k = 0; k < kPoses; ++k) {
+    poses[k].tool = static_cast<std::uint32_t>(k * k % kTools);
+    poses[k].pose.translation.z = static_cast<double>(k);
+  }
+  std::vector<Result> results(kPoses);
+  together.back()->run_together(together, cloud, poses, results);
+  for (std::size_t k = 0; k < kPoses; ++k) {
+    ASSERT_EQ(results[k].volume, static_cast<double>(k));
+    ASSERT_EQ(results[k].volume_fraction, static_cast<double>(poses[k].tool));
   }
 }
 

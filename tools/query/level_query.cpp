@@ -50,6 +50,7 @@ LevelQuery::LevelQuery(const ToolModel& tool, const QueryOptions& options,
   }
   if (request.deadline_seconds)
     deadline_.emplace(probe(tool, cloud), *request.deadline_seconds, finest);
+  reason_ = reason_now();
 }
 
 // The finest level to be used, by index: the finest there is for nothing but a deadline.

@@ -38,9 +38,11 @@ class LevelQuery {
 
   // Of the last run.
   const Query& query() const { return queries_[used_]; }
+  Query& query() { return queries_[used_]; }  // without a deadline, the one that is used
   const Level& finest() const { return queries_.back().level(); }  // that the request allows
   double seconds() const { return seconds_; }
-  const std::string& reason() const { return reason_; }  // "" where nothing was asked for
+  // How the level was chosen; "" where nothing was asked for.
+  const std::string& reason() const { return reason_; }
 
   const std::optional<SceneScale>& scale() const { return scale_; }  // where it was asked for
 

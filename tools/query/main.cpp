@@ -1,5 +1,6 @@
 // vpm-query: how much of the tool is inside the cloud's solid, and what pushes it out.
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -18,14 +19,16 @@
 #include "tools/query/level_query.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay.h"
+#include "tools/query/several_tools.h"
 #include "tools/query/spheres_out.h"
 
 namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string tool, cloud, pose, poses, measure = "refined", shadows = "near", output = "-",
-                                        spheres_out, stats;
+  std::vector<std::string> tools;
+  std::string cloud, pose, poses, measure = "refined", shadows = "near", output = "-", spheres_out,
+                                  stats;
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
@@ -39,7 +42,11 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("--tool", a.tool, "Tool model (.vpmg)");
+  app.add_option(
+         "--tool", a.tools,
+         "Tool model (.vpmg). Given several times, every pose is asked of every tool; lines "
+         "then have the field tool, from 0")
+      ->allow_extra_args(false);
   app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)");
   app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw");
   app.add_option("--poses", a.poses, "File of poses: JSON Lines, TUM text or 4x4 text");
@@ -105,12 +112,14 @@ void declare(CLI::App& app, Arguments& a) {
 
 void check(const Arguments& a, const CommonOptions& common) {
   const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
-  if (a.tool.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
+  if (a.tools.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
   const bool replays = !a.replay.frames.empty();
   if (!replays && a.cloud.empty())
     wrong("--cloud is missing: give the .vpmc that vpm-normals wrote, or --frames");
   if (!replays && a.pose.empty() == a.poses.empty()) wrong("give either --pose or --poses");
-  if ((a.tool == "-") + (a.cloud == "-") + (a.poses == "-") + (a.replay.trajectory == "-") > 1) {
+  if (std::ranges::count(a.tools, "-") + (a.cloud == "-") + (a.poses == "-") +
+          (a.replay.trajectory == "-") >
+      1) {
     wrong("only one of --tool, --cloud, --poses and --trajectory can be standard input");
   }
   if ((a.level != 0) + !a.max_error.empty() + a.for_scene > 1 || (a.level != 0 && a.deadline_us))
@@ -131,17 +140,24 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong(
         "--standby-us waits for single poses of the refined measure; give --no-points too, and "
         "leave --batch, --measure paper and --coherent out");
+  if (a.tools.size() > 1 && (replays || a.deadline_us || !a.coupling.empty() || a.coherent ||
+                             a.standby_us > 0 || !a.spheres_out.empty()))
+    wrong(
+        "several tools are asked for poses in one cloud; leave --frames, --deadline-us, "
+        "--coupling, --coherent, --standby-us and --spheres-out out, or give one --tool");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
   if (!replays && !is_default(a.replay))
     wrong("--method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames");
-  check_files(
-      {a.tool, a.cloud, a.poses, a.replay.frames, a.replay.trajectory, a.replay.camera_poses},
-      {{"--output", a.output, std::nullopt},
-       {"--spheres-out", a.spheres_out, std::nullopt},
-       {"--stats", a.stats, std::nullopt}},
-      common);
+  std::vector<std::string> inputs{a.cloud, a.poses, a.replay.frames, a.replay.trajectory,
+                                  a.replay.camera_poses};
+  inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
+  check_files(inputs,
+              {{"--output", a.output, std::nullopt},
+               {"--spheres-out", a.spheres_out, std::nullopt},
+               {"--stats", a.stats, std::nullopt}},
+              common);
 }
 
 LevelRequest level_request(const Arguments& a) {
@@ -228,21 +244,25 @@ Device device_of(const Tool& tool, bool coherent) {
   return coherent && tool.common().device == "auto" ? Device{} : tool.device();
 }
 
+void write_stats(const Arguments& a, const Device& device, nlohmann::json stats) {
+  if (a.stats.empty()) return;
+  stats["device"] = device.is_cuda() ? "cuda" : "cpu";
+  if (device.is_cuda()) stats["device_name"] = device_name(device);
+  stats["batch"] = a.batch;
+  stats["threads"] = thread_count();
+  stats["measure"] = a.measure;
+  file::write_all(a.stats, stats.dump(2) + "\n");
+}
+
 void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& query,
                 const Device& device, const Pose& last, nlohmann::json stats) {
   const Level& level = query.query().level();
   if (!a.spheres_out.empty())
     write_spheres(a.spheres_out, {model.spheres.data(), level.sphere_count}, query.query().states(),
                   last);
-  if (a.stats.empty()) return;
-  stats["device"] = device.is_cuda() ? "cuda" : "cpu";
-  if (device.is_cuda()) stats["device_name"] = device_name(device);
-  stats["batch"] = a.batch;
-  stats["threads"] = thread_count();
   stats["level"] = level.sphere_count;
-  stats["measure"] = a.measure;
   if (query.scale()) stats["scene"] = scene_report(*query.scale());
-  file::write_all(a.stats, stats.dump(2) + "\n");
+  write_stats(a, device, std::move(stats));
 }
 
 // The measure as printed reads points as they are.
@@ -250,8 +270,26 @@ PointReading reading_of_points(const Arguments& a) {
   return a.raw_points || a.measure == "paper" ? PointReading::as_measured : PointReading::settled;
 }
 
-void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
+// `pose` is the first.
+nlohmann::json ask_several(const Tool& tool, const Arguments& a,
+                           const std::vector<ToolModel>& models, const QueryOptions& options,
+                           const PreparedCloud& cloud, const Pose& pose,
+                           std::optional<PoseReader>& reader, double prepare_seconds) {
+  file::Output output(a.output);
+  SeveralTools several(models, options, level_request(a), cloud, pose);
+  for (std::size_t t = 0; t < models.size(); ++t)
+    if (several.query(t).scale())
+      note_scale(tool, *several.query(t).scale(), several.query(t).finest());
+  several.run(pose, reader, a.batch, output);
+  output.finish();
+  nlohmann::json stats = query_stats(several.seconds(), prepare_seconds, {});
+  stats["levels"] = several.levels();
+  return stats;
+}
+
+void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel>& models,
                const QueryOptions& options) {
+  const ToolModel& model = models.front();
   double deviation = 0;
   std::optional<Pose> pose;
   if (!a.pose.empty()) pose = pose_from_text(a.pose, &deviation);
@@ -262,6 +300,16 @@ void run_poses(const Tool& tool, const Arguments& a, const ToolModel& model,
 
   std::optional<PoseReader> reader;
   if (!pose) reader.emplace(a.poses);
+  if (models.size() > 1) {
+    if (reader) pose = reader->next();
+    if (!pose) reader->refuse_empty();
+    nlohmann::json stats =
+        ask_several(tool, a, models, options, prepared, *pose, reader, prepare_seconds);
+    note_deviation(tool, "", reader ? reader->largest_deviation() : deviation);
+    stats["cloud_points"] = prepared.positions().size();
+    write_stats(a, options.device, std::move(stats));
+    return;
+  }
   file::Output output(a.output);
   Run run{prepared, output, {}, {}};
   std::optional<CouplingParameters> coupling;
@@ -323,10 +371,12 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
   level_request(a);
-  const ToolModel model = read_tool_model(a.tool);
+  std::vector<ToolModel> models;
+  for (const std::string& name : a.tools) models.push_back(read_tool_model(name));
   QueryOptions options;
   options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
-  options.level = model.level(a.level).sphere_count;
+  options.level = a.level;
+  for (const ToolModel& model : models) model.level(a.level);  // it has one
   options.stiffness = a.stiffness.value_or(1);
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
@@ -334,8 +384,8 @@ void run(const Tool& tool, const Arguments& a) {
   options.counts_points = !a.no_points;
   options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);
-  a.replay.frames.empty() ? run_poses(tool, a, model, options)
-                          : run_replay(tool, a, model, options);
+  a.replay.frames.empty() ? run_poses(tool, a, models, options)
+                          : run_replay(tool, a, models.front(), options);
 }
 
 }  // namespace

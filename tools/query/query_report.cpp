@@ -12,9 +12,11 @@ std::string to_line(const nlohmann::ordered_json& line) {
 
 std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
                         Measure measure, const std::string& level_reason,
-                        const std::optional<StepOfReplay>& replay) {
+                        const std::optional<StepOfReplay>& replay,
+                        std::optional<std::size_t> tool) {
   nlohmann::ordered_json line;
   line["pose"] = pose_index;
+  if (tool) line["tool"] = *tool;
   if (replay) {
     line["time"] = replay->time;
     line["frame"] = replay->frame;

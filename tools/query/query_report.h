@@ -22,10 +22,11 @@ std::string to_line(const nlohmann::ordered_json& line);
 
 // One line of results: formats/schemas/query-result.json. Nothing in it depends on the device or
 // the clock, unless a deadline chose the level. `level_reason`: how the level was chosen; "" leaves
-// it out.
+// it out. `tool`: its place among several.
 std::string result_line(std::size_t pose_index, const Result& result, const Level& level,
                         Measure measure, const std::string& level_reason,
-                        const std::optional<StepOfReplay>& replay);
+                        const std::optional<StepOfReplay>& replay,
+                        std::optional<std::size_t> tool = std::nullopt);
 
 // Timings of a run: formats/schemas/query-stats.json. With a deadline also the part of the queries
 // that kept it.

@@ -34,6 +34,23 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
   run(frame.cloud(), poses, results);
 }
 
+void MeasureOnDevice::run_together(std::span<DeviceMeasure* const> measures,
+                                   const PreparedCloud& cloud, std::span<const ToolPose> poses,
+                                   std::span<Result> results) {
+  bring(cloud);
+  ask(measures, poses, results);
+}
+
+void MeasureOnDevice::run_frame_together(std::span<DeviceMeasure* const> measures,
+                                         const DepthFrame& frame, std::span<const ToolPose> poses,
+                                         std::span<Result> results) {
+  if (const CloudSlot* const slot = bring(frame)) {
+    ask(measures, poses, results);
+    if (slot->is_sound(part_)) return;
+  }
+  run_together(measures, frame.cloud(), poses, results);
+}
+
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
   RawResult raw = frame_ == nullptr ? answer(frame) : answer_in_frame(frame, pixels_read(frame));
@@ -94,21 +111,68 @@ void MeasureOnDevice::end_launched() {
   has_launched_ = false;
 }
 
-void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
+template <class AnswerPart>
+void MeasureOnDevice::in_launches(std::size_t poses, const AnswerPart& answer_part) {
   const CurrentDevice current(device_);
   if (!batch_) batch_ = std::make_unique<Batch>();
   const OtherWork other;
   if (frame_ != nullptr) part_ = frame_->require(all_pixels(), stream());
-  for (std::size_t begin = 0; begin < poses.size(); begin += Batch::kPoses) {
-    const std::size_t count = std::min(Batch::kPoses, poses.size() - begin);
-    check(cudaMemcpyAsync(batch_->poses.get(), poses.data() + begin, count * sizeof(Pose),
-                          cudaMemcpyHostToDevice, stream_.get()));
-    launch(batch_->poses.get(), static_cast<unsigned>(count), batch_->results.get());
-    check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(), count * sizeof(RawResult),
-                          cudaMemcpyDeviceToHost, stream_.get()));
-    check(cudaStreamSynchronize(stream_.get()));
+  for (std::size_t begin = 0; begin < poses; begin += Batch::kPoses)
+    answer_part(begin, std::min(Batch::kPoses, poses - begin));
+}
+
+std::span<const RawResult> MeasureOnDevice::answers_of(std::span<const ToolPart> tools,
+                                                       std::span<const Pose> poses) {
+  check(cudaMemcpyAsync(batch_->poses.get(), poses.data(), poses.size_bytes(),
+                        cudaMemcpyHostToDevice, stream_.get()));
+  launch(tools, batch_->poses.get(), batch_->results.get());
+  check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
+                        poses.size() * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
+  check(cudaStreamSynchronize(stream_.get()));
+  return {batch_->answers.data(), poses.size()};
+}
+
+void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
+  in_launches(poses.size(), [&](std::size_t begin, std::size_t count) {
+    const std::span<const Pose> asked = poses.subspan(begin, count);
+    const ToolPart all{this, static_cast<unsigned>(count)};
+    const std::span<const RawResult> answers = answers_of({&all, 1}, asked);
     for (std::size_t k = 0; k < count; ++k)
-      results[begin + k] = result_of(batch_->answers[k], tool_, poses[begin + k].rotation);
+      results[begin + k] = result_of(answers[k], tool_, asked[k].rotation);
+  });
+}
+
+void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses,
+                          std::span<Result> results) {
+  in_launches(poses.size(), [&](std::size_t begin, std::size_t count) {
+    order_by_tool(measures, poses.subspan(begin, count));
+    const std::span<const RawResult> answers = answers_of(batch_->tools, batch_->ordered);
+    std::size_t k = 0;
+    for (const ToolPart& part : batch_->tools)
+      for (; k < part.end; ++k)
+        results[begin + batch_->places[k]] =
+            result_of(answers[k], part.measure->tool_, batch_->ordered[k].rotation);
+  });
+}
+
+// A counting sort: tools that have poses, in their order, and of each the poses in theirs.
+void MeasureOnDevice::order_by_tool(std::span<DeviceMeasure* const> measures,
+                                    std::span<const ToolPose> poses) {
+  std::vector<std::uint32_t> next(measures.size() + 1, 0);
+  for (const ToolPose& pose : poses) ++next[pose.tool + 1];
+  batch_->tools.clear();
+  for (std::size_t t = 0; t < measures.size(); ++t) {
+    const bool has_poses = next[t + 1] > 0;
+    next[t + 1] += next[t];
+    if (has_poses)
+      batch_->tools.push_back({&dynamic_cast<MeasureOnDevice&>(*measures[t]), next[t + 1]});
+  }
+  batch_->ordered.resize(poses.size());
+  batch_->places.resize(poses.size());
+  for (std::uint32_t k = 0; k < poses.size(); ++k) {
+    const std::uint32_t place = next[poses[k].tool]++;
+    batch_->ordered[place] = poses[k].pose;
+    batch_->places[place] = k;
   }
 }
 

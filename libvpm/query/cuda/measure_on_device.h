@@ -21,6 +21,10 @@ class MeasureOnDevice : public DeviceMeasure {
   Result run_frame(const DepthFrame& frame, const Pose& pose) final;
   void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
                  std::span<Result> results) final;
+  void run_together(std::span<DeviceMeasure* const> measures, const PreparedCloud& cloud,
+                    std::span<const ToolPose> poses, std::span<Result> results) final;
+  void run_frame_together(std::span<DeviceMeasure* const> measures, const DepthFrame& frame,
+                          std::span<const ToolPose> poses, std::span<Result> results) final;
   void read_states(std::vector<SphereState>& states) final;
   double flood_microseconds() const final { return flood_microseconds_; }
 
@@ -33,8 +37,13 @@ class MeasureOnDevice : public DeviceMeasure {
   // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
   // is launched.
   virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
-  // Many, of poses and to results on the device.
-  virtual void launch(const Pose* poses, unsigned count, RawResult* results) = 0;
+  // Of many poses, those of one tool; they follow those of the tool before.
+  struct ToolPart {
+    MeasureOnDevice* measure = nullptr;  // of the same class
+    unsigned end = 0;
+  };
+  // Many, of poses and to results on the device, in this measure's stream and cloud.
+  virtual void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) = 0;
   // No point further from the centre of mass matters.
   virtual double reach() const = 0;
   // The pixels that one query reads of an image, as far as that is known beforehand; what more it
@@ -69,6 +78,10 @@ class MeasureOnDevice : public DeviceMeasure {
     DeviceArray<Pose> poses;
     DeviceArray<RawResult> results;
     std::vector<RawResult> answers;
+    // Of several tools: the poses ordered by them, and from where each comes.
+    std::vector<ToolPart> tools;
+    std::vector<Pose> ordered;
+    std::vector<std::uint32_t> places;
   };
 
   void bring(const PreparedCloud& cloud);
@@ -85,6 +98,15 @@ class MeasureOnDevice : public DeviceMeasure {
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();
   void ask(std::span<const Pose> poses, std::span<Result> results);
+  void ask(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses,
+           std::span<Result> results);
+  // Calls answer(begin, count) for parts of so many poses that fit a launch.
+  template <class AnswerPart>
+  void in_launches(std::size_t poses, const AnswerPart& answer_part);
+  // The answers to poses of one launch.
+  std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
+                                        std::span<const Pose> poses);
+  void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses);
 
   int device_;
   const ToolModel& tool_;

@@ -155,12 +155,20 @@ class PaperOnDevice : public MeasureOnDevice {
     void* values[] = {&arguments, &pose, &totals, &counters, &answer, &sequence};
     check(cudaLaunchCooperativeKernel(one_pose, blocks_, kPaperThreads, values, 0, stream()));
   }
-  void launch(const Pose* poses, unsigned count, RawResult* results) override {
-    if (!teams_) teams_ = std::make_unique<Teams>(level_.count);
-    const PaperLaunch arguments{level_, cloud().points(), teams_->memory.space()};
-    many_poses<<<std::min(teams_->count, count), kPaperThreads, 0, stream()>>>(
-        arguments, cloud().frame(), poses, count, results);
-    check(cudaGetLastError());
+  // A launch for each tool.
+  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
+    unsigned begin = 0;
+    for (const ToolPart& part : tools) {
+      const unsigned count = part.end - begin;
+      auto& of_tool = static_cast<PaperOnDevice&>(*part.measure);
+      if (!of_tool.teams_) of_tool.teams_ = std::make_unique<Teams>(of_tool.level_.count);
+      const Teams& teams = *of_tool.teams_;
+      const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.memory.space()};
+      many_poses<<<std::min(teams.count, count), kPaperThreads, 0, stream()>>>(
+          arguments, cloud().frame(), poses + begin, count, results + begin);
+      check(cudaGetLastError());
+      begin = part.end;
+    }
   }
   // As on the CPU: of an image, the same pixels are looked at.
   double reach() const override { return level_.tool.reach; }

@@ -25,20 +25,33 @@ struct RefinedLaunch {
   LevelView level;
   Surface surface;
   PointsView points;
-  RefinedSpace space;  // of the first team; that of team t begins t * count spheres later
+  RefinedSpace space;
   bool counts_points = false;
-  // Of one pose: the blocks that deal with spheres, the others do with points; and what these add
-  // up.
+  // The blocks that deal with spheres, the others do with points; and what these add up.
   unsigned sphere_blocks = 0;
   Totals* totals = nullptr;
   RefinedCounters* counters = nullptr;
   Answer* answer = nullptr;
 };
 
+// Many poses of several tools.
+template <class Surface>
+struct BatchLaunch {
+  static constexpr unsigned kTools = 16;
+
+  LevelView levels[kTools];
+  unsigned ends[kTools];  // of the poses of each, which follow those of the tool before
+  Surface surface;
+  PointsView points;
+  RefinedSpace space;  // of the first team
+  TeamRoom room;       // of each: that of team t begins t * room.shares shares later
+  bool counts_points = false;
+};
+
 // The memory of one of several teams, each of one block.
-__device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& level,
+__device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room,
                                  std::size_t team) {
-  const std::size_t shares = team * level.count;
+  const std::size_t shares = team * room.shares;
   RefinedSpace space;
   for (int turn = 0; turn < 2; ++turn) {
     const ShareNotes& from = first.notes[turn];
@@ -48,7 +61,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const LevelView& lev
   space.gaps = first.gaps + shares;
   space.parents = first.parents + shares + team;
   space.cut = first.cut + shares;
-  space.far = first.far + team * level.piece_count;
+  space.far = first.far + team * room.pieces;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
   space.planes = first.planes + team * kBatchThreads;
   return space;
@@ -252,19 +265,27 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
 // Each block a query of its own, one after another.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
-    many_poses(const __grid_constant__ RefinedLaunch<Surface> launch,
+    many_poses(const __grid_constant__ BatchLaunch<Surface> launch,
                const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
                RawResult* results) {
   __shared__ BlockShared<Surface> shared;
   __shared__ PoseFrame frame;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
-  const LevelView& level = launch.level;
-  const RefinedSpace space = space_of(launch.space, level, blockIdx.x);
+  const RefinedSpace space = space_of(launch.space, launch.room, blockIdx.x);
+  const auto clear_notes = [&](const LevelView& level) {
+    for (const ShareNotes& notes : space.notes) notes.clear(level, {});
+  };
   BlockTeam team;
-  unsigned turn = 0;
+  unsigned turn = 0, tool = 0;
   for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
     __syncthreads();
+    if (p >= launch.ends[tool]) {
+      clear_notes(launch.levels[tool]);
+      while (p >= launch.ends[tool]) ++tool;
+      __syncthreads();
+    }
+    const LevelView& level = launch.levels[tool];
     if (threadIdx.x == 0) {
       frame = frame_of(poses[p], cloud, level.center_of_mass, level.spheres_reach);
       counters = RefinedCounters{};
@@ -285,8 +306,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
-  // The next launch begins with turn 0 again.
-  for (const ShareNotes& notes : space.notes) notes.clear(level, {});
+  clear_notes(launch.levels[tool]);  // the next launch begins with turn 0 again
 }
 
 }  // namespace

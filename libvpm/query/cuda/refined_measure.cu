@@ -21,7 +21,7 @@ class RefinedOnDevice : public MeasureOnDevice {
         making_(kernel_of(one_pose_in_new_part, kFewBlocks)),
         standing_by_(kernel_of(stand_by_kernel, kFewBlocks)),
         memory_(
-            level_.view(), 1,
+            TeamRoom(level_.view()), 1,
             std::max({of_images_.blocks, of_points_.blocks, making_.blocks, standing_by_.blocks}),
             kThreads),
         totals_(1),
@@ -57,9 +57,11 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   // Teams that share the work of a batch.
   struct Teams {
-    explicit Teams(const LevelView& level)
-        : count(teams_that_fit(RefinedMemory::bytes_of_team(level), kBatchBlocks)),
-          memory(level, count, count, kBatchThreads) {}
+    explicit Teams(const TeamRoom& wanted)
+        : room(wanted),
+          count(teams_that_fit(RefinedMemory::bytes_of_team(room), kBatchBlocks)),
+          memory(room, count, count, kBatchThreads) {}
+    TeamRoom room;
     unsigned count;
     RefinedMemory memory;
   };
@@ -73,12 +75,12 @@ class RefinedOnDevice : public MeasureOnDevice {
     else
       launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
   }
-  void launch(const Pose* poses, unsigned count, RawResult* results) override {
-    if (!teams_) teams_ = std::make_unique<Teams>(level_.view());
+  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
+    make_room(tools);
     if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), poses, count, results);
+      launch_on(cloud().depth_surface(), tools, poses, results);
     else
-      launch_on(cloud().disk_surface(), poses, count, results);
+      launch_on(cloud().disk_surface(), tools, poses, results);
   }
   double reach() const override { return level_.view().spheres_reach; }
   PixelRectangle pixels_read(const PoseFrame& frame) const override {
@@ -153,13 +155,35 @@ class RefinedOnDevice : public MeasureOnDevice {
               : cudaLaunchKernel(kernel.function, kernel.blocks, kThreads, values, 0, stream()));
   }
 
+  static const LevelView& level_of(const ToolPart& part) {
+    return static_cast<const RefinedOnDevice&>(*part.measure).level_.view();
+  }
+  void make_room(std::span<const ToolPart> tools) {
+    TeamRoom wanted = teams_ ? teams_->room : TeamRoom();
+    for (const ToolPart& part : tools) wanted = wanted.with(TeamRoom(level_of(part)));
+    if (teams_ && teams_->room.holds(wanted)) return;
+    teams_.reset();  // before more memory is taken
+    teams_ = std::make_unique<Teams>(wanted);
+  }
+  // As many tools in a launch as it has room for.
   template <class Surface>
-  void launch_on(const Surface& surface, const Pose* poses, unsigned count, RawResult* results) {
-    const RefinedLaunch<Surface> arguments{level_.view(), surface, cloud().points(),
-                                           teams_->memory.space(), counts_points_};
-    many_poses<Surface><<<std::min(teams_->count, count), kBatchThreads, 0, stream()>>>(
-        arguments, cloud().frame(), poses, count, results);
-    check(cudaGetLastError());
+  void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* poses,
+                 RawResult* results) {
+    BatchLaunch<Surface> arguments{
+        {}, {}, surface, cloud().points(), teams_->memory.space(), teams_->room, counts_points_};
+    for (unsigned begin = 0; !tools.empty();) {
+      const std::size_t count = std::min<std::size_t>(arguments.kTools, tools.size());
+      for (std::size_t t = 0; t < count; ++t) {
+        arguments.levels[t] = level_of(tools[t]);
+        arguments.ends[t] = tools[t].end - begin;
+      }
+      const unsigned end = tools[count - 1].end;
+      many_poses<Surface><<<std::min(teams_->count, end - begin), kBatchThreads, 0, stream()>>>(
+          arguments, cloud().frame(), poses + begin, end - begin, results + begin);
+      check(cudaGetLastError());
+      tools = tools.subspan(count);
+      begin = end;
+    }
   }
 
   DeviceLevel level_;

@@ -9,15 +9,15 @@ namespace vpm::cuda {
 // Memory of a number of teams, of one or more blocks each.
 class RefinedMemory {
  public:
-  RefinedMemory(const LevelView& level, std::size_t teams, std::size_t blocks, unsigned threads)
-      : words_(2 * level.count * teams),
-        points_(2 * level.count * teams),
-        sums_(2 * level.count * teams),
-        planes_(2 * level.count * teams),
-        gaps_(level.count * teams),
-        parents_((std::size_t{level.count} + 1) * teams),
-        cut_(level.count * teams),
-        far_(level.piece_count * teams),
+  RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)
+      : words_(2 * room.shares * teams),
+        points_(2 * room.shares * teams),
+        sums_(2 * room.shares * teams),
+        planes_(2 * room.shares * teams),
+        gaps_(room.shares * teams),
+        parents_((room.shares + 1) * teams),
+        cut_(room.shares * teams),
+        far_(room.pieces * teams),
         flats_(2 * TaskLists::kTasks * blocks),
         patches_(threads * blocks) {
     words_.clear();
@@ -39,11 +39,11 @@ class RefinedMemory {
   }
 
   // Of a team of one block.
-  static std::size_t bytes_of_team(const LevelView& level) {
+  static std::size_t bytes_of_team(const TeamRoom& room) {
     constexpr std::size_t kOfShare =
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
-    return level.count * kOfShare + level.piece_count * sizeof(FarPiece) +
+    return room.shares * kOfShare + room.pieces * sizeof(FarPiece) +
            2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(CrossingPlane);
   }
 

@@ -1,6 +1,8 @@
 // What a query notes of the shares: one word each, sums, and what later steps need.
 #pragma once
 
+#include <algorithm>
+
 #include "libvpm/query/cuda/team.h"
 #include "libvpm/query/cuda/views.h"
 #include "libvpm/query/passage.h"
@@ -70,6 +72,23 @@ struct FarPiece {
   Vec3 at, foot;  // that the surface showed there
   ToolSum sum;
   std::uint32_t share = 0;
+};
+
+// What the memory of one query has room for: the largest level that it is used with.
+struct TeamRoom {
+  std::size_t shares = 0, pieces = 0;
+
+  TeamRoom() = default;
+  explicit TeamRoom(const LevelView& level) : shares(level.count), pieces(level.piece_count) {}
+  bool holds(const TeamRoom& other) const {
+    return shares >= other.shares && pieces >= other.pieces;
+  }
+  TeamRoom with(const TeamRoom& other) const {
+    TeamRoom both;
+    both.shares = std::max(shares, other.shares);
+    both.pieces = std::max(pieces, other.pieces);
+    return both;
+  }
 };
 
 // Memory of one query.

@@ -1,0 +1,79 @@
+// Poses of several tools that are asked together.
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "libvpm/core/error.h"
+#include "libvpm/query/query.h"
+#include "tests/query/expect_equal.h"
+#include "tests/query/lattice_model.h"
+
+namespace vpm {
+namespace {
+
+class ToolsTogether : public ::testing::Test {
+ protected:
+  ToolsTogether() : cloud_(testing::see(synthetic::make_scene("wall"))) {
+    for (const std::uint32_t side : {5U, 2U, 4U}) {
+      tools_.push_back(testing::lattice_cube(0.1 * side, side, 1));
+      queries_.emplace_back(tools_.back(), QueryOptions{.stiffness = 1.0 * side});
+      together_.push_back(&queries_.back());
+    }
+    for (std::uint32_t k = 0; k < 30; ++k)
+      poses_.push_back(
+          {k * k % 3, {testing::generic_rotation(), {0.01 * k, 0.02, 0.8 + 0.01 * k}}});
+    results_.resize(poses_.size());
+  }
+
+  // The message of the usage error.
+  std::string refusal() {
+    try {
+      Query::run_together(together_, cloud_, poses_, results_);
+    } catch (const Error& fault) {
+      EXPECT_EQ(fault.kind(), ErrorKind::usage);
+      return fault.what();
+    }
+    return "";
+  }
+
+  PreparedCloud cloud_;
+  std::deque<ToolModel> tools_;
+  std::deque<Query> queries_;
+  std::vector<Query*> together_;
+  std::vector<ToolPose> poses_;
+  std::vector<Result> results_;
+};
+
+TEST_F(ToolsTogether, AnswerAsOneByOne) {
+  Query::run_together(together_, cloud_, poses_, results_);
+  double volume = 0;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    SCOPED_TRACE(k);
+    testing::expect_equal(queries_[poses_[k].tool].run(cloud_, poses_[k].pose), results_[k]);
+    volume += results_[k].volume;
+  }
+  EXPECT_GT(volume, 0);
+}
+
+TEST_F(ToolsTogether, NoPoseIsNoQuestion) {
+  Query::run_together({}, cloud_, {}, {});
+  Query::run_together(together_, cloud_, {}, {});
+}
+
+TEST_F(ToolsTogether, SayWhatIsWrong) {
+  poses_[3].tool = 3;
+  EXPECT_NE(refusal().find("tool 3"), std::string::npos);
+  poses_[3].tool = 2;
+  results_.pop_back();
+  EXPECT_NE(refusal().find("room for 29"), std::string::npos);
+  results_.resize(poses_.size());
+  Query paper(tools_[1], {.measure = Measure::paper});
+  together_[1] = &paper;
+  EXPECT_NE(refusal().find("same measure"), std::string::npos);
+  Query coherent(tools_[1], {.coherent = true});
+  together_[1] = &coherent;
+  EXPECT_NE(refusal().find("one by one"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vpm
