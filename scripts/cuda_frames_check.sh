@@ -2,8 +2,9 @@
 # cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks and times depth frames on a machine with an
 # NVIDIA device: images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages,
 # vpm-normals and vpm-query; CLOUD has a camera. 1. vpm-normals of the cloud's image, both methods, CPU and device compared
-# byte for byte; 2. the stages on the device's clock; 3. two thousand queries at each level, each in a new image, from the
-# image in the frames' memory to the result, made as asked (launched and standing by) or whole. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
+# byte for byte; 2. the stages on the device's clock; 3. a thousand queries at each level, each in a new image, from the
+# image in the frames' memory to the result, made as asked (launched and standing by) or whole, in ROUNDS (5) rounds, whose medians count:
+# now and then a machine or its bus is slow for a while. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -38,31 +39,43 @@ for method in inverse-depth pca; do
 done
 
 "$bundle/bin/frame-stages" "$cloud" "$work/stages.json" >/dev/null
-loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=2000)
-for level in ${levels//,/ }; do
-  "${loop[@]}" level="$level" json="$work/loop-$level-none.json" >/dev/null
-  for frames in counts metres; do
-    for standby in 0 2000; do
-      "${loop[@]}" level="$level" frames=$frames making=as-asked standby=$standby \
-        json="$work/loop-$level-$frames-$standby.json" >/dev/null
+loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda rotate=8 queries=1000)
+for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
+  for level in ${levels//,/ }; do
+    row() { "${loop[@]}" level="$level" "${@:2}" json="$work/loop-$level-$1-$round.json" >/dev/null; }
+    row none
+    for frames in counts metres; do
+      for standby in 0 2000; do row $frames-$standby frames=$frames making=as-asked standby=$standby; done
     done
-  done
-  "${loop[@]}" level="$level" frames=counts making=as-asked method=pca json="$work/loop-$level-pca.json" >/dev/null
-  for behind in 0 1; do
-    "${loop[@]}" level="$level" frames=counts behind=$behind json="$work/loop-$level-whole-$behind.json" >/dev/null
+    row pca frames=counts making=as-asked method=pca
+    for behind in 0 1; do row whole-$behind frames=counts behind=$behind; done
   done
 done
 
 python3 - "$out" "$work" "$commit" "${same[*]}" <<'PYTHON'
-import glob, json, subprocess, sys
+import collections, glob, json, statistics, subprocess, sys
 out, work, commit, same = sys.argv[1:]
+
+def of_rounds(reports):
+    """Medians of the rounds' figures, and p99 of each round."""
+    merged = dict(reports[0], rounds=len(reports), p99_us_of_rounds=sorted(r["p99_us"] for r in reports),
+                  host_slowed=sum(r["host_slowed"] for r in reports),
+                  min_us=min(r["min_us"] for r in reports), max_us=max(r["max_us"] for r in reports))
+    for key in ("median_us", "p99_us", "p99_steady_us", "prepare_us"):
+        if key in merged:
+            merged[key] = statistics.median(r[key] for r in reports)
+    return merged
+
+rows = collections.defaultdict(list)
+for path in glob.glob(f"{work}/loop-*.json"):
+    rows[path.rsplit("-", 1)[0]].append(json.load(open(path)))
 smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version,pcie.link.gen.max,pcie.link.width.max",
                       "--format=csv,noheader"], capture_output=True, text=True).stdout.strip().split(", ")
 report = {
     "command": "scripts/cuda_frames_check.sh", "commit": commit, "device": ", ".join(smi[:2]),
     "bus": f"PCIe {smi[2]} x{smi[3]}", "same_bytes_as_cpu": dict(item.split("=") for item in same.split()),
     "stages": json.load(open(f"{work}/stages.json")),
-    "control_loop": sorted((json.load(open(path)) for path in glob.glob(f"{work}/loop-*.json")),
+    "control_loop": sorted(map(of_rounds, rows.values()),
                            key=lambda r: [r["spheres"], "frames" in r] +
                                          [r.get(key, "") for key in ("making", "behind", "method", "frames", "standby_us")]),
 }
@@ -74,7 +87,8 @@ for r in report["stages"]:
 for r in report["control_loop"]:
     what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
     what += ", standing by" if r["standby_us"] else ""
-    steady = f", {r['p99_steady_us']:.1f} but for {r['host_slowed']} with a slow host" if r.get("host_slowed") else ""
-    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us{steady}")
+    least, most = r["p99_us_of_rounds"][0], r["p99_us_of_rounds"][-1]
+    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} ({least:.1f} to {most:.1f}) us,"
+          f" {r['p99_steady_us']:.1f} while the host keeps its pace")
 PYTHON
 exit $failed
