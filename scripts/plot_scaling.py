@@ -65,7 +65,7 @@ def main():
     for axis in axes:
         axis.set_yscale("log")
         axis.grid(True, which="both", alpha=0.2)
-    axes[0].legend(fontsize=8, loc="upper left")
+    axes[0].legend(fontsize=7, ncol=2, loc=(0.02, 0.13))
     figure.suptitle(report["settings"]["device"].split(",")[0], fontsize=10)
     figure.tight_layout()
     figure.savefig(folder / "scaling.png", dpi=110)

@@ -243,9 +243,7 @@ def single_precision(report):
 
 
 def median_and_p99(r):
-    """In brackets p99 of the queries before which the host kept its pace, where that makes a difference."""
-    text, steady = f"{r['median_us']:.0f} / {r['p99_us']:.0f}", r.get("p99_steady_us", r["p99_us"])
-    return text if text.endswith(f" {steady:.0f}") else text + f" ({steady:.0f})"
+    return f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
 
 
 def cuda(report):
