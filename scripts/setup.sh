@@ -48,11 +48,11 @@ install_missing() {
     apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Where there is nvcc: machine code for this machine's device only, or for the oldest and what comes later can be made
-# from it. All that CMakeLists.txt names take nvcc five times as long.
+# Where there is nvcc: machine code for this machine's device only, or, without one, what any driver makes machine code of
+# when it is first needed. Code for all that CMakeLists.txt names takes nvcc five times as long, or ten.
 cuda_options() {
   command -v nvcc >/dev/null || return 0
-  if nvidia-smi >/dev/null 2>&1; then echo -DCMAKE_CUDA_ARCHITECTURES=native; else echo -DCMAKE_CUDA_ARCHITECTURES=75; fi
+  if nvidia-smi >/dev/null 2>&1; then echo -DCMAKE_CUDA_ARCHITECTURES=native; else echo -DCMAKE_CUDA_ARCHITECTURES=75-virtual; fi
 }
 
 build() {
