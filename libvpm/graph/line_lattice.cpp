@@ -9,8 +9,8 @@ namespace vpm {
 namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
-// Bounds the memory of a lattice whatever the solid's shape: lines over its projection, and rows and
-// columns of them.
+// Bounds the memory of a lattice whatever the solid's shape: lines over its projection, and rows
+// and columns of them.
 constexpr double kMostLines = 4194304;
 
 // The area that the solid shows along x, y and z, counting hidden layers too.

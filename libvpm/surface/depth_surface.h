@@ -343,9 +343,9 @@ struct DepthSurface {
     Vec3 below, side, other;
 
     VPM_HD PlacesAround(const Reading& middle, Vec3 center, double radius);
-    VPM_HD Vec3 at(int k) const {
-      const Vec3 aside = k < 2 ? side : other;
-      return k % 2 == 0 ? below + aside : below - aside;
+    VPM_HD Vec3 at(int place) const {
+      const Vec3 aside = place < 2 ? side : other;
+      return place % 2 == 0 ? below + aside : below - aside;
     }
   };
   // The mean of what is read there and in the middle, as far as it belongs to one smooth surface.

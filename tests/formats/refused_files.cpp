@@ -189,7 +189,8 @@ void add_models(std::vector<RefusedFile>& all, const std::vector<std::byte>& goo
   };
   using u32 = std::uint32_t;
   add("volume_negative", "volume", Spoiled(good).set("TOOL", 0, 0, -1.0));
-  add("sphere_beyond_reach", "sphere 0 or its share lies beyond", Spoiled(good).set("TOOL", 0, 32, 0.1));
+  add("sphere_beyond_reach", "sphere 0 or its share lies beyond",
+      Spoiled(good).set("TOOL", 0, 32, 0.1));
   add("level_too_large", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{9}));
   add("level_not_ascending", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{4}));
   add("edge_out_of_range", "neighbours of row 0", Spoiled(good).set("EDGN", 1, 8, kMost));
