@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-normals and vpm-query; LEVELS
+# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench, vpm-normals and vpm-query; LEVELS
 # are like 1000,17000. The README's tool is bunny.off of `vpm-pack --spheres 100000` and `vpm-graph --levels 1000,17000`, its cloud
 # what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path
-# compared byte for byte, of both measures, one by one, in batches and standing by; 4. ten thousand queries at each level, with
+# compared byte for byte, of both measures, one by one, in batches and standing by, and the results of vpm-bench's suites; 4. ten thousand queries at each level, with
 # the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches, of one tool and of eight;
 # 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
@@ -39,6 +39,15 @@ for measure in refined paper; do
     "${ask[@]}" --no-points --device cuda --standby-us 2000 -o "$work/one.jsonl" --force
     same+=("standby:$level=$(verdict cmp "$work/cpu.jsonl" "$work/one.jsonl")")
   done
+done
+
+for suite in accuracy extremes; do
+  results() {  # DEVICE
+    "$bundle/bin/vpm-bench" $suite --quick --quiet --device "$1" --out "$work/$suite-$1" >/dev/null
+    python3 -c 'import json, sys; print(*json.load(open(sys.argv[1]))["results"], sep="\n")' "$work/$suite-$1/$suite.json" >"$work/$1.txt"
+  }
+  results cpu && results cuda
+  same+=("suite:$suite=$(verdict cmp "$work/cpu.txt" "$work/cuda.txt")")
 done
 
 for level in ${levels//,/ }; do

@@ -10,6 +10,7 @@
 #include "libvpm/query/query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
+#include "tests/query/replay.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -166,6 +167,12 @@ void expect_same_at_hub(std::uint32_t n) {
   for (int k = 0; k < kPoses; ++k) expect_equal(expected[k], batch[k]);
   EXPECT_GT(cut, 0);
   EXPECT_GT(reached, 0);
+}
+
+// The hash of tests/query/replay.hash is that of the CPU's.
+TEST(ReplayOnDevice, GivesTheSameBytes) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  EXPECT_TRUE(testing::replay() == testing::replay({Device::Kind::cuda, 0}));
 }
 
 TEST(HubOnDevice, GivesTheSame) {

@@ -96,10 +96,11 @@ Pose pose(Numbers& numbers, Vec3 at) {
                     numbers.between(0.85, 1.1)}};
 }
 
-void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure, Vec3 at,
-              Numbers& numbers, Bytes& bytes) {
+void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure,
+              const Device& device, Vec3 at, Numbers& numbers, Bytes& bytes) {
   QueryOptions options;
   options.measure = measure;
+  options.device = device;
   Query query(tool, options);
   for (int k = 0; k < kPosesPerPath; ++k) {
     bytes.add(query.run(cloud, pose(numbers, at)));
@@ -115,7 +116,7 @@ void add_cloud(const Cloud& cloud, Bytes& bytes) {
 
 }  // namespace
 
-std::vector<std::byte> replay() {
+std::vector<std::byte> replay(const Device& device) {
   Bytes bytes;
   Numbers numbers(1);
   const Camera view = camera();
@@ -132,7 +133,7 @@ std::vector<std::byte> replay() {
       const PreparedCloud prepared(cloud);
       for (const ToolModel& tool : tools) {
         for (const Measure measure : {Measure::refined, Measure::paper})
-          run_path(tool, prepared, measure, at, numbers, bytes);
+          run_path(tool, prepared, measure, device, at, numbers, bytes);
       }
     }
   }

@@ -41,7 +41,7 @@ class Accuracy {
   explicit Accuracy(const SuiteOptions& options)
       : options_(options),
         sweeps_([&](const std::string& shape) -> const PackedSolid& { return tool(shape); },
-                options.noise_seed, options.shadows, report_) {
+                options.noise_seed, options.shadows, options.device, report_) {
     report_.suite = "accuracy";
     report_.settings = {{"quick", options.quick},
                         {"all", options.all},
@@ -119,8 +119,8 @@ class Accuracy {
       for (const double spacing : kSpacings) {
         synthetic::Scene scene = synthetic::make_scene(name);
         scene.camera = camera_of_spacing(spacing * smallest);
-        const RandomPoses found =
-            run_random_poses(scene, tools, kFew, kRandomPoses, kNoiseSeed, options_.shadows);
+        const RandomPoses found = run_random_poses(scene, tools, kFew, kRandomPoses, kNoiseSeed,
+                                                   options_.shadows, options_.device);
         leaks += found.leaks[0];
         report_.results.push_back({{"group", "random poses"},
                                    {"scene", name},
@@ -152,7 +152,8 @@ class Accuracy {
     int counted = 0;
     MeanAndWorst jump, solid, solid_jump;
     for (const char* shape : {"cube", "torus"}) {
-      for (const SilhouetteResult& r : run_silhouettes(tool(shape), 1000, kPoses)) {
+      for (const SilhouetteResult& r :
+           run_silhouettes(tool(shape), 1000, kPoses, options_.device)) {
         report_.results.push_back({{"group", "silhouettes"},
                                    {"shape", shape},
                                    {"path", r.path},
@@ -194,7 +195,7 @@ class Accuracy {
     int counted = 0;
     MeanAndWorst solid, near, without_shadows;
     for (const FrameResult& r :
-         run_real_frames(options_.data, tool("twisted-torus"), 1000, kPoses)) {
+         run_real_frames(options_.data, tool("twisted-torus"), 1000, kPoses, options_.device)) {
       nlohmann::json row = {{"group", "recorded images"},
                             {"frame", r.frame},
                             {"poses", r.poses},

@@ -14,6 +14,9 @@
 namespace vpm::bench {
 namespace {
 
+// Cases know no options; one suite runs at a time.
+Device device_of_suite;
+
 struct Outcome {
   std::string said = "right";  // right, refused or wrong
   bool holds = false;
@@ -72,10 +75,15 @@ Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals) {
   return cloud;
 }
 
-double ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose) {
+QueryOptions options_of(Measure measure) {
   QueryOptions options;
   options.measure = measure;
-  return sound_fraction(Query(tool, options).run(PreparedCloud(cloud), pose));
+  options.device = device_of_suite;
+  return options;
+}
+
+double ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose) {
+  return sound_fraction(Query(tool, options_of(measure)).run(PreparedCloud(cloud), pose));
 }
 
 Camera small_camera() {
@@ -91,6 +99,7 @@ Cloud see(const synthetic::Surface& surface, const Camera& camera) {
 }
 
 Report run_extremes(const SuiteOptions& options) {
+  device_of_suite = options.device;
   std::vector<ExtremeCase> cases;
   for (const auto& list :
        {extreme_scales(options.quick), extreme_clouds(options.quick), extreme_tools(options.quick)})

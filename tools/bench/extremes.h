@@ -41,6 +41,8 @@ Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals);
 // A cube of edge 2 at the origin with n^3 equal spheres that touch.
 Packing lattice_packing(int n);
 
+// Of a query on the suite's device.
+QueryOptions options_of(Measure measure);
 double ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose = {});
 
 // The surface, or an image that a camera took, with estimated normals.

@@ -53,9 +53,7 @@ Deviation touch_of_the_smallest() {
   const Sphere& smallest = packing.spheres.back();
   Cloud cloud = plane_points({{}}, {{0, 0, 1}});
   cloud.origin = smallest.center;
-  QueryOptions options;
-  options.measure = Measure::paper;
-  const Result r = Query(tool, options).run(PreparedCloud(cloud), {});
+  const Result r = Query(tool, options_of(Measure::paper)).run(PreparedCloud(cloud), {});
   if (r.boundary != 1) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   constexpr double kResolution = 0x1p-60;
   return {sound_fraction(r), volume(smallest) / 2 / tool.volume, kResolution};

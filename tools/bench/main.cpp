@@ -41,11 +41,13 @@ int main(int argc, char** argv) {
   tool.app()
       .get_option("--device")
       ->description(
-          vpm::bench::suite_names(true) +
-          ": the device to time: cuda, cuda:N, or auto (cuda); all others: cpu, or auto (cpu)");
+          "scaling: the device to time: cuda, cuda:N, or auto (cuda); accuracy and extremes: where "
+          "to "
+          "compute, with the same results: cuda, cpu, or auto (cpu); all others: cpu, or auto "
+          "(cpu)");
   tool.computes_on_devices();
   return tool.run(argc, argv, [&] {
-    const bool asks_device = tool.common().device != "auto" || vpm::bench::takes_device(suite);
+    const bool asks_device = tool.common().device != "auto" || vpm::bench::needs_device(suite);
     if (vpm::bench::is_suite(suite)) vpm::bench::make_folder(folder);
     vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
     const vpm::bench::Report report = vpm::bench::run_suite(

@@ -44,7 +44,7 @@ Camera camera_of_spacing(double spacing) {
 
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, Shadows shadows) {
+                             int poses, std::uint64_t seed, Shadows shadows, const Device& device) {
   const PreparedCloud cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
   const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
@@ -52,8 +52,9 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
   std::uint64_t tried = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const PackedSolid& tool = *tools[t];
-    Query queries[2] = {Query(tool.model, {.level = level, .shadows = shadows}),
-                        Query(tool.model, {.measure = Measure::paper, .level = level})};
+    Query queries[2] = {
+        Query(tool.model, {.level = level, .device = device, .shadows = shadows}),
+        Query(tool.model, {.measure = Measure::paper, .level = level, .device = device})};
     const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
     while (found.poses < last) {
       const Pose pose = random_pose(seed, tried++, tool.model.reach);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/device/device.h"
 #include "libvpm/query/shadows.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"
@@ -31,6 +32,6 @@ Camera camera_of_spacing(double spacing);
 // takes most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, Shadows shadows);
+                             int poses, std::uint64_t seed, Shadows shadows, const Device& device);
 
 }  // namespace vpm::bench

@@ -12,11 +12,11 @@ namespace vpm::bench {
 namespace {
 
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
-                      std::uint32_t level, int poses) {
+                      std::uint32_t level, int poses, const Device& device) {
   const PreparedCloud prepared(cloud);
-  Query solid(tool.model, {.level = level, .shadows = Shadows::solid}),
-      near(tool.model, {.level = level}),
-      paper(tool.model, {.measure = Measure::paper, .level = level});
+  Query solid(tool.model, {.level = level, .device = device, .shadows = Shadows::solid}),
+      near(tool.model, {.level = level, .device = device}),
+      paper(tool.model, {.measure = Measure::paper, .level = level, .device = device});
   FrameResult result;
   result.frame = name;
   const int tries = 20 * poses;
@@ -43,10 +43,10 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
 }  // namespace
 
 std::vector<FrameResult> run_real_frames(const std::string& folder, const PackedSolid& tool,
-                                         std::uint32_t level, int poses) {
+                                         std::uint32_t level, int poses, const Device& device) {
   std::vector<FrameResult> results;
   for (const RecordedImage& image : recorded_images(folder))
-    results.push_back(run_frame(image.name, image.cloud, tool, level, poses));
+    results.push_back(run_frame(image.name, image.cloud, tool, level, poses, device));
   return results;
 }
 

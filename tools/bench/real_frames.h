@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/device/device.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/statistics.h"
 
@@ -36,6 +37,6 @@ struct FrameResult {
 // The recordings of `folder` (depth/ with the names below) that are there and that this build can
 // read; `poses` random shallow poses on each. Throws what import_cloud throws for damaged ones.
 std::vector<FrameResult> run_real_frames(const std::string& folder, const PackedSolid& tool,
-                                         std::uint32_t level, int poses);
+                                         std::uint32_t level, int poses, const Device& device);
 
 }  // namespace vpm::bench

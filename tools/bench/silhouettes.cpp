@@ -80,9 +80,10 @@ std::vector<Path> make_paths() {
 }
 
 void follow_solid(const Path& path, const std::vector<Pose>& along, const PreparedCloud& cloud,
-                  const PackedSolid& tool, std::uint32_t level, SilhouetteResult& result) {
+                  const PackedSolid& tool, std::uint32_t level, const Device& device,
+                  SilhouetteResult& result) {
   const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
-  Query query(tool.model, {.level = level, .shadows = Shadows::solid});
+  Query query(tool.model, {.level = level, .device = device, .shadows = Shadows::solid});
   double volume_before = 0, count_before = 0;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const double volume = query.run(cloud, along[k]).volume_fraction;
@@ -99,7 +100,8 @@ void follow_solid(const Path& path, const std::vector<Pose>& along, const Prepar
   }
 }
 
-SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t level, int poses) {
+SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t level, int poses,
+                        const Device& device) {
   std::vector<Pose> along;
   for (int k = 0; k < poses; ++k) {
     const double s = static_cast<double>(k) / (poses - 1);
@@ -116,7 +118,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
 
   SilhouetteResult result{.path = path.name};
   for (const Measure measure : {Measure::refined, Measure::paper}) {
-    Query query(tool.model, {.measure = measure, .level = level});
+    Query query(tool.model, {.measure = measure, .level = level, .device = device});
     std::vector<Result> measured;
     for (const Pose& pose : along) {
       measured.push_back(query.run(cloud, pose));
@@ -128,7 +130,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
     result.volume_worst[static_cast<std::size_t>(measure)] = errors.volume.worst();
     result.jump_worst[static_cast<std::size_t>(measure)] = errors.jump.worst();
   }
-  follow_solid(path, along, cloud, tool, level, result);
+  follow_solid(path, along, cloud, tool, level, device, result);
   return result;
 }
 
@@ -159,9 +161,9 @@ int counted_in_free_space(const ToolModel& tool, const Level& level, const Pose&
 }
 
 std::vector<SilhouetteResult> run_silhouettes(const PackedSolid& tool, std::uint32_t level,
-                                              int poses) {
+                                              int poses, const Device& device) {
   std::vector<SilhouetteResult> results;
-  for (const Path& path : make_paths()) results.push_back(follow(path, tool, level, poses));
+  for (const Path& path : make_paths()) results.push_back(follow(path, tool, level, poses, device));
   return results;
 }
 

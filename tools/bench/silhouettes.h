@@ -29,6 +29,6 @@ int counted_in_free_space(const ToolModel& tool, const Level& level, const Pose&
 // The tool across the edges of a block that stands before a wall, and over a wall whose image lacks
 // pixels: single ones at random, and round patches.
 std::vector<SilhouetteResult> run_silhouettes(const PackedSolid& tool, std::uint32_t level,
-                                              int poses);
+                                              int poses, const Device& device);
 
 }  // namespace vpm::bench

@@ -18,20 +18,24 @@ enum Option : unsigned {
   kShadows = 32
 };
 
+// Where a suite's queries are computed.
+enum class Place { cpu, either, device };
+
 struct Suite {
   const char* name;
   Report (*run)(const SuiteOptions& options);
   unsigned options = 0;
-  bool takes_device = false;
+  Place place = Place::cpu;
 };
 
-constexpr Suite kSuites[] = {{"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kShadows},
-                             {"extremes", run_extremes},
-                             {"packing", run_packing, kAll | kMeshes},
-                             {"replay", run_replay, kData},
-                             {"scaling", run_scaling, kAll | kBaseline, true},
-                             {"timing", run_timing, kData},
-                             {"tradeoff", run_tradeoff}};
+constexpr Suite kSuites[] = {
+    {"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kShadows, Place::either},
+    {"extremes", run_extremes, 0, Place::either},
+    {"packing", run_packing, kAll | kMeshes},
+    {"replay", run_replay, kData},
+    {"scaling", run_scaling, kAll | kBaseline, Place::device},
+    {"timing", run_timing, kData},
+    {"tradeoff", run_tradeoff}};
 
 const Suite* find_suite(const std::string& name) {
   const auto found = std::ranges::find(kSuites, name, &Suite::name);
@@ -66,16 +70,16 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
 }  // namespace
 
 std::string suite_names(bool on_device) {
-  return names_of([&](const Suite& suite) { return suite.takes_device || !on_device; });
+  return names_of([&](const Suite& suite) { return suite.place != Place::cpu || !on_device; });
 }
 
 bool is_suite(const std::string& name) {
   return find_suite(name) != nullptr;
 }
 
-bool takes_device(const std::string& name) {
+bool needs_device(const std::string& name) {
   const Suite* const suite = find_suite(name);
-  return suite != nullptr && suite->takes_device;
+  return suite != nullptr && suite->place == Place::device;
 }
 
 Report run_suite(const std::string& name, const SuiteOptions& options) {
@@ -85,7 +89,7 @@ Report run_suite(const std::string& name, const SuiteOptions& options) {
                 (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
                     "; the suites are " + suite_names());
   }
-  if (options.device.is_cuda() && !suite->takes_device) {
+  if (options.device.is_cuda() && suite->place == Place::cpu) {
     throw Error(ErrorKind::unavailable,
                 name + " computes on the CPU only (on a device: " + suite_names(true) +
                     "); use --device cpu, or leave the option out");

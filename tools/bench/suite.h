@@ -23,13 +23,13 @@ struct SuiteOptions {
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: which sample of the noise
   Shadows shadows = Shadows::near;         // accuracy; solid: camera clouds alone
-  Device device = {};                      // a CUDA device where the suite takes one
+  Device device = {};                      // of the queries, where the suite takes a CUDA device
 };
 
 // "accuracy, extremes, ...": all suites, or those that take a CUDA device.
 std::string suite_names(bool on_device = false);
 bool is_suite(const std::string& name);
-bool takes_device(const std::string& name);
+bool needs_device(const std::string& name);
 
 // Throws Error(usage) naming the suites there are, or those that take an option which this one does
 // not; Error(unavailable) naming those that take a device for one that does not.

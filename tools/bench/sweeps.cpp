@@ -43,8 +43,13 @@ std::vector<SweepCase> all_cases() {
   return cases;
 }
 
-Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, Report& report)
-    : tool_(std::move(tool)), noise_seed_(noise_seed), shadows_(shadows), report_(report) {
+Sweeps::Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, const Device& device,
+               Report& report)
+    : tool_(std::move(tool)),
+      noise_seed_(noise_seed),
+      shadows_(shadows),
+      device_(device),
+      report_(report) {
   report_.table.columns = {
       "group",    "shape",       "scene",   "noise",         "measure",       "pose",
       "z",        "volume_true", "volume",  "force_true_x",  "force_true_y",  "force_true_z",
@@ -94,6 +99,7 @@ void Sweeps::measure(const SweepCase& c, const Path& path, const std::vector<Uns
   const View& seen = view(synthetic::make_scene(c.scene), kind, noise);
   Query query(tool.model, {.measure = measure,
                            .level = spheres,
+                           .device = device_,
                            .shadows = measure == Measure::refined ? shadows_ : Shadows::near});
   std::vector<Result> measured;
   for (const Pose& pose : path.poses) measured.push_back(query.run(seen.cloud, pose));

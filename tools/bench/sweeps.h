@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/device/device.h"
 #include "libvpm/query/shadows.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
@@ -39,7 +40,8 @@ struct SweepSettings {
 class Sweeps {
  public:
   using ToolOf = std::function<const PackedSolid&(const std::string& shape)>;
-  Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, Report& report);
+  Sweeps(ToolOf tool, std::uint64_t noise_seed, Shadows shadows, const Device& device,
+         Report& report);
 
   void run(const SweepCase& c, const SweepSettings& settings);
 
@@ -63,6 +65,7 @@ class Sweeps {
   ToolOf tool_;
   std::uint64_t noise_seed_;
   Shadows shadows_;  // of the refined measure
+  Device device_;
   Report& report_;
   std::map<std::array<std::string, 3>, View> views_;
   std::map<Key, GroupErrors> groups_;
