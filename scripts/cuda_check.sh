@@ -44,7 +44,11 @@ done
 for suite in accuracy extremes; do
   results() {  # DEVICE
     "$bundle/bin/vpm-bench" $suite --quick --quiet --device "$1" --out "$work/$suite-$1" >/dev/null
-    python3 -c 'import json, sys; print(*json.load(open(sys.argv[1]))["results"], sep="\n")' "$work/$suite-$1/$suite.json" >"$work/$1.txt"
+    python3 - "$work/$suite-$1/$suite.json" >"$work/$1.txt" <<'PYTHON'
+import json, sys
+for result in json.load(open(sys.argv[1]))["results"]:
+    print({key: value for key, value in result.items() if key != "seconds"})
+PYTHON
   }
   results cpu && results cuda
   same+=("suite:$suite=$(verdict cmp "$work/cpu.txt" "$work/cuda.txt")")
