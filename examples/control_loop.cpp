@@ -114,15 +114,20 @@ struct Figures {
 // Some machines slow down as a whole for some hundredths of a second, tenfold and more. What the
 // host does before each query, without libvpm and the same each time, tells: twice the usual time
 // is no chance then. `host_us[k]`: how long that took before `microseconds[k]`.
-std::vector<double> while_host_keeps_pace(const std::vector<double>& microseconds,
-                                          const std::vector<double>& host_us) {
+Figures figures_of(std::vector<double> microseconds, const std::vector<double>& host_us,
+                   double fraction) {
   constexpr double kSlowed = 2;
-  std::vector<double> usual = host_us, steady;
-  std::sort(usual.begin(), usual.end());
+  std::vector<double> sorted_host = host_us;
+  std::sort(sorted_host.begin(), sorted_host.end());
+  const double slow = kSlowed * quantile(sorted_host, 0.5);
+  Figures figures;
   for (std::size_t k = 0; k < microseconds.size(); ++k)
-    if (host_us[k] <= kSlowed * quantile(usual, 0.5)) steady.push_back(microseconds[k]);
-  std::sort(steady.begin(), steady.end());
-  return steady;
+    if (host_us[k] <= slow) figures.steady.push_back(microseconds[k]);
+  std::sort(figures.steady.begin(), figures.steady.end());
+  std::sort(microseconds.begin(), microseconds.end());
+  figures.microseconds = std::move(microseconds);
+  figures.fraction = fraction;
+  return figures;
 }
 
 // Poses per second, asked `batch` at a time. Several tools take turns.
@@ -153,12 +158,12 @@ double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const T
 
 Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
-  constexpr int kPaceOf =
-      32;  // poses: only the last is asked, but one takes no longer than the clock
-  Figures figures;
-  std::vector<double> host_us;
+  // So many poses are computed, though only the last is asked: one takes no longer than the clock.
+  constexpr int kPaceOf = 32;
+  std::vector<double> microseconds, host_us;
+  microseconds.reserve(static_cast<std::size_t>(count));
   host_us.reserve(static_cast<std::size_t>(count));
-  figures.microseconds.reserve(static_cast<std::size_t>(count));
+  double fraction = 0;
   for (int k = -kWarmUp; k < count; ++k) {
     const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
     Pose pose;
@@ -170,12 +175,10 @@ Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
     const double took = microseconds_since(begin);
     if (k < 0) continue;
     host_us.push_back(host);
-    figures.microseconds.push_back(took);
-    figures.fraction += result.volume_fraction / count;
+    microseconds.push_back(took);
+    fraction += result.volume_fraction / count;
   }
-  figures.steady = while_host_keeps_pace(figures.microseconds, host_us);
-  std::sort(figures.microseconds.begin(), figures.microseconds.end());
-  return figures;
+  return figures_of(std::move(microseconds), host_us, fraction);
 }
 
 // The depth images of a camera that looks at one scene.
@@ -210,8 +213,8 @@ class CameraStream {
 // With a new image for each query. Copies of the camera take turns as those of the tool.
 Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
                    const ToolModel& tool, const Path& path, int count, bool behind) {
-  Figures figures;
-  std::vector<double> host_us;
+  std::vector<double> microseconds, host_us;
+  double fraction = 0;
   std::optional<DepthFrame> last;
   for (int k = -kWarmUp; k < count; ++k) {
     const std::size_t copy = static_cast<std::size_t>(k + kWarmUp) % queries.size();
@@ -226,12 +229,10 @@ Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras
     last = newest;
     if (k < 0) continue;
     host_us.push_back(host);
-    figures.microseconds.push_back(took);
-    figures.fraction += result.volume_fraction / count;
+    microseconds.push_back(took);
+    fraction += result.volume_fraction / count;
   }
-  figures.steady = while_host_keeps_pace(figures.microseconds, host_us);
-  std::sort(figures.microseconds.begin(), figures.microseconds.end());
-  return figures;
+  return figures_of(std::move(microseconds), host_us, fraction);
 }
 
 // Until an image is ready, without a query.

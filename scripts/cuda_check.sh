@@ -14,7 +14,8 @@ trap 'rm -rf "$work"' EXIT
 failed=0
 verdict() { if "$@" >"$work/log" 2>&1; then echo pass; else tail -20 "$work/log" >&2; echo FAIL; fi; }
 
-tests=$(verdict bash -c "$bundle/bin/cuda_tests --gtest_brief=1 && $bundle/bin/cuda_baseline_tests --gtest_brief=1")
+run_tests() { "$bundle/bin/cuda_tests" --gtest_brief=1 && "$bundle/bin/cuda_baseline_tests" --gtest_brief=1; }
+tests=$(verdict run_tests)
 sanitizers=()
 sanitize() {  # TOOL PROGRAM NAME
   command -v compute-sanitizer >/dev/null || return 0
@@ -41,17 +42,17 @@ for measure in refined paper; do
   done
 done
 
-for suite in accuracy extremes; do
-  results() {  # DEVICE
-    "$bundle/bin/vpm-bench" $suite --quick --quiet --device "$1" --out "$work/$suite-$1" >/dev/null
-    python3 - "$work/$suite-$1/$suite.json" >"$work/$1.txt" <<'PYTHON'
+suite_results() {  # SUITE DEVICE
+  "$bundle/bin/vpm-bench" "$1" --quick --quiet --device "$2" --out "$work/$1-$2" >/dev/null
+  python3 - "$work/$1-$2/$1.json" >"$work/$1-$2.txt" <<'PYTHON'
 import json, sys
 for result in json.load(open(sys.argv[1]))["results"]:
     print({key: value for key, value in result.items() if key != "seconds"})
 PYTHON
-  }
-  results cpu && results cuda
-  same+=("suite:$suite=$(verdict cmp "$work/cpu.txt" "$work/cuda.txt")")
+}
+for suite in accuracy extremes; do
+  for device in cpu cuda; do suite_results $suite $device; done
+  same+=("suite:$suite=$(verdict cmp "$work/$suite-cpu.txt" "$work/$suite-cuda.txt")")
 done
 
 for level in ${levels//,/ }; do

@@ -25,8 +25,14 @@ Pose sound(const Pose& pose) {
   return {exact_rotation(pose.rotation), pose.translation};
 }
 
-// Of what a device would wait for.
-constexpr std::size_t kPosesPerTask = 4096;
+// What a device would wait for, of each pose: body(k).
+template <class Body>
+void for_each_pose(std::size_t count, const Body& body) {
+  constexpr std::size_t kPosesPerTask = 4096;
+  parallel_for(count, kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) body(k);
+  });
+}
 
 void check_room(std::size_t poses, std::size_t results) {
   if (poses == results) return;
@@ -144,13 +150,9 @@ void Query::run_batch(const PreparedCloud* cloud, std::span<const Pose> poses,
     return;
   }
   sound_.resize(poses.size());
-  parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) sound_[k] = sound(poses[k]);
-  });
+  for_each_pose(poses.size(), [&](std::size_t k) { sound_[k] = sound(poses[k]); });
   on_device(sound_);
-  parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) finish(results[k]);
-  });
+  for_each_pose(results.size(), [&](std::size_t k) { finish(results[k]); });
 }
 
 void Query::run(const PreparedCloud& cloud, std::span<const Pose> poses,
@@ -177,16 +179,13 @@ void Query::run_tools(std::span<Query* const> queries, const Scene& scene,
     return;
   }
   std::vector<ToolPose> sound_poses(poses.size());
-  parallel_for(poses.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      sound_poses[k] = {poses[k].tool, sound(poses[k].pose)};
+  for_each_pose(poses.size(), [&](std::size_t k) {
+    sound_poses[k] = {poses[k].tool, sound(poses[k].pose)};
   });
   std::vector<DeviceMeasure*> measures;
   for (const Query* query : queries) measures.push_back(query->device_.get());
   on_device(std::span<DeviceMeasure* const>(measures), std::span<const ToolPose>(sound_poses));
-  parallel_for(results.size(), kPosesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) queries[poses[k].tool]->finish(results[k]);
-  });
+  for_each_pose(results.size(), [&](std::size_t k) { queries[poses[k].tool]->finish(results[k]); });
 }
 
 void Query::run_together(std::span<Query* const> queries, const PreparedCloud& cloud,

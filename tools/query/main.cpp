@@ -17,6 +17,7 @@
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
 #include "tools/query/level_query.h"
+#include "tools/query/pose_batches.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay.h"
 #include "tools/query/several_tools.h"
@@ -215,18 +216,9 @@ struct Run {
   // From the first pose on all of the reader, if there is one.
   void all(LevelQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
            std::size_t at_once, Measure measure) {
-    std::vector<Pose> poses;
-    for (; next; next = reader ? reader->next() : std::nullopt) {
-      if (at_once == 1) {
-        pose(query, *next, measure);
-        continue;
-      }
-      poses.push_back(*next);
-      if (poses.size() < at_once) continue;
-      batch(query, poses, measure);
-      poses.clear();
-    }
-    if (!poses.empty()) batch(query, poses, measure);
+    in_batches(next, reader, at_once, [&](const std::vector<Pose>& poses) {
+      at_once == 1 ? pose(query, poses.front(), measure) : batch(query, poses, measure);
+    });
   }
   void coupled(LevelQuery& query, VirtualCoupling coupling, const SampledPath& path) {
     for (std::size_t k = 0; k < path.steps(); ++k) {

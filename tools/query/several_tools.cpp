@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "tools/query/pose_batches.h"
 #include "tools/query/query_report.h"
 
 namespace vpm::tools {
@@ -18,14 +19,7 @@ SeveralTools::SeveralTools(std::span<const ToolModel> models, const QueryOptions
 
 void SeveralTools::run(std::optional<Pose> next, std::optional<PoseReader>& reader,
                        std::size_t at_once, file::Output& output) {
-  std::vector<Pose> poses;
-  for (; next; next = reader ? reader->next() : std::nullopt) {
-    poses.push_back(*next);
-    if (poses.size() < at_once) continue;
-    ask(poses, output);
-    poses.clear();
-  }
-  if (!poses.empty()) ask(poses, output);
+  in_batches(next, reader, at_once, [&](std::span<const Pose> poses) { ask(poses, output); });
 }
 
 void SeveralTools::ask(std::span<const Pose> poses, file::Output& output) {

@@ -100,7 +100,7 @@ class MeasureOnDevice : public DeviceMeasure {
   void ask(std::span<const Pose> poses, std::span<Result> results);
   void ask(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses,
            std::span<Result> results);
-  // Calls answer(begin, count) for parts of so many poses that fit a launch.
+  // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
   template <class AnswerPart>
   void in_launches(std::size_t poses, const AnswerPart& answer_part);
   // The answers to poses of one launch.
