@@ -42,16 +42,24 @@ for measure in refined paper; do
   done
 done
 
-suite_results() {  # SUITE DEVICE
+suite_answers() {  # SUITE DEVICE: what a suite found, without what it took and what only the CPU does
   "$bundle/bin/vpm-bench" "$1" --quick --quiet --device "$2" --out "$work/$1-$2" >/dev/null
   python3 - "$work/$1-$2/$1.json" >"$work/$1-$2.txt" <<'PYTHON'
-import json, sys
+import json, re, sys
+took = re.compile(r"seconds|_us$|_ms$|_mb$|^ratio$|^change$|^real_time_factor$|^deadline_misses$")
+of_time_or_cpu = {"threads", "deadline", "frame", "coherent", "stream reusing"}
+def answers(value):
+    if isinstance(value, dict):
+        return {key: answers(item) for key, item in value.items() if not took.search(key)}
+    return [answers(item) for item in value] if isinstance(value, list) else value
 for result in json.load(open(sys.argv[1]))["results"]:
-    print({key: value for key, value in result.items() if key != "seconds"})
+    if not of_time_or_cpu & {result.get("varied"), result.get("part")} and result.get("threads", 1) == 1:
+        print(answers(result))
 PYTHON
+  [[ -s "$work/$1-$2.txt" ]]
 }
-for suite in accuracy extremes; do
-  for device in cpu cuda; do suite_results $suite $device; done
+for suite in accuracy extremes replay tradeoff; do
+  for device in cpu cuda; do suite_answers $suite $device; done
   same+=("suite:$suite=$(verdict cmp "$work/$suite-cpu.txt" "$work/$suite-cuda.txt")")
 done
 

@@ -41,10 +41,9 @@ int main(int argc, char** argv) {
   tool.app()
       .get_option("--device")
       ->description(
-          "scaling: the device to time: cuda, cuda:N, or auto (cuda); accuracy and extremes: where "
-          "to "
-          "compute, with the same results: cuda, cpu, or auto (cpu); all others: cpu, or auto "
-          "(cpu)");
+          "scaling: the device to time: cuda, cuda:N, or auto (cuda); accuracy, extremes, replay "
+          "and tradeoff: where to query, with the same results: cuda, cuda:N, cpu, or auto (cpu); "
+          "all others: cpu, or auto (cpu)");
   tool.computes_on_devices();
   return tool.run(argc, argv, [&] {
     const bool asks_device = tool.common().device != "auto" || vpm::bench::needs_device(suite);
@@ -54,16 +53,17 @@ int main(int argc, char** argv) {
         suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,
                 baseline, noise_seed, shadows == "solid" ? vpm::Shadows::solid : vpm::Shadows::near,
                 asks_device ? tool.device() : vpm::Device{}});
-    vpm::bench::write(report,
-                      "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
-                          (baseline ? " --baseline" : "") +
-                          (noise_seed == vpm::bench::SuiteOptions::kUsualNoise
-                               ? ""
-                               : " --noise-seed " + std::to_string(noise_seed)) +
-                          (shadows == "near" ? "" : " --shadows " + shadows) +
-                          (meshes.empty() ? "" : " --meshes MESHES") +
-                          (data.empty() ? "" : " --data DATA"),
-                      folder);
+    vpm::bench::write(
+        report,
+        "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
+            (baseline ? " --baseline" : "") +
+            (noise_seed == vpm::bench::SuiteOptions::kUsualNoise
+                 ? ""
+                 : " --noise-seed " + std::to_string(noise_seed)) +
+            (shadows == "near" ? "" : " --shadows " + shadows) +
+            (tool.common().device == "auto" ? "" : " --device " + tool.common().device) +
+            (meshes.empty() ? "" : " --meshes MESHES") + (data.empty() ? "" : " --data DATA"),
+        folder);
     if (!tool.common().quiet) std::cout << report.summary << std::flush;
     if (!report.failure.empty())
       vpm::refuse(report.failure + "; " + folder + "/" + suite + ".json names them");

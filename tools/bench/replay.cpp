@@ -93,16 +93,18 @@ Report run_replay(const SuiteOptions& options) {
                      {"shape", "twisted torus, 0.25 m"},
                      {"spheres", tool.levels},
                      {"recording", synthetic ? "synthetic" : fs::path(folder).filename().string()}};
-  const std::function<void()> parts[] = {[&] { time_frames(options.quick, report); },
-                                         [&] { time_queries(tool, options.quick, report); },
-                                         [&] { time_coherence(tool, options.quick, report); },
-                                         [&] { time_points_outside(tool, options.quick, report); },
-                                         [&] { run_stream(tool, folder, options.quick, report); },
-                                         [&] { run_soak(tool, folder, options.quick, report); }};
-  int done = 0;
-  for (const auto& part : parts) {
-    part();
-    if (options.progress) options.progress(++done / static_cast<double>(std::size(parts)));
+  std::vector<std::function<void()>> parts{[&] { time_queries(tool, options, report); },
+                                           [&] { time_points_outside(tool, options, report); },
+                                           [&] { run_stream(tool, folder, options, report); },
+                                           [&] { run_soak(tool, folder, options, report); }};
+  if (!options.device.is_cuda()) {
+    parts.insert(parts.begin(), [&] { time_frames(options.quick, report); });
+    parts.insert(parts.begin() + 2, [&] { time_coherence(tool, options.quick, report); });
+  }
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    parts[k]();
+    if (options.progress)
+      options.progress(static_cast<double>(k + 1) / static_cast<double>(parts.size()));
   }
   return report;
 }

@@ -129,7 +129,7 @@ Durations timed(int calls, int warm_up, const std::function<void(int call)>& bod
   return Durations(std::move(seconds));
 }
 
-void time_queries(const ReplayTool& tool, bool quick, Report& report) {
+void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   const synthetic::Scene scene = the_scene();
   const DepthImage depth = noisy_depth(scene);
   const Cloud cloud = make_cloud(depth, scene.camera, NormalOptions{});
@@ -140,12 +140,12 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
   constexpr double kRadius = 1e-3;
   const std::vector<Pose> poses = circle(pose_inside(tool.model, prepared), kRadius, 64);
   const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
-  const int calls = quick ? 64 : 1280, few = quick ? 3 : 31, warm_up = 16;
-  for (const int threads : {1, 2}) {
+  const int calls = suite.quick ? 64 : 1280, few = suite.quick ? 3 : 31, warm_up = 16;
+  for (int threads = 1; threads <= (suite.device.is_cuda() ? 1 : 2); ++threads) {
     set_thread_count(threads);
     for (const std::uint32_t level : tool.levels) {
-      Query query(tool.model, {.level = level, .counts_points = false}),
-          counting(tool.model, {.level = level});
+      Query query(tool.model, {.level = level, .device = suite.device, .counts_points = false}),
+          counting(tool.model, {.level = level, .device = suite.device});
       Result result;
       const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
       const Durations of_warm = timed(calls, warm_up, warm);
@@ -160,7 +160,8 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
       });
       add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
     }
-    Query query(tool.model, {.level = tool.levels.front(), .counts_points = false});
+    Query query(tool.model,
+                {.level = tool.levels.front(), .device = suite.device, .counts_points = false});
     Result result;
     const Durations of_sparse = timed(few, 1, [&](int k) {
       result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
@@ -174,7 +175,7 @@ void time_queries(const ReplayTool& tool, bool quick, Report& report) {
               timed(calls, warm_up, [&](int k) { force = peers.penalty(pixels, to_camera(k)); }),
               0);
     double volume = 0;
-    const Durations of_count = timed(quick ? 16 : 320, warm_up, [&](int k) {
+    const Durations of_count = timed(suite.quick ? 16 : 320, warm_up, [&](int k) {
       volume = peers.count_voxels(pixels, to_camera(k));
     });
     add_query(report, "voxel count", 0, threads, of_count, volume / tool.model.volume);
@@ -284,16 +285,16 @@ void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
   set_thread_count(0);
 }
 
-void time_points_outside(const ReplayTool& tool, bool quick, Report& report) {
+void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   set_thread_count(1);
   for (const bool camera : {true, false}) {
     const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
-    Query query(tool.model, {.level = level, .counts_points = false});
+    Query query(tool.model, {.level = level, .device = suite.device, .counts_points = false});
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
-        quick ? 64 : 1280, 8, [&](int k) { query.run(once, pose(k)); },
+        suite.quick ? 64 : 1280, 8, [&](int k) { query.run(once, pose(k)); },
         [&](int k) { query.run(twice, pose(k)); });
     const double change = b.quantile(0.5) / a.quantile(0.5) - 1;
     report.results.push_back({{"part", "outside"},

@@ -218,17 +218,21 @@ std::string soak_round(const Stream& stream, const SampledPath& path, Query& que
 
 }  // namespace
 
-void run_stream(const ReplayTool& tool, const std::string& folder, bool quick, Report& report) {
+void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,
+                Report& report) {
   const Stream stream = read_stream(folder);
-  const double seconds = quick ? 1 : 5;
+  const double seconds = suite.quick ? 1 : 5;
+  const bool coherent = !suite.device.is_cuda();
   const SampledPath path(haptic_path(*prepare_frame(stream, 0).cloud, tool.model, seconds), kRate);
   set_thread_count(1);  // for the loop; frames are prepared beside it
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
-    QueryOptions options{.level = level, .coherent = true, .counts_points = false};
+    QueryOptions options{
+        .level = level, .device = suite.device, .coherent = coherent, .counts_points = false};
     Query query(tool.model, options);
     const Pass anew = pass_over(stream, path, query);
     add_pass(anew, level, report);
+    if (!coherent) continue;
     options.reuse = kReuse;
     Query reusing(tool.model, options);
     add_reusing_pass(pass_over(stream, path, reusing), anew, level, kReuse, report);
@@ -236,14 +240,17 @@ void run_stream(const ReplayTool& tool, const std::string& folder, bool quick, R
   set_thread_count(0);
 }
 
-void run_soak(const ReplayTool& tool, const std::string& folder, bool quick, Report& report) {
+void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,
+              Report& report) {
   const Stream stream = read_stream(folder);
-  const std::size_t rounds = quick ? 3 : 100, queries = quick ? 2000 : 10000;
+  const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path(haptic_path(*prepare_frame(stream, 0).cloud, tool.model,
                                      static_cast<double>(queries) / kRate),
                          kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
-  Query query(tool.model, {.level = tool.soak_level, .coherent = true});
+  Query query(
+      tool.model,
+      {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
   const std::string hash = soak_round(stream, path, query);
   const double before = resident_memory_mb();
   std::size_t others = 0;

@@ -144,13 +144,9 @@ class Scaling {
         make_cloud(synthetic::render_with_kinect_noise(*scene.surface, scene.camera, kNoiseSeed),
                    scene.camera, NormalOptions{}));
     const std::vector<Pose> path = sliding_path(tool, cloud, poses_);
-    report_.settings = {{"quick", options_.quick},
-                        {"device", device_name(device_)},
-                        {"shape", "twisted-torus"},
-                        {"scene", scene.name},
-                        {"points", cloud.positions().size()},
-                        {"poses", path.size()},
-                        {"rounds", rounds_},
+    report_.settings = {{"quick", options_.quick}, {"shape", "twisted-torus"},
+                        {"scene", scene.name},     {"points", cloud.positions().size()},
+                        {"poses", path.size()},    {"rounds", rounds_},
                         {"spheres", levels_}};
     for (std::size_t k = 0; k < levels_.size(); ++k) {
       measure(tool, tool.level(levels_[k]), cloud, part_of(path, levels_[k]));

@@ -32,10 +32,10 @@ constexpr Suite kSuites[] = {
     {"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kShadows, Place::either},
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
-    {"replay", run_replay, kData},
+    {"replay", run_replay, kData, Place::either},
     {"scaling", run_scaling, kAll | kBaseline, Place::device},
     {"timing", run_timing, kData},
-    {"tradeoff", run_tradeoff}};
+    {"tradeoff", run_tradeoff, 0, Place::either}};
 
 const Suite* find_suite(const std::string& name) {
   const auto found = std::ranges::find(kSuites, name, &Suite::name);
@@ -95,7 +95,9 @@ Report run_suite(const std::string& name, const SuiteOptions& options) {
                     "); use --device cpu, or leave the option out");
   }
   check_options(*suite, options);
-  return suite->run(options);
+  Report report = suite->run(options);
+  if (options.device.is_cuda()) report.settings["device"] = device_name(options.device);
+  return report;
 }
 
 }  // namespace vpm::bench

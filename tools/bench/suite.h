@@ -45,7 +45,7 @@ Report run_extremes(const SuiteOptions& options);
 Report run_timing(const SuiteOptions& options);
 
 // Time against error over everything that a user can turn, and what --max-error and --for-scene
-// choose.
+// choose. On a device of the measure there; threads are not varied.
 Report run_tradeoff(const SuiteOptions& options);
 
 // Packings beside greedy packers on voxels, growth, and the cost from 10^2 to 10^5 spheres (10^6
@@ -54,6 +54,7 @@ Report run_packing(const SuiteOptions& options);
 
 // A haptic loop on a recorded stream: queries of warm and cold clouds beside what is written by
 // hand, coherent poses, preparation of frames, a path through the stream, a soak of 10^6 queries.
+// On a device without what only the CPU does: coherent poses, preparation of frames.
 Report run_replay(const SuiteOptions& options);
 
 // Queries on a CUDA device against the number of spheres and along a path. Throws

@@ -75,7 +75,7 @@ class Tradeoff {
   Report run() {
     vary_spheres();
     vary_sensing();
-    vary_threads();
+    if (!options_.device.is_cuda()) vary_threads();
     keep_max_error();
     keep_deadlines();
     fit_scenes();
@@ -170,6 +170,7 @@ class Tradeoff {
       QueryOptions query_options;
       query_options.measure = measured_by;
       query_options.level = spheres;
+      query_options.device = options_.device;
       Measured m{what,
                  c.shape,
                  c.scene,
@@ -262,7 +263,7 @@ class Tradeoff {
       for (const double asked_us : {200.0, 1000.0}) {
         tools::LevelRequest request;
         request.deadline_seconds = 1e-6 * asked_us;
-        tools::LevelQuery query(t.model, {}, request, seen, in.front());
+        tools::LevelQuery query(t.model, {.device = options_.device}, request, seen, in.front());
         Deadline d{c.shape, c.scene, to_text(Noise::kinect), asked_us, queries, 0, 0, 0};
         d.coarsest = t.model.levels.back().sphere_count;
         for (std::size_t k = 0; k < queries; ++k) {
@@ -296,13 +297,15 @@ class Tradeoff {
         f.level = t.model.levels[level_for_scene(t.model, f.scale)].sphere_count;
         QueryOptions query_options;
         query_options.level = f.level;
+        query_options.device = options_.device;
         set_thread_count(1);
         f.level_errors = measure(c, t.model, query_options, sensing(noise), f.level_us);
         set_thread_count(0);
         const ToolModel packed = packed_for(t.solid.solid(), f.scale);
         f.packed = static_cast<std::uint32_t>(packed.spheres.size());
         set_thread_count(1);
-        f.packed_errors = measure(c, packed, {}, sensing(noise), f.packed_us);
+        query_options.level = 0;
+        f.packed_errors = measure(c, packed, query_options, sensing(noise), f.packed_us);
         set_thread_count(0);
         fitted_.push_back(f);
       }
