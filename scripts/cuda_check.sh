@@ -5,7 +5,7 @@
 # what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path
 # compared byte for byte, of both measures, one by one, in batches and standing by, and the results of vpm-bench's suites; 4. ten thousand queries at each level, with
-# the data of eight tools and clouds by turns, launched and standing by; 5. a hundred thousand poses in batches, of one tool and of eight;
+# the data of eight tools and clouds by turns, launched and standing by, in ROUNDS (5) rounds, whose medians count; 5. a hundred thousand poses in batches, of one tool and of eight;
 # 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
@@ -63,35 +63,40 @@ for suite in accuracy extremes replay tradeoff; do
   same+=("suite:$suite=$(verdict cmp "$work/$suite-cpu.txt" "$work/$suite-cuda.txt")")
 done
 
-for level in ${levels//,/ }; do
-  loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda level="$level")
-  for copies in 1 8; do
-    "${loop[@]}" rotate=$copies queries=10000 json="$work/loop-$level-$copies.json" >/dev/null
+loop=("$bundle/bin/control-loop" "$tool" "$cloud" device=cuda)
+for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
+  for level in ${levels//,/ }; do
+    row() { "${loop[@]}" level="$level" "${@:2}" json="$work/loop-$level-$1-$round.json" >/dev/null; }
+    for copies in 1 8; do row $copies rotate=$copies queries=10000; done
+    row standby rotate=8 queries=10000 standby=2000
+    row paper rotate=8 queries=4000 measure=paper
   done
-  "${loop[@]}" rotate=8 queries=10000 standby=2000 json="$work/loop-$level-standby.json" >/dev/null
-  "${loop[@]}" rotate=8 queries=4000 measure=paper json="$work/loop-$level-paper.json" >/dev/null
-  "${loop[@]}" batch=16384 queries=114688 json="$work/batch-$level.json" >/dev/null
-  "${loop[@]}" batch=16384 queries=114688 rotate=8 json="$work/batch-$level-tools.json" >/dev/null
-  "${loop[@]}" batch=16384 queries=16384 measure=paper json="$work/batch-$level-paper.json" >/dev/null
+done
+for level in ${levels//,/ }; do
+  row() { "${loop[@]}" level="$level" batch=16384 "${@:2}" json="$work/batch-$level-$1.json" >/dev/null; }
+  row one queries=114688
+  row tools queries=114688 rotate=8
+  row paper queries=16384 measure=paper
 done
 
-python3 - "$out" "$work" "$commit" "$tests" "${sanitizers[*]}" "${same[*]}" <<'PYTHON'
+python3 - "$out" "$work" "$commit" "$tests" "${sanitizers[*]}" "${same[*]}" "$(dirname "$0")" <<'PYTHON'
 import glob, json, subprocess, sys
-out, work, commit, tests, sanitizers, same = sys.argv[1:]
+out, work, commit, tests, sanitizers, same, scripts = sys.argv[1:]
+sys.path.insert(0, scripts)
+import loop_rounds
 pairs = lambda text: dict(item.split("=") for item in text.split())
-load = lambda pattern: [json.load(open(path)) for path in sorted(glob.glob(f"{work}/{pattern}"))]
 smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format=csv,noheader"],
                      capture_output=True, text=True).stdout.strip()
 report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),
-    "control_loop": sorted(load("loop-*.json"), key=lambda r: (r["measure"] != "refined", r["standby_us"], r["spheres"], r["copies"])),
-    "batch": sorted(load("batch-*.json"), key=lambda r: (r["measure"] != "refined", r["tools"], r["spheres"])),
+    "control_loop": sorted(loop_rounds.loops_in(work), key=lambda r: (r["measure"] != "refined", r["standby_us"], r["spheres"], r["copies"])),
+    "batch": sorted((json.load(open(path)) for path in glob.glob(f"{work}/batch-*.json")), key=lambda r: (r["measure"] != "refined", r["tools"], r["spheres"])),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{smi}, commit {commit}: tests {tests}, compute-sanitizer {sanitizers}, CPU and device the same {same}")
 for r in report["control_loop"]:
-    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies{', standing by' if r['standby_us'] else ''}  median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} us")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies{', standing by' if r['standby_us'] else ''}  {loop_rounds.in_words(r)}")
 for r in report["batch"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}, tools {r['tools']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON

@@ -52,30 +52,18 @@ for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
   done
 done
 
-python3 - "$out" "$work" "$commit" "${same[*]}" <<'PYTHON'
-import collections, glob, json, statistics, subprocess, sys
-out, work, commit, same = sys.argv[1:]
-
-def of_rounds(reports):
-    """Medians of the rounds' figures, and p99 of each round."""
-    merged = dict(reports[0], rounds=len(reports), p99_us_of_rounds=sorted(r["p99_us"] for r in reports),
-                  host_slowed=sum(r["host_slowed"] for r in reports),
-                  min_us=min(r["min_us"] for r in reports), max_us=max(r["max_us"] for r in reports))
-    for key in ("median_us", "p99_us", "p99_steady_us", "prepare_us"):
-        if key in merged:
-            merged[key] = statistics.median(r[key] for r in reports)
-    return merged
-
-rows = collections.defaultdict(list)
-for path in glob.glob(f"{work}/loop-*.json"):
-    rows[path.rsplit("-", 1)[0]].append(json.load(open(path)))
+python3 - "$out" "$work" "$commit" "${same[*]}" "$(dirname "$0")" <<'PYTHON'
+import json, subprocess, sys
+out, work, commit, same, scripts = sys.argv[1:]
+sys.path.insert(0, scripts)
+import loop_rounds
 smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version,pcie.link.gen.max,pcie.link.width.max",
                       "--format=csv,noheader"], capture_output=True, text=True).stdout.strip().split(", ")
 report = {
     "command": "scripts/cuda_frames_check.sh", "commit": commit, "device": ", ".join(smi[:2]),
     "bus": f"PCIe {smi[2]} x{smi[3]}", "same_bytes_as_cpu": dict(item.split("=") for item in same.split()),
     "stages": json.load(open(f"{work}/stages.json")),
-    "control_loop": sorted(map(of_rounds, rows.values()),
+    "control_loop": sorted(loop_rounds.loops_in(work),
                            key=lambda r: [r["spheres"], "frames" in r] +
                                          [r.get(key, "") for key in ("making", "behind", "method", "frames", "standby_us")]),
 }
@@ -87,8 +75,6 @@ for r in report["stages"]:
 for r in report["control_loop"]:
     what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
     what += ", standing by" if r["standby_us"] else ""
-    least, most = r["p99_us_of_rounds"][0], r["p99_us_of_rounds"][-1]
-    print(f"{r['spheres']:8} spheres  {what:49} median {r['median_us']:7.1f} us  p99 {r['p99_us']:7.1f} ({least:.1f} to {most:.1f}) us,"
-          f" {r['p99_steady_us']:.1f} while the host keeps its pace")
+    print(f"{r['spheres']:8} spheres  {what:49} {loop_rounds.in_words(r)}")
 PYTHON
 exit $failed

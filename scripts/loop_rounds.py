@@ -1,0 +1,32 @@
+"""What control-loop measured in several rounds, as one: scripts/cuda_check.sh and cuda_frames_check.sh."""
+import collections
+import glob
+import json
+import statistics
+
+
+def of_rounds(reports):
+    """Medians of the rounds' figures, and p99 of each round."""
+    merged = dict(reports[0], rounds=len(reports), p99_us_of_rounds=sorted(r["p99_us"] for r in reports),
+                  host_slowed=sum(r["host_slowed"] for r in reports),
+                  min_us=min(r["min_us"] for r in reports), max_us=max(r["max_us"] for r in reports))
+    for key in ("median_us", "p99_us", "p99_steady_us", "prepare_us"):
+        if key in merged:
+            merged[key] = statistics.median(r[key] for r in reports)
+    return merged
+
+
+def loops_in(folder):
+    """Of FOLDER/loop-WHAT-ROUND.json, for each WHAT."""
+    reports = collections.defaultdict(list)
+    for path in sorted(glob.glob(f"{folder}/loop-*.json")):
+        with open(path) as file:
+            reports[path.rsplit("-", 1)[0]].append(json.load(file))
+    return [of_rounds(of_what) for of_what in reports.values()]
+
+
+def in_words(loop):
+    """Its times, for a line of a table."""
+    rounds = loop["p99_us_of_rounds"]
+    return (f"median {loop['median_us']:7.1f} us  p99 {loop['p99_us']:7.1f} ({rounds[0]:.1f} to {rounds[-1]:.1f}) us,"
+            f" {loop['p99_steady_us']:.1f} while the host keeps its pace")
