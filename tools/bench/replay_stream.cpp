@@ -25,22 +25,27 @@ constexpr double kReuse = 3e-3;            // m
 
 struct Stream {
   Recording recording;
-  ImportOptions import;
+  ImportOptions import;  // to the suite's device
 };
 
-Stream read_stream(const std::string& folder) {
+Stream read_stream(const std::string& folder, const Device& device) {
   Stream stream{read_recording(folder, {}), {}};
   stream.import.intrinsics = stream.recording.intrinsics;
+  stream.import.device = device;
   if (!stream.import.intrinsics)
     refuse(folder + ": camera-intrinsics.txt (3x3: fx 0 cx, 0 fy cy, 0 0 1) is missing in it");
   return stream;
 }
 
-PreparedChange prepare_frame(const Stream& stream, std::size_t frame) {
-  PreparedChange prepared =
-      FrameReader(stream.recording, stream.import).prepare({0, {frame}, false});
-  if (!prepared.cloud) refuse(prepared.unusable.front().message);
+PreparedChange prepare_frame(FrameReader& reader, std::size_t frame) {
+  PreparedChange prepared = reader.prepare({0, {frame}, false});
+  if (!prepared.has_frame()) refuse(prepared.unusable.front().message);
   return prepared;
+}
+
+Result ask(Query& query, const DepthFrame* on_device, const PreparedCloud* cloud,
+           const Pose& pose) {
+  return on_device != nullptr ? query.run(*on_device, pose) : query.run(*cloud, pose);
 }
 
 // The point in the middle of the image's points that is nearer than half of its neighbourhood.
@@ -82,6 +87,14 @@ TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double 
   return TimedPath(std::move(times), std::move(poses));
 }
 
+// The path through the stream that the first frame suggests.
+SampledPath path_through(const Stream& stream, const ToolModel& tool, double seconds) {
+  ImportOptions import = stream.import;
+  import.device = {};  // the cloud is looked at here
+  FrameReader reader(stream.recording, import);
+  return SampledPath(haptic_path(*prepare_frame(reader, 0).cloud, tool, seconds), kRate);
+}
+
 // What one pass over the stream has shown.
 struct Pass {
   std::vector<double> profile;               // volume fraction, every kProfileEvery steps
@@ -111,7 +124,8 @@ Pass pass_over(const Stream& stream, const SampledPath& path, Query& query) {
       pass.prepare_ms.push_back(1e3 * change->seconds);
     }
     clock.begin_step();
-    const Result result = query.run(feed.cloud(), path.pose(k));
+    const DepthFrame* const on_device = feed.depth_frame();
+    const Result result = ask(query, on_device, on_device ? nullptr : &feed.cloud(), path.pose(k));
     clock.end_step();
     if (k % kProfileEvery == 0) pass.profile.push_back(result.volume_fraction);
   }
@@ -204,14 +218,15 @@ class ResultHash {
 };
 
 // Every frame of the recording once, prepared anew, with its part of the path.
-std::string soak_round(const Stream& stream, const SampledPath& path, Query& query) {
+std::string soak_round(const Stream& stream, FrameReader& reader, const SampledPath& path,
+                       Query& query) {
   ResultHash hash;
   query.forget();
   const std::size_t frames = stream.recording.frames.size();
   for (std::size_t f = 0; f < frames; ++f) {
-    const PreparedChange frame = prepare_frame(stream, f);
+    const PreparedChange frame = prepare_frame(reader, f);
     for (std::size_t k = f * path.steps() / frames; k < (f + 1) * path.steps() / frames; ++k)
-      hash.add(query.run(*frame.cloud, path.pose(k)));
+      hash.add(ask(query, frame.depth ? &*frame.depth : nullptr, frame.cloud.get(), path.pose(k)));
   }
   return hash.value();
 }
@@ -220,10 +235,9 @@ std::string soak_round(const Stream& stream, const SampledPath& path, Query& que
 
 void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,
                 Report& report) {
-  const Stream stream = read_stream(folder);
-  const double seconds = suite.quick ? 1 : 5;
+  const Stream stream = read_stream(folder, suite.device);
   const bool coherent = !suite.device.is_cuda();
-  const SampledPath path(haptic_path(*prepare_frame(stream, 0).cloud, tool.model, seconds), kRate);
+  const SampledPath path = path_through(stream, tool.model, suite.quick ? 1 : 5);
   set_thread_count(1);  // for the loop; frames are prepared beside it
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
@@ -242,19 +256,19 @@ void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOp
 
 void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,
               Report& report) {
-  const Stream stream = read_stream(folder);
+  const Stream stream = read_stream(folder, suite.device);
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
-  const SampledPath path(haptic_path(*prepare_frame(stream, 0).cloud, tool.model,
-                                     static_cast<double>(queries) / kRate),
-                         kRate);
+  const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
   Query query(
       tool.model,
       {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
-  const std::string hash = soak_round(stream, path, query);
+  FrameReader reader(stream.recording, stream.import);
+  const std::string hash = soak_round(stream, reader, path, query);
   const double before = resident_memory_mb();
   std::size_t others = 0;
-  for (std::size_t k = 1; k < rounds; ++k) others += soak_round(stream, path, query) != hash;
+  for (std::size_t k = 1; k < rounds; ++k)
+    others += soak_round(stream, reader, path, query) != hash;
   const double after = resident_memory_mb();
   report.results.push_back({{"part", "soak"},
                             {"spheres", tool.soak_level},
