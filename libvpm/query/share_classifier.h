@@ -283,8 +283,9 @@ class ShareClassifier {
     const CellView view = level_.cell(i);
     const double distance = plane.distance(view.center);
     const Vec3 center = to_surface_ * view.center;
-    if (distance >= view.reach || (surface_.may_be_free(look, center, view.reach) &&
-                                   surface_.side_of_ball(center, view.reach) == Side::free)) {
+    if (distance >= view.reach ||
+        (surface_.may_be_free(Surface::least_inverse_depth(look), center, view.reach) &&
+         surface_.side_of_ball(center, view.reach) == Side::free)) {
       states_.set(i, Cell::free, Passage::closed);
     } else if (distance <= -view.reach) {
       states_.set(i, Cell::pushed, Passage::patch);

@@ -292,13 +292,14 @@ struct DepthSurface {
     return !(is_free_part(look, center, radius) || (center.z - radius) * look.range.low > 1);
   }
 
-  // False where a ball in one that was looked at is not Side::free, as far as the looked at or the
-  // pixel at its centre tell: a short way to most answers of side_of_ball.
-  VPM_HD bool may_be_free(const Look& look, Vec3 center, double radius) const {
-    return (center.z + radius) * look.range.low < 1 && may_be_free(center, radius);
-  }
-  // Its pixel must be made.
-  VPM_HD bool may_be_free(Vec3 center, double radius) const {
+  // The least inverse depth in a ball that was looked at.
+  static VPM_HD float least_inverse_depth(const Look& look) { return look.range.low; }
+  // Whether a ball in one that was looked at may be free though the plane of all pixels there says
+  // no: the pixel at its centre, as measured, shows past it, and not all of the surface there is
+  // nearer than its far side. `least`: of that surface, least_inverse_depth(). Its pixel must be
+  // made.
+  VPM_HD bool may_be_free(float least, Vec3 center, double radius) const {
+    if (!((center.z + radius) * least < 1)) return false;
     if (!(center.z - radius >= kSmallestLength)) return true;
     const double per_depth = quotient(1, center.z);
     const double u = k.fx * (center.x * per_depth) + k.cx + 0.5;

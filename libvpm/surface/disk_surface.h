@@ -148,10 +148,10 @@ struct DiskSurface {
     return mean_plane(look, tolerance, plane);
   }
   // Points do not tell what is free.
-  VPM_HD bool may_be_free(const Look&, Vec3, double) const {
-    return false;
+  static VPM_HD float least_inverse_depth(const Look&) {
+    return 0;
   }
-  VPM_HD bool may_be_free(Vec3, double) const {
+  VPM_HD bool may_be_free(float, Vec3, double) const {
     return false;
   }
   VPM_HD bool may_hold_free(const Look&, Vec3, double) const {

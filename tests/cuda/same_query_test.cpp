@@ -8,6 +8,7 @@
 #include <set>
 
 #include "libvpm/query/query.h"
+#include "libvpm/synthetic/kinect_noise.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/query/replay.h"
@@ -100,6 +101,38 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                                             ::testing::Bool(),
                                             ::testing::Values(Measure::refined, Measure::paper)),
                          name_of);
+
+// At 3 m, where single pixels show past a small share that lies behind the plane of all of them.
+TEST(NoisyImageOnDevice, GivesTheSame) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  synthetic::Scene scene = synthetic::make_scene("wall");
+  scene.camera.to_world.translation.z = -2;
+  const DepthImage depth = synthetic::render_with_kinect_noise(*scene.surface, scene.camera, 1);
+  const PreparedCloud cloud(make_cloud(depth, scene.camera, NormalOptions{}));
+  constexpr int kPoses = 192;
+  std::vector<Pose> poses(kPoses);
+  for (int k = 0; k < kPoses; ++k) {
+    poses[k] = pose_of(k);
+    poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
+  }
+  for (const ToolModel& tool :
+       {testing::lattice_cube(0.02, 20, 1), testing::lattice_cube(0.03, 20, 1),
+        testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)}) {
+    for (const bool counts_points : {true, false}) {
+      QueryOptions options{.counts_points = counts_points};
+      Query on_cpu(tool, options);
+      options.device = {Device::Kind::cuda, 0};
+      Query on_device(tool, options);
+      std::vector<Result> expected;
+      for (const Pose& pose : poses) {
+        expected.push_back(on_cpu.run(cloud, pose));
+        SCOPED_TRACE(expected.size());
+        expect_equal(expected.back(), on_device.run(cloud, pose));
+      }
+      expect_same_batch(on_device, cloud, poses, expected);
+    }
+  }
+}
 
 // Images and points by turns: what one way through the kernels notes must not be there for the
 // other.

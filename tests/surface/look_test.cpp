@@ -62,7 +62,8 @@ TEST_P(LookAtABall, SaysOfTheBallsInItWhatALookAtThemDoes) {
       }
       if (!surface.may_hold_free(look, ball.center, ball.radius)) {
         ++none_free;
-        EXPECT_FALSE(surface.may_be_free(look, in.center, in.radius));
+        EXPECT_FALSE(
+            surface.may_be_free(DepthSurface::least_inverse_depth(look), in.center, in.radius));
       }
     }
   }

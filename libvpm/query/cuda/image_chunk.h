@@ -240,7 +240,9 @@ __device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify_crosse
 template <class Found>
 __device__ bool ImageChunk<Found>::is_free_in_patch(bool may_be_free) {
   if (lane_ == kOfShare)
-    seen_.may_be_free = may_be_free && work_.surface.may_be_free(middle_, radius_);
+    seen_.may_be_free =
+        may_be_free && work_.surface.may_be_free(DepthSurface::least_inverse_depth(shared_.look),
+                                                 middle_, radius_);
   __syncwarp();
   return side_of_share(seen_.may_be_free) == Side::free && seen_.may_be_free;
 }

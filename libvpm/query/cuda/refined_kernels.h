@@ -63,7 +63,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
   space.cut = first.cut + shares;
   space.far = first.far + team * room.pieces;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
-  space.planes = first.planes + team * kBatchThreads;
+  space.patches = first.patches + team * kBatchThreads;
   return space;
 }
 

@@ -44,7 +44,7 @@ class RefinedMemory {
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
     return room.shares * kOfShare + room.pieces * sizeof(FarPiece) +
-           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(CrossingPlane);
+           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(CrossedPatch);
   }
 
  private:
@@ -55,7 +55,7 @@ class RefinedMemory {
   DeviceArray<std::uint32_t> parents_, cut_;
   DeviceArray<FarPiece> far_;
   DeviceArray<FlatBlock> flats_;
-  DeviceArray<CrossingPlane> patches_;
+  DeviceArray<CrossedPatch> patches_;
 };
 
 }  // namespace vpm::cuda

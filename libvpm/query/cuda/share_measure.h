@@ -111,14 +111,14 @@ class ShareMeasure {
     shared_.first_units[slot] = chunk.begin;
     const unsigned count = chunk.end - chunk.begin;
     const bool crossed = seen == Seen::crossed;
-    if (crossed) plane_of(slot) = plane;
+    if (crossed) patch_of(slot) = {plane, Surface::least_inverse_depth(look)};
     const unsigned begin =
         crossed ? MeasureShared::kSeen - count - atomicAdd(&shared_.crossed_count, count)
                 : atomicAdd(&shared_.seen_count, count);
     for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = SeenUnit::of(slot, u, seen);
   }
-  __device__ CrossingPlane& plane_of(unsigned slot) const {
-    return work_.space.planes[work_.part.part * blockDim.x + slot];
+  __device__ CrossedPatch& patch_of(unsigned slot) const {
+    return work_.space.patches[work_.part.part * blockDim.x + slot];
   }
   template <class Look>
   __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at, const Tile& lanes,
@@ -336,13 +336,15 @@ __device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
 template <class Surface>
 __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Tile& lanes) {
   const Unit& unit = work_.level.units[shared_.first_units[seen.slot()] + seen.unit()];
-  const CrossingPlane plane = plane_of(seen.slot());
+  const CrossedPatch& patch = patch_of(seen.slot());
+  const CrossingPlane plane = patch.plane;
   const UnitBall share = unit.balls[Unit::of_share];
   const bool head = (unit.flags & Unit::is_head) != 0;
   const double distance = plane.distance(share.center);
   const Vec3 at = work_.to_surface * share.center;
-  const bool free = !(distance < share.radius) || (work_.surface.may_be_free(at, share.radius) &&
-                                                   is_free(lanes, at, share.radius));
+  const bool free = !(distance < share.radius) ||
+                    (work_.surface.may_be_free(patch.least_inverse_depth, at, share.radius) &&
+                     is_free(lanes, at, share.radius));
   if (!lanes.leads()) return;
   const bool behind = !free && distance <= -share.radius;
   if (head) {

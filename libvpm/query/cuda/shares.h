@@ -91,6 +91,12 @@ struct TeamRoom {
   }
 };
 
+// A patch that the surface crosses as one plane.
+struct CrossedPatch {
+  CrossingPlane plane;
+  float least_inverse_depth;  // of the surface there
+};
+
 // Memory of one query.
 struct RefinedSpace {
   ShareNotes notes[2];               // of this query and, cleared by it, of the next: by turns
@@ -99,7 +105,7 @@ struct RefinedSpace {
   std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
   FarPiece* far = nullptr;
   FlatBlock* flats = nullptr;       // of each thread block's lists of flat tasks
-  CrossingPlane* planes = nullptr;  // of the patches that a thread block looks at
+  CrossedPatch* patches = nullptr;  // those at which a thread block looks
 };
 
 // Counters of a query; 0 at the start.
