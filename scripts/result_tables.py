@@ -95,6 +95,19 @@ def tradeoff(report):
     return text
 
 
+def tradeoff_on_device(report):
+    rows = {(r["measure"], r["noise"], r["spheres"]): r for r in report["results"] if r["varied"] == "spheres"}
+    counts = sorted({n for _, _, n in rows})
+    deadlines = [r for r in report["results"] if r["varied"] == "deadline"]
+    least = min(d["kept"] / d["queries"] for d in deadlines)
+    return (table(["spheres"] + [thousands(n) for n in counts],
+                  [[f"{measure}, {NOISE[noise]}: µs"] + [f"{rows[measure, noise, n]['mean_us']:.0f}" for n in counts]
+                   for measure in ("refined", "paper") for noise in NOISE])
+            + f"\n\n`--deadline-us {min(d['asked_us'] for d in deadlines):g}`: kept by {100 * least:.2f} % of "
+              f"{thousands(deadlines[0]['queries'])} queries in the worst of {len({(d['shape'], d['scene']) for d in deadlines})} scenes, "
+              f"with {thousands(min(d['coarsest'] for d in deadlines))} spheres at least.")
+
+
 def timing(report):
     rows = {}
     for r in report["results"]:
@@ -323,7 +336,8 @@ def scaling(report):
 
 PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
                        "bounds solid": (bounds, "accuracy_solid"),
-                       "tradeoff": (tradeoff, "tradeoff"), "timing": (timing, "timing"),
+                       "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
+                       "timing": (timing, "timing"),
                        "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
                        "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
                        "replay coherent": (replay_coherent, "replay_coherent"),
