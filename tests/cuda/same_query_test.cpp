@@ -9,9 +9,11 @@
 
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
+#include "tests/cuda/taken_memory.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/query/replay.h"
+#include "tests/refusal.h"
 #include "tests/test_name.h"
 
 namespace vpm {
@@ -392,6 +394,30 @@ TEST(ToolsTogetherSmall, SmallQuery) {
   Query::run_together(together, cloud, poses, results);
   for (std::size_t k = 0; k < poses.size(); ++k)
     expect_equal(queries[poses[k].tool].run(cloud, poses[k].pose), results[k]);
+}
+
+// As where other programs use the device too: what does not fit is cut, not refused.
+TEST(TakenDevice, AnswersABatch) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const ToolModel tool = testing::lattice_cube(0.25, 20, 4);
+  std::vector<Pose> poses(600);
+  for (int k = 0; k < 600; ++k) poses[k] = pose_of(k);
+  for (const Measure measure : {Measure::refined, Measure::paper}) {
+    std::vector<Result> expected(poses.size());
+    Query(tool, {.measure = measure}).run(cloud, poses, expected);
+    Query on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
+    expect_equal(expected[0], on_device.run(cloud, poses[0]));
+    const testing::TakenMemory others(std::size_t{256} << 20);
+    expect_same_batch(on_device, cloud, poses, expected);
+  }
+}
+
+TEST(TakenDevice, HasRoomForFewerTeams) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  EXPECT_EQ(testing::teams_made(64, 0.1), 8U);
+  EXPECT_EQ(testing::teams_made(3, 0.1), 3U);
+  EXPECT_EQ(test::kind_of_fault([] { testing::teams_made(64, 1.1); }), ErrorKind::unavailable);
 }
 
 // More poses than one device takes at a time.

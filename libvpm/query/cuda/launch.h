@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 
 #include "libvpm/device/cuda/stream.h"
 #include "libvpm/query/cuda/answer.h"
@@ -26,13 +27,27 @@ unsigned blocks_that_fit(Kernel* kernel, unsigned threads, unsigned wanted) {
   return std::clamp(static_cast<unsigned>(blocks), 1U, wanted) * processor_count();
 }
 
-// Blocks that fill the device, as far as their memory takes no more than a quarter of it.
+// Blocks that fill the device, as far as their memory takes no more than a quarter of it, and half
+// of what is free.
 inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_processor) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total));
-  const std::size_t fit = std::min(free, total / 4) / std::max<std::size_t>(bytes_of_team, 1);
+  const std::size_t fit = std::min(free / 2, total / 4) / std::max<std::size_t>(bytes_of_team, 1);
   const std::size_t wanted = std::size_t{blocks_per_processor} * processor_count();
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
+}
+
+// Teams(count, arguments...), which takes memory for them: `most`, or half as many again and again
+// where other programs have taken meanwhile what was free.
+template <class Teams, class... Arguments>
+std::unique_ptr<Teams> make_teams(unsigned most, const Arguments&... arguments) {
+  for (unsigned count = most;; count /= 2) {
+    try {
+      return std::make_unique<Teams>(count, arguments...);
+    } catch (const Error&) {
+      if (cudaGetLastError() != cudaErrorMemoryAllocation || count == 1) throw;
+    }
+  }
 }
 
 // Looks at the host's own memory until the device has written the whole answer there; that is

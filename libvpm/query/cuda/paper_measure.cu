@@ -139,9 +139,7 @@ class PaperOnDevice : public MeasureOnDevice {
  private:
   // Teams that share the work of a batch.
   struct Teams {
-    explicit Teams(std::size_t spheres)
-        : count(teams_that_fit(spheres * PaperMemory::kBytesOfSphere, kPaperBlocksPerProcessor)),
-          memory(spheres, count) {}
+    Teams(unsigned teams, std::size_t spheres) : count(teams), memory(spheres, count) {}
     unsigned count;
     PaperMemory memory;
   };
@@ -161,7 +159,12 @@ class PaperOnDevice : public MeasureOnDevice {
     for (const ToolPart& part : tools) {
       const unsigned count = part.end - begin;
       auto& of_tool = static_cast<PaperOnDevice&>(*part.measure);
-      if (!of_tool.teams_) of_tool.teams_ = std::make_unique<Teams>(of_tool.level_.count);
+      if (!of_tool.teams_) {
+        const std::size_t spheres = of_tool.level_.count;
+        of_tool.teams_ = make_teams<Teams>(
+            teams_that_fit(spheres * PaperMemory::kBytesOfSphere, kPaperBlocksPerProcessor),
+            spheres);
+      }
       const Teams& teams = *of_tool.teams_;
       const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.memory.space()};
       many_poses<<<std::min(teams.count, count), kPaperThreads, 0, stream()>>>(

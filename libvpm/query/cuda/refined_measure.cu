@@ -57,12 +57,10 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   // Teams that share the work of a batch.
   struct Teams {
-    explicit Teams(const TeamRoom& wanted)
-        : room(wanted),
-          count(teams_that_fit(RefinedMemory::bytes_of_team(room), kBatchBlocks)),
-          memory(room, count, count, kBatchThreads) {}
-    TeamRoom room;
+    Teams(unsigned teams, const TeamRoom& wanted)
+        : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
     unsigned count;
+    TeamRoom room;
     RefinedMemory memory;
   };
 
@@ -163,7 +161,8 @@ class RefinedOnDevice : public MeasureOnDevice {
     for (const ToolPart& part : tools) wanted = wanted.with(TeamRoom(level_of(part)));
     if (teams_ && teams_->room.holds(wanted)) return;
     teams_.reset();  // before more memory is taken
-    teams_ = std::make_unique<Teams>(wanted);
+    teams_ = make_teams<Teams>(teams_that_fit(RefinedMemory::bytes_of_team(wanted), kBatchBlocks),
+                               wanted);
   }
   // As many tools in a launch as it has room for.
   template <class Surface>
