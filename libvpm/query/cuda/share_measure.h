@@ -111,7 +111,11 @@ class ShareMeasure {
     shared_.first_units[slot] = chunk.begin;
     const unsigned count = chunk.end - chunk.begin;
     const bool crossed = seen == Seen::crossed;
-    if (crossed) patch_of(slot) = {plane, Surface::least_inverse_depth(look)};
+    if (crossed) {  // one by one: nvcc copies a whole that ends in padding byte by byte
+      CrossedPatch& patch = patch_of(slot);
+      patch.plane = plane;
+      patch.least_inverse_depth = Surface::least_inverse_depth(look);
+    }
     const unsigned begin =
         crossed ? MeasureShared::kSeen - count - atomicAdd(&shared_.crossed_count, count)
                 : atomicAdd(&shared_.seen_count, count);
