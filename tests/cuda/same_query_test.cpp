@@ -401,8 +401,9 @@ TEST(TakenDevice, AnswersABatch) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.25, 20, 4);
-  std::vector<Pose> poses(600);
-  for (int k = 0; k < 600; ++k) poses[k] = pose_of(k);
+  constexpr int kPoses = 96;
+  std::vector<Pose> poses(kPoses);
+  for (int k = 0; k < kPoses; ++k) poses[k] = pose_of(k);
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     std::vector<Result> expected(poses.size());
     Query(tool, {.measure = measure}).run(cloud, poses, expected);
