@@ -68,7 +68,12 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
   result.inside = add_up(surface, to_surface, inside, region, sum);
-  if (memory_) remember(surface, to_surface, to_world, inside);
+  if (!memory_) return;
+  const bool counts_any = result.boundary + result.inside > 0;
+  if (counts_any || contacts != nullptr)
+    remember(surface, to_surface, to_world, inside);
+  else
+    memory_->turn();  // in free space there is nothing to look for
 }
 
 template <class Known, class Rows>
