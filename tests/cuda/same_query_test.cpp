@@ -33,6 +33,12 @@ Pose pose_of(int k) {
            0.8 + 0.45 * fraction(0.569840)}};
 }
 
+std::vector<Pose> poses_of(int count) {
+  std::vector<Pose> poses;
+  for (int k = 0; k < count; ++k) poses.push_back(pose_of(k));
+  return poses;
+}
+
 // Where there are more poses than results, they begin again.
 void expect_same_batch(Query& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
@@ -112,11 +118,8 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   const DepthImage depth = synthetic::render_with_kinect_noise(*scene.surface, scene.camera, 1);
   const PreparedCloud cloud(make_cloud(depth, scene.camera, NormalOptions{}));
   constexpr int kPoses = 192;
-  std::vector<Pose> poses(kPoses);
-  for (int k = 0; k < kPoses; ++k) {
-    poses[k] = pose_of(k);
-    poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
-  }
+  std::vector<Pose> poses = poses_of(kPoses);
+  for (int k = 0; k < kPoses; ++k) poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
   for (const ToolModel& tool :
        {testing::lattice_cube(0.02, 20, 1), testing::lattice_cube(0.03, 20, 1),
         testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)}) {
@@ -401,9 +404,7 @@ TEST(TakenDevice, AnswersABatch) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.25, 20, 4);
-  constexpr int kPoses = 96;
-  std::vector<Pose> poses(kPoses);
-  for (int k = 0; k < kPoses; ++k) poses[k] = pose_of(k);
+  const std::vector<Pose> poses = poses_of(96);
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     std::vector<Result> expected(poses.size());
     Query(tool, {.measure = measure}).run(cloud, poses, expected);
@@ -426,9 +427,7 @@ TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
   if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
-  constexpr int kPoses = 40000;
-  std::vector<Pose> poses(kPoses);
-  for (int k = 0; k < kPoses; ++k) poses[k] = pose_of(k);
+  const std::vector<Pose> poses = poses_of(40000);
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     QueryOptions options;
     options.measure = measure;

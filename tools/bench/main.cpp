@@ -40,10 +40,9 @@ int main(int argc, char** argv) {
                       "scaling: beside the measure as printed, by the algorithm as printed");
   tool.app()
       .get_option("--device")
-      ->description(
-          "scaling: the device to time: cuda, cuda:N, or auto (cuda); accuracy, extremes, replay "
-          "and tradeoff: where to query, with the same results: cuda, cuda:N, cpu, or auto (cpu); "
-          "all others: cpu, or auto (cpu)");
+      ->description("Where to query, with the same results: cpu, and of " +
+                    vpm::bench::suite_names(true) +
+                    " cuda or cuda:N; auto is the CPU, of scaling, which times a device, cuda");
   tool.computes_on_devices();
   return tool.run(argc, argv, [&] {
     const bool asks_device = tool.common().device != "auto" || vpm::bench::needs_device(suite);

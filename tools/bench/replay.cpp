@@ -93,14 +93,14 @@ Report run_replay(const SuiteOptions& options) {
                      {"shape", "twisted torus, 0.25 m"},
                      {"spheres", tool.levels},
                      {"recording", synthetic ? "synthetic" : fs::path(folder).filename().string()}};
-  std::vector<std::function<void()>> parts{[&] { time_queries(tool, options, report); },
-                                           [&] { time_points_outside(tool, options, report); },
-                                           [&] { run_stream(tool, folder, options, report); },
-                                           [&] { run_soak(tool, folder, options, report); }};
-  if (!options.device.is_cuda()) {
-    parts.insert(parts.begin(), [&] { time_frames(options.quick, report); });
-    parts.insert(parts.begin() + 2, [&] { time_coherence(tool, options.quick, report); });
-  }
+  const bool on_cpu = !options.device.is_cuda();
+  std::vector<std::function<void()>> parts;
+  if (on_cpu) parts.emplace_back([&] { time_frames(options.quick, report); });
+  parts.emplace_back([&] { time_queries(tool, options, report); });
+  if (on_cpu) parts.emplace_back([&] { time_coherence(tool, options.quick, report); });
+  parts.emplace_back([&] { time_points_outside(tool, options, report); });
+  parts.emplace_back([&] { run_stream(tool, folder, options, report); });
+  parts.emplace_back([&] { run_soak(tool, folder, options, report); });
   for (std::size_t k = 0; k < parts.size(); ++k) {
     parts[k]();
     if (options.progress)

@@ -43,11 +43,6 @@ PreparedChange prepare_frame(FrameReader& reader, std::size_t frame) {
   return prepared;
 }
 
-Result ask(Query& query, const DepthFrame* on_device, const PreparedCloud* cloud,
-           const Pose& pose) {
-  return on_device != nullptr ? query.run(*on_device, pose) : query.run(*cloud, pose);
-}
-
 // The point in the middle of the image's points that is nearer than half of its neighbourhood.
 std::size_t middle_point(const PreparedCloud& cloud) {
   const Vec3 camera = cloud.camera_to_world().translation - cloud.origin();
@@ -124,8 +119,9 @@ Pass pass_over(const Stream& stream, const SampledPath& path, Query& query) {
       pass.prepare_ms.push_back(1e3 * change->seconds);
     }
     clock.begin_step();
-    const DepthFrame* const on_device = feed.depth_frame();
-    const Result result = ask(query, on_device, on_device ? nullptr : &feed.cloud(), path.pose(k));
+    const DepthFrame* const frame = feed.depth_frame();
+    const Result result =
+        frame != nullptr ? query.run(*frame, path.pose(k)) : query.run(feed.cloud(), path.pose(k));
     clock.end_step();
     if (k % kProfileEvery == 0) pass.profile.push_back(result.volume_fraction);
   }
@@ -226,7 +222,8 @@ std::string soak_round(const Stream& stream, FrameReader& reader, const SampledP
   for (std::size_t f = 0; f < frames; ++f) {
     const PreparedChange frame = prepare_frame(reader, f);
     for (std::size_t k = f * path.steps() / frames; k < (f + 1) * path.steps() / frames; ++k)
-      hash.add(ask(query, frame.depth ? &*frame.depth : nullptr, frame.cloud.get(), path.pose(k)));
+      hash.add(frame.depth ? query.run(*frame.depth, path.pose(k))
+                           : query.run(*frame.cloud, path.pose(k)));
   }
   return hash.value();
 }

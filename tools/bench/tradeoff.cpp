@@ -304,8 +304,8 @@ class Tradeoff {
         const ToolModel packed = packed_for(t.solid.solid(), f.scale);
         f.packed = static_cast<std::uint32_t>(packed.spheres.size());
         set_thread_count(1);
-        query_options.level = 0;
-        f.packed_errors = measure(c, packed, query_options, sensing(noise), f.packed_us);
+        f.packed_errors =
+            measure(c, packed, {.device = options_.device}, sensing(noise), f.packed_us);
         set_thread_count(0);
         fitted_.push_back(f);
       }
