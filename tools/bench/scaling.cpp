@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
@@ -26,6 +28,9 @@ constexpr std::uint64_t kNoiseSeed = 1;
 
 // The level of figure 9.
 constexpr std::uint32_t kPathLevel = 17000;
+
+// The algorithm as printed, in the report: with its traversals in one kernel, launched.
+constexpr const char* kPrinted[] = {"baseline", "launched"};
 
 std::vector<std::uint32_t> levels_of(const SuiteOptions& options) {
   if (options.quick) return {250, 1000};
@@ -83,24 +88,52 @@ std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud
   return path;
 }
 
-// Microseconds of each round of each pose.
-using Times = std::vector<std::vector<double>>;
+// One way to have a pose's result, and what it took: microseconds, round by round, pose by pose.
+struct Contender {
+  std::string name;
+  std::function<void(const Pose&)> run;
+  std::vector<std::vector<double>> rounds;
+};
 
 double median_of(const std::vector<double>& samples) {
   return spread_of(samples).median;
 }
 
-std::vector<double> all_of(const Times& times) {
-  std::vector<double> all;
-  for (const auto& of_pose : times) all.insert(all.end(), of_pose.begin(), of_pose.end());
-  std::sort(all.begin(), all.end());
-  return all;
+// From the call to the result. Rounds of all contenders take turns, so that a slow moment of the
+// machine, which outlasts a round of the fastest, meets one round of it and not all.
+void time(std::vector<Contender>& contenders, const std::vector<Pose>& path, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    for (Contender& contender : contenders) {
+      contender.run(path.back());  // warms up: the others have had the caches
+      std::vector<double>& took = contender.rounds.emplace_back();
+      for (const Pose& pose : path) {
+        const auto begin = std::chrono::steady_clock::now();
+        contender.run(pose);
+        took.push_back(
+            std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+                .count());
+      }
+    }
+  }
 }
 
-nlohmann::json in_words(const std::string& name, const Times& times) {
-  const std::vector<double> all = all_of(times);
-  const auto p99 = static_cast<std::size_t>(0.99 * static_cast<double>(all.size() - 1));
-  return {{name + "_median_us", median_of(all)}, {name + "_p99_us", all[p99]}};
+// Medians of the rounds' medians and p99.
+nlohmann::json in_words(const Contender& contender) {
+  std::vector<double> medians, p99s;
+  for (std::vector<double> took : contender.rounds) {
+    medians.push_back(median_of(took));
+    const auto p99 = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(took.size() - 1));
+    std::nth_element(took.begin(), took.begin() + p99, took.end());
+    p99s.push_back(took[static_cast<std::size_t>(p99)]);
+  }
+  return {{contender.name + "_median_us", median_of(medians)},
+          {contender.name + "_p99_us", median_of(p99s)}};
+}
+
+double median_at(const Contender& contender, std::size_t pose) {
+  std::vector<double> of_pose;
+  for (const std::vector<double>& took : contender.rounds) of_pose.push_back(took[pose]);
+  return median_of(of_pose);
 }
 
 Device device_of(const SuiteOptions& options) {
@@ -157,122 +190,88 @@ class Scaling {
   }
 
  private:
-  // From the call to the result.
-  template <class Body>
-  Times time(const std::vector<Pose>& path, const Body& body) const {
-    Times times(path.size());
-    for (int round = -1; round < rounds_; ++round) {  // the first warms up
-      for (std::size_t k = 0; k < path.size(); ++k) {
-        const auto begin = std::chrono::steady_clock::now();
-        body(path[k]);
-        const std::chrono::duration<double, std::micro> took =
-            std::chrono::steady_clock::now() - begin;
-        if (round >= 0) times[k].push_back(took.count());
-      }
-    }
-    return times;
-  }
-
-  // Adds to `row` what a measure takes on the device.
-  Times measure_ours(const ToolModel& tool, const Level& level, Measure measure,
-                     const std::string& name, const PreparedCloud& cloud,
-                     const std::vector<Pose>& path, nlohmann::json& row) const {
-    const auto query = make_device_measure(
-        tool, level, {.measure = measure, .device = device_, .counts_points = false});
-    std::vector<double> flood;
-    Times times = time(path, [&](const Pose& pose) {
-      query->run(cloud, pose);
-      flood.push_back(query->flood_microseconds());
-    });
-    row.update(in_words(name, times));
-    row[name + "_flood_us"] = median_of(flood);
-    return times;
-  }
+  // The algorithm as printed, its traversals in one kernel and launched by the device.
+  using Printed = std::vector<std::unique_ptr<PaperBaseline>>;
 
   void measure(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
                const std::vector<Pose>& path) {
     nlohmann::json row = {
         {"part", "spheres"}, {"spheres", level.sphere_count}, {"poses", path.size()}};
-    const Times refined = measure_ours(tool, level, Measure::refined, "refined", cloud, path, row);
-    const Times paper = measure_ours(tool, level, Measure::paper, "paper", cloud, path, row);
-    Printed baseline;
-    if (options_.baseline) baseline = measure_baseline(tool, level, cloud, path, row);
-    compare(tool, level, cloud, path, row);
+    const auto ours = [&](Measure measure) {
+      return make_device_measure(tool, level,
+                                 {.measure = measure, .device = device_, .counts_points = false});
+    };
+    const auto refined = ours(Measure::refined), paper = ours(Measure::paper);
+    Printed printed;
+    if (options_.baseline)
+      for (const Traversals traversals : {Traversals::in_one_kernel, Traversals::launched})
+        printed.push_back(make_paper_baseline(tool, level, cloud, traversals, device_.index));
+
+    std::vector<Contender> contenders;
+    for (const auto& [name, query] : {std::pair{"refined", refined.get()}, {"paper", paper.get()}})
+      contenders.push_back({name, [&, query](const Pose& pose) { query->run(cloud, pose); }, {}});
+    for (std::size_t k = 0; k < printed.size(); ++k)
+      contenders.push_back({kPrinted[k], [&, k](const Pose& pose) { printed[k]->run(pose); }, {}});
+    time(contenders, path, rounds_);
+
+    for (const Contender& contender : contenders) row.update(in_words(contender));
+    row["refined_flood_us"] = flood_of(*refined, cloud, path);
+    row["paper_flood_us"] = flood_of(*paper, cloud, path);
+    add_phases(printed, path, row);
+    compare(tool, level, cloud, path, printed, row);
     report_.results.push_back(row);
     write_line(row);
     write_row(row);
-    if (level.sphere_count != kPathLevel && !options_.quick) return;
-    QueryOptions options;
-    options.level = level.sphere_count;
-    Query query(tool, options);
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      report_.results.push_back({{"part", "frame"},
-                                 {"spheres", level.sphere_count},
-                                 {"frame", k},
-                                 {"volume_fraction", query.run(cloud, path[k]).volume_fraction},
-                                 {"refined_us", median_of(refined[k])},
-                                 {"paper_us", median_of(paper[k])}});
-      if (!options_.baseline) continue;
-      report_.results.back()["baseline_us"] = median_of(baseline.in_one_kernel[k]);
-      report_.results.back()["launched_us"] = median_of(baseline.launched[k]);
-    }
+    if (level.sphere_count == kPathLevel || options_.quick)
+      add_frames(tool, level, cloud, path, contenders);
   }
 
-  // The algorithm as printed, its traversals in one kernel or launched by the device.
-  Times measure_printed(PaperBaseline& baseline, const std::string& name, const std::string& prefix,
-                        const std::vector<Pose>& path, nlohmann::json& row) const {
-    Times times = time(path, [&](const Pose& pose) { baseline.run(pose); });
-    std::vector<double> boundary, flood;
+  // Median microseconds on the device's clock.
+  static double flood_of(DeviceMeasure& query, const PreparedCloud& cloud,
+                         const std::vector<Pose>& path) {
+    std::vector<double> flood;
     for (const Pose& pose : path) {
-      const PaperBaseline::Phases phases = baseline.run_in_phases(pose);
-      boundary.push_back(phases.boundary);
-      flood.push_back(phases.flood);
+      query.run(cloud, pose);
+      flood.push_back(query.flood_microseconds());
     }
-    row.update(in_words(name, times));
-    row[prefix + "boundary_us"] = median_of(boundary);
-    row[prefix + "flood_us"] = median_of(flood);
-    return times;
+    return median_of(flood);
   }
 
-  struct Printed {
-    Times in_one_kernel, launched;
-  };
-
-  // The ratio is that of the faster one.
-  Printed measure_baseline(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
-                           const std::vector<Pose>& path, nlohmann::json& row) const {
-    const auto measured = [&](Traversals traversals, const std::string& name,
-                              const std::string& prefix) {
-      const auto baseline = make_paper_baseline(tool, level, cloud, traversals, device_.index);
-      return measure_printed(*baseline, name, prefix, path, row);
-    };
-    Printed printed{measured(Traversals::in_one_kernel, "baseline", ""),
-                    measured(Traversals::launched, "launched", "launched_")};
+  // What the algorithm as printed does when; the ratio is that of its faster form.
+  static void add_phases(const Printed& printed, const std::vector<Pose>& path,
+                         nlohmann::json& row) {
+    for (std::size_t k = 0; k < printed.size(); ++k) {
+      std::vector<double> boundary, flood;
+      for (const Pose& pose : path) {
+        const PaperBaseline::Phases phases = printed[k]->run_in_phases(pose);
+        boundary.push_back(phases.boundary);
+        flood.push_back(phases.flood);
+      }
+      const std::string prefix = k == 0 ? "" : "launched_";
+      row[prefix + "boundary_us"] = median_of(boundary);
+      row[prefix + "flood_us"] = median_of(flood);
+    }
+    if (printed.empty()) return;
     const auto median = [&](const char* name) { return row[name].get<double>(); };
     row["ratio"] = std::min(median("baseline_median_us"), median("launched_median_us")) /
                    median("refined_median_us");
-    return printed;
   }
 
   // Poses whose results on the device are those of the measure as printed on the CPU: all of them
-  // from our algorithm, volume, counts and states from the baseline.
+  // from our algorithm, volume, counts and states from the algorithm as printed.
   void compare(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
-               const std::vector<Pose>& path, nlohmann::json& row) {
+               const std::vector<Pose>& path, const Printed& printed, nlohmann::json& row) {
     QueryOptions options;
     options.measure = Measure::paper;
     options.level = level.sphere_count;
     Query on_cpu(tool, options);
     options.device = device_;
     Query on_device(tool, options);
-    std::vector<std::unique_ptr<PaperBaseline>> baselines;
-    if (options_.baseline)
-      for (const Traversals traversals : {Traversals::in_one_kernel, Traversals::launched})
-        baselines.push_back(make_paper_baseline(tool, level, cloud, traversals, device_.index));
     std::size_t same_of_ours = 0, same = 0;
     for (const Pose& pose : path) {
       const Result expected = on_cpu.run(cloud, pose);
       same_of_ours += expected == on_device.run(cloud, pose);
-      same += std::ranges::all_of(baselines, [&](const auto& baseline) {
+      same += std::ranges::all_of(printed, [&](const auto& baseline) {
         const Result result = baseline->run(pose);
         return result.volume == expected.volume && result.points == expected.points &&
                result.boundary == expected.boundary && result.inside == expected.inside &&
@@ -282,9 +281,25 @@ class Scaling {
     row["same_poses_of_paper"] = same_of_ours;
     if (same_of_ours != path.size())
       report_.failure = "the measure as printed differs between CPU and device";
-    if (baselines.empty()) return;
+    if (printed.empty()) return;
     row["same_poses"] = same;
     if (same != path.size()) report_.failure = "the baseline is not the measure as printed";
+  }
+
+  void add_frames(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
+                  const std::vector<Pose>& path, const std::vector<Contender>& contenders) {
+    QueryOptions options;
+    options.level = level.sphere_count;
+    Query query(tool, options);
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      nlohmann::json frame = {{"part", "frame"},
+                              {"spheres", level.sphere_count},
+                              {"frame", k},
+                              {"volume_fraction", query.run(cloud, path[k]).volume_fraction}};
+      for (const Contender& contender : contenders)
+        frame[contender.name + "_us"] = median_at(contender, k);
+      report_.results.push_back(std::move(frame));
+    }
   }
 
   void write_row(const nlohmann::json& row) {
