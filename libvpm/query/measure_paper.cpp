@@ -1,16 +1,10 @@
 #include "libvpm/query/measure_paper.h"
 
 #include <algorithm>
-#include <atomic>
+
+#include "libvpm/core/atomic_add.h"
 
 namespace vpm {
-namespace {
-
-void add_atomically(std::int64_t& sum, std::int64_t term) {
-  std::atomic_ref<std::int64_t>(sum).fetch_add(term, std::memory_order_relaxed);
-}
-
-}  // namespace
 
 PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level, PointLocation location)
     : tool_(tool), level_(level), location_(location) {

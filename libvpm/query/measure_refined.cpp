@@ -1,7 +1,7 @@
 #include "libvpm/query/measure_refined.h"
 
 #include <algorithm>
-#include <mutex>
+#include <atomic>
 
 #include "libvpm/query/seen_shares.h"
 #include "libvpm/query/share_classifier.h"
@@ -98,8 +98,7 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
                                      const Inside& inside, ParallelRegion& region, ToolSum& sum) {
   constexpr std::size_t kGrain = 8;
   ContactMemory* const contacts = this->contacts<Surface>();
-  std::mutex adding;
-  std::uint32_t all = 0;
+  std::atomic<std::uint32_t> all{0};
   region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
     std::uint32_t count = 0;
@@ -119,9 +118,8 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
           count += add_up(surface, to_surface, inside, first, last, of_all,
                           [](std::uint32_t, const ToolSum&) {});
         });
-    const std::lock_guard lock(adding);
-    sum.add(of_all);
-    all += count;
+    sum.add_atomically(of_all);
+    if (count > 0) all.fetch_add(count, std::memory_order_relaxed);
   });
   return all;
 }

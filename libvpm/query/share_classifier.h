@@ -126,23 +126,17 @@ class ShareClassifier {
     if constexpr (Surface::kTellsInside) {
       if (memory_ != nullptr) {
         Contact& contact = memory_->begin(root);
-        SamplesWithSlopes samples(reach_, contact.slopes);
-        const std::uint32_t found = classify_mixed(root, look, is_crossed, samples);
+        const std::uint32_t found =
+            is_crossed ? classify_crossed(root, look, SlopeNotes(reach_, contact.slopes))
+                       : classify_nodes(root, SamplesWithSlopes(reach_, contact.slopes));
         const ShareCluster& cluster = level_.cluster(root);
         if (next_busy(states_.cells, cluster.begin, cluster.end) == cluster.end)
           contact.clearance = is_crossed ? clearance(root) : clearance_of_blocks(root);
         return found;
       }
     }
-    SamplesOnHost<Surface> samples;
-    return classify_mixed(root, look, is_crossed, samples);
-  }
-  template <class Samples>
-  std::uint32_t classify_mixed(std::uint32_t root, const Look& look, bool is_crossed,
-                               Samples& samples) {
-    if (!is_crossed) return classify_nodes(root, samples);
-    classify_crossed(root, look, samples);
-    return count_points(level_.cluster(root), look);
+    return is_crossed ? classify_crossed(root, look, CrossedTogether{})
+                      : classify_nodes(root, SamplesOnHost<Surface>{});
   }
 
   // What is known of clusters from poses before, and remembered for those that follow.
@@ -205,7 +199,7 @@ class ShareClassifier {
 
   // Of a cluster that is no patch.
   template <class Samples>
-  std::uint32_t classify_nodes(std::uint32_t root, Samples& samples) {
+  std::uint32_t classify_nodes(std::uint32_t root, Samples&& samples) {
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
     const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
     std::uint32_t found = 0, node = first;
@@ -247,9 +241,9 @@ class ShareClassifier {
   }
 
   // Of a patch through which the surface passes as one plane. Where that is further from a node
-  // than it reaches, it is so from each share in it.
-  template <class Samples>
-  void classify_crossed(std::uint32_t root, const Look& look, Samples& samples) {
+  // than it reaches, it is so from each share in it. `crossed`: CrossedTogether or SlopeNotes.
+  template <class Crossed>
+  std::uint32_t classify_crossed(std::uint32_t root, const Look& look, Crossed crossed) {
     constexpr double kRounding = 1e-9;  // of the tool's reach: far above that of a distance
     const CrossingPlane& plane = states_.planes[root];
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
@@ -269,17 +263,18 @@ class ShareClassifier {
       } else {
         if (next == node + 1) {
           for (std::uint32_t i = part.begin; i < part.end; ++i)
-            classify_crossed(i, plane, look, samples);
+            classify_crossed(i, plane, look, crossed);
         }
         ++node;
       }
     }
+    return count_points(level_.cluster(root), look);
   }
 
   // What a share's own pixels show to be free is free, whatever the mean of all says.
-  template <class Samples>
+  template <class Crossed>
   void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look,
-                        Samples& samples) {
+                        Crossed& crossed) {
     const CellView view = level_.cell(i);
     const double distance = plane.distance(view.center);
     const Vec3 center = to_surface_ * view.center;
@@ -293,9 +288,9 @@ class ShareClassifier {
       CellResult& result = states_.results[i];
       result = {};
       const CellMeasure measure = this->measure(view);
-      samples.begin_share();
+      crossed.begin_share();
       for (std::uint32_t b = view.begin; b < view.end; ++b)
-        measure.add_block(b, plane, samples, result);
+        measure.add_block(b, plane, crossed, result);
       take_result(i, Passage::patch);
     }
   }

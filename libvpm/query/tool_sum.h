@@ -1,6 +1,7 @@
 // Volume, force and torque summed over parts of a tool, whatever the order.
 #pragma once
 
+#include "libvpm/core/atomic_add.h"
 #include "libvpm/core/fixed_sum.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
@@ -36,6 +37,15 @@ struct ToolSum {
   VPM_HD void add(const ToolSum& other) {
     volume.add(other.volume);
     for (int k = 0; k < 3; ++k) force[k].add(other.force[k]), torque[k].add(other.torque[k]);
+  }
+
+  // Many threads may do so at once.
+  void add_atomically(const ToolSum& other) {
+    vpm::add_atomically(volume.value, other.volume.value);
+    for (int k = 0; k < 3; ++k) {
+      vpm::add_atomically(force[k].value, other.force[k].value);
+      vpm::add_atomically(torque[k].value, other.torque[k].value);
+    }
   }
 
   void add(const SumChange& change) {
