@@ -14,9 +14,6 @@
 namespace vpm::bench {
 namespace {
 
-// Cases know no options; one suite runs at a time.
-Device device_of_suite;
-
 struct Outcome {
   std::string said = "right";  // right, refused or wrong
   bool holds = false;
@@ -75,15 +72,10 @@ Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals) {
   return cloud;
 }
 
-QueryOptions options_of(Measure measure) {
-  QueryOptions options;
-  options.measure = measure;
-  options.device = device_of_suite;
-  return options;
-}
-
-double ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose) {
-  return sound_fraction(Query(tool, options_of(measure)).run(PreparedCloud(cloud), pose));
+double ask(const Device& device, const ToolModel& tool, const Cloud& cloud, Measure measure,
+           const Pose& pose) {
+  Query query(tool, {.measure = measure, .device = device});
+  return sound_fraction(query.run(PreparedCloud(cloud), pose));
 }
 
 Camera small_camera() {
@@ -99,10 +91,10 @@ Cloud see(const synthetic::Surface& surface, const Camera& camera) {
 }
 
 Report run_extremes(const SuiteOptions& options) {
-  device_of_suite = options.device;
   std::vector<ExtremeCase> cases;
-  for (const auto& list :
-       {extreme_scales(options.quick), extreme_clouds(options.quick), extreme_tools(options.quick)})
+  for (const auto& list : {extreme_scales(options.device, options.quick),
+                           extreme_clouds(options.device, options.quick),
+                           extreme_tools(options.device, options.quick)})
     cases.insert(cases.end(), list.begin(), list.end());
   Report report;
   report.suite = "extremes";

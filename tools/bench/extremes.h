@@ -25,12 +25,12 @@ struct ExtremeCase {
   std::function<Deviation()> run;  // what it says does not matter where `refused`
 };
 
-// From mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, the seed being the index.
-std::vector<ExtremeCase> extreme_scales(bool quick);
+// Cases that ask this device. From mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, the seed being the index.
+std::vector<ExtremeCase> extreme_scales(const Device& device, bool quick);
 // Clouds and images: far origins, few, many and coinciding points, odd normals, odd depths.
-std::vector<ExtremeCase> extreme_clouds(bool quick);
+std::vector<ExtremeCase> extreme_clouds(const Device& device, bool quick);
 // Tools of one to a million spheres, of very different spheres, needles and sheets; poses.
-std::vector<ExtremeCase> extreme_tools(bool quick);
+std::vector<ExtremeCase> extreme_tools(const Device& device, bool quick);
 
 // The part of the tool's volume; not a number if anything in the result is none, or no volume.
 double sound_fraction(const Result& result);
@@ -41,9 +41,9 @@ Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals);
 // A cube of edge 2 at the origin with n^3 equal spheres that touch.
 Packing lattice_packing(int n);
 
-// Of a query on the suite's device.
-QueryOptions options_of(Measure measure);
-double ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose = {});
+// The part of the tool's volume that is inside, by a query on this device.
+double ask(const Device& device, const ToolModel& tool, const Cloud& cloud, Measure measure,
+           const Pose& pose = {});
 
 // The surface, or an image that a camera took, with estimated normals.
 Camera small_camera();  // 160 x 120 pixels, at the world's origin

@@ -53,17 +53,18 @@ Cloud repeated(std::size_t count, Vec3f at, Vec3f normal) {
   return plane_points(std::vector<Vec3f>(count, at), std::vector<Vec3f>(count, normal));
 }
 
-void add_points(std::vector<ExtremeCase>& cases, bool quick) {
+void add_points(std::vector<ExtremeCase>& cases, const Device& device, bool quick) {
   const auto add = [&](const std::string& name, const std::function<Deviation()>& run,
                        bool refused = false) {
     cases.push_back({"points", name, refused, run});
   };
   const Vec3f up{0, 0, 1};
-  const auto refined = [](const ToolModel& tool, const Cloud& cloud, double truth, double bound) {
-    return Deviation{ask(tool, cloud, Measure::refined), truth, bound};
+  const auto refined = [device](const ToolModel& tool, const Cloud& cloud, double truth,
+                                double bound) {
+    return Deviation{ask(device, tool, cloud, Measure::refined), truth, bound};
   };
-  const auto paper = [](const ToolModel& tool, const Cloud& cloud, double truth) {
-    return Deviation{ask(tool, cloud, Measure::paper), truth, kTight};
+  const auto paper = [device](const ToolModel& tool, const Cloud& cloud, double truth) {
+    return Deviation{ask(device, tool, cloud, Measure::paper), truth, kTight};
   };
   add("none", [=] { return refined(cube_of_64(), {}, 0, 0); });
   add("none, paper", [=] { return paper(cube_of_64(), {}, 0); });
@@ -103,11 +104,12 @@ void add_points(std::vector<ExtremeCase>& cases, bool quick) {
       true);
 }
 
-void add_normals(std::vector<ExtremeCase>& cases) {
+void add_normals(std::vector<ExtremeCase>& cases, const Device& device) {
   const auto add = [&](const std::string& name, Vec3f normal, bool refused) {
     cases.push_back({"normals", name, refused, [=] {
-                       return Deviation{ask(cube_of_1(), repeated(3, {}, normal), Measure::refined),
-                                        0.5, kSampled};
+                       return Deviation{
+                           ask(device, cube_of_1(), repeated(3, {}, normal), Measure::refined), 0.5,
+                           kSampled};
                      }});
   };
   add("zero", {0, 0, 0}, true);
@@ -122,7 +124,7 @@ void add_normals(std::vector<ExtremeCase>& cases) {
          [=] {
            const Cloud cloud = plane_points({{}, {}}, {{0, 0, 1}, {0, 0, -1}});
            const double truth = measure == Measure::paper ? ball_part(0) : 0.5;
-           return Deviation{ask(cube_of_1(), cloud, measure), truth, kSampled};
+           return Deviation{ask(device, cube_of_1(), cloud, measure), truth, kSampled};
          }});
   }
   cases.push_back({"normals", "zero and not a number among scattered points: left out", false, [] {
@@ -135,13 +137,14 @@ void add_normals(std::vector<ExtremeCase>& cases) {
 }
 
 // A cube of 0.2 depths, half of it behind a wall at that depth, 160 x 120 pixels.
-Deviation half_behind(const DepthImage& image, const Camera& camera, const Pose& pose, double edge,
-                      double truth) {
+Deviation half_behind(const Device& device, const DepthImage& image, const Camera& camera,
+                      const Pose& pose, double edge, double truth) {
   Packing packing = lattice_packing(4);
   for (Sphere& s : packing.spheres) s = {0.5 * edge * s.center, 0.5 * edge * s.radius};
   for (Vec3& v : packing.solid.vertices) v = 0.5 * edge * v;
   const ToolModel tool = build_tool_model(packing, {});
-  return {ask(tool, make_cloud(image, camera, {}), Measure::refined, pose), truth, kSampled};
+  return {ask(device, tool, make_cloud(image, camera, {}), Measure::refined, pose), truth,
+          kSampled};
 }
 
 DepthImage flat(const Camera& camera, float depth) {
@@ -149,7 +152,7 @@ DepthImage flat(const Camera& camera, float depth) {
           std::vector<float>(std::size_t{camera.width} * camera.height, depth)};
 }
 
-void add_images(std::vector<ExtremeCase>& cases) {
+void add_images(std::vector<ExtremeCase>& cases, const Device& device) {
   const Camera camera = small_camera();
   const auto add = [&](const std::string& name, const std::function<Deviation()>& run) {
     cases.push_back({"images", name, false, run});
@@ -158,35 +161,36 @@ void add_images(std::vector<ExtremeCase>& cases) {
     char name[40];
     std::snprintf(name, sizeof name, "depth %g m", double{depth});
     add(name, [=] {
-      return half_behind(flat(camera, depth), camera, {{}, {0, 0, double{depth}}}, 0.2 * depth,
-                         0.5);
+      return half_behind(device, flat(camera, depth), camera, {{}, {0, 0, double{depth}}},
+                         0.2 * depth, 0.5);
     });
   }
   add("nothing measured", [=] {
-    return half_behind(flat(camera, 0), camera, {{}, {0, 0, 1}}, 0.2, 0);
+    return half_behind(device, flat(camera, 0), camera, {{}, {0, 0, 1}}, 0.2, 0);
   });
   add("depths that have no inverse", [=] {
-    return half_behind(flat(camera, 1e-40f), camera, {{}, {0, 0, 1}}, 0.2, 0);
+    return half_behind(device, flat(camera, 1e-40f), camera, {{}, {0, 0, 1}}, 0.2, 0);
   });
   add("one valid pixel", [=] {
     DepthImage image = flat(camera, 0);
     image.depth[image.index(80, 60)] = 1;
-    Deviation d = half_behind(image, camera, {{}, {0, 0, 1}}, 0.2, 0);
+    Deviation d = half_behind(device, image, camera, {{}, {0, 0, 1}}, 0.2, 0);
     const double side = 1.1 / 131.25 / 0.2;  // of the pixel at the far face, of the cube's edge
     d.bound = 4 * side * side;               // known only along one ray, of which half is behind
     return d;
   });
   add("the tool in the image's corner", [=] {
     const double edge = 0.04;  // 5 pixels: every window is cut by the border
-    return half_behind(flat(camera, 1), camera, {{}, {-0.57, -0.42, 1}}, edge, 0.5);
+    return half_behind(device, flat(camera, 1), camera, {{}, {-0.57, -0.42, 1}}, edge, 0.5);
   });
   add("origin at 10^7 m", [=] {
     const Vec3 far{1e7, -1e7, 1e7};
     Camera moved = camera;
     moved.to_world.translation = far;
-    const Deviation here = half_behind(flat(camera, 1), camera, {{}, {0, 0, 1.03}}, 0.2, 0.5);
+    const Deviation here =
+        half_behind(device, flat(camera, 1), camera, {{}, {0, 0, 1.03}}, 0.2, 0.5);
     const Deviation there =
-        half_behind(flat(moved, 1), moved, {{}, far + Vec3{0, 0, 1.03}}, 0.2, 0);
+        half_behind(device, flat(moved, 1), moved, {{}, far + Vec3{0, 0, 1.03}}, 0.2, 0);
     return Deviation{there.value, here.value, kTight};
   });
 }
@@ -205,11 +209,11 @@ Packing lattice_packing(int n) {
   return packing;
 }
 
-std::vector<ExtremeCase> extreme_clouds(bool quick) {
+std::vector<ExtremeCase> extreme_clouds(const Device& device, bool quick) {
   std::vector<ExtremeCase> cases;
-  add_points(cases, quick);
-  add_normals(cases);
-  add_images(cases);
+  add_points(cases, device, quick);
+  add_normals(cases, device);
+  add_images(cases, device);
   return cases;
 }
 

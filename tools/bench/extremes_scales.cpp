@@ -52,7 +52,7 @@ Cloud scattered(const Cloud& cloud) {
 
 // The largest error of the refined volume over three depths and both kinds of cloud, as a part of
 // the tool's volume; not a number if the paper's results are not sound.
-Deviation whole_pipeline(const std::string& shape, double scale) {
+Deviation whole_pipeline(const Device& device, const std::string& shape, double scale) {
   const std::string text = off_text(make_shape(shape), scale);
   const Solid solid = make_solid(parse_mesh(std::as_bytes(std::span(text)), "tool.off")).solid;
   const ToolModel tool = make_tool(solid, {kSpheres});
@@ -67,9 +67,9 @@ Deviation whole_pipeline(const std::string& shape, double scale) {
     for (const double z : {0.93, 0.98, 1.03}) {
       const Pose pose{turned, scale * Vec3{0.01, -0.02, z}};
       const double part = truth.penetration(pose, *wall).volume / tool.volume;
-      const double error = std::abs(ask(tool, cloud, Measure::refined, pose) - part);
+      const double error = std::abs(ask(device, tool, cloud, Measure::refined, pose) - part);
       if (!(error <= worst)) worst = error;
-      if (std::isnan(ask(tool, cloud, Measure::paper, pose)))
+      if (std::isnan(ask(device, tool, cloud, Measure::paper, pose)))
         worst = std::numeric_limits<double>::quiet_NaN();
     }
   }
@@ -78,15 +78,15 @@ Deviation whole_pipeline(const std::string& shape, double scale) {
 
 }  // namespace
 
-std::vector<ExtremeCase> extreme_scales(bool quick) {
+std::vector<ExtremeCase> extreme_scales(const Device& device, bool quick) {
   constexpr double kDecades = 9;
   const std::vector<std::string> shapes{"cube", "tetrahedron", "octahedron", "torus"};
   std::vector<ExtremeCase> cases;
   const auto add = [&](const std::string& shape, double exponent) {
     char name[64];
     std::snprintf(name, sizeof name, "%s at 10^%.3f m", shape.c_str(), exponent);
-    cases.push_back(
-        {"scale", name, false, [=] { return whole_pipeline(shape, std::pow(10.0, exponent)); }});
+    cases.push_back({"scale", name, false,
+                     [=] { return whole_pipeline(device, shape, std::pow(10.0, exponent)); }});
   };
   add("cube", -kDecades);
   add("tetrahedron", kDecades);

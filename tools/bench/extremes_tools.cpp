@@ -15,15 +15,15 @@ Cloud floor_at(double z) {
 }
 
 // The refined volume against the exact one at a plane z = height.
-Deviation at_floor(const Packing& packing, double height, double bound) {
+Deviation at_floor(const Device& device, const Packing& packing, double height, double bound) {
   const ToolModel tool = build_tool_model(packing, {});
   validate(tool, "tool");
   const synthetic::SurfacePtr floor = synthetic::make_wall({0, 0, height}, {0, 0, 1});
   const double truth =
       synthetic::TrueSolid(packing.solid).penetration({}, *floor).volume / tool.volume;
-  if (std::isnan(ask(tool, floor_at(height), Measure::paper)))
+  if (std::isnan(ask(device, tool, floor_at(height), Measure::paper)))
     return {std::numeric_limits<double>::quiet_NaN(), truth, bound};
-  return {ask(tool, floor_at(height), Measure::refined), truth, bound};
+  return {ask(device, tool, floor_at(height), Measure::refined), truth, bound};
 }
 
 Packing two_spheres() {
@@ -47,20 +47,22 @@ Packing radii_over_six_decades() {
 
 // A point in the smallest sphere's centre: half of that sphere is inside, which is 1e-19 of the
 // tool and below what the sums resolve.
-Deviation touch_of_the_smallest() {
+Deviation touch_of_the_smallest(const Device& device) {
   const Packing packing = radii_over_six_decades();
   const ToolModel tool = build_tool_model(packing, {});
   const Sphere& smallest = packing.spheres.back();
   Cloud cloud = plane_points({{}}, {{0, 0, 1}});
   cloud.origin = smallest.center;
-  const Result r = Query(tool, options_of(Measure::paper)).run(PreparedCloud(cloud), {});
+  Query query(tool, {.measure = Measure::paper, .device = device});
+  const Result r = query.run(PreparedCloud(cloud), {});
   if (r.boundary != 1) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   constexpr double kResolution = 0x1p-60;
   return {sound_fraction(r), volume(smallest) / 2 / tool.volume, kResolution};
 }
 
 // A long or flat tool, packed, tilted into a wall that a camera sees.
-Deviation packed_into_wall(const Solid& solid, std::uint32_t spheres, double bound) {
+Deviation packed_into_wall(const Device& device, const Solid& solid, std::uint32_t spheres,
+                           double bound) {
   const ToolModel tool = make_tool(solid, {spheres});
   const synthetic::SurfacePtr wall = synthetic::make_wall({0, 0, 1}, {0, 0, -1});
   const Cloud cloud = see(*wall, small_camera());
@@ -70,28 +72,31 @@ Deviation packed_into_wall(const Solid& solid, std::uint32_t spheres, double bou
   for (const double z : {0.95, 1.0, 1.02}) {
     const Pose pose{turned, {0.013, -0.021, z}};
     const double part = truth.penetration(pose, *wall).volume / tool.volume;
-    const double error = std::abs(ask(tool, cloud, Measure::refined, pose) - part);
+    const double error = std::abs(ask(device, tool, cloud, Measure::refined, pose) - part);
     if (!(error <= worst)) worst = error;
   }
   return {worst, 0, bound};
 }
 
-void add_tools(std::vector<ExtremeCase>& cases, bool quick) {
+void add_tools(std::vector<ExtremeCase>& cases, const Device& device, bool quick) {
   const auto add = [&](const std::string& name, const std::function<Deviation()>& run) {
     cases.push_back({"tools", name, false, run});
   };
-  add("one sphere", [] { return at_floor(lattice_packing(1), 0.1, 0.02); });
-  add("two spheres", [] { return at_floor(two_spheres(), 0.3, 0.02); });
+  add("one sphere", [=] { return at_floor(device, lattice_packing(1), 0.1, 0.02); });
+  add("two spheres", [=] { return at_floor(device, two_spheres(), 0.3, 0.02); });
   const int edge = quick ? 20 : 100;
   add(quick ? "8000 spheres" : "a million spheres",
-      [=] { return at_floor(lattice_packing(edge), 0.123, 2e-3); });
-  add("radii from 1 to 1e-6", [] { return at_floor(radii_over_six_decades(), -0.2, 0.01); });
-  add("radii from 1 to 1e-6, the smallest touched", touch_of_the_smallest);
+      [=] { return at_floor(device, lattice_packing(edge), 0.123, 2e-3); });
+  add("radii from 1 to 1e-6",
+      [=] { return at_floor(device, radii_over_six_decades(), -0.2, 0.01); });
+  add("radii from 1 to 1e-6, the smallest touched", [=] { return touch_of_the_smallest(device); });
   const std::uint32_t spheres = quick ? 200 : 2000;
-  add("needle 1:1000",
-      [=] { return packed_into_wall(synthetic::make_box(0.2, 0.0002, 0.0002), spheres, 0.01); });
-  add("sheet 1:1000",
-      [=] { return packed_into_wall(synthetic::make_box(0.2, 0.2, 0.0002), spheres, 0.01); });
+  add("needle 1:1000", [=] {
+    return packed_into_wall(device, synthetic::make_box(0.2, 0.0002, 0.0002), spheres, 0.01);
+  });
+  add("sheet 1:1000", [=] {
+    return packed_into_wall(device, synthetic::make_box(0.2, 0.2, 0.0002), spheres, 0.01);
+  });
 }
 
 void add_refused_models(std::vector<ExtremeCase>& cases) {
@@ -119,16 +124,17 @@ void add_refused_models(std::vector<ExtremeCase>& cases) {
   });
 }
 
-void add_poses(std::vector<ExtremeCase>& cases) {
+void add_poses(std::vector<ExtremeCase>& cases, const Device& device) {
   const auto add = [&](const std::string& name, const std::function<Pose()>& make, bool refused) {
-    cases.push_back({"poses", name, refused, [=] {
-                       const ToolModel tool = build_tool_model(lattice_packing(2), {});
-                       const double camera = ask(
-                           tool, see(*synthetic::make_wall({0, 0, 9}, {0, 0, -1}), small_camera()),
-                           Measure::refined, make());
-                       const double points = ask(tool, floor_at(-1e3), Measure::paper, make());
-                       return Deviation{camera + points, 0, 0};
-                     }});
+    cases.push_back(
+        {"poses", name, refused, [=] {
+           const ToolModel tool = build_tool_model(lattice_packing(2), {});
+           const double camera =
+               ask(device, tool, see(*synthetic::make_wall({0, 0, 9}, {0, 0, -1}), small_camera()),
+                   Measure::refined, make());
+           const double points = ask(device, tool, floor_at(-1e3), Measure::paper, make());
+           return Deviation{camera + points, 0, 0};
+         }});
   };
   const auto text = [](const char* t) { return [t] { return pose_from_text(t); }; };
   add("10^15 m away", text("1e15,-1e15,1e15,0,0,0,1"), false);
@@ -155,11 +161,11 @@ void add_poses(std::vector<ExtremeCase>& cases) {
 
 }  // namespace
 
-std::vector<ExtremeCase> extreme_tools(bool quick) {
+std::vector<ExtremeCase> extreme_tools(const Device& device, bool quick) {
   std::vector<ExtremeCase> cases;
-  add_tools(cases, quick);
+  add_tools(cases, device, quick);
   add_refused_models(cases);
-  add_poses(cases);
+  add_poses(cases, device);
   return cases;
 }
 
