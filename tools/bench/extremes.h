@@ -25,7 +25,8 @@ struct ExtremeCase {
   std::function<Deviation()> run;  // what it says does not matter where `refused`
 };
 
-// Cases that ask this device. From mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, the seed being the index.
+// Cases that ask this device. From mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, the
+// seed being the index.
 std::vector<ExtremeCase> extreme_scales(const Device& device, bool quick);
 // Clouds and images: far origins, few, many and coinciding points, odd normals, odd depths.
 std::vector<ExtremeCase> extreme_clouds(const Device& device, bool quick);
