@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# cuda_report.sh OUT MESH [BUNDLE COMMIT]: all that the README tells of an NVIDIA device, measured on this machine in one call: builds,
-# packs MESH (the README's is bunny.off) with a hundred thousand and a million spheres, makes the cloud, checks and times. OUT gets
-# cuda.json, cuda_frames.json, cuda_frames_million.json, scaling.json, tradeoff.json and, where there are several devices,
-# cuda_devices.json. Of a machine that cannot build, BUNDLE is what scripts/bundle.sh made of the programs below elsewhere, of COMMIT.
+# cuda_report.sh OUT DATA [BUNDLE COMMIT]: all that the README tells of an NVIDIA device, measured on this machine in one call: builds,
+# packs DATA/meshes/bunny.off with a hundred thousand and a million spheres, makes the cloud, checks and times, and replays the stream
+# that is recorded in DATA. OUT gets cuda.json, cuda_frames.json, cuda_frames_million.json, scaling.json, tradeoff.json, replay.json
+# and, where there are several devices, cuda_devices.json. Of a machine that cannot build, BUNDLE is what scripts/bundle.sh made of the programs below elsewhere, of COMMIT.
 # A quarter of an hour on an H100, without the build. Exit code 1 if anything differs from the CPU.
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 if [[ $# -ne 2 && $# -ne 4 ]]; then
-  echo "usage: cuda_report.sh OUT MESH [BUNDLE COMMIT]" >&2
+  echo "usage: cuda_report.sh OUT DATA [BUNDLE COMMIT]" >&2
   exit 2
 fi
-out=$1 mesh=$2 bundle=${3:-} commit=${4:-}
+out=$1 data=$2 bundle=${3:-} commit=${4:-}
 nvidia-smi -L 2>/dev/null || { echo "cuda_report.sh: no NVIDIA device, or no driver for it" >&2; exit 3; }
 mkdir -p "$out"
 work=$(mktemp -d)
@@ -29,7 +29,7 @@ if [[ -z $bundle ]]; then
 fi
 
 tool() {  # SPHERES LEVELS
-  "$bundle/bin/vpm-pack" "$mesh" --spheres "$1" -o "$work/$1.vpmp" --quiet
+  "$bundle/bin/vpm-pack" "$data/meshes/bunny.off" --spheres "$1" -o "$work/$1.vpmp" --quiet
   "$bundle/bin/vpm-graph" "$work/$1.vpmp" ${2:+--levels "$2"} -o "$work/$1.vpmg" --quiet
 }
 tool 100000 1000,17000
@@ -47,4 +47,5 @@ if [[ $(nvidia-smi -L | wc -l) -gt 1 ]]; then
 fi
 "$bundle/bin/vpm-bench" scaling --all --baseline --out "$out" || failed=1
 "$bundle/bin/vpm-bench" tradeoff --device cuda --out "$out" || failed=1
+"$bundle/bin/vpm-bench" replay --device cuda --data "$data" --out "$out" || failed=1
 exit $failed

@@ -14,6 +14,7 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
+#include "libvpm/recording/loop_clock.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/paper_baseline.h"
@@ -25,6 +26,8 @@ namespace vpm::bench {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 1;
+
+constexpr double kMicro = 1e6;  // of a second
 
 // The level of figure 9.
 constexpr std::uint32_t kPathLevel = 17000;
@@ -88,7 +91,7 @@ std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud
   return path;
 }
 
-// One way to have a pose's result, and what it took: microseconds, round by round, pose by pose.
+// One way to have a pose's result, and what it took: seconds, round by round, pose by pose.
 struct Contender {
   std::string name;
   std::function<void(const Pose&)> run;
@@ -110,8 +113,7 @@ void time(std::vector<Contender>& contenders, const std::vector<Pose>& path, int
         const auto begin = std::chrono::steady_clock::now();
         contender.run(pose);
         took.push_back(
-            std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
-                .count());
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
       }
     }
   }
@@ -120,20 +122,18 @@ void time(std::vector<Contender>& contenders, const std::vector<Pose>& path, int
 // Medians of the rounds' medians and p99.
 nlohmann::json in_words(const Contender& contender) {
   std::vector<double> medians, p99s;
-  for (std::vector<double> took : contender.rounds) {
+  for (const std::vector<double>& took : contender.rounds) {
     medians.push_back(median_of(took));
-    const auto p99 = static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(took.size() - 1));
-    std::nth_element(took.begin(), took.begin() + p99, took.end());
-    p99s.push_back(took[static_cast<std::size_t>(p99)]);
+    p99s.push_back(Durations(took).quantile(0.99));
   }
-  return {{contender.name + "_median_us", median_of(medians)},
-          {contender.name + "_p99_us", median_of(p99s)}};
+  return {{contender.name + "_median_us", kMicro * median_of(medians)},
+          {contender.name + "_p99_us", kMicro * median_of(p99s)}};
 }
 
-double median_at(const Contender& contender, std::size_t pose) {
+double microseconds_at(const Contender& contender, std::size_t pose) {
   std::vector<double> of_pose;
   for (const std::vector<double>& took : contender.rounds) of_pose.push_back(took[pose]);
-  return median_of(of_pose);
+  return kMicro * median_of(of_pose);
 }
 
 Device device_of(const SuiteOptions& options) {
@@ -297,7 +297,7 @@ class Scaling {
                               {"frame", k},
                               {"volume_fraction", query.run(cloud, path[k]).volume_fraction}};
       for (const Contender& contender : contenders)
-        frame[contender.name + "_us"] = median_at(contender, k);
+        frame[contender.name + "_us"] = microseconds_at(contender, k);
       report_.results.push_back(std::move(frame));
     }
   }
