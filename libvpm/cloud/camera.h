@@ -1,4 +1,5 @@
-// Pinhole camera: x right, y down, z forward; pixel centres at integer coordinates.
+// Pinhole camera: x right, y down, z forward; pixel centres at integer coordinates. Lengths in
+// metres.
 #pragma once
 
 #include <cmath>
@@ -9,11 +10,11 @@
 namespace vpm {
 
 struct Intrinsics {
-  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // in pixels
 };
 
-// Whether they can be computed with: finite, focal lengths positive, none beyond this many pixels,
-// which is far beyond any image.
+// True if focal lengths are positive and no number is infinite, undefined or above
+// kLargestIntrinsics pixels, which is far beyond any image.
 inline constexpr double kLargestIntrinsics = 0x1p40;
 inline bool are_sound(const Intrinsics& k) {
   return k.fx > 0 && k.fy > 0 && k.fx <= kLargestIntrinsics && k.fy <= kLargestIntrinsics &&
@@ -23,19 +24,21 @@ inline bool are_sound(const Intrinsics& k) {
 struct Camera {
   Intrinsics intrinsics;
   std::uint32_t width = 0, height = 0;
-  Pose to_world;  // camera coordinates to world coordinates
+  Pose to_world;  // camera to world coordinates
 };
 
-// The point of depth z along the optical axis on the ray (x, y, 1), in camera coordinates.
+// Returns the point at depth z (along the optical axis) on the ray (x, y, 1), in camera
+// coordinates.
 VPM_HD constexpr Vec3 point_on_ray(double x, double y, double z) {
   return {x * z, y * z, z};
 }
-// That seen at pixel (u, v).
+// Returns the point at depth z that pixel (u, v) sees, in camera coordinates.
 VPM_HD constexpr Vec3 unproject(const Intrinsics& k, double u, double v, double z) {
   return point_on_ray((u - k.cx) / k.fx, (v - k.cy) / k.fy, z);
 }
 
-// The same about the camera in world axes, as clouds hold points.
+// Returns the point at depth z that pixel (u, v) sees, relative to the camera's position but in
+// world axes: the form that clouds store.
 VPM_HD constexpr Vec3f position_of_pixel(const Camera& camera, double u, double v, double z) {
   return narrow(camera.to_world.rotation * unproject(camera.intrinsics, u, v, z));
 }

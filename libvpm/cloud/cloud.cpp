@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// Normals are stored as floats; anything farther from unit length was not normalised.
+// Tolerance for normals stored as floats; those further from unit length were not normalised.
 constexpr double kNormalTolerance = 1e-3;
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A point cloud with normals, as a depth camera or a scanner saw a surface. formats/cloud.md.
+// Point cloud with normals, as a depth camera or a scanner sees a surface. Specified in
+// formats/cloud.md.
 #pragma once
 
 #include <cstdint>
@@ -12,35 +13,35 @@
 
 namespace vpm {
 
-// What an organised cloud keeps of its sensor: where it stood and what it saw, also where no normal
-// was found.
+// Sensor of an organised cloud: its pose and all depths, also those without a normal.
 struct CloudSensor {
   Camera camera;
   DepthImage depth;
 };
 
 struct Cloud {
-  Vec3 origin;  // world; positions are relative to it so that far scenes lose no digits
-  std::vector<Vec3f> positions;  // metres
-  std::vector<Vec3f> normals;    // unit, into free space
-  std::vector<float>
-      radii;  // sampling radius: the disk of this radius is the point's part of the surface
-  std::vector<std::uint32_t> pixels;  // v * width + u of each point; empty where there is no sensor
+  // World coordinates; positions are relative to it, so that far scenes lose no digits.
+  Vec3 origin;
+  std::vector<Vec3f> positions;  // in metres
+  std::vector<Vec3f> normals;    // unit vectors, into free space
+  std::vector<float> radii;      // sampling radii, m: the disks cover the surface
+  // Pixel v * width + u of each point; empty without a sensor.
+  std::vector<std::uint32_t> pixels;
   std::optional<CloudSensor> sensor;
   nlohmann::json provenance;
 
   std::size_t size() const { return positions.size(); }
 };
 
-// The same points, of which nobody knows any more what saw them.
+// Returns the cloud without its sensor and pixels.
 Cloud without_camera(Cloud cloud);
 
-// Refuses what no query could use, naming the first offending point: sizes that differ, positions
-// or radii that are not finite, radii < 0, normals that are not of unit length (tolerance 1e-3),
-// pixels outside of the image.
+// Throws Error(refused) if no query could use the cloud, naming the first offending point: vectors
+// of different sizes, positions or radii not finite, radii < 0, normals not of unit length
+// (tolerance 1e-3), pixels outside the image.
 void validate(const Cloud& cloud, const std::string& name);
-// What it asks of the camera alone. Its rotation comes from the functions of pose.h, so it is exact
-// (kRotationExact).
+// Throws Error(refused) if the camera has unsound intrinsics, no pixels, or a rotation that is not
+// exact (kRotationExact), as those from pose.h are.
 void validate(const Camera& camera, const std::string& name);
 
 }  // namespace vpm

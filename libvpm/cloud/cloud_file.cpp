@@ -9,7 +9,7 @@ namespace {
 constexpr file::ChunkId kOrigin("ORIG"), kPositions("POSN"), kNormals("NRML"), kRadii("RADI");
 constexpr file::ChunkId kPixels("PIXL"), kCamera("CAMR"), kDepth("DPTH");
 
-// Deviation of a camera's rotation up to which it is one, written with fewer digits.
+// Deviation up to which a camera's rotation is exact but for decimal rounding in the writer.
 constexpr double kWrittenRotation = 1e-9;
 
 struct CameraRecord {

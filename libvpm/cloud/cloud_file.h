@@ -8,12 +8,12 @@
 
 namespace vpm {
 
-// Refuse (Error(refused)) whatever is not a sound file of this kind: see formats/. "-" is standard
-// input.
+// Reads a cloud from a file, from standard input ("-"), or from bytes. Throws Error(refused) if it
+// breaks a rule of formats/cloud.md.
 Cloud read_cloud(const std::string& path);
 Cloud parse_cloud(std::vector<std::byte> bytes, const std::string& name);
 
-// Atomic; "-" is standard output. Throws Error(cannot_write).
+// Writes a cloud atomically, or to standard output ("-"). Throws Error(cannot_write).
 void write_cloud(const std::string& path, const Cloud& cloud);
 
 }  // namespace vpm

@@ -1,5 +1,5 @@
-// The arithmetic of normals by principal components: as plane_fit.h, from a window's sums to a unit
-// vector.
+// Arithmetic of normals by principal components: from a window's sums to a unit vector, under the
+// rules of plane_fit.h.
 #pragma once
 
 #include "libvpm/cloud/camera.h"
@@ -13,36 +13,38 @@ struct Symmetric3 {
   Real xx, xy, xz, yy, yz, zz;
 };
 
-// Most of Newton's steps to the smallest root of the characteristic polynomial. They double the
-// digits: with the two small eigenvalues as 1 to 8 the first is enough for floats, as 1 to 2 three,
-// and these are for all that are not nearly the same.
+// Limits Newton's steps to the smallest root of the characteristic polynomial. Each doubles the
+// digits: floats need one step if the two small eigenvalues are as 1 to 8, three if as 1 to 2, and
+// eight unless they nearly coincide.
 inline constexpr int kEigenSteps = 8;
 
-// For a matrix of trace 1 in floats: values of the polynomial that are rounding noise; squared
-// length of the eigenvector before it is normalised, below which its direction may be off by more
-// than 0.01, since the two small eigenvalues nearly coincide (points on a line).
+// Thresholds for a matrix of trace 1 in floats. Values of the polynomial below kRootNoise are
+// rounding noise. Where the eigenvector's squared length, before it is normalised, is below
+// kEigenNoise, the two small eigenvalues nearly coincide (points on a line), and its direction may
+// be off by more than 0.01.
 inline constexpr float kRootNoise = 0x1p-60F, kEigenNoise = 1e-10F;
 
-// x^3 - x^2 + minors x - determinant, whose smallest root is sought: the polynomial is concave and
-// increasing up to there and a little beyond.
+// Characteristic polynomial x^3 - x^2 + minors x - determinant. It is concave and increasing up to
+// a little beyond its smallest root, which is the one sought.
 struct Characteristic {
   float minors, determinant;
 
-  // A first guess: exact but for the cube, and for terms of the third order of determinant over the
-  // square of minors.
+  // Returns a first guess of the smallest root, which neglects the cube and terms of third order in
+  // determinant / minors^2.
   [[gnu::always_inline]] VPM_HD inline float guess() const {
     const float rest = minors * minors - determinant;
     const float top = determinant > kRootNoise ? determinant * minors : 0.0F;
     return quotient(top, rest > kRootNoise ? rest : 1.0F);
   }
-  // What Newton's step takes from x. From the second on none passes the root, nor is it positive.
+  // Returns Newton's step, to be subtracted from x. From the second step on, none passes the root
+  // and none is positive.
   [[gnu::always_inline]] VPM_HD inline float step(float x) const {
     const float value = ((x - 1) * x + minors) * x - determinant;
     const float slope = (3 * x - 2) * x + minors;
     const bool is_noise = (value <= kRootNoise) & (value >= -kRootNoise);
     return quotient(is_noise ? 0.0F : value, slope > kRootNoise ? slope : 1.0F);
   }
-  // Whether floats hold nothing of what remains to the root after a step: its square over the
+  // True if floats hold nothing of the error that remains after this step, which is step^2 /
   // minors.
   [[gnu::always_inline]] VPM_HD inline bool is_last(float step) const {
     const float most = kLastStep * minors;
@@ -53,8 +55,8 @@ struct Characteristic {
   static constexpr float kLastStep = 0x1p-12F;
 };
 
-// Of several at once, each as if alone: branches of each would keep compilers from making vector
-// code, and a device from working on two.
+// Finds the smallest roots of `Count` polynomials at once, each with the bits that it has alone.
+// One loop for all lets compilers emit vector code and a GPU overlap two.
 template <int Count>
 [[gnu::always_inline]] VPM_HD inline void find_smallest_roots(const float (&minors)[Count],
                                                               const float (&determinants)[Count],
@@ -65,7 +67,7 @@ template <int Count>
     is_moving[i] = 1;
   }
 #ifdef __CUDA_ARCH__
-#pragma unroll 1  // most leave at once
+#pragma unroll 1  // most loops end after one step
 #endif
   for (int k = 0; k < kEigenSteps && are_moving != 0; ++k) {
     are_moving = 0;
@@ -79,8 +81,8 @@ template <int Count>
   }
 }
 
-// A positive semidefinite matrix over its trace. What is known of it in floats then gives the
-// direction of a plane's normal to some 1e-6, over what its second eigenvalue is of the trace.
+// Returns a positive semidefinite matrix divided by its trace. In floats it then gives the normal
+// of a plane to some 1e-6, divided by the second eigenvalue's part of the trace.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Symmetric3<float> over_trace(const Symmetric3<Real>& m) {
   const Real trace = m.xx + m.yy + m.zz;
@@ -94,10 +96,10 @@ template <class Real>
               m.xz * (m.xy * m.yz - m.yy * m.xz)};
 }
 
-// The unit normal towards the sensor: the eigenvector of the smallest eigenvalue, which is `root`;
-// zero where there is no single one. The adjugate of what is left without the eigenvalue has it in
-// each row, the longest where the diagonal is greatest. No smallest eigenvalue is more than the
-// `minors`: a root that is was made of noise.
+// Returns the unit eigenvector of the smallest eigenvalue `root`, towards the sensor; zero if there
+// is no single one. Each row of the adjugate of m - root I is a multiple of it; the row with the
+// greatest diagonal entry is the longest. No smallest eigenvalue exceeds `minors`, so a root above
+// that is noise.
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_covariance(const Symmetric3<float>& m,
                                                                 float minors, float root, float rx,
                                                                 float ry) {
@@ -121,8 +123,8 @@ template <class Real>
   const float scale = found ? (away > 0 ? -unit : unit) : 0.0F;
   return {scale * n.x, scale * n.y, scale * n.z};
 }
-// Of several at once, whose rays are (rx[0], ry, 1), (rx[1], ry, 1), ... covariance(i) tells one,
-// take(i, normal) is called for each.
+// Finds the normals of `Count` windows with central rays (rx[0], ry, 1), (rx[1], ry, 1), ... and
+// calls take(i, normal) for each. covariance(i) returns a window's covariance over its trace.
 template <int Count, class Covariance, class Take>
 [[gnu::always_inline]] VPM_HD inline void find_normals_of(const Covariance& covariance,
                                                           const float* rx, float ry,
@@ -144,8 +146,8 @@ template <int Count, class Covariance, class Take>
   return normal;
 }
 
-// Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1): there they
-// are plain weighted sums of z and z^2.
+// Moments of a window's points in the affine frame of its centre, p = z (du, dv, 1), where they are
+// weighted sums of z and z^2.
 template <class Real>
 struct MomentsOf {
   Real n{}, x{}, y{}, z{}, xx{}, xy{}, xz{}, yy{}, yz{}, zz{};
@@ -156,7 +158,7 @@ struct MomentsOf {
 };
 using Moments = MomentsOf<double>;
 
-// About their mean, times n. `per_n`: 1 / m.n.
+// Returns the second moments about the mean, times n; `per_n` is 1 / m.n.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Symmetric3<Real> centred(const MomentsOf<Real>& m,
                                                               Real per_n) {
@@ -165,7 +167,7 @@ template <class Real>
           m.yy - m.y * y, m.yz - m.y * z, m.zz - m.z * z};
 }
 
-// The affine frame's axes in those of the camera, all by the same factor.
+// Scale from the affine frame's axes to the camera's, up to a common factor.
 template <class Real>
 struct PixelScale {
   Real x, y, z;
@@ -173,16 +175,16 @@ struct PixelScale {
 [[gnu::always_inline]] VPM_HD inline PixelScale<double> pixel_scale(const Intrinsics& k) {
   return {1 / k.fx, 1 / k.fy, 1};
 }
-// So that none of what is made by it leaves the range of floats, where z is relative to the
-// reference's: x and y no more than 1.
+// Returns the scale with x and y at most 1, so that no product leaves the range of floats when z is
+// relative to the reference pixel's.
 [[gnu::always_inline]] VPM_HD inline PixelScale<float> pixel_scale_in_floats(const Intrinsics& k) {
   const double least = k.fx < k.fy ? k.fx : k.fy;
   return {static_cast<float>(least / k.fx), static_cast<float>(least / k.fy),
           static_cast<float>(least)};
 }
 
-// From the frame of the pixel whose ray is (rx, ry, 1) to the camera's, (x + rx z, y + ry z, z);
-// over its trace.
+// Transforms a covariance from the affine frame of the pixel with ray (rx, ry, 1) to the camera's,
+// (x + rx z, y + ry z, z), and divides it by its trace.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Symmetric3<float> covariance_in_camera(
     const Symmetric3<Real>& m, const PixelScale<Real>& scale, Real rx, Real ry) {
@@ -193,8 +195,8 @@ template <class Real>
                            scale.y * scale.y * m.yy + ry * (y + yz), yz, zz});
 }
 
-// Of gated windows: sums of 1, z, v z, z^2, v z^2 and v^2 z^2 over what is kept of a column, from
-// its least dv on; then over columns, in the order of their planes' sums.
+// Sums of 1, z, v z, z^2, v z^2 and v^2 z^2 over the kept pixels of a column of a gated window,
+// added from the least dv on. Columns are then added in the order of fold().
 template <class Real>
 struct KeptDepths {
   Real n{}, z{}, vz{}, z2{}, vz2{}, vvz2{};
@@ -212,16 +214,15 @@ template <class Real>
   return {c.n, du * c.z, c.vz, c.z, du * du * c.z2, du * c.vz2, du * c.z2, c.vvz2, c.vz2, c.z2};
 }
 
-// Of windows that are not gated, in floats: sums of what depth differs from that of a pixel, w, so
-// that its digits are kept, and of v^2 z^2. Offsets are from the window's centre.
-//
-// Of a column, about its pixel beside the centre.
+// Sums down a column of an ungated window, in floats. To keep digits they hold w, the depth minus
+// that of a reference pixel: here the column's pixel in the row of the window's centre. Offsets are
+// from the window's centre.
 template <class Real>
 struct ColumnOffsets {
   Real w{}, vw{}, w2{}, vw2{}, vvz2{};
 };
-// Down a column, from that pixel on. What stands there for pixels beyond the image is the same as
-// that, and has no v^2 z^2.
+// Accumulates a column outwards from its reference pixel. Pixels beyond the image must be given as
+// equal to the reference; they add nothing to v^2 z^2.
 template <class Real>
 struct OffsetRows {
   Real reference{};
@@ -237,7 +238,7 @@ struct OffsetRows {
                     sums.vvz2);
   }
 };
-// at(dv): of the pixels that there are.
+// Sums a column; at(dv) returns the depth of each of its pixels inside the image.
 template <class Real, class Down, class At>
 [[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> sum_offset_rows(const Down& down,
                                                                          int radius, const At& at) {
@@ -252,11 +253,13 @@ template <class Real, class Down, class At>
     rows.add(held(d), held(-d), down.has(d), down.has(-d), static_cast<float>(d));
   return rows.sums;
 }
-// About the reference of a window instead, which is the same for two pixels side by side: they
-// share what is made of a column. `offset`: how much the column's pixel differs from it.
+// Returns the column of a window's reference pixel. Two neighbouring pixels have the same one, so
+// that they share the sums of columns.
 [[gnu::always_inline]] VPM_HD inline int reference_of(int u) {
   return u & ~1;
 }
+// Returns the sums of a column about the window's reference pixel; `offset` is the depth of the
+// column's own pixel minus the reference's.
 template <class Real, class Down>
 [[gnu::always_inline]] VPM_HD inline ColumnOffsets<Real> about_reference(
     const ColumnOffsets<Real>& c, const Real& offset, const Down& down) {
@@ -265,7 +268,7 @@ template <class Real, class Down>
   return {w, vw, c.w2 + offset * (c.w + w), c.vw2 + offset * (c.vw + vw), c.vvz2};
 }
 
-// Of a window.
+// Sums over an ungated window, about its reference pixel.
 template <class Real>
 struct WindowOffsets {
   Real w{}, uw{}, vw{}, uuw{}, uvw{}, w2{}, uw2{}, vw2{}, uuw2{}, uvw2{}, vvz2{};
@@ -283,7 +286,8 @@ struct WindowOffsets {
     vvz2 += right.vvz2 + left.vvz2;
   }
 };
-// column(du): of those that there are, about the reference.
+// Sums a window; column(du) returns the sums of each column inside the image, about the reference
+// pixel.
 template <class Real, class Across, class Column>
 [[gnu::always_inline]] VPM_HD inline WindowOffsets<Real> sum_offset_columns(const Across& across,
                                                                             int radius,
@@ -301,7 +305,8 @@ template <class Real, class Across, class Column>
   return sums;
 }
 
-// Moments where z is relative to the reference's, and minus 1 in z itself. `inverse`: that one's.
+// Returns moments with z relative to the reference's depth (for z itself, minus 1); `inverse` is 1
+// / that depth.
 [[gnu::always_inline]] VPM_HD inline MomentsOf<float> moments_of_offsets(
     const WindowOffsets<float>& s, float inverse, const WindowShape& shape) {
   return {shape.count,
@@ -316,7 +321,8 @@ template <class Real, class Across, class Column>
           s.w2 * inverse * inverse};
 }
 
-// The same from either sums.
+// Return the covariance in camera axes over its trace, from moments of a gated window or from
+// offsets of an ungated one.
 [[gnu::always_inline]] VPM_HD inline Symmetric3<float> covariance_of_moments(
     const Moments& m, const PixelScale<double>& scale, double rx, double ry) {
   return covariance_in_camera(centred(m, quotient(1.0, m.n)), scale, rx, ry);

@@ -10,8 +10,8 @@
 
 namespace vpm {
 
-// Depth along the optical axis in metres, row by row. Anything that is not finite and positive
-// means that nothing was measured; stored images hold 0 there.
+// Depth along the optical axis in metres, row by row. Values that are not finite and positive are
+// unmeasured; files store 0 there.
 struct DepthImage {
   std::uint32_t width = 0, height = 0;
   std::vector<float> depth;
@@ -23,18 +23,18 @@ VPM_HD constexpr bool is_measured(float depth) {
   return depth > 0 && depth < HUGE_VALF;
 }
 
-// A sensor's number as depth; 0 for what is no measurement.
+// Returns a sensor's raw value in metres; 0 if it is no measurement.
 VPM_HD constexpr float depth_in_metres(double value, double units_per_metre) {
   const auto depth = static_cast<float>(value / units_per_metre);
   return is_measured(depth) ? depth : 0.0F;
 }
 
-// What normals and queries compute with: 0 where nothing was measured, or nothing that float could
-// invert.
+// Returns the depth, or 0 where it is unmeasured or outside kMinDepth to kMaxDepth. Normals and
+// queries use these.
 VPM_HD constexpr float usable_depth(float depth) {
   return depth >= kMinDepth && depth <= kMaxDepth ? depth : 0.0F;
 }
-// 0 for 0.
+// Returns 1 / depth, or 0 for 0.
 VPM_HD constexpr float inverse_of_usable(float depth) {
   const float reciprocal = 1.0F / (depth > 0 ? depth : 1.0F);
   return depth > 0 ? reciprocal : 0.0F;

@@ -8,12 +8,12 @@
 namespace vpm {
 namespace {
 
-// Ranges of so few points are searched one by one.
+// Size of ranges that are searched linearly.
 constexpr std::size_t kLeaf = 12;
 
 }  // namespace
 
-// The n smallest squared distances met so far, ascending.
+// The n smallest squared distances found so far, ascending.
 struct KdTree::Nearest {
   std::vector<double> squares;
   std::size_t wanted;

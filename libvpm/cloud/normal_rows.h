@@ -1,4 +1,4 @@
-// The two estimators, row by row.
+// The two estimators of normals, row by row.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace vpm {
 
-// Normals of one row of pixels, camera axes; zero where there is none. Three arrays, since that is
-// what loops over pixels are quick with.
+// Normals of one row of pixels in camera axes; zero where there is none. Three arrays, since loops
+// over them vectorise.
 struct NormalRow {
   std::size_t width;
-  std::vector<float> x, y, z;  // zeros behind the last one fill a tile
+  std::vector<float> x, y, z;  // padded with zeros to a whole tile
   explicit NormalRow(std::size_t pixels)
       : width(pixels), x(pixels + kTile), y(pixels + kTile), z(pixels + kTile) {}
-  // Takes `count` normals from pixel `first` on.
+  // Stores `count` normals from pixel `first` on.
   void take(int first, const float* nx, const float* ny, const float* nz, int count) {
     std::copy(nx, nx + count, x.begin() + first);
     std::copy(ny, ny + count, y.begin() + first);
@@ -26,28 +26,28 @@ struct NormalRow {
   }
 };
 
-// What stands for inverse depth beyond the image: not a number, so that it is in no gate and beyond
-// none, and its bits are the greatest unsigned integer and less than any that is signed and not
-// negative, so that it is neither the least nor the greatest of others.
+// Stands for inverse depth beyond the image. As a float it is not a number, so no gate admits it
+// and none finds it beyond. Its bits are the greatest unsigned and a negative signed integer, so it
+// is neither the minimum nor the maximum in SmoothWindows::scan().
 inline const float kBeyondImage = std::bit_cast<float>(0xffffffffU);
 
-// What the estimators read: the frame with a margin of half a window.
+// Images that the estimators read, with a margin of half a window.
 struct NormalImages {
   PaddedImage inverse;
-  PaddedImage depth;  // of pca only
+  PaddedImage depth;  // filled for pca only
 
   void resize(std::uint32_t width, std::uint32_t height, const NormalOptions& options);
   void take_rows(const DepthImage& image, const NormalOptions& options, int begin, int end);
 };
 
-// An estimator with its scratch: one for each thread. The images must outlive it.
+// Estimator with its scratch memory, one per thread. Keeps a reference to the images.
 class NormalRows {
  public:
   NormalRows() = default;
   virtual ~NormalRows() = default;
   NormalRows(const NormalRows&) = delete;
   NormalRows& operator=(const NormalRows&) = delete;
-  // `row` is as wide as the image.
+  // Computes the normals of row v; `row` must be as wide as the image.
   virtual void estimate(int v, NormalRow& row) = 0;
 };
 
@@ -55,7 +55,7 @@ std::unique_ptr<NormalRows> inverse_depth_rows(const NormalImages& images, const
                                                const NormalOptions& options);
 std::unique_ptr<NormalRows> pca_rows(const NormalImages& images, const Intrinsics& k,
                                      const NormalOptions& options);
-// The one that the options name.
+// Returns the estimator of options.method.
 std::unique_ptr<NormalRows> normal_rows(const NormalImages& images, const Intrinsics& k,
                                         const NormalOptions& options);
 

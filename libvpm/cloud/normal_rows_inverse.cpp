@@ -9,7 +9,7 @@ namespace vpm {
 namespace {
 
 // Sums of windows along a row: first down each column, then across. Differences of opposite pixels
-// carry the slopes, so float keeps their digits.
+// carry the slopes, so that floats keep their digits.
 class WindowSums {
  public:
   struct Tile {
@@ -24,13 +24,13 @@ class WindowSums {
         s_(inverse.stride + kTile),
         vs_(inverse.stride + kTile) {}
 
-  // `down`: what the image has of windows about row v.
+  // Sums all columns about row v; `down` is the windows' vertical extent inside the image.
   template <class Down, class Radius>
   void sum_columns(int v, const Down& down, Radius radius);
-  // Of a tile's windows, should they be whole across.
+  // Sums a tile of windows from pixel `first` on, as if whole across.
   template <class Radius>
   void sum_across(int first, Radius radius, Tile& tile) const;
-  // Of a column.
+  // Returns the sums of column u.
   PlaneColumn<float> column(int u) const {
     const auto i = static_cast<std::size_t>(u + radius_);
     return {s_[i], vs_[i]};

@@ -9,8 +9,8 @@
 namespace vpm {
 namespace {
 
-// Sums of windows along a row: first down each column, then across. The second step and what
-// follows it go by tiles of constant size on the stack, which compilers turn into vector code.
+// Sums of windows along a row: first down each column, then across. The second step and its
+// successors work on tiles of constant size on the stack, so that they vectorise.
 class DepthOffsets {
  public:
   struct Tile {
@@ -27,13 +27,13 @@ class DepthOffsets {
       column->resize(depth.stride + std::size_t{kTile});
   }
 
-  // `down`: what the image has of windows about row v.
+  // Sums all columns about row v; `down` is the windows' vertical extent inside the image.
   template <class Down, class Radius>
   void sum_columns(int v, const Down& down, Radius radius);
-  // After that: of a tile's windows, should they be whole across.
+  // Sums a tile of windows from pixel `first` on, as if whole across. Call sum_columns() before.
   template <class Down, class Radius>
   void sum_across(int first, int v, const Down& down, Radius radius, Tile& tile) const;
-  // Of one window, that the image may cut.
+  // Returns the sums of one window, which the image's border may cut. Call sum_columns() before.
   WindowOffsets<float> window(int u, int v, Span across, Span down) const;
 
  private:
@@ -46,10 +46,10 @@ class DepthOffsets {
   const PaddedImage& depth_;
   int radius_;
   std::vector<float> w_, vw_, w2_, vw2_, vvz2_;
-  std::vector<float> references_;  // of the row's pixels
+  std::vector<float> references_;  // depth of each pixel's reference
 };
 
-// Of a row's pixels, what it has at their references.
+// Copies the depth of each pixel's reference column.
 void take_references(const float* row, int width, float* references) {
   for (int u = 0; u < width; ++u) references[u] = row[reference_of(u)];
 }
@@ -99,7 +99,7 @@ WindowOffsets<float> DepthOffsets::window(int u, int v, Span across, Span down) 
   });
 }
 
-// Covariances of windows side by side, and the rays of their centres.
+// Covariances of neighbouring windows.
 template <int Count>
 struct CovarianceLanes {
   float xx[Count], xy[Count], xz[Count], yy[Count], yz[Count], zz[Count];
@@ -112,7 +112,7 @@ struct CovarianceLanes {
   }
 };
 
-// Normals of windows whose centres have the rays (rx[0], ry, 1), (rx[1], ry, 1), ...
+// Finds the normals of windows with central rays (rx[0], ry, 1), (rx[1], ry, 1), ...
 template <int Count>
 [[gnu::always_inline]] inline void find_normals(const CovarianceLanes<Count>& covariances,
                                                 const float* rx, float ry, float* x, float* y,
@@ -123,7 +123,7 @@ template <int Count>
           __attribute__((always_inline)) { x[i] = n.x, y[i] = n.y, z[i] = n.z; });
 }
 
-// Moments of gated windows side by side.
+// Moments of kLanes neighbouring gated windows.
 struct MomentLanes {
   double n[kLanes], x[kLanes], y[kLanes], z[kLanes];
   double xx[kLanes], xy[kLanes], xz[kLanes], yy[kLanes], yz[kLanes], zz[kLanes];
@@ -135,7 +135,7 @@ struct MomentLanes {
 
 void gated_moments(const PaddedImage& depth, const GatedWindows& windows, int radius, int u, int v,
                    MomentLanes& moments) {
-  constexpr int kHalf = kLanes / 2;  // as many doubles fill a vector
+  constexpr int kHalf = kLanes / 2;  // doubles per vector
   for (int half = 0; half < kLanes; half += kHalf) {
     const auto column = [&](int du) {
       KeptDepths<Doubles> kept;
@@ -197,7 +197,7 @@ class PcaRows final : public NormalRows {
   SmoothWindows windows_;
   GatedWindows gated_;
   DepthOffsets offsets_;
-  std::vector<float> rays_;  // of columns
+  std::vector<float> rays_;  // x of each column's ray
   std::vector<float> inverse_references_;
 };
 

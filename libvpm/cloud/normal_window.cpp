@@ -10,20 +10,21 @@
 namespace vpm {
 namespace {
 
-// Tangent of the steepest surface (80 degrees off the image plane) whose pixels the first choice
-// of a gated window admits; beyond it a sensor returns next to nothing.
+// Tangent of the steepest surface, 80 degrees off the image plane, whose pixels the first choice of
+// a gated window admits. A sensor returns next to nothing from steeper ones.
 constexpr double kSteepest = 5.7;
 
 constexpr float kOpen = std::numeric_limits<float>::infinity();
 
-// Of PCA's whole windows: their squares, in floats, are far from the ends of their range.
+// Limits of smooth windows for pca: squares within them stay far from the ends of the range of
+// floats.
 constexpr float kMostRelative = 16, kLeastInverse = 0x1p-44F, kMostInverse = 0x1p42F;
 
 }  // namespace
 
 EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
   const double width = options.edge_gate;
-  // Without a gate every measured pixel passes; 0 stands for what was not measured.
+  // Without a gate, every measured pixel passes; unmeasured ones are 0.
   lowest = width > 0 ? static_cast<float>(1 - width) : 0.0F;
   highest = width > 0 ? static_cast<float>(1 + width) : kOpen;
   least = std::numeric_limits<float>::min(), greatest = kOpen;
@@ -43,8 +44,9 @@ SmoothWindows::SmoothWindows(const PaddedImage& inverse, const NormalOptions& op
   smooth_.resize(static_cast<std::size_t>(inverse.width) + kTile);
 }
 
-// Floats that are not negative are in the order of their bits, and integers have a minimum that is
-// one instruction. Unsigned for the least and signed for the greatest: kBeyondImage is neither.
+// Compares floats by their bits, since integers have a minimum of one instruction; floats that are
+// not negative are in the order of their bits. Unsigned for minima and signed for maxima, so that
+// kBeyondImage is neither.
 template <class Radius>
 [[gnu::always_inline]] inline void SmoothWindows::scan(int v, Radius radius) {
   const int columns = inverse_.width + 2 * radius, rows = 2 * radius;
@@ -123,7 +125,7 @@ GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& opti
   weights_.resize(wide_gates_.size() * kLanes);
 }
 
-// What lies off the planes by no more than the gates, summed. The first time there are no planes.
+// Sums the pixels that lie within the gates of the planes. The first choice has no planes yet.
 template <bool kFirst, class Radius>
 [[gnu::always_inline]] inline GatedWindows::Sums GatedWindows::sum_admitted(const float* centre,
                                                                             Radius radius) {

@@ -1,4 +1,4 @@
-// Windows over a depth image, and which of their pixels lie on the surface of the centre.
+// Windows of a depth image, and the pixels in them that lie on the surface of the centre.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace vpm {
 
-// Calls body(radius), with a constant for windows as wide as they are by default: its loops unroll.
+// Calls body(radius). Passes the radius of default windows as a constant, so that loops unroll.
 template <class Body>
 [[gnu::always_inline]] inline void with_radius(int radius, const Body& body) {
   constexpr int kUsual = NormalOptions{}.window / 2;
@@ -25,23 +25,24 @@ template <class Body>
     body(radius);
 }
 
-// Bounds of inverse depth by the options' edge gate, and by what floats can hold of a smooth
-// window: of others, which are gated, PCA is done in doubles.
+// Bounds on inverse depth from the options' edge gate and from the range of floats. Windows within
+// them are smooth; pca computes others, which are gated, in doubles.
 struct EdgeGate {
-  float lowest, highest;  // of a smooth window, relative to its centre's
-  float least, greatest;  // of a smooth window
-  float gate, slope;      // of a gated one: difference from a plane, and more of it per pixel from
-                          // the centre where the plane is not known yet
+  float lowest, highest;  // bounds of a smooth window, relative to its centre
+  float least, greatest;  // absolute bounds of a smooth window
+  // Bounds of a gated window: the difference from a plane and, while the plane is unknown, an
+  // allowance per pixel of distance from the centre.
+  float gate, slope;
   EdgeGate(const NormalOptions& options, const Intrinsics& k);
 };
 
-// Tells the windows of a row that are measured everywhere, as far as the image goes, and without an
-// edge: there, plain sums over all pixels will do. They are most of a usual image.
+// Finds the smooth windows of a row: those without a hole or an edge inside the image. Plain sums
+// over all their pixels suffice, and they are most of a usual image.
 class SmoothWindows {
  public:
   SmoothWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
   void scan(int v);
-  // The first pixel from u on whose window is not smooth; the width if there is none.
+  // Returns the first pixel at or after u whose window is not smooth, or the width.
   int next_rough(int u) const;
   bool smooth(int u) const { return smooth_[static_cast<std::size_t>(u)] != 0; }
 
@@ -53,19 +54,20 @@ class SmoothWindows {
   const PaddedImage& inverse_;
   int radius_;
   EdgeGate edges_;
-  std::vector<std::uint32_t> column_min_;  // as integers, see scan()
+  // Bits of floats, see scan().
+  std::vector<std::uint32_t> column_min_;
   std::vector<std::int32_t> column_max_;
   std::vector<std::uint8_t> smooth_;
 };
 
-// Calls body(u) for the pixels of a row whose windows its ends cut.
+// Calls body(u) for the pixels of a row whose windows the image's border cuts.
 template <class Body>
 [[gnu::always_inline]] inline void for_ends(int width, int radius, const Body& body) {
   for (int u = 0; u < std::min(radius, width); ++u) body(u);
   for (int u = std::max(radius, width - radius); u < width; ++u) body(u);
 }
 
-// Takes those of kLanes normals from pixel `first` on whose windows are not smooth.
+// Stores those of kLanes normals from pixel `first` on whose windows are not smooth.
 inline void take_rough(const SmoothWindows& windows, int first, const float* x, const float* y,
                        const float* z, NormalRow& row) {
   const int count = std::min(kLanes, static_cast<int>(row.width) - first);
@@ -73,27 +75,27 @@ inline void take_rough(const SmoothWindows& windows, int first, const float* x, 
     if (!windows.smooth(first + i)) row.take(first + i, x + i, y + i, z + i, 1);
 }
 
-// The pixels that belong to the surface of their window's centre, and their plane: of kLanes
-// windows at once, whose centres are neighbours in a row.
+// Finds the pixels that belong to the surface of their window's centre, and their plane, for kLanes
+// windows with neighbouring centres at once.
 //
-// A first choice admits what the steepest plausible surface through the centre could reach. Where
-// something of the window is beyond the edge gate of its centre, the plane fitted to that choice
-// leaves only what lies within the edge gate of that plane. Other windows have no edge, only holes
-// or the image's border: all that was measured belongs to them.
+// The first choice admits what the steepest plausible surface through the centre could reach. If
+// something in the window is beyond the edge gate of its centre, a second choice keeps what is
+// within the edge gate of the plane fitted to the first. Windows without an edge (with holes, or
+// cut by the image's border) keep all measured pixels.
 class GatedWindows {
  public:
   GatedWindows(const PaddedImage& inverse, const NormalOptions& options, const EdgeGate& edges);
 
-  // Inverse depth relative to the centre's, minus 1: c + a du + b dv. `found` is 0 where too few
-  // pixels remain, or they lie on a line, or the centre was not measured; otherwise -1.
+  // Planes of inverse depth relative to the centre's, minus 1: c + a du + b dv. `found` is -1, or 0
+  // where too few pixels remain, they are collinear, or the centre is unmeasured.
   struct Planes {
     float a[kLanes], b[kLanes], c[kLanes];
     std::int32_t found[kLanes];
   };
-  // Of the windows about (u, v), (u + 1, v), ...
+  // Fits the windows about (u, v), (u + 1, v), ...
   const Planes& fit(int u, int v);
-  // After fit(), of each lane with a plane: 1 where pixel (u + lane + du, v + dv) belongs to it,
-  // otherwise 0.
+  // Returns one number per lane, valid after fit(): 1 if the lane has a plane and pixel (u + lane +
+  // du, v + dv) belongs to it, else 0.
   const float* weights(int du, int dv) const {
     return weights_.data() + ((du + radius_) * (2 * radius_ + 1) + dv + radius_) * kLanes;
   }
@@ -101,10 +103,11 @@ class GatedWindows {
  private:
   static constexpr int kColumns = kFoldedColumns;
   static constexpr int kMostColumns = (kMaxWindow + kColumns - 1) / kColumns * kColumns;
-  // Over the admitted pixels: integers, exact in any order, and the sums of each column.
+  // Sums over the admitted pixels: those of integers are exact in any order; others are kept by
+  // column.
   struct Sums {
     Floats n{}, u{}, v{}, uu{}, uv{}, vv{};
-    Ints has_edge{};  // found by the first choice
+    Ints has_edge{};  // -1 where the first choice found an edge
     Floats column_e[kMostColumns], column_ue[kMostColumns], column_ve[kMostColumns];
   };
   template <bool kFirst, class Radius>
@@ -117,8 +120,10 @@ class GatedWindows {
   const PaddedImage& inverse_;
   int radius_;
   float gate_;
-  std::vector<float> wide_gates_;  // of (du, dv): the first choice's
-  float gates_[kLanes];            // of the lanes' windows: the second one's
+  // Gates of the first choice for each (du, dv).
+  std::vector<float> wide_gates_;
+  // Gates of the second choice for each lane.
+  float gates_[kLanes];
   Planes planes_;
   std::vector<float> weights_;
 };

@@ -11,8 +11,8 @@
 namespace vpm {
 namespace {
 
-// A disk seen this obliquely (cosine of the angle between normal and ray; 84 degrees) is not
-// enlarged any further: there a normal's error decides its size, not the surface.
+// Cosine between normal and ray (84 degrees) below which disks grow no further: there the normal's
+// error would decide their size, not the surface.
 constexpr double kGrazingCosine = 0.1;
 
 float disk_radius(const Intrinsics& k, Vec3 point, Vec3 normal) {

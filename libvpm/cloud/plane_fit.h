@@ -1,9 +1,8 @@
-// The arithmetic of normals: from a window's sums to a unit vector. IEEE operations and square
-// roots only, in a written order, so that every compiler and device gives the same bits. Inlined
-// without exception, since a call inside a loop over pixels keeps compilers from making vector
-// code.
+// Arithmetic of normals: from a window's sums to a unit vector. IEEE operations and square roots
+// only, in a fixed order, so that every compiler and device gives the same bits. Everything is
+// inlined, since calls inside loops over pixels prevent vector code.
 //
-// Real: float or double, or a vector of such (core/lanes.h).
+// Real is float, double, or a vector of these (core/lanes.h).
 #pragma once
 
 #include <type_traits>
@@ -13,8 +12,8 @@
 
 namespace vpm {
 
-// Sums of the inverse depth s, and of it times the offset from the middle: in a column; in a
-// window. They are made of differences from the centre, whose digits floats keep.
+// Sums over a column or a window of inverse depth s, and of s times the offset from the middle.
+// They are accumulated as differences from the centre, so that floats keep their digits.
 template <class Real>
 struct PlaneColumn {
   Real s{}, vs{};
@@ -24,8 +23,8 @@ struct PlaneWindow {
   Real s{}, us{}, vs{};
 };
 
-// Down a column, from its pixel beside the window's centre on. What stands there for pixels beyond
-// the image is the same as that.
+// Accumulates a column outwards from its pixel in the centre's row. Pixels beyond the image must be
+// given as equal to that pixel.
 template <class Real>
 struct PlaneRows {
   Real centre{}, off{}, v_off{};
@@ -40,7 +39,7 @@ struct PlaneRows {
     return {off + static_cast<float>(down.count()) * centre, down.about_middle(v_off, off)};
   }
 };
-// at(dv): of the pixels that there are.
+// Sums a column; at(dv) returns the inverse depth of each of its pixels inside the image.
 template <class Real, class Down, class At>
 [[gnu::always_inline]] VPM_HD inline PlaneColumn<Real> sum_rows(const Down& down, int radius,
                                                                 const At& at) {
@@ -54,7 +53,8 @@ template <class Real, class Down, class At>
   for (int d = 1; d <= radius; ++d) rows.add(held(d), held(-d), static_cast<float>(d));
   return rows.sums(down);
 }
-// Across, likewise; the columns that stand there have no v s.
+// Accumulates columns outwards from the window's central column. Columns beyond the image must be
+// given as equal to it in s and zero in vs.
 template <class Real>
 struct PlaneColumns {
   Real centre, off{}, u_off{}, vs;
@@ -73,7 +73,7 @@ struct PlaneColumns {
     return {off + static_cast<float>(across.count()) * centre, across.about_middle(u_off, off), vs};
   }
 };
-// column(du): of those that there are.
+// Sums a window; column(du) returns the sums of each column inside the image.
 template <class Real, class Across, class Column>
 [[gnu::always_inline]] VPM_HD inline PlaneWindow<Real> sum_columns(const Across& across, int radius,
                                                                    const Column& column) {
@@ -88,9 +88,9 @@ template <class Real, class Across, class Column>
   return sums.sums(across);
 }
 
-// The normal towards the sensor of the plane whose inverse depth is a du + b dv + c at the offset
-// (du, dv) from pixel (u, v): with u = fx X/Z + cx the plane is
-// a fx X + b fy Y + (a (cx - u) + b (cy - v) + c) Z = 1.
+// Returns the unit normal, towards the sensor, of the plane whose inverse depth at offset (du, dv)
+// from pixel (u, v) is a du + b dv + c. With u = fx X/Z + cx, that plane is a fx X + b fy Y + (a
+// (cx - u) + b (cy - v) + c) Z = 1. (du_axis, dv_axis) is the optical axis (cx - u, cy - v).
 struct PlaneSlopes {
   float a, b, c;
 };
@@ -103,8 +103,7 @@ struct PlaneSlopes {
   return {x * scale, y * scale, z * scale};
 }
 
-// The slopes by a window's sums, and the height in its middle, relative to the inverse depth of its
-// centre.
+// Returns slopes, and inverse depth at the window's middle, relative to the centre's inverse depth.
 [[gnu::always_inline]] VPM_HD inline PlaneSlopes plane_of_sums(const WindowShape& shape,
                                                                const PlaneWindow<float>& sums,
                                                                float centre) {
@@ -112,8 +111,8 @@ struct PlaneSlopes {
   return {sums.us * shape.per_us * unit, sums.vs * shape.per_vs * unit,
           sums.s * shape.per_count * unit};
 }
-// Zero where the plane, wild without an edge gate, is behind the sensor at the centre of a window
-// that the image's border cuts: it says nothing.
+// Returns the normal of a smooth window. Zero if the plane is behind the sensor at the window's
+// centre: without an edge gate, a window cut by the image's border can be that wild.
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_smooth_window(const WindowShape& shape,
                                                                    const PlaneSlopes& plane,
                                                                    float fx, float fy,
@@ -123,8 +122,9 @@ struct PlaneSlopes {
   return {found ? n.x : 0, found ? n.y : 0, found ? n.z : 0};
 }
 
-// Whether a gated window keeps a pixel. `value` is its inverse depth, `expected` what the centre's
-// surface has there, relative to the centre's and minus 1, as is `difference`.
+// True if a gated window keeps a pixel: its inverse depth `value` is measured, and `difference`
+// (value relative to the centre's, minus 1) is within `allowed` of what the centre's surface has
+// there, `expected`.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline auto is_in_gate(Real value, Real difference, Real expected,
                                                      std::type_identity_t<Real> allowed) {
@@ -132,27 +132,28 @@ template <class Real>
   return (off <= allowed) & (off >= -allowed) & (value > 0.0F);
 }
 
-// Whether something that was measured is no part of the centre's surface, whatever its plane.
+// True if a pixel is measured and differs from the centre by more than the gate.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline auto is_beyond_gate(Real value, Real difference, Real gate) {
   return ((difference > gate) | (difference < -gate)) & (value > 0.0F);
 }
 
-// Columns of a gated window are added pairwise, eight at a time; those that it does not have are 0.
+// Sums eight columns pairwise; columns that the window lacks must be 0. Gated windows use this
+// order.
 inline constexpr int kFoldedColumns = 8;
 template <class Sums>
 [[gnu::always_inline]] VPM_HD inline Sums fold(const Sums* c) {
   return ((c[0] + c[4]) + (c[2] + c[6])) + ((c[1] + c[5]) + (c[3] + c[7]));
 }
 
-// Sums over the pixels that are kept of 1, du, dv, their products, the difference and its products.
+// Sums over kept pixels of 1, du, dv, their products, the difference e, and e du, e dv.
 template <class Real>
 struct SumsOfPlane {
   Real n{}, u{}, v{}, uu{}, uv{}, vv{}, e{}, ue{}, ve{};
 };
 
-// Inverse depth relative to the centre's, minus 1: c + a du + b dv; 0 where it is not found, since
-// too few pixels remain, or they lie on a line.
+// Plane of inverse depth relative to the centre's, minus 1: c + a du + b dv. All zero if too few
+// pixels remain or they are collinear.
 template <class Real>
 struct FittedPlane {
   using Mask = decltype(Real() < Real());
@@ -161,7 +162,7 @@ struct FittedPlane {
 };
 using WindowPlane = FittedPlane<float>;
 
-// Devices have none of the vectors.
+// Returns 1 / a for floats and vectors of floats; devices have only the former.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Real one_over(const Real& a) {
   if constexpr (std::is_same_v<Real, float>)
@@ -172,13 +173,15 @@ template <class Real>
 
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline FittedPlane<Real> fit_plane(const SumsOfPlane<Real>& s) {
-  // Moments about the pixels' mean, times n: of points on a line, both products are the same.
+  // Moments about the mean, times n. For collinear pixels both products of the determinant are
+  // equal.
   const Real uu = s.n * s.uu - s.u * s.u, uv = s.n * s.uv - s.u * s.v, vv = s.n * s.vv - s.v * s.v;
   const Real determinant = uu * vv - uv * uv;
   const auto found = static_cast<typename FittedPlane<Real>::Mask>(
       (s.n >= float{kMinSupport}) & (determinant >= kMinSpread * s.n * s.n * (uu + vv)));
   const Real ue = s.n * s.ue - s.u * s.e, ve = s.n * s.ve - s.v * s.e;
-  const Real both = one_over<Real>(determinant * s.n);  // one division instead of two
+  // One division serves 1 / determinant and 1 / n.
+  const Real both = one_over<Real>(determinant * s.n);
   const Real unit = both * s.n, per_n = both * determinant;
   const Real a = (ue * vv - ve * uv) * unit;
   const Real b = (ve * uu - ue * uv) * unit;
@@ -186,8 +189,8 @@ template <class Real>
   return {found, found ? a : Real{}, found ? b : Real{}, found ? c : Real{}};
 }
 
-// Zero where no plane was found. An extrapolated plane may pass behind the sensor's centre: it says
-// nothing either.
+// Returns the normal of a gated window. Zero if no plane was found, or if the extrapolated plane
+// passes behind the sensor at the centre.
 [[gnu::always_inline]] VPM_HD inline Vec3f normal_of_window(const WindowPlane& plane, float fx,
                                                             float fy, float du_axis,
                                                             float dv_axis) {

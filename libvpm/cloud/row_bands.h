@@ -1,4 +1,4 @@
-// Images are worked on in bands of rows, by threads.
+// Splits images into bands of rows for threads.
 #pragma once
 
 #include <algorithm>
@@ -8,33 +8,33 @@
 
 namespace vpm {
 
-// Enough work to outweigh the rows above and below that a band reads as well.
+// Rows per band: enough that the extra rows read above and below do not matter.
 inline constexpr int kRowsPerBand = 32;
 constexpr int bands_of(int height) {
   return (height + kRowsPerBand - 1) / kRowsPerBand;
 }
 
-// Calls body(begin, end) for each band of [0, height), each beginning at a multiple of
-// kRowsPerBand.
+// Calls body(begin, end) for each band of [0, height); bands begin at multiples of kRowsPerBand.
 void for_bands(int height, const std::function<void(int begin, int end)>& body);
 
-// Work on rows that reads what other work made of the rows up to some reach above and below: it
-// follows that work row by row, while what it reads is in the cache. Rows between two bands follow
-// when the later of these has made them.
+// Schedules a second pass over rows behind a first. A row of the second pass reads the first pass's
+// rows up to `reach` above and below, so it runs as soon as these are made, while they are in the
+// cache. Rows at a border of two bands run when the later band has made them.
 class FollowingRows {
  public:
   static constexpr int kMostReach = kRowsPerBand / 2;
 
-  // For another image; allocates nothing where it has as many rows. reach <= kMostReach
+  // Starts another image; allocates nothing if the height is the same. Needs reach <= kMostReach.
   void start(int height, int reach);
 
-  // To be told of each row once it is made, within a band in their order: calls follow(begin, end)
-  // for the rows that can follow now. Every row follows once. Bands may be made by several threads.
+  // Reports that the first pass has made row v; within a band, rows must be made in order. Calls
+  // follow(begin, end) for the rows that can run now; each row runs once. Bands may be made by
+  // several threads.
   template <class Follow>
   void made(int v, const Follow& follow) {
     const int band = v / kRowsPerBand, begin = band * kRowsPerBand,
               end = std::min(begin + kRowsPerBand, height_);
-    const int first = begin == 0 ? 0 : begin + reach_;  // of those that read of this band only
+    const int first = begin == 0 ? 0 : begin + reach_;  // first row that reads this band only
     const int ready = v + 1 == height_ ? height_ : v + 1 - reach_;
     if (const int from = std::max(first, v - reach_); from < ready) follow(from, ready);
     if (begin > 0 && v + 1 == std::min(begin + 2 * reach_, end)) meet(band - 1, follow);
@@ -42,7 +42,7 @@ class FollowingRows {
   }
 
  private:
-  // The second one to come finds what both have made.
+  // Runs the rows at a border if both bands are made: the second caller finds that they are.
   template <class Follow>
   void meet(int band_above, const Follow& follow) {
     const int border = (band_above + 1) * kRowsPerBand;
@@ -51,7 +51,7 @@ class FollowingRows {
   }
 
   int height_ = 0, reach_ = 0;
-  std::vector<std::atomic<bool>> met_;  // below each band but the last
+  std::vector<std::atomic<bool>> met_;  // one flag for each border of two bands
 };
 
 }  // namespace vpm

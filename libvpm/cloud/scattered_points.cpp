@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kPointsPerTask = 4096;
 
-// The positions without repetitions, in an order of their own.
+// Returns the distinct positions in lexicographic order.
 std::vector<Vec3f> distinct(std::vector<Vec3f> positions) {
   const auto key = [](const Vec3f& p) { return std::tuple(p.x, p.y, p.z); };
   std::sort(positions.begin(), positions.end(),
@@ -39,10 +39,10 @@ float median(std::vector<float> values) {
   return *middle;
 }
 
-// A point that is far from all others (a value that stands for nothing) would take the last digits
-// of their places.
+// Throws Error(refused) if float32 positions are too coarse for the points' spacing. The usual
+// cause is one point far from all others, such as a marker for missing data.
 void refuse_rounded_places(const Cloud& cloud, const std::string& name) {
-  constexpr double kMostRounding = 1.0 / 16;  // of the sampling radius
+  constexpr double kMostRounding = 1.0 / 16;  // part of the sampling radius
   float farthest = 0;
   for (const Vec3f& p : cloud.positions)
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -61,7 +61,7 @@ std::vector<float> sampling_radii(const std::vector<Vec3f>& positions) {
   const std::vector<Vec3f> places = distinct(positions);
   const KdTree tree(places);
   const auto radius = [&](const Vec3f& p) {
-    // The point itself is the nearest of all.
+    // The nearest point is the point itself, hence + 1.
     return static_cast<float>(kRadiusOfSpacing *
                               std::sqrt(tree.squared_distance(p, kSpacingNeighbour + 1)));
   };
@@ -69,7 +69,7 @@ std::vector<float> sampling_radii(const std::vector<Vec3f>& positions) {
   parallel_for(places.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) of_place[i] = radius(places[i]);
   });
-  // Over the distinct positions, so that repeated points change nothing.
+  // Takes the median over distinct positions, so that repeated points change nothing.
   const auto largest = static_cast<float>(kLargestRadius * median(of_place));
   parallel_for(positions.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {
     const auto key = [](const Vec3f& p) { return std::tuple(p.x, p.y, p.z); };

@@ -8,23 +8,25 @@
 
 namespace vpm {
 
-// Which of its nearest neighbours tells a point's spacing, and the radius of its disk as a fraction
-// of that distance. In a square grid the sixth is sqrt(2) spacings away and disks of 0.71 spacings
-// cover the surface; in a triangular grid 1 and 0.58. The rest is a margin.
+// A point's disk radius is kRadiusOfSpacing times the distance to its kSpacingNeighbour-th nearest
+// neighbour. In a square grid that is 0.7 sqrt(2) = 0.99 spacings, and 0.71 cover the surface; in a
+// triangular grid 0.7, and 0.58 cover it. The rest is margin.
 inline constexpr int kSpacingNeighbour = 6;
 inline constexpr double kRadiusOfSpacing = 0.7;
-// A point far from all others is a stray: no disk is larger than this multiple of the median one.
+// Limits a disk to this multiple of the median radius, since a point far from all others is a
+// stray.
 inline constexpr double kLargestRadius = 10;
 
-// The cloud of positions and normals (of any length, into free space), carried to the world, about
-// the middle of its box. Points whose position or normal is not finite, or whose normal is zero,
-// are left out. Radii come from the distance to the kSpacingNeighbour-th nearest other position.
-// Throws Error(refused) naming `name` where fewer than two different positions remain.
+// Returns the cloud of the given positions and normals (any length, into free space), transformed
+// to the world; its origin is the centre of their bounding box. Drops points with a position or
+// normal that is not finite, or a zero normal. Throws Error(refused), naming `name`, if fewer than
+// two distinct positions remain.
 Cloud cloud_of_scattered_points(const std::vector<Vec3>& positions,
                                 const std::vector<Vec3>& normals, const Pose& to_world,
                                 const std::string& name);
 
-// Radius for each position; points at the same place count once. Needs two different positions.
+// Returns the radius of each position's disk, m. Coinciding points count once. Needs two distinct
+// positions.
 std::vector<float> sampling_radii(const std::vector<Vec3f>& positions);
 
 }  // namespace vpm

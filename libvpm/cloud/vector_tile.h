@@ -5,12 +5,11 @@
 
 namespace vpm {
 
-// Vectors of a tile's pixels, as arrays of their coordinates, which compilers turn into vector
-// code.
+// Vectors of a tile's pixels, stored by coordinate so that loops vectorise.
 struct VectorTile {
   float x[kTile], y[kTile], z[kTile];
 
-  // The first `count` of them.
+  // Stores the first `count` vectors.
   [[gnu::always_inline]] void store(int count, Vec3f* to) const {
     if (count == kTile) {
       for (int i = 0; i < kTile; ++i) to[i] = {x[i], y[i], z[i]};

@@ -1,6 +1,6 @@
-// What an image has of the square window around a pixel, along an axis and in all. Windows are
-// summed in opposite pairs, from the middle outwards, first down each column, then across the
-// columns. Of what the image's border cuts off, nothing is added.
+// Extent inside the image of the square window around a pixel. Windows are summed in opposite pairs
+// from the middle outwards, first down each column, then across columns; pixels beyond the image
+// add nothing.
 #pragma once
 
 #include "libvpm/cloud/normal_limits.h"
@@ -9,22 +9,22 @@
 
 namespace vpm {
 
-// Along an axis: pixels before and after the window's centre.
+// Number of pixels before and after the window's centre along one axis.
 struct Span {
   int before, after;
 
   VPM_HD int count() const { return before + after + 1; }
   VPM_HD bool is_whole(int radius) const { return before == radius && after == radius; }
   VPM_HD bool has(int offset) const { return offset > 0 ? offset <= after : -offset <= before; }
-  // Of the middle, from the centre.
+  // Returns the offset of the middle of the span from the window's centre.
   VPM_HD float middle() const { return 0.5F * static_cast<float>(after - before); }
-  // A sum of x times the offset, which is from the centre, with the offset from the middle instead.
-  // `sum`: that of x.
+  // Converts `moment`, a sum of x times offset from the centre, to offsets from the middle. `sum`
+  // is that of x.
   template <class Real>
   [[gnu::always_inline]] VPM_HD Real about_middle(const Real& moment, const Real& sum) const {
     return moment - middle() * sum;
   }
-  // A sum of x times the offset, where all x are greater by so much.
+  // Returns the sum of x times offset after every x grows by `by`.
   template <class Real>
   [[gnu::always_inline]] VPM_HD Real with_greater(const Real& moment, const Real& by) const {
     return moment + static_cast<float>(count()) * middle() * by;
@@ -34,11 +34,11 @@ VPM_HD inline Span span_of(int at, int size, int radius) {
   const int beyond = size - 1 - at;
   return {at < radius ? at : radius, beyond < radius ? beyond : radius};
 }
-// Whether an image's border cuts windows about `count` pixels in a row.
+// True if the image's border cuts a window about one of `count` pixels from `first` on.
 VPM_HD inline bool cuts_windows(int first, int count, int size, int radius) {
   return first < radius || first + count + radius > size;
 }
-// One that is known to be whole.
+// A span known to be whole.
 struct WholeSpan {
   int radius;
 
@@ -54,13 +54,13 @@ struct WholeSpan {
   }
 };
 
-// Whether what is left of a window, should all of it belong to one surface, tells a plane's slopes:
-// enough pixels, and two of each axis, whose spread is enough with three of the other.
+// True if a window without holes determines a plane's slopes: at least two pixels along each axis
+// and kMinSupport in all.
 VPM_HD inline bool tells_plane(Span across, Span down) {
   return across.count() >= 2 && down.count() >= 2 && across.count() * down.count() >= kMinSupport;
 }
 
-// sum + factor x. A product with 2 or 4 is exact: devices may fuse it, and give the same bits.
+// Adds factor * x. Devices may fuse products with 2 or 4, which are exact, without changing bits.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline void add_times(float factor, const Real& x, Real& sum) {
 #ifdef __CUDA_ARCH__
@@ -72,20 +72,21 @@ template <class Real>
   sum += factor * x;
 }
 
-// What turns sums over all pixels of a window into slopes, means and moments.
+// Factors that turn sums over all pixels of a window into slopes, means and moments.
 struct WindowShape {
   float count = 0;
-  float per_us = 0, per_vs = 0, per_count = 0;  // 1 over the sums of 1, and of squared offsets from
-                                                // the middle
-  float u = 0, v = 0;                           // the middle, from the centre
-  float du = 0, dv = 0, dudu = 0, dudv = 0;     // sums of offsets from the centre
+  // Inverses of the sums of 1 and of squared offsets from the middle.
+  float per_us = 0, per_vs = 0, per_count = 0;
+  float u = 0, v = 0;  // middle, from the centre
+  // Sums of offsets from the centre and of their products.
+  float du = 0, dv = 0, dudu = 0, dudv = 0;
 
   WindowShape() = default;
   VPM_HD WindowShape(Span across, Span down) : u(across.middle()), v(down.middle()) {
     const float columns = static_cast<float>(across.count()),
                 rows = static_cast<float>(down.count());
     count = columns * rows;
-    // The sum of squared offsets from the middle over n in a row: n (n^2 - 1) / 12.
+    // Uses that squared offsets from the middle of n in a row sum to n (n^2 - 1) / 12.
     const float twelve_us = count * (columns * columns - 1), twelve_vs = count * (rows * rows - 1);
     per_us = quotient(12.0F, twelve_us), per_vs = quotient(12.0F, twelve_vs);
     per_count = reciprocal(count);

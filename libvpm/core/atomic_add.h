@@ -1,5 +1,5 @@
-// Integer sums that many threads add to, on the CPU. No lock: who waits for one may fall asleep,
-// and waking takes as long as a query.
+// Adds to an integer sum that many CPU threads share. Takes no lock: a thread that waits for one
+// may fall asleep, and waking takes as long as a query.
 #pragma once
 
 #include <atomic>

@@ -7,12 +7,12 @@
 
 namespace vpm {
 
-// By the number of its axis: 0, 1, 2 for x, y, z.
+// Returns the coordinate along axis 0, 1 or 2 for x, y, z.
 inline double coordinate(Vec3 v, int axis) {
   return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
 }
 
-// The smallest box along the axes that holds what has been added; empty (low > high) before.
+// Axis-aligned bounding box of the points added so far; empty (low > high) before the first.
 struct Box {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   void add(Vec3 p) {
@@ -20,7 +20,7 @@ struct Box {
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   Vec3 size() const { return high - low; }
-  // The first of equal ones.
+  // Returns the axis (0, 1, 2) of the longest side; the lowest axis on ties.
   int longest_axis() const {
     const Vec3 side = size();
     if (side.x >= side.y && side.x >= side.z) return 0;

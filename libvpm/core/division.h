@@ -1,10 +1,10 @@
 // Quotients and square roots with the bits of IEEE 754 on host and device.
 //
-// A device has no instruction for either: the compiler makes a dozen, and a branch for operands
-// near the ends of the range of numbers, which every thread then jumps over, and across which it
-// moves nothing. Lengths are far from there (lengths.h): here are the dozen alone, Newton's steps
-// with exact remainders (Markstein 1990: "Computation of elementary functions on the IBM RISC
-// System/6000 processor").
+// GPUs have no instruction for either. The compiler emits a dozen instructions and a branch for
+// operands near the ends of the number range; that branch costs every thread a jump and stops code
+// motion. Our operands are far from those ends (kSmallestLength, kLargestLength), so the device
+// code below omits the branch: Newton's steps with exact remainders (Markstein 1990, "Computation
+// of elementary functions on the IBM RISC System/6000 processor").
 #pragma once
 
 #include <cmath>
@@ -13,12 +13,13 @@
 
 namespace vpm {
 
-// a / b, where |b| and |a / b| lie between 2^-900 and 2^900, or a is 0.
+// Returns a / b, correctly rounded, for |b| and |a / b| in [2^-900, 2^900], or a = 0.
 [[gnu::always_inline]] VPM_HD inline double quotient(double a, double b) {
 #ifdef __CUDA_ARCH__
   double inverse;
   asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(inverse) : "d"(b));
-  // Its lower half is 0. Begun from there, the steps end below 1 / (1 - 2^-53); not from here.
+  // Sets the lower half, which the instruction leaves 0, to 1: from there the steps end at the
+  // correctly rounded inverse also where it lies just below a power of two.
   inverse = __hiloint2double(__double2hiint(inverse), 1);
   double error = __fma_rn(-b, inverse, 1);
   error = __fma_rn(error, error, error);
@@ -32,7 +33,8 @@ namespace vpm {
 #endif
 }
 
-// Of x between 2^-900 and 2^900, or 0, or what is not finite.
+// Returns the square root, correctly rounded, for x in [2^-900, 2^900]; returns x itself where it
+// is 0, infinite or not a number.
 [[gnu::always_inline]] VPM_HD inline double square_root(double x) {
 #ifdef __CUDA_ARCH__
   double inverse;
@@ -47,7 +49,7 @@ namespace vpm {
 #endif
 }
 
-// 1 / b, where |b| lies between 2^-100 and 2^100.
+// Returns 1 / b, correctly rounded, for |b| in [2^-100, 2^100].
 [[gnu::always_inline]] VPM_HD inline float reciprocal(float b) {
 #ifdef __CUDA_ARCH__
   float inverse;
@@ -58,7 +60,7 @@ namespace vpm {
 #endif
 }
 
-// a / b, where |b| and |a / b| lie there too, or a is 0.
+// Returns a / b, correctly rounded, for |b| and |a / b| in [2^-100, 2^100], or a = 0.
 [[gnu::always_inline]] VPM_HD inline float quotient(float a, float b) {
 #ifdef __CUDA_ARCH__
   const float inverse = reciprocal(b), rounded = __fmul_rn(a, inverse);
@@ -68,7 +70,8 @@ namespace vpm {
 #endif
 }
 
-// Of x between 2^-100 and 2^100, or 0, or what is not finite.
+// Returns the square root, correctly rounded, for x in [2^-100, 2^100]; returns x itself where it
+// is 0, infinite or not a number.
 [[gnu::always_inline]] VPM_HD inline float square_root(float x) {
 #ifdef __CUDA_ARCH__
   float inverse;

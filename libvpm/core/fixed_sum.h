@@ -1,8 +1,8 @@
-// Sums that do not depend on the order of their terms: 64-bit fixed point.
+// Sums in 64-bit fixed point, independent of the order of their terms.
 //
-// A term is rounded once to a multiple of 2^-bits and added as an integer, so any order, any number
-// of threads and any device give the same sum. Overflow is a matter of |sum| < 2^(63-bits); who
-// adds states why that holds.
+// A term is rounded once to a multiple of 2^-Bits and added as an integer, so any order, any number
+// of threads and any device give the same sum. The sum overflows at 2^(63 - Bits); each user states
+// why its sums stay below.
 #pragma once
 
 #include <cmath>
@@ -17,8 +17,9 @@ struct FixedSum {
   static constexpr double kOne = static_cast<double>(std::int64_t{1} << Bits);
   std::int64_t value = 0;
 
-  // Rounds half away from zero, with nothing but IEEE operations and a truncating conversion. Signs
-  // of terms are anybody's guess: no branch.
+  // Returns the term as a multiple of 2^-Bits, rounded half away from zero. Uses only IEEE
+  // operations and a truncating conversion; copysign avoids a branch, since signs are
+  // unpredictable.
   VPM_HD static std::int64_t round(double term) {
     const double scaled = term * kOne;
     return static_cast<std::int64_t>(scaled + std::copysign(0.5, scaled));

@@ -1,4 +1,4 @@
-// One definition of the math for CPU and GPU: functions marked VPM_HD compile for both.
+// Defines VPM_HD, the mark of functions that compile for CPU and GPU.
 #pragma once
 
 #ifdef __CUDACC__

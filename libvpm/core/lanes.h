@@ -1,9 +1,9 @@
-// Vectors of numbers by the extension that GCC and Clang share: each operation is that of IEEE 754
-// in each lane, on whatever vectors the CPU has, so no value depends on them. For loops whose sums
-// compilers do not keep in registers by themselves. Not for device code.
+// SIMD vectors in the extension that GCC and Clang share. Each lane computes by IEEE 754, whatever
+// vectors the CPU has, so results do not depend on it. They serve loops whose sums compilers do not
+// keep in registers. Not for device code.
 //
-// Vectors go from function to function only where one is inlined into the other (always_inline:
-// without optimisation too), since functions that are compiled for other CPUs pass them otherwise.
+// Functions that take or return vectors must be inlined (always_inline, which also holds without
+// optimisation): clones for other CPUs would pass vectors by another calling convention.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace vpm {
 
-// Lanes of a vector of floats; a vector of doubles has half as many. Wide ones are for long rows.
+// Number of lanes of a vector of floats; a vector of doubles has half as many. Wide vectors serve
+// long rows.
 inline constexpr int kLanes = 8, kWideLanes = 16;
 
 using Floats = float __attribute__((vector_size(32)));
@@ -36,7 +37,7 @@ template <class Vector, class Number>
   std::memcpy(to, &vector, sizeof vector);
 }
 
-// The half of the floats that begins at a lane, as doubles.
+// Returns lanes first, first + 1, first + 2, first + 3 as doubles.
 [[gnu::always_inline]] inline Doubles doubles(const Floats& from, int first) {
   HalfFloats half;
   std::memcpy(&half, reinterpret_cast<const float*>(&from) + first, sizeof half);

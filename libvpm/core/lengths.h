@@ -1,4 +1,4 @@
-// The lengths that the arithmetic holds with room to spare.
+// Range of lengths that the arithmetic supports.
 #pragma once
 
 #include <cmath>
@@ -7,16 +7,16 @@
 
 namespace vpm {
 
-// Metres. Between these bounds squares and cubes neither overflow nor lose digits in double, and
-// what is stored as float32 relative to a tool keeps all of its own. The larger one is a thousand
-// times the visible universe.
+// Bounds in metres. Between them, squares and cubes neither overflow nor lose digits in double, and
+// float32 positions relative to a tool keep all their digits. The upper bound is a thousand times
+// the observable universe.
 inline constexpr double kSmallestLength = 0x1p-100, kLargestLength = 0x1p100;
 
-// Whether a vector is finite and no coordinate beyond a bound.
+// True if all coordinates are finite and at most `most` in magnitude.
 inline bool is_within(Vec3 v, double most) {
   return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
-// The same of a place, and kLargestLength.
+// True if all coordinates are finite and at most kLargestLength in magnitude.
 inline bool is_in_range(Vec3 p) {
   return is_within(p, kLargestLength);
 }

@@ -1,4 +1,4 @@
-// Matrices of three by three that are no rotations.
+// General 3x3 matrices, by rows.
 #pragma once
 
 #include "libvpm/core/vec3.h"
@@ -12,7 +12,7 @@ struct Matrix3 {
 constexpr Vec3 operator*(const Matrix3& m, Vec3 v) {
   return {dot(m.row0, v), dot(m.row1, v), dot(m.row2, v)};
 }
-// The transposed matrix times a vector.
+// Returns the transpose of m times v.
 constexpr Vec3 operator*(Vec3 v, const Matrix3& m) {
   return v.x * m.row0 + v.y * m.row1 + v.z * m.row2;
 }

@@ -1,5 +1,5 @@
-// Parallel loops on the CPU. Bodies must write only to what belongs to their own index: results
-// never depend on the number of threads.
+// Parallel loops on the CPU. Bodies write only to elements of their own index, so results do not
+// depend on the number of threads.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace vpm {
 
-// Caps the threads of all later parallel work of the process; 0 means one per core. Not
-// thread-safe: call it once, at the start of a program.
+// Caps the number of threads for all later parallel work of the process; 0 means one per core. Not
+// thread-safe: call it once, at program start.
 void set_thread_count(int threads);
 int thread_count();
 

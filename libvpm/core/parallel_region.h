@@ -1,7 +1,7 @@
-// Several short parallel loops one after the other, by the same threads: between two loops they
-// wait for the next instead of falling asleep, since waking takes longer than such a loop does.
-// Every thread begins with a part of its own, the same in each region of as many threads: what it
-// wrote the last time is still in its cache. Who is done takes from the ends of other parts.
+// Runs several short parallel loops in a row on the same threads. Between loops the threads spin
+// instead of sleeping, since waking them takes longer than such a loop. Each thread starts on the
+// same part of the range in every region of equal size, so that what it wrote last time is still in
+// its cache; a thread that is done steals from the ends of other parts.
 #pragma once
 
 #include <atomic>
@@ -12,8 +12,8 @@
 
 namespace vpm {
 
-// Lives on the stack of the thread that runs the loops. Within a loop of a region, another region
-// has no threads but its own.
+// Scope of such loops, on the stack of the thread that runs them. A region opened inside another's
+// loop has one thread.
 class ParallelRegion {
  public:
   ParallelRegion();
@@ -21,11 +21,12 @@ class ParallelRegion {
   ParallelRegion(const ParallelRegion&) = delete;
   ParallelRegion& operator=(const ParallelRegion&) = delete;
 
-  // How many may share the work, this one included.
+  // Returns the number of threads that may share the work, including the caller.
   int threads() const { return threads_; }
 
-  // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long:
-  // less than 2^32. Threads that come late find the rest; nobody waits for one that has not come.
+  // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long.
+  // Needs count < 2^32. Late threads take what is left; the loop never waits for a thread that has
+  // not started. Rethrows the first exception of a body.
   template <class Body>
   void loop(std::size_t count, std::size_t grain, const Body& body) {
     loop(count, grain, {&body, [](const void* it, std::size_t begin, std::size_t end) {
@@ -35,25 +36,26 @@ class ParallelRegion {
 
  private:
   struct Helpers;
-  // What a loop calls; unlike a std::function it takes no memory.
+  // Non-owning reference to a loop body; unlike std::function it never allocates.
   struct BodyView {
     const void* body = nullptr;
     void (*call)(const void* body, std::size_t begin, std::size_t end) = nullptr;
   };
 
-  // The ranges of a part that nobody has taken. Who takes one may read the loop's data, which stay
-  // until it is done; who takes none must not.
-  class alignas(64) Part {  // a line of the cache
+  // Ranges of one part that are not yet taken. Only a thread that took a range may read the loop's
+  // data, which outlive that range only. Aligned to a cache line.
+  class alignas(64) Part {
    public:
     void open(std::uint64_t begin, std::uint64_t end);
-    // The first one, or the last one.
+    // Takes the first or the last open range. Returns false if none is left.
     bool take(bool is_first, std::uint64_t& range);
 
    private:
     static constexpr int kEndShift = 32;
-    std::atomic<std::uint64_t> open_{0};  // the first one, and above kEndShift the one behind them
+    // Index of the first open range; above kEndShift, the index past the last.
+    std::atomic<std::uint64_t> open_{0};
   };
-  static constexpr std::size_t kMostParts = 16;  // further threads share them
+  static constexpr std::size_t kMostParts = 16;  // more threads than this share parts
 
   void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();
@@ -63,7 +65,7 @@ class ParallelRegion {
 
   Part parts_[kMostParts];
   std::size_t part_count_ = 1;
-  int first_thread_ = 0;  // the arena's index of the one that runs the loops
+  int first_thread_ = 0;  // arena index of the thread that runs the loops
   std::atomic<std::uint64_t> done_{0};
   std::atomic<bool> is_over_{false};
   std::size_t count_ = 0, grain_ = 1;

@@ -11,8 +11,8 @@
 namespace vpm {
 namespace {
 
-// The nearest rotation to m by Newton's iteration for the polar decomposition: m <- (m + m^-T) / 2.
-// Converges quadratically from the small deviations that are let through.
+// Returns the nearest rotation to m by Newton's iteration for the polar decomposition, m <- (m +
+// m^-T) / 2. It converges quadratically from deviations up to kRotationTolerance.
 Rotation nearest_rotation(Rotation m) {
   constexpr int kIterations = 8;
   for (int k = 0; k < kIterations; ++k) {

@@ -1,5 +1,5 @@
-// Rigid motions. A Pose maps tool coordinates to world coordinates: x_world = rotation * x +
-// translation.
+// Rigid motions: a Pose maps tool to world coordinates, x_world = rotation * x_tool + translation,
+// in metres.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
 };
 
-// Rows of a rotation matrix; orthonormal with determinant +1 when made by the functions below.
+// Rotation matrix by rows; orthonormal with determinant +1 if made by the functions below.
 struct Rotation {
   Vec3 row0{1, 0, 0}, row1{0, 1, 0}, row2{0, 0, 1};
 };
@@ -47,14 +47,14 @@ VPM_HD constexpr Pose inverse(const Pose& p) {
   return {back, -(back * p.translation)};
 }
 
-// `pose` seen from `frame`: inverse(frame) * pose, but the translations are subtracted first, so
-// that a far world origin costs no digits.
+// Returns inverse(frame) * pose. Subtracts the translations first, so that a far world origin costs
+// no digits.
 VPM_HD constexpr Pose relative_to(const Pose& frame, const Pose& pose) {
   const Rotation back = transpose(frame.rotation);
   return {back * pose.rotation, back * (pose.translation - frame.translation)};
 }
 
-// Whether the rows are orthonormal to this deviation, and not mirrored. False for what is not
+// True if the rows are orthonormal within the tolerance and right-handed. False if any entry is not
 // finite.
 inline bool is_rotation(const Rotation& r, double tolerance) {
   const Rotation gram = r * transpose(r);
@@ -63,28 +63,29 @@ inline bool is_rotation(const Rotation& r, double tolerance) {
   return off <= tolerance && dot(r.row0, cross(r.row1, r.row2)) > 0;
 }
 
-// Deviation from a unit quaternion or an orthonormal matrix up to which an input is taken for a
-// rounded rotation and normalised (recorded camera poses reach 4e-4); beyond it the input is
-// refused.
+// Largest deviation from a unit quaternion or an orthonormal matrix that is taken for rounding and
+// normalised away; recorded camera poses reach 4e-4. Input that deviates more is refused.
 inline constexpr double kRotationTolerance = 0.02;
-// Deviation that is mere decimal rounding and not worth a note.
+// Deviation up to which decimal rounding explains it, so that no note is printed.
 inline constexpr double kRotationRounding = 1e-5;
 
-// Deviation of rotations that were computed in double.
+// Deviation of rotations computed in double.
 inline constexpr double kRotationExact = 1e-13;
 
-// The rotation of a quaternion or a 3x3 matrix (row-major), normalised. `deviation` (may be null)
-// receives how far the input was from a rotation. Throws Error(refused) for non-finite, zero,
-// far-off or mirrored input.
+// Returns the rotation of a quaternion or of a row-major 3x3 matrix, normalised. Stores in
+// `deviation`, unless null, how far the input was from a rotation. Throws Error(refused) if the
+// input is not finite, zero, mirrored, or further off than kRotationTolerance.
 Rotation rotation_from_quaternion(const Quaternion& q, double* deviation = nullptr);
 Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation = nullptr);
-// The nearest rotation to one that is rounded (is_rotation, kRotationTolerance); itself where it is
-// exact.
+// Returns the nearest rotation to one that is off by rounding (at most kRotationTolerance); returns
+// it unchanged if it is exact to kRotationExact.
 Rotation exact_rotation(const Rotation& rounded);
-Quaternion quaternion_from_rotation(const Rotation& r);  // w >= 0
+// Returns the quaternion with w >= 0.
+Quaternion quaternion_from_rotation(const Rotation& r);
 
-// Parses "tx,ty,tz,qx,qy,qz,qw". Throws Error: usage where it is not seven numbers, refused where
-// they are no pose.
+// Parses "tx,ty,tz,qx,qy,qz,qw", metres and a unit quaternion. Throws Error(usage) if the text is
+// not seven numbers, Error(refused) if the numbers are no pose. `deviation` as in
+// rotation_from_quaternion.
 Pose pose_from_text(const std::string& text, double* deviation = nullptr);
 
 }  // namespace vpm

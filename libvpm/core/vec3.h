@@ -1,4 +1,4 @@
-// Three-vectors. Vec3 (double) computes; Vec3f (float) only stores what files and clouds hold.
+// Three-vectors. Vec3 (double) is for computing; Vec3f (float) is for storage in files and clouds.
 #pragma once
 
 #include <cmath>
@@ -56,7 +56,7 @@ VPM_HD inline double norm(Vec3 a) {
   return square_root(squared_norm(a));
 }
 
-// The unit vector along a, or zero where a has no direction (zero, or not finite).
+// Returns a / |a|, or zero if a is zero or not finite.
 VPM_HD inline Vec3 normalized_or_zero(Vec3 a) {
   const double length = norm(a);
   const bool has_direction = length > 0 && length < HUGE_VAL;

@@ -1,6 +1,6 @@
-// Numbers and three-vectors by fours, in the vectors that GCC and Clang share: each operation is
-// that of IEEE 754 in each lane, in the order of core/vec3.h and core/pose.h, so with their bits.
-// Passed between inlined functions only (core/lanes.h has the reason). Not for device code.
+// Four numbers or three-vectors at once, in the SIMD extension that GCC and Clang share. Each lane
+// computes by IEEE 754 in the order of core/vec3.h and core/pose.h, hence with their bits. Pass
+// them between inlined functions only (core/lanes.h says why). Not for device code.
 #pragma once
 
 #include <algorithm>
@@ -90,7 +90,8 @@ struct Vec3x4 {
   return choose(has_direction, {a.x / length, a.y / length, a.z / length}, {zero, zero, zero});
 }
 
-// Four of a row, from `first` on; the last one stands for those beyond the end.
+// References to four consecutive elements of a row, starting at `first`; the row's last element
+// stands in for those past the end.
 template <class T>
 struct FourOf {
   const T &a, &b, &c, &d;

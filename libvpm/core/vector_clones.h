@@ -1,7 +1,6 @@
-// Functions that GCC compiles for AVX-512, for AVX2 and for every x86-64, and that the loader
-// chooses. No value depends on the choice: all are the same IEEE operations in the same order, and
-// contraction to fused multiply-add is off. `flatten` inlines what the function calls, so that it
-// is compiled for each too.
+// Marks functions that GCC compiles for AVX-512, for AVX2 and for baseline x86-64; the loader
+// chooses at start. All clones give the same bits: they run the same IEEE operations in the same
+// order, and contraction is off. `flatten` inlines callees, so that these are cloned too.
 #pragma once
 
 #include <cstdlib>  // defines __GLIBC__ where the loader can choose

@@ -1,4 +1,4 @@
-// What takes the place of cuda/ in a build without CUDA.
+// Replaces the files of cuda/ in builds without CUDA.
 #include "libvpm/device/device.h"
 
 namespace vpm {

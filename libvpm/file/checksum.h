@@ -1,5 +1,5 @@
-// XXH3 (seed 0): 64 bits guard files against damage, 128 bits identify contents. Neither guards
-// against malice.
+// XXH3 hashes with seed 0: 64 bits guard files against damage, 128 bits identify contents. Neither
+// protects against malice.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@ namespace vpm::file {
 
 std::uint64_t checksum(std::span<const std::byte> bytes);
 
-// XXH3-128 of the concatenated parts in its canonical form: 32 lower-case hexadecimal digits.
+// Returns the XXH3-128 of the concatenated parts in canonical form: 32 lower-case hexadecimal
+// digits.
 std::string content_hash(std::initializer_list<std::span<const std::byte>> parts);
 
 }  // namespace vpm::file

@@ -1,7 +1,7 @@
-// The container of every vpm file: formats/container.md is its specification.
+// Container of every vpm file, specified in formats/container.md.
 //
-// magic, layout version, feature flags, kind; a JSON header; a table of chunks with a checksum
-// each; chunks aligned to 64 bytes. Little-endian. Identical input gives identical bytes.
+// Layout: magic, layout version, feature flags, kind; a JSON header; a table of chunks with a
+// checksum each; chunks aligned to 64 bytes. Little-endian. The same input gives the same bytes.
 #pragma once
 
 #include <compare>
@@ -20,7 +20,7 @@ namespace vpm::file {
 
 enum class Kind : std::uint32_t { packing = 1, tool_model = 2, cloud = 3 };
 
-// Four characters that name a chunk, e.g. "SPHR".
+// Name of a chunk: four characters, e.g. "SPHR".
 struct ChunkId {
   char name[4];
   consteval ChunkId(const char (&text)[5]) : name{text[0], text[1], text[2], text[3]} {}
@@ -30,11 +30,11 @@ struct ChunkId {
 
 class Writer {
  public:
-  // The header must be an object with "unit": "m".
+  // Starts a file of this kind. The header must be an object with "unit": "m".
   Writer(Kind kind, nlohmann::json header);
 
-  // Chunks are written in the order of the calls. `index` tells chunks of one name apart (a model's
-  // levels).
+  // Appends a chunk; chunks are stored in the order of the calls. `index` tells chunks of one name
+  // apart, e.g. those of a model's levels.
   template <class T>
   void add(ChunkId id, std::uint32_t index, std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -43,8 +43,8 @@ class Writer {
 
   std::vector<std::byte> bytes() const;
 
-  // As write_all (stream.h): atomic, "-" is standard output. Throws Error(cannot_write). Overwrites
-  // whatever is there: check_container_output (overwrite.h) asks first.
+  // Writes the file atomically, or to standard output for "-". Overwrites what is there: call
+  // check_container_output (overwrite.h) first. Throws Error(cannot_write).
   void write(const std::string& path) const;
 
  private:
@@ -62,21 +62,22 @@ class Writer {
   std::vector<Chunk> chunks_;
 };
 
-// A file read whole and checked: magic, version, flags, kind, sizes, checksums. Every constructor
-// throws Error(refused) with the file's name, the defect and how to mend it.
+// Reads a whole file and checks magic, version, flags, kind, sizes and checksums. Constructors
+// throw Error(refused) with the file's name, the defect and how to mend it.
 class Reader {
  public:
-  Reader(const std::string& path, Kind expected);  // "-" is standard input
+  Reader(const std::string& path, Kind expected);  // "-" reads standard input
   Reader(std::vector<std::byte> bytes, std::string name, Kind expected);
 
-  Reader(const Reader&) = delete;  // the entries point into the bytes
+  Reader(const Reader&) = delete;  // entries_ point into bytes_
   Reader& operator=(const Reader&) = delete;
 
   const nlohmann::json& header() const { return header_; }
   const std::string& name() const { return name_; }
   bool has(ChunkId id, std::uint32_t index) const;
 
-  // The chunk's values. Refuses a missing chunk, and one whose element size is not sizeof(T).
+  // Returns a chunk's values. Throws Error(refused) if the chunk is missing or its element size is
+  // not sizeof(T).
   template <class T>
   std::vector<T> read(ChunkId id, std::uint32_t index) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -86,7 +87,7 @@ class Reader {
     return values;
   }
 
-  // Throws Error(refused) "<name>: <defect>".
+  // Throws Error(refused) with the text "<name>: <defect>".
   [[noreturn]] void refuse_file(const std::string& defect) const;
 
  private:

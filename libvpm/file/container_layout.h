@@ -1,4 +1,4 @@
-// The bytes of a container, as formats/container.md specifies them.
+// Byte layout of a container, as in formats/container.md.
 #pragma once
 
 #include <bit>
@@ -13,11 +13,12 @@ namespace vpm::file {
 static_assert(std::endian::native == std::endian::little,
               "vpm files are little-endian and are copied to memory as they are");
 
-// Like PNG's signature: a byte that is no text, and line ends that a transfer as text would change.
+// Signature, built like PNG's: a byte that is not ASCII, and line ends that a transfer as text
+// would change.
 inline constexpr unsigned char kMagic[8] = {0x89, 'V', 'P', 'M', '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kLayoutVersion = 1;
 inline constexpr std::uint32_t kKnownRequiredFlags = 0;
-// A cache line, and enough for any vector load from a mapped file.
+// Alignment of chunks in bytes: a cache line, and enough for vector loads from a mapped file.
 inline constexpr std::size_t kAlignment = 64;
 
 struct Preamble {
@@ -25,13 +26,13 @@ struct Preamble {
   std::uint32_t layout_version;
   std::uint32_t kind;
   std::uint32_t required_flags;  // a reader that does not know one of them must refuse the file
-  std::uint32_t optional_flags;  // a reader may pass over these
+  std::uint32_t optional_flags;  // a reader may ignore these
   std::uint64_t file_size;
   std::uint32_t chunk_count;
-  std::uint32_t header_size;         // bytes of JSON
+  std::uint32_t header_size;         // size of the JSON header in bytes
   std::uint64_t reserved;            // 0
-  std::uint64_t directory_checksum;  // of the chunk table and the JSON header
-  std::uint64_t preamble_checksum;   // of the bytes before this field
+  std::uint64_t directory_checksum;  // XXH3-64 of chunk table and JSON header
+  std::uint64_t preamble_checksum;   // XXH3-64 of the bytes before this field
 };
 static_assert(sizeof(Preamble) == 64);
 
@@ -41,7 +42,7 @@ struct ChunkEntry {
   std::uint32_t element_size;
   std::uint32_t reserved;  // 0
   std::uint64_t offset;
-  std::uint64_t size;  // bytes
+  std::uint64_t size;  // in bytes
   std::uint64_t checksum;
 };
 static_assert(sizeof(ChunkEntry) == 40);
@@ -50,7 +51,7 @@ constexpr std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-// "a packing (.vpmp)", and the tool that makes it.
+// Names of a kind for messages: e.g. "a packing (.vpmp)" and "vpm-pack", the tool that writes it.
 struct KindNames {
   const char* what;
   const char* made_by;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kAgain = "; copy or make the file again";
 
-// Copies of deeper ones could take all of a thread's stack.
+// Limits the nesting of the JSON header: copying a deeper one could overflow a thread's stack.
 constexpr int kDeepestHeader = 32;
 
 std::string quoted(ChunkId id, std::uint32_t index) {
@@ -78,7 +78,7 @@ void Reader::parse(Kind expected) {
   }
   Preamble preamble;
   std::memcpy(&preamble, bytes_.data(), sizeof(preamble));
-  // The version comes before the checksum: a later layout may place that elsewhere.
+  // Checks the version before the checksum, since a later layout may store the checksum elsewhere.
   if (preamble.layout_version != kLayoutVersion) {
     refuse_file("layout version " + std::to_string(preamble.layout_version) +
                 ", but this build reads version " + std::to_string(kLayoutVersion) +
@@ -139,7 +139,7 @@ void Reader::parse_directory(std::uint64_t chunk_count, std::uint64_t header_siz
     const std::string chunk = quoted(id, entry.index);
     if (entry.reserved != 0 || entry.element_size == 0 || entry.size % entry.element_size != 0)
       refuse_file(chunk + " has an entry that makes no sense" + kAgain);
-    // Chunks follow each other without other gaps than the zeros of the alignment.
+    // Chunks must follow each other with no gaps except the zeros of the alignment.
     if (entry.offset != aligned(end) || entry.offset > all.size() ||
         entry.size > all.size() - entry.offset)
       refuse_file(chunk + " lies outside of the file or of its order" + kAgain);

@@ -27,7 +27,7 @@ void Writer::add_bytes(ChunkId id, std::uint32_t index, std::size_t element_size
 }
 
 std::vector<std::byte> Writer::bytes() const {
-  // File names need not be UTF-8, JSON must be.
+  // Replaces bytes that are not UTF-8: file names may hold them, JSON may not.
   const std::string json = header_.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   if (json.size() > std::numeric_limits<std::uint32_t>::max())
     refuse("the header to be written exceeds 4 GiB");
@@ -43,7 +43,7 @@ std::vector<std::byte> Writer::bytes() const {
     table.push_back(entry);
   }
 
-  std::vector<std::byte> bytes(end);  // gaps are zero
+  std::vector<std::byte> bytes(end);  // gaps between chunks stay zero
   const std::size_t json_at =
       place(bytes, sizeof(Preamble), table.data(), table.size() * sizeof(ChunkEntry));
   place(bytes, json_at, json.data(), json.size());

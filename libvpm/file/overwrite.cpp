@@ -16,7 +16,7 @@ enum class Content { nothing, container, other };
 
 struct Existing {
   Content content = Content::nothing;
-  std::uint32_t kind = 0;  // of a container
+  std::uint32_t kind = 0;  // file::Kind, if content is a container
 };
 
 Existing content_of(const std::string& path) {

@@ -53,11 +53,11 @@ void write_to(int descriptor, std::span<const std::byte> bytes, const std::strin
 }
 
 void sync(int descriptor, const std::string& path) {
-  // Some file systems cannot sync (EINVAL, ENOTSUP); then there is nothing more to be had.
+  // Ignores EINVAL and ENOTSUP: some file systems cannot sync.
   if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) cannot_write(path, errno);
 }
 
-// The temporary files that are there. A signal handler reads their names, hence no std::string.
+// Temporary files that exist now. Paths are plain arrays, since a signal handler reads them.
 struct UnfinishedFile {
   char path[PATH_MAX];
   std::atomic<bool> is_taken{false}, is_there{false};
@@ -81,13 +81,14 @@ class TemporaryFile {
 
   void rename_to(const fs::path& target) {
     const int descriptor = std::exchange(descriptor_, -1);
-    if (::close(descriptor) != 0) cannot_write(target.string(), errno);  // NFS reports here
+    if (::close(descriptor) != 0)
+      cannot_write(target.string(), errno);  // NFS reports write errors here
     if (::rename(place_.file.path, target.c_str()) != 0) cannot_write(target.string(), errno);
     place_.file.is_there = false;
   }
 
  private:
-  // One of the unfinished files, given back at the end; what is there by then is removed.
+  // Owns one slot of unfinished_files; at the end it removes the file if it still exists.
   struct Place {
     explicit Place(const std::string& target) : file(take(target)) {}
     ~Place() {
@@ -112,7 +113,7 @@ class TemporaryFile {
       const std::string path = stem + std::to_string(attempt) + ".tmp";
       if (path.size() >= sizeof(place_.file.path)) cannot_write(target.string(), ENAMETOOLONG);
       std::memcpy(place_.file.path, path.c_str(), path.size() + 1);
-      // 0666: the umask says who may read the result.
+      // Mode 0666 leaves the permissions to the umask.
       descriptor_ = ::open(place_.file.path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ < 0 && errno != EEXIST) cannot_write(target.string(), errno);
     }
@@ -123,9 +124,10 @@ class TemporaryFile {
   int descriptor_ = -1;
 };
 
-// A link stays a link: what it points to is written, also where that is not there yet.
+// Follows symbolic links, so that the link stays and its target is written, even if that does not
+// exist yet.
 fs::path end_of_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel
+  constexpr int kMostLinks = 40;  // the kernel's limit
   std::error_code fault;
   for (int k = 0; fs::is_symlink(path, fault); ++k) {
     if (k == kMostLinks) cannot_write(path.string(), ELOOP);
@@ -148,8 +150,8 @@ class Output::Target {
 
 namespace {
 
-// A descriptor of this process is written where it stands, not opened anew: a file behind it would
-// be written from its beginning.
+// Writes to a descriptor of this process at its current position. Reopening it by path would
+// overwrite a file behind it from the start.
 class Straight : public Output::Target {
  public:
   explicit Straight(const std::string& path)
@@ -172,7 +174,7 @@ class WholeFile : public Output::Target {
  public:
   explicit WholeFile(const fs::path& target) : target_(target), temporary_(target) {
     struct stat there {};
-    if (::stat(target.c_str(), &there) == 0)  // who may read it stays as it was
+    if (::stat(target.c_str(), &there) == 0)  // keep the permissions of the file that is replaced
       ::fchmod(temporary_.descriptor(), there.st_mode & 07777);
   }
   void append(std::span<const std::byte> bytes) override {
@@ -241,7 +243,7 @@ std::vector<std::byte> read_all(const std::string& path) {
   if (::fstat(descriptor, &status) != 0) cannot_read(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) cannot_read("it is a folder");
 
-  // One byte more than the file has, so that its end is met without growing.
+  // Reads one byte more than the file holds, so that its end is met without growing the buffer.
   constexpr std::size_t kFirstPipeBuffer = std::size_t{1} << 16;
   std::vector<std::byte> bytes(
       S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : kFirstPipeBuffer);

@@ -1,4 +1,4 @@
-// Whole files in and out; "-" is standard input or output.
+// Reads and writes whole files; "-" is standard input or output.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,24 @@
 
 namespace vpm::file {
 
-// Throws Error(refused) where the file is not there, is a folder, or cannot be read.
+// Returns the bytes of a file. Throws Error(refused) if it does not exist, is a folder, or cannot
+// be read.
 std::vector<std::byte> read_all(const std::string& path);
 
-// Of a path that leads to a descriptor of this process, as an output: "-", /dev/stdout, /dev/fd/3.
+// Returns the descriptor that an output path names: "-", /dev/stdout, /dev/stderr, /dev/fd/3. Empty
+// for all other paths.
 std::optional<int> descriptor_of(std::string_view path);
 
-// What is written in parts. Atomic for a path: the old file or the whole new one, whatever
-// interrupts the run; parts wait in a temporary file beside it. A pipe, a device (/dev/stdout,
-// /dev/null) and "-" are written straight, each part at once. One thread at a time.
+// Output written in parts. Regular files are atomic: whatever interrupts the run leaves the old
+// file or the whole new one, since parts go to a temporary file beside it. Pipes, devices
+// (/dev/stdout, /dev/null) and "-" receive each part at once. Not thread-safe.
 class Output {
  public:
-  // Throws Error(cannot_write), as append() and finish() do. The path of a pipe waits for a reader.
+  // Opens the output; blocks on a named pipe until it has a reader. Throws Error(cannot_write), as
+  // do append() and finish().
   explicit Output(const std::string& path);
-  ~Output();  // without finish() the old file stays, or none
+  // Discards the output unless finish() was called: the old file stays.
+  ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
@@ -38,12 +42,11 @@ class Output {
   std::unique_ptr<Target> target_;
 };
 
-// One part, and finished.
+// Writes a whole output at once and finishes it.
 void write_all(const std::string& path, std::span<const std::byte> bytes);
 void write_all(const std::string& path, std::string_view text);
 
-// Removes the temporary files of outputs that are not finished. For signal handlers:
-// async-signal-safe.
+// Removes the temporary files of unfinished outputs. Async-signal-safe, for signal handlers.
 void remove_unfinished_output();
 
 }  // namespace vpm::file

@@ -1,4 +1,4 @@
-// A folder for files that nobody else may meet, and that go with the object.
+// Folder for temporary files.
 #pragma once
 
 #include <stdlib.h>
@@ -11,12 +11,12 @@
 
 namespace vpm::file {
 
-// Fresh, in the system's folder for such; removed at the end with all that is in it. Throws
-// Error(cannot_write) where it cannot be made.
+// Makes a folder of its own in the system's temporary folder, and removes it with its contents at
+// the end. Throws Error(cannot_write) if it cannot be made.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    // mkdtemp puts other letters in place of the last six.
+    // The X's are replaced by mkdtemp.
     std::error_code fault;
     std::string name = (std::filesystem::temp_directory_path(fault) / "vpm-XXXXXX").string();
     if (fault)

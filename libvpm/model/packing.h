@@ -1,4 +1,4 @@
-// A packing: non-overlapping spheres inside a solid, largest first, with the solid they came from.
+// Packing: non-overlapping spheres inside a solid, largest first, with that solid. Metres.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,11 +9,13 @@
 
 namespace vpm {
 
-// Every prefix of `spheres` is a packing too: levels of detail are prefixes.
+// Every prefix of `spheres` is a packing too; levels of detail are prefixes.
 struct Packing {
   std::vector<Sphere> spheres;
   Solid solid;
-  nlohmann::json provenance;  // tool, version, parameters, hash of the input; never a clock time
+  // Tool, version, parameters, hash of the input; no clock time, so that equal runs give equal
+  // files.
+  nlohmann::json provenance;
 };
 
 }  // namespace vpm

@@ -30,7 +30,8 @@ void check_solid(const Solid& solid, const std::string& name) {
   }
 }
 
-// To their radius: a certificate is the packer's, not the reader's.
+// Checks that spheres meet the solid's bounding box. It is a sanity check: proof that spheres are
+// inside is the packer's task.
 void check_within(const std::vector<Sphere>& spheres, const Solid& solid, const std::string& name) {
   Box box;
   for (const Vec3& vertex : solid.vertices) box.add(vertex);

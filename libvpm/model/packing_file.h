@@ -8,12 +8,12 @@
 
 namespace vpm {
 
-// Refuse (Error(refused)) whatever is not a sound file of this kind: see formats/. "-" is standard
-// input.
+// Reads a packing from a file, from standard input ("-"), or from bytes. Throws Error(refused) if
+// it breaks a rule of formats/packing.md.
 Packing read_packing(const std::string& path);
 Packing parse_packing(std::vector<std::byte> bytes, const std::string& name);
 
-// Atomic; "-" is standard output. Throws Error(cannot_write).
+// Writes a packing atomically, or to standard output ("-"). Throws Error(cannot_write).
 void write_packing(const std::string& path, const Packing& packing);
 
 }  // namespace vpm

@@ -25,7 +25,8 @@ MassProperties mass_properties(const Solid& solid) {
   for (const Triangle& t : solid.triangles) {
     const Vec3 a = solid.vertices[t[0]] - origin, b = solid.vertices[t[1]] - origin,
                c = solid.vertices[t[2]] - origin;
-    const double six_volume = dot(a, cross(b, c));  // of the tetrahedron (origin, a, b, c)
+    const double six_volume =
+        dot(a, cross(b, c));  // six times the volume of tetrahedron (origin, a, b, c)
     six_volumes += six_volume;
     moment += six_volume * (a + b + c);
   }

@@ -1,4 +1,4 @@
-// A solid bounded by triangles: what a packing was made of.
+// Solid bounded by triangles, from which a packing is made.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace vpm {
 
-using Triangle =
-    std::array<std::uint32_t, 3>;  // vertex indices, counter-clockwise seen from outside
+// Vertex indices, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
 
-// Welded, closed, consistently oriented outward. Coordinates in metres (after --scale).
+// Welded, closed and outward-oriented triangles. Vertices in metres.
 struct Solid {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
@@ -21,18 +21,18 @@ struct Solid {
 
 struct MassProperties {
   double volume = 0;    // m^3
-  Vec3 center_of_mass;  // of a homogeneous solid
+  Vec3 center_of_mass;  // of a homogeneous solid, m
 };
 
-// Exact integrals by the divergence theorem, about the box's centre so that a far origin costs no
-// digits.
+// Returns the exact integrals by the divergence theorem. Works about the centre of the bounding
+// box, so that a far origin costs no digits.
 MassProperties mass_properties(const Solid& solid);
 
-// Largest distance of a vertex from `from`.
+// Returns the largest distance of a vertex from `from`.
 double reach(const Solid& solid, Vec3 from);
 
-// 32 hexadecimal digits that identify the solid: XXH3-128 over counts, vertices and triangles as
-// stored.
+// Returns 32 hexadecimal digits that identify the solid: XXH3-128 of counts, vertices and triangles
+// as stored.
 std::string content_hash(const Solid& solid);
 
 }  // namespace vpm

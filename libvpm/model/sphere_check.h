@@ -1,4 +1,4 @@
-// What the spheres of every file must hold.
+// Check shared by all files with spheres.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,9 @@
 
 namespace vpm {
 
-// Refuses no spheres, more than 32-bit indices reach, and spheres that are not finite, beyond
-// kLargestLength, not positive or not largest first; names the first such sphere.
+// Throws Error(refused) if there are no spheres, too many for 32-bit indices, or one that is not
+// finite, beyond kLargestLength, not positive or larger than its predecessor; the message names the
+// first such sphere.
 inline void check_spheres(const std::vector<Sphere>& spheres, const std::string& name) {
   if (spheres.empty()) refuse(name + ": there are no spheres");
   if (spheres.size() >= std::numeric_limits<std::uint32_t>::max())

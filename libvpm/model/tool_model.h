@@ -1,8 +1,8 @@
-// A tool model: everything a query needs of the tool, for each level of detail.
+// Tool model: everything a query needs to know of the tool, for each level of detail. Specified in
 // formats/tool-model.md.
 //
-// Frame: the mesh's own coordinates. Units: metres, m^3. Immutable after construction; safe to
-// share between threads.
+// Coordinates are those of the mesh, in metres; volumes in m^3. Immutable after construction; safe
+// to share between threads.
 #pragma once
 
 #include <cstdint>
@@ -14,91 +14,96 @@
 
 namespace vpm {
 
-// Undirected sphere graph in compressed rows; neighbours ascend, and no sphere is its own
-// neighbour.
+// Undirected graph of spheres in compressed rows; neighbours ascend, and no sphere neighbours
+// itself.
 struct SphereGraph {
-  std::vector<std::uint32_t> begin;      // spheres + 1
-  std::vector<std::uint32_t> neighbors;  // both directions of every edge
+  std::vector<std::uint32_t> begin;      // row offsets; spheres + 1 entries
+  std::vector<std::uint32_t> neighbors;  // holds each edge in both directions
 };
 
-// Wrapped inner-sphere tree: the sphere of a node encloses every packing sphere below it.
+// Wrapped inner-sphere tree: a node's sphere encloses all packing spheres below it.
 struct HierarchyNode {
   Sphere bound;
-  std::uint32_t begin = 0, end = 0;  // children: nodes, or entries of `leaves`
+  // Children: nodes, or entries of `leaves` if children_are_leaves is 1.
+  std::uint32_t begin = 0, end = 0;
   std::uint32_t children_are_leaves = 0;
   std::uint32_t reserved = 0;
 };
 struct Hierarchy {
-  std::vector<HierarchyNode> nodes;   // nodes[0] is the root; children follow their parent
-  std::vector<std::uint32_t> leaves;  // sphere indices
+  std::vector<HierarchyNode> nodes;   // root first; children follow their parent
+  std::vector<std::uint32_t> leaves;  // sphere indices, each once
 };
 
-// Uniform grid over the box of the spheres: which spheres meet a cell. x runs fastest.
+// Uniform grid over the bounding box of the spheres; lists the spheres that intersect each grid
+// cell. x runs fastest.
 struct PointLocationGrid {
-  Vec3 low;         // corner of cell (0, 0, 0)
-  double cell = 0;  // edge length
+  Vec3 low;         // corner of grid cell (0, 0, 0)
+  double cell = 0;  // edge length of a grid cell, m
   std::uint32_t nx = 0, ny = 0, nz = 0;
-  std::vector<std::uint32_t> begin;    // nx*ny*nz + 1
-  std::vector<std::uint32_t> spheres;  // ascending within a cell
+  std::vector<std::uint32_t> begin;    // row offsets; nx*ny*nz + 1 entries
+  std::vector<std::uint32_t> spheres;  // ascend within a grid cell
 };
 
-// The volume share of a sphere: all points of the solid whose nearest sphere surface is this one's.
-// A cell is cut into blocks and a block into samples: compact pieces of the share, each known by
-// its centroid, volume and size. Samples that follow one another in a block, kNeighborSamples from
-// its first one on and so forth, lie side by side.
+// The Voronoi cell of a sphere (additively weighted, clipped to the solid) is the set of points of
+// the solid that are nearer to that sphere's surface than to any other's. Cells are cut into
+// blocks, and blocks into samples: compact pieces with centroid, volume and size. Each run of
+// kNeighborSamples samples, counted from a block's first, is a spatial cluster.
 inline constexpr std::uint32_t kNeighborSamples = 4;
 struct CellBlock {
-  Vec3f center;  // of a ball that encloses the block's part of the share, about
-                 // ToolModel::center_of_mass
+  // Ball that encloses the block, relative to ToolModel::center_of_mass.
+  Vec3f center;
   float radius = 0;
-  std::uint32_t begin = 0, end = 0;  // samples
+  std::uint32_t begin = 0, end = 0;  // range of samples
 };
 struct CellSample {
-  Vec3f center;  // centroid of the piece, about ToolModel::center_of_mass
-  float radius =
-      0;  // of the ball with the piece's second moment: sqrt(5/3 * mean squared distance)
+  Vec3f center;  // centroid, relative to ToolModel::center_of_mass
+  // Radius of the ball with the same second moment: sqrt(5/3 * mean squared distance).
+  float radius = 0;
   double weight = 0;  // volume of the piece / volume of the solid
 };
 
 struct Level {
-  double epsilon = 0;  // largest gap of an edge that is not a bridge, m
+  double epsilon = 0;  // largest gap along an edge that is not a bridge, m
   std::uint32_t bridges = 0, components_before = 0;
-  std::uint32_t sphere_count = 0;  // the first sphere_count spheres of the model
+  std::uint32_t sphere_count = 0;  // the level has the first sphere_count spheres
   SphereGraph graph;
   Hierarchy hierarchy;
   PointLocationGrid grid;
-  std::vector<double> share_volume;  // m^3; sums to the solid's volume
+  // Volume of each cell, m^3; they sum to the solid's volume.
+  std::vector<double> share_volume;
   std::vector<Vec3> share_centroid;
-  std::vector<double>
-      share_reach;  // largest distance of the share's points from the sphere's centre
-  std::vector<std::uint32_t> block_begin;  // spheres + 1: blocks of each sphere's cell
+  // Largest distance of a cell's points from its sphere's centre, m.
+  std::vector<double> share_reach;
+  // Row offsets: blocks of each cell; spheres + 1 entries.
+  std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;
   std::vector<CellSample> samples;  // weights sum to 1
 };
 
-// |volume - truth| / volume of the solid, over cuts by planes and balls at all depths.
+// Distribution of |volume - truth| / volume of the solid over cuts by planes and balls at all
+// depths.
 struct LevelError {
   double mean = 0, p95 = 0, worst = 0;
 };
 
 struct ToolModel {
-  double volume = 0;            // of the solid
-  Vec3 center_of_mass;          // of the solid; blocks and samples are stored about it
-  double reach = 0;             // largest distance of a point of the solid from center_of_mass
-  std::string solid_hash;       // content_hash of the solid
-  std::vector<Sphere> spheres;  // largest first
-  std::vector<Level> levels;    // ascending sphere_count, at least one
-  std::vector<LevelError> calibration;  // of each level; empty where it has not been measured
+  double volume = 0;       // volume of the solid, m^3
+  Vec3 center_of_mass;     // centre of mass of the solid; blocks and samples are relative to it
+  double reach = 0;        // largest distance of the solid from center_of_mass, m
+  std::string solid_hash;  // content_hash of the solid
+  std::vector<Sphere> spheres;          // largest first
+  std::vector<Level> levels;            // by ascending sphere_count; at least one
+  std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
   nlohmann::json provenance;
 
-  // The level with this many spheres; the finest for 0. Throws Error(usage) listing the levels
-  // there are.
+  // Returns the level with this many spheres, or the finest for 0. Throws Error(usage) that lists
+  // the levels if there is none.
   const Level& level(std::uint32_t sphere_count) const;
 };
 
-// Refuses (Error(refused)) a model that breaks a promise of the types above, naming the first
-// defect: a query may index without asking and is certain to end. Reading and writing a file check
-// this too.
+// Throws Error(refused) if the model breaks a rule stated above; the message names the first
+// defect. Queries of a valid model index without checks and always end. Reading and writing files
+// call this.
 void validate(const ToolModel& model, const std::string& name);
 
 }  // namespace vpm

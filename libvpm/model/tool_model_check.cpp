@@ -12,18 +12,20 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-// Sums over the parts of a tool are off by rounding only.
+// Relative tolerance of sums over the cells of a tool: rounding only.
 constexpr double kSumTolerance = 1e-6;
-// A tool's spheres touch the ball of its reach to rounding.
+// Relative tolerance for spheres that touch the tool's bounding ball.
 constexpr double kReachTolerance = 1e-6;
-// Parts further than this many reaches from the centre of mass do not belong to the tool. The fixed
-// point of libvpm/query/tool_sum.h holds arms up to 8.
+// Largest distance of blocks and samples from the centre of mass, in tool radii. The fixed-point
+// sums of a query (tool_sum.h) allow lever arms of up to 8.
 constexpr double kFarthestPart = 2;
-// Of a share's, from its sphere's centre, in reaches of the share.
+// Largest distance of a cell's blocks and samples from its sphere's centre, in bounding radii of
+// the cell.
 constexpr double kFarthestOfShare = 7;
-// What libvpm/query/cell.h counts exactly.
+// Number of samples per cell up to which a query's counts are exact.
 constexpr std::size_t kMostSamplesOfACell = std::size_t{1} << 20;
-// Traversals of a hierarchy recurse; one that halves its spheres at every node needs 32.
+// Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
+// needs 32.
 constexpr std::uint32_t kDeepestHierarchy = 1000;
 
 // Checks one level of a model; `where` is "<name>: level k".
@@ -46,7 +48,7 @@ class LevelCheck {
  private:
   [[noreturn]] void fail(const std::string& defect) const { refuse(where_ + ": " + defect); }
 
-  // Compressed rows: `rows` + 1 offsets that ascend from 0 to `entries`.
+  // Checks compressed rows: `count` + 1 offsets that ascend from 0 to `entries`.
   void rows(const Indices& begin, std::uint64_t count, std::size_t entries,
             const std::string& what) const {
     if (begin.size() != count + 1) {
@@ -58,7 +60,7 @@ class LevelCheck {
       fail("the row offsets of " + what + " do not ascend from 0 to their number");
   }
 
-  // Every row of `entries` ascends strictly and stays below the sphere count.
+  // Checks that every row of `entries` ascends strictly and stays below the sphere count.
   void ascending(const Indices& begin, const Indices& entries, const std::string& what) const {
     for (std::size_t row = 0; row + 1 < begin.size(); ++row) {
       for (std::uint32_t k = begin[row]; k < begin[row + 1]; ++k) {
@@ -84,8 +86,8 @@ class LevelCheck {
     }
   }
 
-  // A tree: children follow their parent, and every node but the root and every leaf is met once,
-  // so that a traversal ends.
+  // Checks that the nodes are a tree: children follow their parent, and each node but the root and
+  // each leaf has one parent. This proves that a traversal ends.
   void hierarchy() const {
     const auto& [nodes, leaves] = level_.hierarchy;
     if (nodes.empty()) fail("its hierarchy has no nodes");
@@ -150,7 +152,7 @@ class LevelCheck {
     }
   }
 
-  // Blocks cut the samples into consecutive runs.
+  // Checks that blocks cut the samples into consecutive runs, and cells cut the blocks so.
   void cells() const {
     rows(level_.block_begin, level_.sphere_count, level_.blocks.size(), "blocks");
     std::uint32_t end = 0;
@@ -177,8 +179,8 @@ class LevelCheck {
     }
   }
 
-  // What the fixed-point sums of a query rely on: no part lies beyond the tool, and the parts
-  // together are no more than the whole.
+  // Checks what keeps a query's fixed-point sums from overflowing: no piece lies beyond the tool,
+  // and all pieces together are no more than the whole.
   void sums() const {
     const double farthest = kFarthestPart * model_.reach,
                  of_sphere = (1 + kReachTolerance) * model_.reach;
@@ -215,7 +217,8 @@ class LevelCheck {
       fail("the weights of its samples sum to " + std::to_string(weights) + " instead of 1");
   }
 
-  // Places of a share are summed in parts of its reach (contact_plane.h).
+  // Checks that the pieces of a cell lie within its bounding radius, in whose multiples a query
+  // sums places.
   void check_share(std::uint32_t i) const {
     const Vec3 center = model_.spheres[i].center - model_.center_of_mass;
     const double farthest = kFarthestOfShare * level_.share_reach[i];

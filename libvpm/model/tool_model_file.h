@@ -8,12 +8,12 @@
 
 namespace vpm {
 
-// Refuse (Error(refused)) whatever is not a sound file of this kind: see formats/. "-" is standard
-// input.
+// Reads a tool model from a file, from standard input ("-"), or from bytes. Throws Error(refused)
+// if it breaks a rule of formats/tool-model.md.
 ToolModel read_tool_model(const std::string& path);
 ToolModel parse_tool_model(std::vector<std::byte> bytes, const std::string& name);
 
-// Atomic; "-" is standard output. Throws Error(cannot_write).
+// Writes a tool model atomically, or to standard output ("-"). Throws Error(cannot_write).
 void write_tool_model(const std::string& path, const ToolModel& model);
 
 }  // namespace vpm
