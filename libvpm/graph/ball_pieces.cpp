@@ -8,17 +8,18 @@
 namespace vpm {
 namespace {
 
-// Points per piece and axis that measure the pieces' moments.
+// Number of points per size and axis that measure a piece's moments.
 constexpr double kPointsPerSize = 4;
-// Sites keep this distance, in sizes, from the surface: nearer ones would have slivers as cells.
+// Least distance of sites from the ball's surface, in sizes; nearer ones would have slivers as
+// cells.
 constexpr double kSiteInset = 0.4;
-// Edge of the cubic cell of a body-centred lattice that has two sites per cell: cbrt(2).
+// Edge of the cubic cell of a body-centred lattice with two sites per cell: cbrt(2).
 constexpr double kCubicEdge = 1.2599210498948732;
-// Any rotation without a symmetry will do.
+// Rotation of the lattice; any without symmetry will do.
 const Rotation kTurn = rotation_from_quaternion(
     {0.18257418583505536, 0.36514837167011072, 0.54772255750516607, 0.73029674334022143});
 
-// The sites of a body-centred cubic lattice around the origin, in units of its edge.
+// Sites of a body-centred cubic lattice about the origin, in units of its edge.
 class BodyCenteredSites {
  public:
   explicit BodyCenteredSites(double limit)
@@ -28,7 +29,8 @@ class BodyCenteredSites {
     index_.assign(2 * cells, -1);
   }
 
-  // The index of the site nearest to q, towards the middle where the nearest one lies outside.
+  // Returns the index of the site nearest to q; where that lies beyond the limit, the one nearest
+  // to a point further in.
   int nearest(Vec3 q) {
     constexpr double kStepInwards = 0.25;
     for (;;) {
@@ -75,8 +77,8 @@ struct Point {
   int piece = 0;
 };
 
-// A cubic lattice of points in the ball of this radius about the origin, symmetric to it. A point
-// at the surface weighs as much as the ball covers of its cube, and lies in the middle of that.
+// Returns a cubic lattice of points in the ball about the origin, symmetric to it. A point at the
+// surface weighs as much as the ball covers of its cube, and is moved to the middle of that.
 std::vector<Point> points_in_ball(double radius, double spacing) {
   std::vector<Point> points;
   const int half = static_cast<int>(std::ceil(radius / spacing + 0.5));
@@ -94,7 +96,7 @@ std::vector<Point> points_in_ball(double radius, double spacing) {
   return points;
 }
 
-// Volumes and centroids first, then moments and reaches about the centroids.
+// Measures pieces in two passes: volumes and centroids, then moments and radii about the centroids.
 void measure(const std::vector<Point>& points, double spacing, double radius,
              std::span<CellPiece> pieces) {
   for (const Point& p : points) {
@@ -129,7 +131,7 @@ void measure(const std::vector<Point>& points, double spacing, double radius,
 void cut_ball(double radius, double size, std::vector<CellPiece>& pieces) {
   const double edge = kCubicEdge * size;
   const double limit = radius / edge - kSiteInset / kCubicEdge;  // in units of the lattice
-  if (limit < std::sqrt(0.75)) {  // the nearest sites around the first one
+  if (limit < std::sqrt(0.75)) {  // the sites nearest to the first lie at sqrt(3/4)
     pieces.push_back({{}, volume({{}, radius}), radius, radius});
     return;
   }

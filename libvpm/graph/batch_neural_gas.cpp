@@ -11,15 +11,15 @@ namespace {
 constexpr double kFirstFactor = 0.60653065971263342;
 constexpr int kSteps = 18;
 
-// Places in the box, in units of half its extent; they differ along every axis, so that spheres in
-// a row or in a plane separate too.
+// Starting places in the box, in units of half its extent. They differ along every axis, so that
+// spheres in a row or in a plane separate too.
 constexpr std::array<Vec3, kPrototypes> kPlaces{
     Vec3{-0.75, -0.25, 0.25}, {0.25, -0.75, -0.25}, {-0.25, 0.75, -0.75}, {0.75, 0.25, 0.75}};
 
 using Prototypes = std::array<Vec3, kPrototypes>;
 using Ranking = std::array<std::uint8_t, kPrototypes>;  // prototypes, nearest first
 
-// Magnification control: large spheres draw the prototypes, r^4 as in the paper.
+// Returns the weight of a sphere, r^4 as in the paper: large spheres attract prototypes.
 double magnification(const Sphere& s) {
   const double squared = s.radius * s.radius;
   return squared * squared;

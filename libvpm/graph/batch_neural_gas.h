@@ -1,5 +1,5 @@
-// Clustering of spheres by batch neural gas with magnification control: R. Weller, G. Zachmann,
-// "Inner Sphere Trees for Proximity and Penetration Queries", RSS 2009.
+// Clustering of spheres by batch neural gas with magnification control (R. Weller, G. Zachmann,
+// "Inner Sphere Trees for Proximity and Penetration Queries", RSS 2009).
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 
 namespace vpm {
 
-inline constexpr std::uint32_t kPrototypes = 4;  // the branching factor of the tree
+inline constexpr std::uint32_t kPrototypes = 4;  // branching factor of the tree
 
-// The prototype (0 .. kPrototypes-1) nearest to each sphere's centre; some may get none. Prototypes
-// start at fixed places of the spheres' box and anneal for a fixed number of steps, so the result
-// depends on nothing but the spheres and their order.
+// Returns for each sphere the prototype, 0 to kPrototypes - 1, nearest to its centre; some
+// prototypes may get no sphere. Prototypes start at fixed places of the bounding box and anneal for
+// a fixed number of steps, so the result depends only on the spheres and their order.
 std::vector<std::uint8_t> batch_neural_gas(std::span<const Sphere> spheres);
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// Boruvka's algorithm: in every round each component takes its shortest edge to another one.
+// Boruvka's algorithm: in each round every component takes its shortest edge to another one.
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -10,11 +10,11 @@
 namespace vpm {
 namespace {
 
-constexpr std::uint32_t kMixed =
-    ~std::uint32_t{0};  // a node whose spheres lie in several components
+// Label of a node whose spheres lie in several components.
+constexpr std::uint32_t kMixed = ~std::uint32_t{0};
 constexpr std::size_t kGrain = 64;
 
-// Total order on edges: no two pairs are equal, so the shortest ones never close a cycle.
+// Totally ordered edge: no two pairs are equal, so shortest edges never close a cycle.
 struct Edge {
   double gap = std::numeric_limits<double>::infinity();
   std::uint32_t low = kMixed, high = kMixed;
@@ -23,7 +23,8 @@ struct Edge {
   }
 };
 
-// The component that all spheres of a node share, so that a search skips its own at once.
+// Returns for each node the component of all its spheres, or kMixed, so that a search skips its own
+// component at once.
 std::vector<std::uint32_t> label_nodes(const SphereBvh& bvh,
                                        const std::vector<std::uint32_t>& component) {
   const auto nodes = bvh.nodes();
@@ -85,7 +86,7 @@ std::vector<SpherePair> shortest_bridges(const SphereBvh& bvh, const SphereGraph
   std::vector<std::uint32_t> component;
   std::uint32_t components = connected_components(graph, component);
   DisjointSets sets(components);
-  std::vector<std::uint32_t> first = component;  // as labelled before any bridge
+  std::vector<std::uint32_t> first = component;  // components before any bridge
   std::vector<SpherePair> bridges;
   while (components > 1) {
     const std::vector<std::uint32_t> label = label_nodes(bvh, component);

@@ -14,12 +14,13 @@
 namespace vpm {
 namespace {
 
-constexpr double kEpsilonPart = 0.1;  // of the smallest radius, as in the paper
-// Pieces of the gap: enough for a good share of a single sphere, and for the whole at few spheres.
+constexpr double kEpsilonPart = 0.1;  // part of the smallest radius, as in the paper
+// Number of segments of the gap: enough for the cell of a single sphere, and for the whole at few
+// spheres.
 constexpr double kPiecesPerSphere = 1000, kFewestPieces = 2e6, kMostPieces = 3e7;
 
-// Coordinates of magnitude 1 about the solid's middle; the unit is a power of two, so that scaling
-// a packing by one changes no digit.
+// Normalised coordinates: magnitude 1 about the solid's centre. The unit is a power of two, so that
+// scaling a packing by one changes no digit.
 struct Frame {
   Vec3 origin;
   double unit = 1;
@@ -77,7 +78,8 @@ void check(const Packing& packing, const MassProperties& mass, const GraphOption
   }
 }
 
-// Ascending, without repetition, none above the whole packing, which is the last.
+// Returns the levels' sphere counts, ascending and distinct, none above the whole packing, which is
+// the last.
 std::vector<std::uint32_t> level_counts(const GraphOptions& options, std::uint32_t spheres) {
   std::vector<std::uint32_t> counts = options.levels;
   for (std::uint32_t& count : counts) count = std::min(count, spheres);

@@ -1,4 +1,4 @@
-// Makes the model that queries load from a packing.
+// Builds the model that queries load from a packing.
 #pragma once
 
 #include <cstdint>
@@ -11,25 +11,25 @@
 
 namespace vpm {
 
-// Size of the cell samples: this many fit along cbrt(volume), so that a level has about 64 samples
-// per sphere, up to those of 1000 spheres: beyond, samples of the spheres' own size follow anyway.
-// A level of few spheres thus costs little, and its error is that of its own size: the volume that
-// a plane or a ball cuts off is within 0.03 % of the solid's with 1000 spheres; up to 0.2 % for a
-// plane within a sample's size of a parallel face, because the samples are balls that smooth the
-// face.
+// Returns the number of samples along cbrt(volume), which sets their size: about 64 samples per
+// sphere up to 1000 spheres, beyond which spheres are as small as samples. Levels of few spheres
+// thus cost little, and their error matches their size: the volume that a plane or a ball cuts off
+// is within 0.03 % of the solid's with 1000 spheres. It is up to 0.2 % for a plane within a
+// sample's size of a parallel face, since samples are balls and blur the face.
 double samples_per_length(std::uint32_t spheres);
 inline constexpr double kMostSamplesPerLength = 32, kLeastSamplesPerLength = 6;
 
 struct GraphOptions {
-  double epsilon = 0;                 // m; 0 takes a tenth of each level's smallest radius
-  std::vector<std::uint32_t> levels;  // sphere counts, any order; the full packing always is one
+  double epsilon = 0;  // in metres; 0 takes a tenth of each level's smallest radius
+  // Sphere counts in any order; the full packing is always added.
+  std::vector<std::uint32_t> levels;
   std::function<void(double fraction)> progress;
 };
 
-// Fills every level from the largest spheres and the solid of the packing. `quality`, if given,
-// receives one entry per level. Errors: usage for options that mean nothing, refused for a packing
-// that is none. Same bytes for any thread count; a power of two on all coordinates changes
-// exponents only.
+// Builds each level from the largest spheres and the solid of the packing; metres. `quality`,
+// unless null, receives one entry per level. Throws Error(usage) for senseless options,
+// Error(refused) for a bad packing. Same bytes for any thread count; scaling all coordinates by a
+// power of two changes exponents only.
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<ShareQuality>* quality = nullptr);
 

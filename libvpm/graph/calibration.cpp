@@ -15,9 +15,9 @@
 namespace vpm {
 namespace {
 
-constexpr double kHigh = 0.95;  // the quantile that LevelError::p95 holds
+constexpr double kHigh = 0.95;  // quantile that LevelError::p95 holds
 
-// Numbers that look random and are the same everywhere (SplitMix64).
+// Pseudo-random numbers, the same on every platform (SplitMix64).
 class Numbers {
  public:
   double uniform() {  // 0 <= x < 1
@@ -38,7 +38,7 @@ class Numbers {
   std::uint64_t state_ = 0;
 };
 
-// The normal of a triangle that is chosen by its area.
+// Normals of a solid's triangles, picked with a probability proportional to area.
 class FaceNormals {
  public:
   explicit FaceNormals(const Solid& solid) {
@@ -56,18 +56,20 @@ class FaceNormals {
 
  private:
   std::vector<Vec3> normals_;
-  std::vector<double> area_;  // of the triangles so far
+  std::vector<double> area_;  // cumulative
 };
 
-// About the centre of mass: a plane with the cut-off part below it, or a ball that holds it.
+// Cut of the solid, about its centre of mass: a plane with the cut-off part below it, or a ball
+// that contains that part.
 struct Cut {
   Vec3 normal;
   double offset = 0;
-  Sphere ball;  // radius 0: a plane
+  Sphere ball;  // radius 0 if the cut is a plane
   double truth = 0;
 
-  // As the measure sees it across a patch about x: the mean of readings at its middle and around
-  // it (DepthSurface::mean_plane). Radius 0: the tangent plane, which serves single blocks.
+  // Returns the plane that a query would fit to a planar cluster about x: the mean of samples at
+  // its middle and around it (DepthSurface::mean_plane). For radius 0 that is the tangent plane, as
+  // for single blocks.
   Cut plane_at(Vec3 x, double radius) const {
     if (!(ball.radius > 0)) return *this;
     const Vec3 away = normalized_or_zero(x - ball.center);

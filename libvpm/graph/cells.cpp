@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kBlockSamples = 64;
 
-// Sorts pieces into runs of `size` that are compact in space; `ends` receives the ends of the runs.
-// All runs but one of a split are filled.
+// Sorts pieces into runs of `size` that are compact in space, and appends the ends of the runs. All
+// runs but one of a split are full.
 void group(std::span<CellPiece> pieces, std::size_t size, std::size_t offset,
            std::vector<std::size_t>& ends) {
   if (pieces.size() <= size) {
@@ -40,9 +40,9 @@ float round_up(double value) {
                                  : rounded;
 }
 
-// Takes pieces about a sphere's centre to stored coordinates.
+// Maps pieces about a sphere's centre to stored coordinates.
 struct Placement {
-  Vec3 center;  // of the sphere, about the origin of the cells
+  Vec3 center;  // sphere's centre relative to the stored origin
   double unit = 1, volume = 1;
 
   Vec3f place(Vec3 p) const { return narrow(unit * (center + p)); }

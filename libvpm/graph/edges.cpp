@@ -9,7 +9,8 @@
 namespace vpm {
 namespace {
 
-// Both directions together; far more than a packing has for an epsilon of the size of a gap.
+// Limits the graph's size, counting both directions of edges; far more than a packing has for an
+// epsilon of the size of its gaps.
 constexpr std::uint64_t kMostNeighbors = std::uint64_t{1} << 28;
 constexpr std::size_t kGrain = 64;
 

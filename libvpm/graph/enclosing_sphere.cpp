@@ -7,13 +7,14 @@ namespace vpm {
 namespace {
 
 constexpr int kSteps = 96;
-constexpr double kFirstStep = 0.25, kShrink = 0.95;  // of the way to the farthest sphere's centre
-// Covers the rounding of a distance and a sum.
+// Steps are parts of the way to the farthest sphere's centre.
+constexpr double kFirstStep = 0.25, kShrink = 0.95;
+// Margin for the rounding of a distance and a sum.
 constexpr double kRoundingMargin = 1 + 16 * std::numeric_limits<double>::epsilon();
 
 struct Farthest {
   Vec3 center;
-  double distance = 0;  // of the far side
+  double distance = 0;  // to the far side of the sphere
 };
 
 Farthest farthest(Vec3 from, std::span<const Sphere> spheres) {

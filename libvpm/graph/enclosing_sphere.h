@@ -6,12 +6,12 @@
 
 namespace vpm {
 
-// A sphere that encloses all of the spheres (at least one), within about 1 % of the smallest one:
-// after Badoiu and Clarkson, the centre steps towards the farthest sphere, ever shorter. Holds in
-// double precision: norm(bound.center - s.center) + s.radius <= bound.radius as computed.
+// Returns a sphere that encloses all of at least one sphere, within about 1 % of the smallest such
+// one. After Badoiu and Clarkson, the centre steps towards the farthest sphere by ever shorter
+// steps. Holds as computed in double: norm(bound.center - s.center) + s.radius <= bound.radius.
 Sphere enclosing_sphere(std::span<const Sphere> spheres);
 
-// The radius that makes a sphere about `center` enclose them.
+// Returns the radius with which a sphere about `center` encloses all spheres.
 double enclosing_radius(Vec3 center, std::span<const Sphere> spheres);
 
 }  // namespace vpm

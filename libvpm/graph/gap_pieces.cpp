@@ -7,9 +7,9 @@
 namespace vpm {
 namespace {
 
-// Largest moment radius of a piece, in sizes. A compact piece of volume size^3 has 0.63; the gap
-// lines the solid's surface, where errors of neighbouring pieces add up instead of cancelling, so
-// its pieces are smaller.
+// Largest moment radius of a piece, in sizes. A compact piece of volume size^3 has 0.63. Pieces of
+// the gap are smaller, since they line the solid's surface, where errors of neighbours add up
+// instead of cancelling.
 constexpr double kMomentRadius = 0.5;
 
 class GapCutter {
@@ -18,7 +18,7 @@ class GapCutter {
             std::vector<CellPiece>& pieces)
       : gap_(gap), scale_(scale), center_(center), limit_(kMomentRadius * size), pieces_(pieces) {}
 
-  // Halves the segments at their centroid, across the axis along which they spread most.
+  // Halves the segments at their centroid along the axis of largest spread, until they fit.
   void cut(std::span<GapSegment> segments) {
     Vec3 spread;
     const CellPiece piece = measure(segments, spread);
@@ -33,7 +33,7 @@ class GapCutter {
         std::stable_partition(segments.begin(), segments.end(),
                               [&](const GapSegment& s) { return coordinate(s.center, axis) < at; });
     const std::size_t low = static_cast<std::size_t>(middle - segments.begin());
-    if (low == 0 || low == segments.size()) {  // all in one point
+    if (low == 0 || low == segments.size()) {  // all centres coincide
       pieces_.push_back(piece);
       return;
     }
@@ -42,7 +42,8 @@ class GapCutter {
   }
 
  private:
-  // `spread` receives the second moments of the segments' centres along the axes.
+  // Returns the piece that the segments form; `spread` receives the second moments of their centres
+  // along the axes.
   CellPiece measure(std::span<const GapSegment> segments, Vec3& spread) const {
     CellPiece piece;
     for (const GapSegment& s : segments) {

@@ -9,11 +9,10 @@
 namespace vpm {
 namespace {
 
-// Gaps shorter than this part of the spacing are rounding where a sphere touches another one or the
-// mesh.
+// Length, in spacings, below which a gap is rounding where a sphere touches another or the mesh.
 constexpr double kNegligible = 1e-6;
 
-// Cuts the lines of one row, left to right.
+// Cuts the lines of one row, from left to right.
 class RowCutter {
  public:
   RowCutter(const LineLattice& lattice, const SphereBvh& bvh, double spacing, std::uint32_t row)
@@ -31,7 +30,8 @@ class RowCutter {
       while (chord != chords.end() && chord->column < first->column) ++chord;
       auto chords_end = chord;
       while (chords_end != chords.end() && chords_end->column == first->column) ++chords_end;
-      // A line that slips through a vertex by rounding does not close; the others stand for it.
+      // Skips lines that slip through a vertex by rounding and do not close; the other lines make
+      // up for them.
       if (winding == 0) cut_line({first, last}, {chord, chords_end});
       first = last;
     }
@@ -52,7 +52,7 @@ class RowCutter {
     }
   }
 
-  // What the chords leave of [low, high]; `next` is the first chord that may reach so far.
+  // Adds what the chords leave of [low, high]; `next` is the first chord that may end beyond low.
   void cut_interval(std::uint32_t column, double low, double high,
                     std::span<const BallChord> chords, std::size_t& next) {
     while (next < chords.size() && chords[next].high <= low) ++next;
@@ -85,7 +85,7 @@ class RowCutter {
     add_piece(column, begin, high, owner_);
   }
 
-  // Where the shares of two spheres meet, between a point of the one and a point of the other.
+  // Returns where the cells of two spheres meet, between a point of one and a point of the other.
   double boundary(std::uint32_t column, double w0, std::uint32_t sphere0, double w1,
                   std::uint32_t sphere1) const {
     const auto nearer_to_1 = [&](double w) {
@@ -111,7 +111,7 @@ class RowCutter {
   const SphereBvh& bvh_;
   const double spacing_;
   const std::uint32_t row_;
-  std::uint32_t owner_ = 0;  // a near sphere, where the next search starts
+  std::uint32_t owner_ = 0;  // sphere at which the next search starts
   std::vector<GapSegment> segments_;
 };
 
@@ -126,7 +126,7 @@ Vec3 GapSegments::half_extent(const GapSegment& segment) const {
 GapSegments find_gap_segments(const Solid& solid, const SphereBvh& bvh, double spacing) {
   const LineLattice lattice = make_line_lattice(solid, spacing);
   const LatticeRows rows(lattice, solid, bvh.spheres());
-  // Where lines are further apart, since there would be too many, pieces are as long.
+  // Lengthens segments with the lines' spacing, where that was increased to limit their number.
   const double length = std::max({spacing, lattice.du, lattice.dv});
   std::vector<std::vector<GapSegment>> of_row(lattice.rows);
   parallel_for(lattice.rows, 1, [&](std::size_t begin, std::size_t end) {

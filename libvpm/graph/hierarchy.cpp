@@ -14,8 +14,7 @@ namespace {
 
 using Members = std::vector<std::uint32_t>;  // sphere indices, ascending
 
-// A clustering that leaves more than this part in one cluster gains too little and makes deep
-// trees.
+// Largest part of the spheres that one cluster may get; more gains too little and makes deep trees.
 constexpr double kLargestPart = 7.0 / 8;
 
 std::vector<Sphere> gather(std::span<const Sphere> spheres, const Members& members) {
@@ -25,7 +24,7 @@ std::vector<Sphere> gather(std::span<const Sphere> spheres, const Members& membe
   return gathered;
 }
 
-// Quarters along the longest axis of the centres.
+// Returns quarters along the longest axis of the centres.
 std::vector<std::uint8_t> median_clusters(std::span<const Sphere> spheres) {
   Box box;
   for (const Sphere& s : spheres) box.add(s.center);

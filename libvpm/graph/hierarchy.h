@@ -7,12 +7,12 @@
 
 namespace vpm {
 
-// Wrapped inner-sphere tree: clusters of spheres by batch neural gas down to kPrototypes leaves,
-// each node wrapped in a sphere that encloses the spheres below it. Breadth-first; the depth is
-// bounded by O(log spheres) because a lopsided clustering is replaced by median splits.
+// Returns the wrapped inner-sphere tree: spheres are clustered by batch neural gas down to
+// kPrototypes leaves, and each node gets a sphere that encloses the spheres below it. Nodes are
+// breadth-first. The depth is O(log spheres), since median splits replace lopsided clusterings.
 Hierarchy build_hierarchy(std::span<const Sphere> spheres);
 
-// Levels of nodes from the root to the deepest one.
+// Returns the number of levels from the root to the deepest node.
 std::uint32_t depth(const Hierarchy& hierarchy);
 
 }  // namespace vpm

@@ -9,11 +9,11 @@ namespace vpm {
 namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
-// Bounds the memory of a lattice whatever the solid's shape: lines over its projection, and rows
-// and columns of them.
+// Bounds the memory of a lattice of any shape: the number of lines over its projection, of rows and
+// of columns.
 constexpr double kMostLines = 4194304;
 
-// The area that the solid shows along x, y and z, counting hidden layers too.
+// Returns the area of the solid's projections along x, y and z, counting hidden layers.
 Vec3 projected_areas(const Solid& solid) {
   Vec3 area;
   for (const Triangle& t : solid.triangles) {
@@ -28,8 +28,8 @@ std::uint32_t clamp_index(double value, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(count)));
 }
 
-// On which side of the edge from a to b the point p lies; an edge gives the same answer to both of
-// its triangles because it is always taken from the lower index to the higher.
+// Side of the edge a-b on which a point lies. Both triangles of an edge get the same answer, since
+// the edge is always taken from its lower index to its higher.
 struct EdgeSide {
   double twice_area = 0;
   bool left = false;
@@ -90,7 +90,8 @@ LineLattice make_line_lattice(const Solid& solid, double spacing) {
     return static_cast<std::uint32_t>(std::ceil(std::clamp(extent / spacing, 1.0, kMostLines)));
   };
   const std::uint32_t across = cells(high.x - low.x);
-  lattice.columns = across + 1;  // the shift from row to row pushes one half out at either end
+  // The shift of rows moves half a column out at either end.
+  lattice.columns = across + 1;
   lattice.rows = cells(high.y - low.y);
   lattice.u0 = low.x;
   lattice.v0 = low.y;
@@ -125,7 +126,7 @@ LatticeRows::LatticeRows(const LineLattice& lattice, const Solid& solid,
 void LatticeRows::cross_triangle(std::uint32_t row, const Triangle& t,
                                  std::vector<MeshCrossing>& found) const {
   const double v = lattice_.v_of(row);
-  // The part of the triangle on this row, to look at few columns only.
+  // Restricts the search to the columns that the triangle covers on this row.
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int k = 0; k < 3; ++k) {
     const Vec3 a = vertices_[t[static_cast<std::size_t>(k)]],
@@ -147,7 +148,7 @@ void LatticeRows::cross_triangle(std::uint32_t row, const Triangle& t,
     const EdgeSide ca = side_of_edge(vertices_, t[2], t[0], u, v);
     if (ab.left != bc.left || bc.left != ca.left) continue;
     const double area = ab.twice_area + bc.twice_area + ca.twice_area;
-    // Seen edge on, a triangle has no area and any of its points will do.
+    // A triangle seen edge-on has no area; any of its points will do.
     const double w =
         area != 0 ? (bc.twice_area * a + ca.twice_area * b + ab.twice_area * c) / area : a;
     found.push_back(

@@ -1,4 +1,4 @@
-// A lattice of parallel lines, and where they meet a solid and spheres.
+// Lattice of parallel lines, and its intersections with a solid and spheres.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace vpm {
 
-// Coordinates of a lattice: w along the lines, u from column to column, v from row to row.
+// Frame and spacing of the lines: w along them, u from column to column, v from row to row.
 struct LineLattice {
-  int axis = 2;  // w; u and v follow cyclically
+  int axis = 2;  // axis of w; u and v follow cyclically
   double u0 = 0, v0 = 0, du = 0, dv = 0;
   std::uint32_t columns = 0, rows = 0;
 
@@ -20,13 +20,14 @@ struct LineLattice {
   Vec3 to_xyz(Vec3 uvw) const;
   double v_of(std::uint32_t row) const { return v0 + (row + 0.5) * dv; }
   double u_of(std::uint32_t row, std::uint32_t column) const;
-  // Columns whose lines may lie in [low, high], as a half-open range that is never too short.
+  // Stores the half-open range of columns whose lines may lie in [low, high]; never too short.
   void columns_between(std::uint32_t row, double low, double high, std::uint32_t& begin,
                        std::uint32_t& end) const;
   void rows_between(double low, double high, std::uint32_t& begin, std::uint32_t& end) const;
 };
 
-// Lines at most `spacing` apart over the solid's box, along the axis of its largest projection.
+// Returns lines at most `spacing` apart over the solid's bounding box, along the axis of its
+// largest projection.
 LineLattice make_line_lattice(const Solid& solid, double spacing);
 
 struct MeshCrossing {
@@ -41,14 +42,14 @@ struct BallChord {
   std::uint32_t sphere = 0;
 };
 
-// Finds what the lines of a row meet, by buckets of rows. Thread-safe once made; the solid and
-// the spheres must outlive it.
+// Intersects a row of lines with the solid and the spheres. Buckets them by rows. Thread-safe once
+// made; keeps a reference to the solid's triangles.
 class LatticeRows {
  public:
   LatticeRows(const LineLattice& lattice, const Solid& solid, std::span<const Sphere> spheres);
 
-  // By column, then by w. Closed solids give crossings that sum to zero on each line: a line that
-  // passes through an edge meets exactly one of its two triangles.
+  // Returns intersections by column, then by w. For a closed solid they sum to zero on each line: a
+  // line through an edge meets exactly one of its two triangles.
   std::vector<MeshCrossing> crossings(std::uint32_t row) const;
   std::vector<BallChord> chords(std::uint32_t row) const;
 
@@ -57,7 +58,7 @@ class LatticeRows {
                       std::vector<MeshCrossing>& found) const;
 
   LineLattice lattice_;
-  std::vector<Vec3> vertices_;  // u, v, w
+  std::vector<Vec3> vertices_;  // as (u, v, w)
   std::span<const Triangle> triangles_;
   std::vector<Sphere> spheres_;
   std::vector<std::vector<std::uint32_t>> triangles_of_row_, spheres_of_row_;

@@ -8,8 +8,8 @@ namespace vpm {
 namespace {
 
 constexpr double kCellsPerSphere = 4;
-constexpr double kMostCells = 16777216;  // 2^24: 64 MiB of row starts
-// How far, in cells, a point may be from the cell that its rounded index names.
+constexpr double kMostCells = 16777216;  // 2^24: 64 MiB of row offsets
+// Distance, in grid cells, that a point may have from the grid cell of its rounded index.
 constexpr double kIndexMargin = 1e-6;
 
 struct Box {
@@ -29,7 +29,8 @@ Box box_of(std::span<const Sphere> spheres) {
   return box;
 }
 
-// Rounding of coordinates far from the origin, which no margin relative to the cell covers.
+// Returns the rounding error of coordinates far from the origin, which no margin relative to the
+// grid cell covers.
 double coordinate_rounding(const Box& box) {
   const double largest =
       std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z), std::abs(box.high.x),
@@ -42,11 +43,13 @@ std::uint32_t cells_along(double extent, double cell) {
 }
 
 double cell_for(Vec3 extent, double cells) {
-  // The library's cube root rounds differently for different exponents; a power of two must not.
+  // Takes the cube root of a normalised number: it rounds differently for different exponents, but
+  // scaling by a power of two must change no digit.
   const double unit = std::ldexp(1.0, std::ilogb(extent.x));
   const double ratio = extent.y / unit * (extent.z / unit) * (extent.x / unit);
   double cell = unit * std::cbrt(ratio / cells);
-  // One cell more per axis than the extent holds: thin boxes need larger cells to keep the count.
+  // Counts one grid cell more per axis than the extent holds; thin boxes need larger ones to keep
+  // the limit.
   constexpr double kGrow = 1.0625;
   const auto count = [&] {
     return (extent.x / cell + 1) * (extent.y / cell + 1) * (extent.z / cell + 1);
@@ -55,7 +58,7 @@ double cell_for(Vec3 extent, double cells) {
   return cell;
 }
 
-// Calls visit(cell index) for every cell that the sphere meets, x fastest.
+// Calls visit(index) for every grid cell that the sphere intersects, x fastest.
 template <class Visit>
 void for_cells(const PointLocationGrid& grid, const Sphere& s, double margin, Visit&& visit) {
   const double r = s.radius + margin;
@@ -66,7 +69,7 @@ void for_cells(const PointLocationGrid& grid, const Sphere& s, double margin, Vi
     return static_cast<std::uint32_t>(
         std::clamp(std::floor((value + r) / grid.cell), 0.0, n - 1.0));
   };
-  // Distance along one axis between the centre and cell k.
+  // Returns the distance along one axis between the centre and grid cell k.
   const auto apart = [&](double value, std::uint32_t k) {
     const double low = k * grid.cell, high = low + grid.cell;
     return value < low ? low - value : (value > high ? value - high : 0.0);

@@ -6,8 +6,8 @@
 
 namespace vpm {
 
-// The grid of PointLocationGrid over the box of the spheres. A point strictly inside of a sphere
-// lies in a cell that lists the sphere, also where floor((x - low) / cell) rounds.
+// Builds the grid over the bounding box of the spheres. A point strictly inside a sphere lies in a
+// grid cell that lists the sphere, even where floor((x - low) / cell) rounds.
 PointLocationGrid build_point_location_grid(std::span<const Sphere> spheres);
 
 }  // namespace vpm

@@ -9,11 +9,11 @@
 namespace vpm {
 namespace {
 
-// Spheres that hold more than the solid do not belong to it; less than this is rounding.
+// Relative excess of the spheres' volume over the solid's that rounding explains.
 constexpr double kVolumeTolerance = 1e-9;
 constexpr std::size_t kGrain = 256;
 
-// Counting sort by sphere, which keeps the order of lines.
+// Sorts segments by sphere (counting sort), keeping the order of lines.
 void group_by_sphere(std::size_t spheres, Shares& shares) {
   std::vector<GapSegment>& segments = shares.gap.segments;
   shares.gap_begin.assign(spheres + 1, 0);
@@ -25,7 +25,7 @@ void group_by_sphere(std::size_t spheres, Shares& shares) {
   segments = std::move(grouped);
 }
 
-// Neumaier's sum: many equal terms round the same way, and the shares must sum to 1e-12.
+// Neumaier's sum: many equal terms round the same way, and volumes must sum to 1e-12.
 class CompensatedSum {
  public:
   void add(double term) {
@@ -39,7 +39,7 @@ class CompensatedSum {
   double sum_ = 0, lost_ = 0;
 };
 
-// Sampled, scaled gap of one sphere about its centre.
+// Scaled gap of one sphere, about its centre.
 struct GapPart {
   double volume = 0;
   Vec3 moment;
@@ -123,8 +123,8 @@ Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereB
   shares.quality.gap_fraction = gap_volume / mass.volume;
   shares.quality.volume_error = (sampled - gap_volume) / mass.volume;
   shares.quality.centroid_error = norm(deficit) / mass.volume / std::cbrt(mass.volume);
-  // A common shift of the gap makes the first moment exact. It is sampling error and smaller than a
-  // piece, unless `mass` is of another solid: then nothing is to be mended here.
+  // Shifts the gap so that the first moment is exact. The shift corrects sampling error and is
+  // shorter than a segment, unless `mass` belongs to another solid; then it is left out.
   const Vec3 shift = gap_volume > 0 ? deficit / gap_volume : Vec3{};
   if (norm(shift) < spacing) {
     for (GapSegment& s : shares.gap.segments) s.center += shift;

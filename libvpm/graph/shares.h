@@ -1,5 +1,8 @@
-// The volume share of every sphere: all points of the solid whose nearest sphere surface is its
-// own.
+// Voronoi cells of the spheres of a packing.
+//
+// The cell of a sphere is the set of points of the solid that are nearer to its surface than to any
+// other sphere's: the additively weighted (Apollonius) diagram, clipped to the solid. It consists
+// of the ball, which is exact, and a part of the gap, which is sampled.
 #pragma once
 
 #include <span>
@@ -10,29 +13,31 @@
 
 namespace vpm {
 
-// How well the sampled gap agrees with the exact integrals before it is scaled and shifted to them.
+// Errors of the sampled gap before it is scaled and shifted to the exact integrals.
 struct ShareQuality {
-  double gap_fraction = 0;  // of the solid's volume, exact
-  double volume_error = 0;  // (sampled gap - exact gap) / volume of the solid
-  double centroid_error =
-      0;  // distance of the centroids of shares and solid / cube root of the volume
-  double share_sum_error = 0;  // |sum of the shares - volume| / volume, as stored
+  double gap_fraction = 0;  // volume of the gap / volume of the solid, exact
+  double volume_error = 0;  // (sampled - exact volume of the gap) / volume of the solid
+  // Distance of the cells' common centroid from the solid's / cube root of the volume.
+  double centroid_error = 0;
+  // |sum of the cells' volumes - volume| / volume, as stored.
+  double share_sum_error = 0;
 };
 
-// Normalised coordinates. A share is its ball, exactly, and its part of the gap.
+// Cells by sphere, in normalised coordinates.
 struct Shares {
-  GapSegments gap;                       // segments by sphere; centres shifted
-  std::vector<std::uint32_t> gap_begin;  // spheres + 1
-  double gap_scale = 0;                  // a segment's volume in the share / volume of its prism
+  GapSegments gap;                       // segments sorted by sphere, centres shifted
+  std::vector<std::uint32_t> gap_begin;  // row offsets; spheres + 1 entries
+  double gap_scale = 0;                  // a segment's volume in the cell / volume of its prism
   std::vector<double> volume;
   std::vector<Vec3> centroid;
-  std::vector<double> reach;  // of the share's points from the sphere's centre, >= the radius
+  // Largest distance of a cell's points from its sphere's centre; at least the sphere's radius.
+  std::vector<double> reach;
   ShareQuality quality;
 };
 
-// The volumes sum to `mass.volume`, the centroids weighted by them to its centre of mass.
-// `spacing` as for find_gap_segments. Throws Error(refused) where the spheres hold more than the
-// solid.
+// Returns the cells. Their volumes sum to `mass.volume`, and their centroids weighted by volume
+// give its centre of mass. `spacing` as for find_gap_segments. Throws Error(refused) if the spheres
+// hold more than the solid.
 Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereBvh& bvh,
                    double spacing);
 

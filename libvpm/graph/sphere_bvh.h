@@ -1,5 +1,5 @@
-// Bounding volume hierarchy over the balls of a packing, for searches by distance to a sphere's
-// surface.
+// Bounding volume hierarchy over the spheres of a packing, for searches by distance to their
+// surfaces.
 #pragma once
 
 #include <array>
@@ -11,36 +11,37 @@
 
 namespace vpm {
 
-// What rounding may add to a lower bound, for coordinates of magnitude 1.
+// Bound on the rounding error of a lower bound, for coordinates of magnitude 1.
 inline constexpr double kBvhSlack = 1e-12;
 
-// Signed distance of x from the surface: negative inside of the ball.
+// Returns the signed distance of x from the surface, negative inside.
 inline double surface_distance(Vec3 x, const Sphere& s) {
   return norm(x - s.center) - s.radius;
 }
 
-// Keeps a view of the spheres: they must outlive it. Coordinates of magnitude 1 (kBvhSlack).
-// Thread-safe once built.
+// Keeps a view of the spheres, which must outlive it. Coordinates must be of magnitude 1
+// (kBvhSlack). Thread-safe once built.
 class SphereBvh {
  public:
   struct Node {
-    Vec3 low, high;                    // box of the balls below
+    Vec3 low, high;                    // bounding box of the spheres below
     std::uint32_t begin = 0, end = 0;  // range of `order`
-    std::uint32_t right = 0;           // second child, the first one follows the node; 0 for a leaf
+    // Second child; the first follows the node. 0 for a leaf.
+    std::uint32_t right = 0;
   };
 
   explicit SphereBvh(std::span<const Sphere> spheres);
 
   std::span<const Sphere> spheres() const { return spheres_; }
-  std::span<const Node> nodes() const { return nodes_; }  // nodes()[0] is the root, children follow
+  std::span<const Node> nodes() const { return nodes_; }           // root first, children follow
   std::span<const std::uint32_t> order() const { return order_; }  // sphere indices, by node
 
-  // The sphere with the smallest surface_distance(x), the lowest index of several. `start` is a
-  // guess that makes it fast and never changes the answer.
+  // Returns the sphere with the smallest surface_distance(x), the lowest index on ties. `start` is
+  // a guess that affects speed only.
   std::uint32_t nearest_surface(Vec3 x, std::uint32_t start) const;
 
-  // Calls visit(sphere index) for the spheres of every leaf that enter(node index, lower bound of
-  // the surface distance) lets through, nearer children first.
+  // Calls visit(sphere index) for the spheres of each leaf whose ancestors all pass enter(node
+  // index, lower bound of the surface distance). Visits nearer children first.
   template <class Enter, class Visit>
   void walk(Vec3 x, Enter&& enter, Visit&& visit) const;
 
@@ -67,7 +68,7 @@ void SphereBvh::walk(Vec3 x, Enter&& enter, Visit&& visit) const {
     std::uint32_t node;
     double bound;
   };
-  // Median splits halve the range, so 32-bit indices reach a depth of 33 at most.
+  // Median splits halve the range, so 32-bit indices give a depth of 33 at most.
   std::array<Pending, 64> stack;
   std::size_t depth = 0;
   stack[depth++] = {0, box_distance(x, nodes_[0])};
