@@ -11,7 +11,8 @@ double radius_of_gyration(const ToolModel& tool) {
     const double radius = double{s.radius};
     mean_square += s.weight * (squared_norm(widen(s.center)) + kOwnSpread * radius * radius);
   }
-  return std::sqrt(2.0 / 3 * mean_square);  // a third of the moments' sum, which is twice the mean
+  // Mean moment of inertia per mass: two thirds of the mean squared distance.
+  return std::sqrt(2.0 / 3 * mean_square);
 }
 
 }  // namespace vpm

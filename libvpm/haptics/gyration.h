@@ -1,11 +1,12 @@
-// How a tool's mass is spread, for the inertia that a virtual coupling gives it.
+// Radius of gyration of a tool, from which a virtual coupling gets its inertia.
 #pragma once
 
 #include "libvpm/model/tool_model.h"
 
 namespace vpm {
 
-// Metres; that of a ball with the tool's mean moment of inertia, for a solid of one density.
+// Returns the radius of gyration, m: that of a ball with the tool's mean moment of inertia, for
+// uniform density.
 double radius_of_gyration(const ToolModel& tool);
 
 }  // namespace vpm

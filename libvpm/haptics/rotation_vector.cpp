@@ -5,7 +5,8 @@
 namespace vpm {
 
 Vec3 rotation_vector(const Rotation& r) {
-  const Quaternion q = quaternion_from_rotation(r);  // q.w >= 0: half the angle is at most pi / 2
+  // Q.w >= 0, so half the angle is at most pi / 2.
+  const Quaternion q = quaternion_from_rotation(r);
   const Vec3 axis{q.x, q.y, q.z};
   const double sine = norm(axis);
   if (sine == 0) return {};

@@ -20,14 +20,16 @@ void check_device(const Pose& pose) {
     refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
 }
 
-// N or N m: beyond, squares and products with lengths would overflow.
+// Largest contact force and torque, N and N m; beyond, squares and products with lengths would
+// overflow.
 constexpr double kLargestContact = 0x1p200;
 
-// One direction of motion, linear or angular: the implicit step of inertia, spring and damper.
+// One linear or angular direction of motion: the implicit step of inertia, spring and damper.
 struct Axis {
   double stiffness, damping, inertia, brake, step;
 
-  // `offset`: of the device, after its move, from the tool before its own.
+  // Returns the velocity after the step. `offset` is from the tool before its step to the device
+  // after its own.
   Vec3 new_velocity(Vec3 velocity, Vec3 offset, Vec3 device_velocity, Vec3 contact) const {
     const Vec3 push = stiffness * offset + damping * device_velocity + contact;
     return (inertia * velocity + step * push) /
@@ -49,8 +51,8 @@ double critical_mass(double stiffness, double damping) {
   return damping * damping / (4 * stiffness);
 }
 
-// The step with a sampled contact c is x' = x + h v', (m + h b + h^2 k) v' = m v - h (k + c) x;
-// its eigenvalues leave the unit circle at -1, where c = 4 m / h^2 + 2 b / h + k.
+// Returns the limits. The step with a sampled contact c is x' = x + h v', (m + h b + h^2 k) v' = m
+// v - h (k + c) x; its eigenvalues leave the unit circle at -1, where c = 4 m / h^2 + 2 b / h + k.
 CouplingLimits coupling_limits(const CouplingParameters& p) {
   return {4 * p.mass * p.rate * p.rate + 2 * p.damping * p.rate + p.stiffness,
           p.stiffness / (2 * p.rate) + p.damping};
@@ -108,8 +110,8 @@ Wrench VirtualCoupling::step(const Pose& device, const Wrench& contact) {
   const Vec3 stretch = held.translation - tool_.translation;
   const Vec3 twist = rotation_vector(held.rotation * transpose(tool_.rotation));
 
-  // Energy that the sampled contact has made is braked out of the tool's motion, a part of it that
-  // the motion has.
+  // Brakes the energy that the sampled contact has made out of the tool's motion, as a part of the
+  // motion's energy.
   const double made = std::max(0.0, -energy_.absorbed - controlled_);
   const double motion =
       step * (squared_norm(velocity_) + squared_gyration * squared_norm(angular_velocity_));

@@ -8,13 +8,13 @@
 namespace vpm {
 namespace {
 
-constexpr int kMaxSteps = 60;           // quadratic convergence needs about ten
-constexpr double kConverged = 1e-12;    // relative gain that is not worth a step
-constexpr double kBox = 0.3;            // trust region: |delta| < 0.52 d stays inside of the ball
+constexpr int kMaxSteps = 60;           // convergence is quadratic and needs about ten
+constexpr double kConverged = 1e-12;    // smallest relative gain worth a step
+constexpr double kBox = 0.3;            // trust region: |delta| < 0.52 d stays inside the ball
 constexpr double kSmallestBox = 1e-10;  // relative to d
 constexpr std::size_t kMostObstacles = 20;
 
-// Obstacles met on the way and their linearisations about the current point.
+// Obstacles met on the way, with linearisations about the current point.
 struct Contacts {
   std::vector<Obstacle> obstacles;
   std::vector<LinearBound> bounds;
@@ -31,7 +31,7 @@ struct Contacts {
     for (const Obstacle o : obstacles) d = std::min(d, linearised(space, o, x).value);
     return d;
   }
-  // Linearises about a new point and forgets what no step within `horizon` can meet.
+  // Linearises about a new point, and drops obstacles that no step within `horizon` can meet.
   void move_to(const Space& space, Vec3 x, double horizon) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
@@ -84,7 +84,7 @@ Sphere ascend(const Space& space, Vec3 start, const Clearance& from, double long
       box = largest_box * best.radius;
       contacts.move_to(space, x, best.radius * (1 + 4 * kBox));
       if (unforeseen) contacts.add(space, there.nearest, x);
-      if (contacts.bounds.empty()) break;  // nothing within reach
+      if (contacts.bounds.empty()) break;  // nothing within the search radius
     } else if (unforeseen) {
       contacts.add(space, there.nearest, best.center);
     } else {

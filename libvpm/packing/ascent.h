@@ -1,4 +1,4 @@
-// From a point to the local maximum of the clearance.
+// Ascent from a point to a local maximum of the clearance.
 #pragma once
 
 #include <cmath>
@@ -8,13 +8,13 @@
 
 namespace vpm {
 
-// The largest sphere reached from `start`, a point inside of the solid with clearance `from`.
+// Returns the largest sphere reached from `start`, a point inside the solid with clearance `from`.
 //
-// Distances to triangles and spheres are convex, so their linearisations bound them from below: the
-// step of the linear programme over the obstacles met so far never overestimates, and an obstacle
-// that was not foreseen cuts the step off. No step is longer than `longest_step`. The sphere
-// touches four obstacles (fewer where the maximum is flat), to rounding. Never lowers the
-// clearance, and stays on its side of the mesh.
+// Distances to triangles and spheres are convex, so their linearisations bound them from below.
+// Each step solves the linear programme over the obstacles met so far: it never overestimates, and
+// an unforeseen obstacle shortens the step. No step is longer than `longest_step`. The result
+// touches four obstacles (fewer where the maximum is flat), to rounding; the ascent never lowers
+// the clearance and never crosses the mesh.
 Sphere ascend(const Space& space, Vec3 start, const Clearance& from,
               double longest_step = HUGE_VAL);
 

@@ -1,4 +1,4 @@
-// Finds the block that holds a point: a hash table from integer cube coordinates to block numbers.
+// Hash table from integer cube coordinates to block numbers.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,20 @@ class BlockIndex {
     }
   };
 
-  // Blocks are numbered as they lie in `blocks`, which must be different.
+  // Numbers the given distinct blocks by their order.
   void assign(std::vector<Coordinates> blocks);
 
   std::uint32_t find(Coordinates c) const;
   Coordinates operator[](std::uint32_t block) const { return blocks_[block]; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(blocks_.size()); }
 
-  static std::uint64_t scatter(std::uint64_t key);  // spreads keys over all numbers
+  // Spreads keys evenly over all 64-bit numbers.
+  static std::uint64_t scatter(std::uint64_t key);
 
  private:
   std::vector<Coordinates> blocks_;
-  std::vector<std::uint32_t> slots_;  // a power of two, at most half full
+  // Size is a power of two; at most half full.
+  std::vector<std::uint32_t> slots_;
 };
 
 }  // namespace vpm

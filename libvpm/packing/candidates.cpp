@@ -11,16 +11,17 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kBlocksPerTask = 4;
-// A sphere that another of its round has shrunk by more than rounding is looked for again.
+// Spheres shrunk by others of their round by more than rounding are searched for again.
 constexpr double kUnchanged = 1 - 1e-9;
-// In radii. Wider gaps hold another candidate that is closer, or are none of this tube.
+// Widest gap to close, in radii. Wider ones hold another, closer candidate, or are not along a
+// tube.
 constexpr double kWidestGap = 1;
-// A step towards contact leaves the tube's axis by less than this part of it; so the ascent back
-// may not wander further along the axis.
+// Limit on the ascent back to the tube's axis, relative to the step: a step towards contact leaves
+// the axis by less, so a longer ascent would wander along the axis.
 constexpr double kAstray = 0.3;
-constexpr double kStep = 0.3;      // radii
-constexpr double kContact = 1e-6;  // radii; what is left of a gap
-constexpr double kNearer = 0.9;    // a step that leaves more of the gap leads nowhere
+constexpr double kStep = 0.3;      // largest step, in radii
+constexpr double kContact = 1e-6;  // gap that counts as contact, in radii
+constexpr double kNearer = 0.9;    // a step that leaves more than this part of the gap is given up
 constexpr int kMostSteps = 30;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Spheres of one band of radii that have been found and may be placed.
+// Spheres of one band of radii that were found and may be placed.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,28 @@ namespace vpm {
 
 class Candidates {
  public:
-  // For spheres of at least `radius`, cut to `cap`. Keeps a reference to `space`.
+  // Collects spheres of at least `radius`, cut to `cap`. Keeps a reference to `space`.
   Candidates(Space& space, double radius, double cap) : space_(space), radius_(radius), cap_(cap) {}
 
-  // Adds what fits above these blocks.
+  // Adds the spheres that fit above these blocks.
   void search(const std::vector<std::uint32_t>& blocks);
 
   bool empty() const { return candidates_.empty(); }
 
-  // Places all until there are `most` spheres, largest first, but for those that others have taken
-  // the room of. Appends the blocks around them to `touched`.
+  // Places all candidates, largest first, until there are `most` spheres; drops those whose room is
+  // taken by then. Appends the blocks around them to `touched`.
   void place_all(std::size_t most, std::vector<std::uint32_t>& touched);
 
-  // Places the one with the least gap to a sphere, and moves it until they touch where that costs
-  // no more than the band is wide. A tube has room for its largest sphere anywhere: what is
-  // left between two of them that do not touch holds no third.
+  // Places the candidate with the smallest gap to a sphere, and moves it into contact if that costs
+  // no more than the width of the band. In a tube the largest sphere fits anywhere, and the room
+  // between two that do not touch would hold no third.
   void place_closest(std::vector<std::uint32_t>& touched);
 
  private:
   struct Candidate {
     Sphere sphere;
-    double gap;           // to the nearest of the first `compared` spheres
-    std::size_t nearest;  // of them
+    double gap;           // distance to the nearest of the first `compared` spheres
+    std::size_t nearest;  // its index
     std::size_t compared;
   };
 

@@ -21,7 +21,7 @@ double largest(const std::vector<double>& values, double at_least) {
                         : std::max(at_least, *std::max_element(values.begin(), values.end()));
 }
 
-// Largest radius less signed distance to the surface.
+// Returns the largest radius minus signed distance to the surface.
 double protrusion(const Solid& solid, const std::vector<Sphere>& spheres,
                   const Enclosure* enclosure) {
   const TriangleBvh mesh(solid.vertices, solid.triangles);
@@ -43,7 +43,7 @@ double protrusion(const Solid& solid, const std::vector<Sphere>& spheres,
   return largest(beyond, -HUGE_VAL);
 }
 
-// Columns along x over a grid in y and z; a sphere is listed in all that it comes near.
+// Columns along x over a grid in y and z; each sphere is listed in all columns that it comes near.
 class Columns {
  public:
   Columns(const std::vector<Sphere>& spheres, double margin) : margin_(margin) {
@@ -53,7 +53,7 @@ class Columns {
       low_ = std::min({low_, s.center.y - s.radius, s.center.z - s.radius});
       high = std::max({high, s.center.y + s.radius, s.center.z + s.radius});
     }
-    // A few dozen spheres per column, whatever their sizes.
+    // Makes a few dozen spheres per column, whatever their sizes.
     count_ = std::clamp(std::size_t(std::sqrt(double(spheres.size()) / 32)), std::size_t{1},
                         std::size_t{1000});
     width_ = (high - low_) / static_cast<double>(count_);
@@ -68,7 +68,7 @@ class Columns {
   }
   std::size_t size() const { return lists_.size(); }
 
-  // Largest overlap of two spheres of the column, by a sweep along x; no less than -margin.
+  // Returns the largest overlap of two spheres of the column, at least -margin, by a sweep along x.
   double overlap(std::size_t column) {
     std::vector<Sphere>& list = lists_[column];
     std::sort(list.begin(), list.end(), [](const Sphere& a, const Sphere& b) {

@@ -9,24 +9,26 @@
 
 namespace vpm {
 
-// Metres. Violations are positive. Clearances are negative, and said up to the tolerance only: with
-// no sphere, or none near another, the value is -tolerance. A sphere that is none (not finite,
-// radius not positive) makes both infinite.
+// Lengths in metres; violations are positive, clearances negative. Values are clamped at
+// -tolerance, which is also the value without a sphere or without neighbours. A sphere that is not
+// finite or not positive makes both infinite.
 struct Certificate {
-  double max_protrusion = 0;  // largest radius - distance to the surface; + for centres outside
-  double max_overlap = 0;     // largest r_i + r_j - |c_i - c_j|
-  double tolerance = 0;       // what counts as rounding
-  bool holds = false;         // both are within the tolerance, and every centre is inside
+  // Largest radius - distance to the surface; + distance for centres outside.
+  double max_protrusion = 0;
+  double max_overlap = 0;  // largest r_i + r_j - |c_i - c_j|
+  double tolerance = 0;    // violations up to this are rounding
+  // True if both are within the tolerance and every centre is inside.
+  bool holds = false;
 };
 
-// Tolerance of a certificate, relative to the longest side of the solid's box.
+// Tolerance of a certificate, relative to the longest side of the solid's bounding box.
 inline constexpr double kCertificateTolerance = 1e-9;
 
-// In double precision in the solid's own coordinates: exact distances from the triangles that bound
-// the solid (those of the mesh, without what lies inside), all pairs of spheres that come near each
-// other, and the winding number of every centre. The tolerance grows where the solid lies so far
-// from the origin that its coordinates resolve less than 1e-9 of it. `enclosure` is that of the
-// solid, where it is known.
+// Returns the certificate, computed in double in the solid's own coordinates: exact distances from
+// the triangles that bound the solid (without mesh parts in its interior), all pairs of nearby
+// spheres, and the winding number of every centre. The tolerance grows if the solid is so far from
+// the origin that its coordinates resolve less than 1e-9 of it. `enclosure` is that of the solid,
+// or null to compute it.
 Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres,
                     const Enclosure* enclosure = nullptr);
 

@@ -1,5 +1,5 @@
-// Clearance of a point: the radius of the largest sphere about it that stays inside of the solid
-// and outside of the spheres placed so far, with the obstacle that limits it.
+// Clearance of a point: radius of the largest sphere about it inside the solid and outside the
+// spheres placed so far, with the obstacle that limits it.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ struct Obstacle {
 struct Clearance {
   double value = 0;
   Obstacle nearest;
-  Vec3 away;  // unit vector from the nearest point of the obstacle; zero where there is none
+  // Unit vector from the nearest point of the obstacle; zero if there is none.
+  Vec3 away;
 };
 
 }  // namespace vpm

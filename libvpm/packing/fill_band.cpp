@@ -9,7 +9,7 @@
 namespace vpm {
 namespace {
 
-// The `most` blocks with the highest bounds, ascending; the others are removed.
+// Keeps the `most` blocks with the highest bounds, ascending.
 void keep_most_promising(const Space& space, std::vector<std::uint32_t>& blocks, std::size_t most) {
   if (blocks.size() <= most) return;
   const auto cut = blocks.begin() + static_cast<std::ptrdiff_t>(most);
@@ -23,8 +23,8 @@ void keep_most_promising(const Space& space, std::vector<std::uint32_t>& blocks,
 
 }  // namespace
 
-// Each round searches as many blocks as there may be spheres wanted: a plate has millions of blocks
-// that are all as good.
+// Searches as many blocks per round as spheres are wanted: a plate has millions of equally good
+// blocks.
 void fill_band(Space& space, double radius, double cap, std::size_t most) {
   while (space.spheres().size() < most) {
     std::vector<std::uint32_t> blocks = space.promising(radius);

@@ -1,4 +1,4 @@
-// Fills what room is left in a solid, one band of radii at a time.
+// Fills the room left in a solid, one band of radii at a time.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace vpm {
 
-// So many spheres take the places that suit the others (Candidates::place_closest).
+// Number of spheres that are placed into contact (Candidates::place_closest).
 inline constexpr std::size_t kFirstSpheres = 200;
 
-// Places spheres of at least `radius`, cut to `cap`, largest first as far as they compete, until
-// none fits or `most` are there. The space is focused on the radius.
+// Places spheres of at least `radius`, cut to `cap`, until none fits or there are `most`; larger
+// ones first where they compete for room. `space` must be focused on the radius.
 void fill_band(Space& space, double radius, double cap, std::size_t most);
 
 }  // namespace vpm

@@ -19,28 +19,27 @@
 namespace vpm {
 namespace {
 
-// A sphere moves and grows by at most this share of its radius in a step, along each axis: its
-// centre stays where its old self was, so on its side of the mesh. Larger steps meet more obstacles
-// and do not converge faster.
+// Largest motion and growth of a sphere per step and axis, in radii. Its centre stays within its
+// old self, hence on its side of the mesh. Larger steps meet more obstacles and converge no faster.
 constexpr double kTrust = 0.2;
-// Steps become shorter where they gain less than this share of what they may, and end at:
+// Steps shorten when they gain less than kSlow of what they may, and end at kLeastTrust.
 constexpr double kSlow = 1e-4, kLeastTrust = 0.01;
-// What a step of the whole trust closes of a gap, per radius: 1 + sqrt(3), rounded up.
+// Largest decrease of a gap by a full step, per radius: 1 + sqrt(3), rounded up.
 constexpr double kReachOfStep = 2.75;
-// Triangles that a step has not foreseen cut its spheres off; the step is then sought again, until
-// this share of what it promised is kept, or so many times.
+// Unforeseen triangles shorten a step. It is then solved again, at most kRounds times, until it
+// keeps this part of its gain.
 constexpr double kKept = 0.9;
 constexpr int kRounds = 4;
-// A sphere keeps the nearest of the triangles it has met: four can hold it, the others foresee.
+// Number of nearest triangles that a sphere remembers: four can hold it, the others foresee.
 constexpr std::size_t kMostTriangles = 20;
 
-// A sphere is worth moving to where one this much larger fits.
+// Factor by which a sphere must be larger elsewhere to be moved there.
 constexpr double kMoreRoom = 1.01;
-// As in pack(): the room's blocks, and the bands of radii that are filled together.
+// Limits of Space and width of radius bands, as in pack().
 constexpr std::size_t kRoomBlocks = std::size_t{1} << 16, kRoomBlocksPerSphere = 32;
 constexpr double kBand = 0.99;
 
-// Radii may fall below their limit by the rounding of a linear programme.
+// Factor by which rounding of a linear programme may push radii below their limit.
 constexpr double kShrunk = 1 - 1e-9;
 
 using Programme = LinearProgramme;
@@ -56,7 +55,7 @@ double sum_of_cubes(const std::vector<Sphere>& spheres) {
   return sum;
 }
 
-// Divides the spheres in `from` at a plane across `axis`, then further, into groups of neighbours.
+// Divides the spheres in `from` at a plane across an axis, recursively, into groups of neighbours.
 void divide(const std::vector<Sphere>& spheres, std::span<std::uint32_t> from, int turn,
             std::vector<Group>& groups) {
   if (from.size() <= kGrownTogether) {
@@ -67,7 +66,7 @@ void divide(const std::vector<Sphere>& spheres, std::span<std::uint32_t> from, i
     const Vec3 c = spheres[i].center;
     return turn % 3 == 0 ? c.x : turn % 3 == 1 ? c.y : c.z;
   };
-  // Between a third and two thirds, by the golden ratio: planes of later steps lie elsewhere.
+  // Cuts between one and two thirds, by the golden ratio, so that planes differ from step to step.
   const double share = (1 + std::fmod(0.618 * (turn + 1), 1.0)) / 3;
   const auto first = static_cast<std::size_t>(share * static_cast<double>(from.size()));
   std::nth_element(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(first), from.end(),
@@ -112,12 +111,13 @@ class Growth {
     double gap;
   };
   struct Member {
-    std::vector<std::uint32_t> triangles;  // met by the sphere, and still near
+    std::vector<std::uint32_t> triangles;  // triangles met by the sphere and still near
     std::vector<Neighbour> near;           // spheres that may be met in this step
-    std::uint32_t group = 0, place = 0;    // place in the group
+    std::uint32_t group = 0, place = 0;    // place is the index in the group
   };
 
-  // Puts the smallest spheres where there is more room by now; false where there is none.
+  // Moves the smallest spheres to where there is more room by now. Returns false if there is no
+  // such place.
   bool relocate() {
     const std::size_t count = spheres_.size();
     std::vector<std::uint32_t> order(count);
@@ -150,7 +150,7 @@ class Growth {
     return moved > 0;
   }
 
-  // Returns the relative gain of volume.
+  // Makes a step and returns the relative gain of volume.
   double step(int number) {
     find_neighbours();
     Group all(spheres_.size());
@@ -171,7 +171,7 @@ class Growth {
     return gain;
   }
 
-  // Lists the pairs that a step can bring together, by a sweep along x.
+  // Lists the pairs of spheres that a step can bring together, by a sweep along x.
   void find_neighbours() {
     const double reach = 1 + kReachOfStep * trust_;
     std::vector<double> low;
@@ -197,9 +197,10 @@ class Growth {
     }
   }
 
-  // Moves the spheres of a group together, into `next`; changes nothing of other groups.
+  // Moves the spheres of a group together into `next`; other groups stay unchanged.
   void move(Group& group, std::vector<Sphere>& next) {
-    // A sphere that was placed late touches few larger ones: smallest first, little fills in.
+    // Eliminates smallest spheres first: those placed late touch few larger ones, so little fills
+    // in.
     std::sort(group.begin(), group.end(), [&](std::uint32_t a, std::uint32_t b) {
       const double r = spheres_[a].radius, s = spheres_[b].radius;
       return r != s ? r < s : a < b;
@@ -231,7 +232,7 @@ class Growth {
     }
   }
 
-  // The sphere's radius, or less if the mesh does not allow it; remembers the triangle.
+  // Returns the sphere's radius, reduced as the mesh requires, and remembers the triangle.
   double room(std::uint32_t i, const Sphere& s) {
     const SurfacePoint p = distance_.closest(s.center, s.radius);
     if (p.triangle == SurfacePoint::kNone) return s.radius;
@@ -241,7 +242,8 @@ class Growth {
     return p.distance;
   }
 
-  // Unknowns per sphere: the motion of its centre and the growth of its radius, by trust * radius.
+  // Builds the programme. Unknowns per sphere are the motion of its centre and the growth of its
+  // radius, in units of trust * radius.
   Programme programme(const Group& group, double cubes) {
     Programme programme;
     for (const std::uint32_t i : group) {
@@ -253,7 +255,7 @@ class Growth {
     return programme;
   }
 
-  // The sphere may grow and come nearer to what lies opposite of `away` by `room` together.
+  // Limits growth plus motion against `away` to `room`.
   void keep_away(std::uint32_t i, Vec3 away, double room, Programme& programme) const {
     programme.rows.push_back({members_[i].place,
                               Programme::kNone,
@@ -268,7 +270,7 @@ class Growth {
     for (const auto [j, gap] : m.near) {
       const Sphere& t = spheres_[j];
       const Vec3 u = normalized_or_zero(s.center - t.center);
-      if (members_[j].group != m.group) {  // each of the two groups may use half of the gap
+      if (members_[j].group != m.group) {  // each of the two groups may use half the gap
         if (gap < 2 * kReachOfStep * trust_ * s.radius) keep_away(i, u, gap / 2, programme);
       } else if (i < j) {
         const double unit = std::max(s.radius, t.radius);
@@ -282,7 +284,7 @@ class Growth {
     }
   }
 
-  // Forgets the triangles that this step cannot meet.
+  // Adds rows for known triangles, and drops those that this step cannot meet.
   void keep_from_triangles(std::uint32_t i, Programme& programme) {
     const Sphere& s = spheres_[i];
     std::vector<std::uint32_t>& known = members_[i].triangles;
@@ -313,7 +315,7 @@ class Growth {
     }
   }
 
-  // Rounding may have left overlaps: both spheres give way.
+  // Shrinks both spheres of each pair that rounding lets overlap.
   void separate(std::vector<Sphere>& next) const {
     std::vector<double> less(next.size());
     for (std::size_t i = 0; i < next.size(); ++i) {

@@ -12,28 +12,30 @@
 namespace vpm {
 
 struct GrowOptions {
-  const Enclosure* enclosure = nullptr;                         // of the solid, where it is known
-  double min_radius = 0;                                        // m; no sphere shrinks below
-  double max_radius = std::numeric_limits<double>::infinity();  // m; no sphere grows above
-  int steps = 100;  // at most; fewer where no more is gained
-  std::function<void(double fraction)> progress =
-      nullptr;  // called between steps, on the calling thread
+  const Enclosure* enclosure = nullptr;  // enclosure of the solid, or null to compute it
+  double min_radius = 0;                 // m; no sphere shrinks below this
+  double max_radius = std::numeric_limits<double>::infinity();  // m; no sphere grows above this
+  int steps = 100;                                              // limit; fewer if no more is gained
+  // Called between steps on the calling thread.
+  std::function<void(double fraction)> progress = nullptr;
 };
 
-// A greedy packing gives the first spheres all the room there is; here all centres and radii move
-// at once for the largest sum of volumes. Distances to triangles and to other spheres are convex,
-// so their linearisations bound them from below: each step is a linear programme whose solution is
-// a packing again, and every intermediate state is valid. More than kGrownTogether spheres move in
-// neighbouring groups, divided otherwise in every step. Where that ends, the smallest spheres move
-// to where larger ones fit by now, and all grow again.
+// Grows a packing of the solid and returns as many spheres, largest first, with at least the same
+// volume; the same spheres if nothing is gained.
 //
-// `spheres`: a packing of the solid, as pack() gives it. Returns as many spheres, largest first,
-// with at least the same volume; the same spheres where nothing is gained. Deterministic for any
-// number of threads; scaling by 2^k changes exponents only.
-// Throws Error: usage for limits that are no numbers, refused for a solid without extent.
+// A greedy packing gives its first spheres all the room there is. Here all centres and radii move
+// at once to maximise the sum of volumes. Distances to triangles and spheres are convex, so their
+// linearisations bound them from below: each step is a linear programme whose solution is again a
+// packing, and so is every intermediate state. More than kGrownTogether spheres move in groups of
+// neighbours, divided differently in each step. When that converges, the smallest spheres move to
+// where larger ones fit by now, and all grow again.
+//
+// Deterministic for any number of threads; scaling by 2^k changes exponents only. Throws
+// Error(usage) for limits that are not numbers, Error(refused) for a solid without extent.
 std::vector<Sphere> grow(const Solid& solid, const std::vector<Sphere>& spheres,
                          const GrowOptions& options);
 
-inline constexpr std::size_t kGrownTogether = 256;  // a step of so many takes about 50 ms
+// Size of a group; a step of one takes about 50 ms.
+inline constexpr std::size_t kGrownTogether = 256;
 
 }  // namespace vpm

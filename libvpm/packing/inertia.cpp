@@ -16,7 +16,7 @@ void add_outer(SecondMoments& m, double weight, Vec3 v) {
   m[5] += weight * v.y * v.z;
 }
 
-// Frobenius norm of the inertia tensor tr(C) 1 - C of the second moments C.
+// Returns the Frobenius norm of the inertia tensor tr(C) 1 - C of second moments C.
 double norm_of_inertia(const SecondMoments& c) {
   const double x = c[1] + c[2], y = c[0] + c[2], z = c[0] + c[1];
   return std::sqrt(x * x + y * y + z * z + 2 * (c[3] * c[3] + c[4] * c[4] + c[5] * c[5]));
@@ -30,7 +30,8 @@ SecondMoments second_moments(const Solid& solid) {
   for (const auto& [i, j, k] : solid.triangles) {
     const Vec3 a = solid.vertices[i] - origin, b = solid.vertices[j] - origin,
                c = solid.vertices[k] - origin;
-    const double six_volumes = dot(a, cross(b, c));  // of the tetrahedron (origin, a, b, c)
+    // Six times the volume of tetrahedron (origin, a, b, c).
+    const double six_volumes = dot(a, cross(b, c));
     for (const Vec3 v : {a, b, c, a + b + c}) add_outer(sum, six_volumes / 120, v);
   }
   return sum;

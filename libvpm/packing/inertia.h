@@ -1,4 +1,4 @@
-// How well spheres stand for a solid where dynamics is concerned.
+// Error of spheres as a model of a solid's inertia.
 #pragma once
 
 #include <array>
@@ -11,24 +11,24 @@ namespace vpm {
 // Integral of x x^T about a point: xx, yy, zz, xy, xz, yz; m^5.
 using SecondMoments = std::array<double, 6>;
 
-// About the solid's centre of mass, exactly; what the mesh encloses twice counts twice (see
-// enclosed_surface in outer_surface.h).
+// Returns the exact moments about the solid's centre of mass. Regions enclosed twice count twice;
+// enclosed_surface (outer_surface.h) avoids that.
 SecondMoments second_moments(const Solid& solid);
 
-// Inertia tensors about the solid's centre of mass, each divided by its volume, so that spheres and
-// solid have the same mass: |I_spheres - I_solid| / |I_solid|, in the Frobenius norm. It covers the
-// principal moments, their axes and, by the common point, the centre of mass. No packing covers
-// everything: the volume that is missing is counted by the coverage, not here.
+// Relative error of the inertia tensor, |I_spheres - I_solid| / |I_solid| in the Frobenius norm.
+// Tensors are about the solid's centre of mass and divided by volume, so that spheres and solid
+// have the same mass. The error covers principal moments, axes and, through the common point, the
+// centre of mass; missing volume is the coverage's concern.
 class InertiaError {
  public:
-  explicit InertiaError(const Solid& solid);  // what it encloses twice counts once
+  explicit InertiaError(const Solid& solid);  // regions enclosed twice count once
   void add(const Sphere& sphere);
   double value() const;  // 1 without spheres
 
  private:
   Vec3 center_;
-  SecondMoments solid_{}, spheres_{};  // the solid's per volume
-  double volume_ = 0;                  // of the spheres
+  SecondMoments solid_{}, spheres_{};  // solid_ is divided by its volume
+  double volume_ = 0;                  // volume of the spheres
 };
 
 }  // namespace vpm

@@ -4,7 +4,7 @@
 
 namespace vpm {
 
-// The order of a packing: largest first, ties by centre.
+// Order of a packing: larger radius first, then by centre.
 inline bool largest_first(const Sphere& a, const Sphere& b) {
   if (a.radius != b.radius) return a.radius > b.radius;
   if (a.center.x != b.center.x) return a.center.x < b.center.x;

@@ -11,15 +11,15 @@ using Four = LinearProgramme::Four;
 using Row = LinearProgramme::Row;
 
 constexpr int kMaxIterations = 50;      // thirty are many
-constexpr double kGap = 1e-3;           // of the gain
-constexpr double kNoGain = 1e-6;        // gain that is not worth an iteration, of its bound
+constexpr double kGap = 1e-3;           // allowed error, relative to the gain
+constexpr double kNoGain = 1e-6;        // gain not worth an iteration, relative to its bound
 constexpr double kInfeasible = 1e-7;    // largest residual of a row
-constexpr double kShortOfWall = 0.995;  // share of the way to where a slack vanishes
-// A pivot below this share of its diagonal is rounding; its unknown then stays where it is.
+constexpr double kShortOfWall = 0.995;  // part of the way to where a slack vanishes
+// Pivots below this part of their diagonal are rounding; the unknown is then held fixed.
 constexpr double kLeastPivot = 1e-14, kFixed = 1e100;
 
-// The upper triangle of a symmetric positive definite matrix, and its factor in place. Zeros cost
-// room, but no time.
+// Upper triangle of a symmetric positive definite matrix, factored in place. Zeros cost memory but
+// no time.
 class Symmetric {
  public:
   explicit Symmetric(std::size_t size) : size_(size), values_(size * size) {}
@@ -64,12 +64,12 @@ class Symmetric {
 
  private:
   std::size_t size_;
-  std::vector<std::vector<std::uint32_t>> filled_;  // columns of each row that are not zero
+  std::vector<std::vector<std::uint32_t>> filled_;  // non-zero columns of each row
   std::vector<double> values_;
 };
 
-// Mehrotra's predictor and corrector for: minimise -gain . x where G x + s = h and s >= 0. G has
-// the programme's rows, then x_k <= 1 and -x_k <= 1 in turn.
+// Mehrotra's predictor-corrector method for: minimise -gain . x subject to G x + s = h and s >= 0.
+// G has the programme's rows, then x_k <= 1 and -x_k <= 1 in turn.
 class InteriorPoint {
  public:
   explicit InteriorPoint(const LinearProgramme& programme)
@@ -106,7 +106,7 @@ class InteriorPoint {
   static constexpr double kFirstSlack = 0.1;
   using Vector = std::vector<double>;
 
-  // out = G x
+  // Computes out = G x.
   void apply(const Vector& x, Vector& out) const {
     out.resize(size_);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -123,7 +123,7 @@ class InteriorPoint {
     }
   }
 
-  // out += G^T v
+  // Computes out += G^T v.
   void apply_transposed(const Vector& v, Vector& out) const {
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Row& row = rows_[r];
@@ -148,14 +148,14 @@ class InteriorPoint {
     return violated < kInfeasible && gap < std::max(kGap * gain, kNoGain * bound_);
   }
 
-  // Adds weight * v w^T where v belongs to block i and w to block j.
+  // Adds weight * v w^T, where v belongs to block i and w to block j.
   void add(double weight, std::size_t i, const Four& v, std::size_t j, const Four& w) {
     for (std::size_t k = 0; k < 4; ++k)
       for (std::size_t l = i == j ? k : 0; l < 4; ++l)
         normal_(4 * i + k, 4 * j + l) += weight * v[k] * w[l];
   }
 
-  // G^T diag(price / slack) G
+  // Computes G^T diag(price / slack) G.
   void assemble() {
     normal_.clear();
     for (std::size_t r = 0; r < rows_.size(); ++r) {
@@ -174,7 +174,7 @@ class InteriorPoint {
     normal_.factorise();
   }
 
-  // The Newton step towards slack * price = slack * price - complement.
+  // Solves for the Newton step towards slack * price = slack * price - complement.
   void direction(const Vector& complement) {
     dx_ = gain_;
     Vector along(size_);
@@ -190,7 +190,7 @@ class InteriorPoint {
     }
   }
 
-  // How far `v` may go along `dv`, up to 1, and stay positive.
+  // Returns how far `v` may go along `dv`, up to 1, and stay positive.
   static double room(const Vector& v, const Vector& dv) {
     double most = 1;
     for (std::size_t r = 0; r < v.size(); ++r)
@@ -198,7 +198,7 @@ class InteriorPoint {
     return most;
   }
 
-  // False where the numbers end.
+  // Makes an iteration. Returns false if numbers become infinite or undefined.
   bool step() {
     assemble();
     Vector complement(size_);
@@ -227,8 +227,8 @@ class InteriorPoint {
 
   const std::vector<Row>& rows_;
   std::size_t unknowns_, size_;
-  double bound_ = 0;  // of the gain
-  double mean_ = 0;   // of slack * price
+  double bound_ = 0;  // upper bound of the gain
+  double mean_ = 0;   // mean of slack * price
   Vector gain_, x_, limit_, slack_, price_, residual_, dx_, dslack_, dprice_;
   Symmetric normal_;
 };

@@ -7,17 +7,18 @@
 namespace vpm {
 namespace {
 
-// A dual simplex in the four unknowns (delta, s), all in units of the box and about the smallest
-// value: maximise s where s - gradient_j . delta <= value_j and -1 <= delta <= 1. The basis holds
+// Dual simplex in the four unknowns (delta, s), in units of the box and about the smallest value:
+// maximise s subject to s - gradient_j . delta <= value_j and -1 <= delta <= 1. The basis holds
 // four tight rows; each pivot brings in the row that is violated most.
 using Row = std::array<double, 4>;
 constexpr double kFeasible = 1e-13;  // violations below this are rounding
 constexpr double kPivot = 1e-12;     // smallest coefficient that may become a pivot
-constexpr int kMaxPivots = 64;       // several times what random bounds need; stops cycling
+constexpr int kMaxPivots = 64;       // stops cycling; several times what random bounds need
 
 struct Simplex {
-  std::array<std::array<double, 4>, 4> inverse{};  // of the basis rows; columns go with them
-  Row right{};                                     // right-hand sides of the basis rows
+  // Inverse of the basis rows; columns correspond to them.
+  std::array<std::array<double, 4>, 4> inverse{};
+  Row right{};  // right-hand sides of the basis rows
 
   explicit Simplex(const LinearBound& first, double value) {
     const std::array<double, 3> g{first.gradient.x, first.gradient.y, first.gradient.z};
@@ -38,7 +39,7 @@ struct Simplex {
     return y;
   }
 
-  // Puts the row in the place of the basis row whose multiplier falls to zero first.
+  // Replaces the basis row whose multiplier falls to zero first.
   bool pivot(const Row& row, double row_right) {
     Row weight{};
     for (std::size_t k = 0; k < 4; ++k)

@@ -1,4 +1,4 @@
-// The step that raises the smallest of a few linear functions most: one small linear programme.
+// Step that raises the minimum of a few linear functions most, by a small linear programme.
 #pragma once
 
 #include <vector>
@@ -14,11 +14,11 @@ struct LinearBound {
 
 struct MaxMinStep {
   Vec3 delta;
-  double value = 0;  // min over the bounds at delta
+  double value = 0;  // minimum of the bounds at delta
 };
 
-// Maximises min_j (value_j + gradient_j . delta) over |delta_x|, |delta_y|, |delta_z| <= box.
-// Needs at least one bound and box > 0. Deterministic; the order of the bounds only breaks ties.
+// Maximises min_j (value_j + gradient_j . delta) over |delta_x|, |delta_y|, |delta_z| <= box. Needs
+// at least one bound and box > 0. Deterministic; the order of bounds only breaks ties.
 MaxMinStep max_min_step(const std::vector<LinearBound>& bounds, double box);
 
 }  // namespace vpm

@@ -15,16 +15,16 @@
 namespace vpm {
 namespace {
 
-// All spheres of a band of radii are found together. The first spheres decide the coverage of a
-// small packing, so their bands are narrow and each takes the place that suits the others; later
-// ones only need the right order of magnitude.
+// Width of a band, whose spheres are found together. First spheres decide the coverage of small
+// packings, so their bands are narrow and each is placed into contact; later ones only need roughly
+// the right order.
 constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
-// A band is finished, so that what is asked for is a prefix of what more would have been, unless it
-// brings more than this beyond twice the number: a plate holds millions of equal spheres.
+// Bands are completed, so that fewer spheres are a prefix of more, unless a band brings more than
+// this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
-constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // their numbers have 32 bits
-// Of the room, in blocks. Solids of all proportions have about ten blocks per sphere; a plate of
-// 1:100000 has a thousand million blocks.
+constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // keeps indices within 32 bits
+// Number of blocks of Space. Solids of all proportions have about ten blocks per sphere; a plate of
+// 1:100000 would have 10^9 blocks.
 constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
 // The uncovered volume falls with the number of spheres to the power of -1 / this.
 constexpr double kApollonianPower = 4.7;
@@ -75,7 +75,8 @@ class Packer {
   }
 
  private:
-  // Of the work: as much for every sphere. What is left uncovered falls with their number.
+  // Returns the part of the work that is done, taking all spheres as equally costly. The uncovered
+  // volume falls with their number.
   double fraction() const {
     const double number =
         static_cast<double>(space_.spheres().size()) / static_cast<double>(options_.spheres);
@@ -87,7 +88,8 @@ class Packer {
            (options_.inertia_error > 0 && result().stop == StopReason::inertia_error);
   }
 
-  // The bands are complete, so the largest spheres come out the same however many are asked for.
+  // Sorts all spheres and cuts to the number asked for; bands are complete, so the largest do not
+  // depend on that number.
   PackResult result() const {
     std::vector<Sphere> all;
     for (const Sphere& s : space_.spheres())
@@ -124,12 +126,14 @@ class Packer {
   const PackOptions& options_;
   SolidDistance distance_;
   UnitFrame frame_;
-  double volume_;                           // m^3
-  std::optional<InertiaError> no_inertia_;  // of no spheres; where it is asked for
-  double smallest_;                         // in the unit frame, like cap_
-  StopReason stop_;                         // where what was asked for is not reached
+  double volume_;  // m^3
+  // State before the first sphere; set if the inertia error is asked for.
+  std::optional<InertiaError> no_inertia_;
+  double smallest_;  // in the unit frame, as is cap_
+  // Reason if no request is met.
+  StopReason stop_;
   double cap_;
-  std::size_t most_;  // spheres at which even a band is broken off
+  std::size_t most_;  // number of spheres at which even a band is cut short
   Space space_;
   double filled_ = 0;  // m^3
 };

@@ -1,4 +1,4 @@
-// Greedy sphere packing: always the largest sphere that fits into what is left of the solid.
+// Greedy sphere packing: always the largest sphere that fits into the rest of the solid.
 #pragma once
 
 #include <cstddef>
@@ -12,53 +12,53 @@
 
 namespace vpm {
 
-// Metres. Spheres smaller than this share of the solid's longest side are not looked for.
+// Smallest radius searched for, relative to the solid's longest side.
 inline constexpr double kNumericalFloor = 0x1p-18;
 
 struct PackOptions {
-  std::size_t spheres = 1000;  // as many are delivered unless another limit comes first
-  double coverage = 1;         // stop where the spheres fill this share of the solid's volume
-  double inertia_error = 0;    // stop where the spheres' InertiaError is at most this; 0: never
-  double min_radius = 0;       // m; no smaller sphere
+  std::size_t spheres = 1000;  // number delivered, unless another limit comes first
+  double coverage = 1;         // stop when spheres fill this fraction of the solid
+  double inertia_error = 0;    // stop when InertiaError is at most this; 0: never
+  double min_radius = 0;       // m; no smaller sphere is placed
   double max_radius = std::numeric_limits<double>::infinity();  // m; larger ones are cut to it
-  const Enclosure* enclosure = nullptr;                         // of the solid, where it is known
-  std::function<void(double fraction)> progress =
-      nullptr;  // called between rounds, on the calling thread
+  const Enclosure* enclosure = nullptr;  // enclosure of the solid, or null to compute it
+  // Called between rounds on the calling thread.
+  std::function<void(double fraction)> progress = nullptr;
 };
 
 enum class StopReason {
-  spheres,          // as many as asked for
-  coverage,         // the coverage asked for is reached
-  inertia_error,    // the inertia tensor is as near as asked for
+  spheres,          // the requested number is reached
+  coverage,         // the requested coverage is reached
+  inertia_error,    // the requested inertia error is reached
   min_radius,       // no sphere of the smallest radius fits any more
-  numerical_floor,  // what is left is below kNumericalFloor of the longest side
+  numerical_floor,  // the rest is below kNumericalFloor of the longest side
 };
 
 struct PackResult {
-  std::vector<Sphere> spheres;  // largest first; ties by centre
+  std::vector<Sphere> spheres;  // largest first, then by centre
   double coverage = 0;          // volume of the spheres / volume of the solid
   StopReason stop = StopReason::spheres;
-  // The solid is so thin that only a part of its room was looked at, spread over it: larger spheres
-  // may fit elsewhere.
+  // True if the solid is so thin that only a part of its room, spread over it, was searched; larger
+  // spheres may fit elsewhere.
   bool partly_searched = false;
-  // No packing of as many spheres covers more: so many of the largest ball, at most all.
+  // Upper bound of the coverage of any packing of as many spheres: that many of the largest ball,
+  // at most 1.
   double coverage_bound = 1;
 };
 
-// No two spheres overlap and none protrudes: radii are exact distances less a rounding margin.
-// Every centre is a local maximum of the distance to the mesh and to the larger spheres (where
-// max_radius does not cut it), but for the first 200 spheres: in tubes, where there is room
-// anywhere, they move along until they touch, for at most .2 % of the radius. A sphere is placed
-// before another that is more than about one hundredth larger only where a local search has missed
-// the larger one.
+// Packs the solid. No two spheres overlap and none protrudes: radii are exact distances less a
+// rounding margin. Each centre is a local maximum of the distance to the mesh and to larger
+// spheres, unless max_radius cuts it. The first 200 spheres deviate from that by up to 0.2 % of the
+// radius: in tubes, where there is room anywhere, they move along until they touch. A sphere
+// precedes one that is more than about 1 % larger only if a local search missed the larger one.
 //
-// Inside is what the mesh encloses at least once, and volumes are of that: triangles of a
-// self-intersecting mesh bound no sphere where they lie inside of its union.
+// Inside is what the mesh encloses at least once, and volumes refer to that: triangles of a
+// self-intersecting mesh are no obstacle in the interior of its union.
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
-// bit. A result with fewer spheres is a prefix of one with more if the other options are the same
-// (but for solids that hold more than twice as many spheres of one and the same size).
-// Throws Error: usage for limits that are not positive numbers, refused for a solid without volume.
+// bit. A result with fewer spheres is a prefix of one with more under the same other options,
+// except for solids that hold more than twice as many spheres of equal size. Throws Error(usage)
+// for limits that are not positive numbers, Error(refused) for a solid without volume.
 PackResult pack(const Solid& solid, const PackOptions& options);
 
 }  // namespace vpm

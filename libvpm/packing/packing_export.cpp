@@ -28,7 +28,7 @@ void append(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-// Blue over green to red for 0 .. 1.
+// Returns blue over green to red for t in [0, 1].
 std::array<std::uint8_t, 3> rainbow(double t) {
   const auto channel = [&](double peak) {
     return static_cast<std::uint8_t>(
@@ -37,12 +37,12 @@ std::array<std::uint8_t, 3> rainbow(double t) {
   return {channel(3), channel(2), channel(1)};
 }
 
-// "x<between>y<between>z"
+// Returns x, y and z with `between` between them.
 std::string text_of(Vec3 p, const char* between) {
   return digits(p.x) + between + digits(p.y) + between + digits(p.z);
 }
 
-// Colours by radius within a packing.
+// Colours spheres by radius within their packing.
 class RadiusColors {
  public:
   explicit RadiusColors(const std::vector<Sphere>& spheres) {
@@ -67,12 +67,12 @@ constexpr const char* kPlyCorners =
     "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
     "property uchar green\nproperty uchar blue\n";
 
-// A name in quotes of JSON, which YAML takes too. What is no UTF-8 becomes U+FFFD.
+// Returns the name as a JSON string, which is valid YAML too. Invalid UTF-8 becomes U+FFFD.
 std::string json_text(const std::string& name) {
   return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// The same name between quotes of XML.
+// Returns the name escaped for XML attributes; invalid UTF-8 becomes U+FFFD.
 std::string xml_text(const std::string& name) {
   std::string text;
   for (const char c : nlohmann::json::parse(json_text(name)).get<std::string>()) {
@@ -86,7 +86,7 @@ std::string xml_text(const std::string& name) {
       case '"':
         text += "&quot;";
         break;
-      default:  // XML has no way to write control characters
+      default:  // XML cannot express control characters
         text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     }
   }
@@ -180,7 +180,7 @@ std::string packing_as_vtk(const std::vector<Sphere>& spheres) {
 }
 
 std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link) {
-  // Strings of JSON are strings of YAML.
+  // JSON strings are YAML strings.
   std::string text = "collision_spheres:\n  " + json_text(link) + ":\n";
   for (const Sphere& s : spheres) {
     text += "    - \"center\": [" + text_of(s.center, ", ") +

@@ -1,4 +1,4 @@
-// Packings for other programs.
+// Exports packings for other programs.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace vpm {
 
-// By the extension of the path; metres.
+// File formats by extension of the path; lengths in metres.
 //   .csv         a line "x,y,z,r", then one line per sphere
 //   .json        {"centers": [[x, y, z], ...], "radii": [r, ...]}, to the last bit
 //   .ply         every sphere as an icosphere of 80 triangles, binary, for viewers
@@ -17,9 +17,9 @@ namespace vpm {
 //   .yml .yaml   cuRobo's robot description: collision_spheres of a link
 //   .urdf        a robot of one link whose collision geometry is the spheres
 //   .srdf        link_sphere_approximation of a link
-// Text has 9 significant digits (JSON: as many as it takes). PLY is coloured by radius, from blue
-// (smallest) over green to red (largest, logarithmic). `link` names the link in YAML, URDF and
-// SRDF. Any other name throws Error(usage).
+// Text has 9 significant digits, JSON as many as are exact. PLY is coloured by radius, from blue
+// (smallest) over green to red (largest), logarithmically. `link` names the link in YAML, URDF and
+// SRDF. export_format throws Error(usage) for any other extension.
 enum class ExportFormat { csv, json, ply, points, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 
@@ -32,7 +32,7 @@ std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string
 std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link);
 std::string packing_as_srdf(const std::vector<Sphere>& spheres, const std::string& link);
 
-// Atomic; throws Error(cannot_write).
+// Writes the file atomically. Throws Error(cannot_write).
 void export_packing(const std::string& path, const std::vector<Sphere>& spheres,
                     const std::string& link);
 

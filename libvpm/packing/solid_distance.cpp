@@ -10,15 +10,15 @@
 namespace vpm {
 namespace {
 
-// Units in the last place: of the three coordinates on both ways, and of a distance to a triangle
-// of aspect 1:1000 (measured: needles of this aspect need 5).
+// Rounding in units in the last place: of three coordinates on both ways, and of a distance to a
+// triangle of aspect 1:1000. Needles of this aspect were measured to need 5.
 constexpr double kFrameRoundings = 8;
 constexpr double kDistanceRoundings = 64;
 
-// A face tells sides where it is wider than this, and the point farther off: rounding is far less.
+// Least width of a face, and least distance from it, for it to decide sides; rounding is far less.
 constexpr double kTelling = 1e-9;
 
-// Radii shrink by this share on the way back to metres.
+// Relative amount by which radii shrink on the way back to metres.
 constexpr double kMargin = 1e-12;
 
 UnitFrame unit_frame(const Solid& solid) {
@@ -39,8 +39,8 @@ UnitFrame unit_frame(const Solid& solid) {
   frame.longest = longest / frame.scale;
   const double farthest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z),
                                     std::abs(high.x), std::abs(high.y), std::abs(high.z)});
-  // Coordinates far from the origin lose digits on the way to the frame and back. In the frame, the
-  // distance to a triangle loses what the triangle's angles are thin.
+  // Adds rounding on the way to the frame and back, which grows with the distance from the origin,
+  // and rounding of distances to triangles with small angles.
   frame.rounding = std::numeric_limits<double>::epsilon() *
                    (kFrameRoundings * farthest + kDistanceRoundings * frame.scale);
   return frame;

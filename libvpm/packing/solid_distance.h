@@ -1,8 +1,8 @@
-// Distance to the boundary of a solid, in the packer's own frame. What of the mesh lies inside of
-// the solid is no boundary.
+// Distance to the boundary of a solid in the packer's frame. Mesh parts in the solid's interior are
+// no boundary.
 //
-// The frame puts the solid's box in the middle of the unit cube and scales by a power of two, so
-// that a solid 2^k times as large gives the same numbers to the bit.
+// The frame centres the solid's bounding box in the unit cube and scales by a power of two, so that
+// a solid 2^k times as large gives the same numbers to the bit.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,20 @@
 namespace vpm {
 
 struct UnitFrame {
-  Vec3 center;          // of the solid's box
-  double scale = 1;     // a power of two: metres per unit
-  double longest = 1;   // side of the box, in units: from 1/2 to 1
-  double rounding = 0;  // metres: bound of what the frame and distances in it lose
+  Vec3 center;          // centre of the solid's bounding box
+  double scale = 1;     // metres per unit, a power of two
+  double longest = 1;   // longest side of the box in units, from 1/2 to 1
+  double rounding = 0;  // m; bound on rounding of the frame and of distances in it
   Vec3 to_unit(Vec3 p) const { return (p - center) / scale + Vec3{0.5, 0.5, 0.5}; }
   Vec3 to_solid(Vec3 p) const { return center + scale * (p - Vec3{0.5, 0.5, 0.5}); }
-  // Radii shrink, so that rounding makes no overlap.
+  // Maps a sphere to metres, shrunk so that rounding makes no overlap.
   Sphere to_solid(const Sphere& s) const;
 };
 
 class SolidDistance {
  public:
-  // `enclosure` is that of the solid, where it is known. Throws Error(refused) for a solid without
-  // triangles, extent or finite coordinates.
+  // `enclosure` is that of the solid, or null to compute it. Throws Error(refused) for a solid
+  // without triangles, extent or finite coordinates.
   explicit SolidDistance(const Solid& solid, const Enclosure* enclosure = nullptr);
   SolidDistance(const SolidDistance&) = delete;
   SolidDistance& operator=(const SolidDistance&) = delete;
@@ -40,9 +40,9 @@ class SolidDistance {
   double volume() const { return volume_; }  // m^3
   SurfacePoint closest(Vec3 x, double within) const { return boundary_->closest(x, within); }
   Vec3 closest_on(std::uint32_t triangle, Vec3 x) const;
-  // Whether the disk of this radius about a point of the triangle lies in the triangle.
+  // True if the disk of this radius about a point of the triangle lies in the triangle.
   bool holds_disk(std::uint32_t triangle, Vec3 point, double radius) const;
-  // As TriangleBvh::around; and a triangle that it found.
+  // Finds triangles as TriangleBvh::around does; corners() takes their numbers.
   std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const {
     return boundary_->around(x, half, found);
   }
@@ -50,18 +50,20 @@ class SolidDistance {
     return boundary_->corners()[found];
   }
   bool inside(Vec3 x) const { return winding_.inside(x); }
-  // The same by the triangle that is nearest to x, which costs next to nothing; nothing where x is
-  // nearest to an edge, or too near to say.
+  // Returns inside(x) from the triangle nearest to x, at almost no cost. Empty if x is nearest to
+  // an edge or too near to decide.
   std::optional<bool> inside_of_face(std::uint32_t nearest, Vec3 x) const;
 
  private:
   UnitFrame frame_;
-  std::vector<Vec3> vertices_;  // of the boundary, like triangles_
+  // Boundary of the solid.
+  std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   TriangleBvh mesh_;
   WindingNumber winding_;
-  std::optional<TriangleBvh> surface_;     // where the mesh is not the boundary
-  const TriangleBvh* boundary_ = nullptr;  // one of the two
+  // BVH of the boundary, where the mesh is not the boundary.
+  std::optional<TriangleBvh> surface_;
+  const TriangleBvh* boundary_ = nullptr;  // points to mesh_ or surface_
   bool faces_tell_ = true;
   double volume_ = 0;
 };

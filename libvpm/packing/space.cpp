@@ -16,31 +16,31 @@
 namespace vpm {
 namespace {
 
-// Blocks are cut when they are wider than this many radii: then between 2 and 4 of them.
+// Blocks wider than this many radii are cut; so they are 2 to 4 radii wide.
 constexpr double kBlockWidth = 4;
-// Spheres are listed up to this share of the block's width away. The radius looked for is at most
-// half of the width; the rest is for maxima that a search of a larger radius has missed.
+// Distance, in widths of a block, up to which it lists spheres. The sought radius is at most half
+// the width; the rest is for maxima that a search of a larger radius missed.
 constexpr double kReach = 0.6;
-// Cells whose half diagonal is below this share of the radius are searched instead of cut.
+// Cells with a half diagonal below this part of the radius are searched instead of cut.
 constexpr float kLeaf = 0.25f;
 // A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
 constexpr double kSlope = 2.5;
-// Thin parts are looked for where the mesh is nearer to a cell's centre than this many half
-// diagonals.
+// Distance of the mesh from a cell's centre, in half diagonals, up to which thin parts are searched
+// for.
 constexpr float kNearFace = 0.5f;
-// A sphere is nearest to a point where no triangle is nearer than this share and length beyond it:
-// a triangle that it touches may lie between.
+// A sphere counts as nearest to a point if no triangle is nearer than its distance plus these
+// relative and absolute margins: a triangle that it touches may lie between.
 constexpr double kBehind = 1e-3, kTouching = 1e-9;
 constexpr int kMaxBlockLevel = 20;  // coordinates have 21 bits
 constexpr std::size_t kBlocksPerTask = 64;
 
-// 2^-level, by its bits: std::ldexp is a call, and this is asked for every cell.
+// Returns 2^-level from its bits; std::ldexp would be a call for every cell.
 double edge(int level) {
   constexpr int kBias = 1023, kFraction = 52;
   return std::bit_cast<double>(static_cast<std::uint64_t>(kBias - level) << kFraction);
 }
 
-// Half the diagonal of a cube, rounded up.
+// Returns half the diagonal of a cell, rounded up.
 float half_diagonal(int level) {
   return static_cast<float>(0.866025404 * edge(level));
 }
@@ -65,7 +65,7 @@ Vec3 cube_center(BlockIndex::Coordinates c, int level) {
   return edge(level) * Vec3{c.x + 0.5, c.y + 0.5, c.z + 0.5};
 }
 
-// The centre that puts a sphere of radius `cap` against its nearest obstacle.
+// Returns the sphere of radius `cap` that touches the nearest obstacle of x.
 Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
   return {x - (at.value - cap) * at.away, cap};
 }
@@ -99,8 +99,8 @@ std::vector<std::uint32_t> Space::promising(double radius) const {
   return blocks;
 }
 
-// The surface point nearest to the cell's centre where it is nearer than `within`. What was nearest
-// to a parent's centre is near here, so that the search has little to look at.
+// Returns the surface point nearest to the cell's centre, if nearer than `within`. Starts from the
+// triangle nearest to a parent's centre, which makes the search short.
 SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
   const Vec3 x = cell.center();
   if (cell.triangle == SurfacePoint::kNone) return solid_.closest(x, within);
@@ -112,8 +112,7 @@ SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
   return nearer.triangle == SurfacePoint::kNone ? known : nearer;
 }
 
-// Sets d and bound by the spheres and by the triangle nearest to a parent. The cell's `mesh` is
-// known.
+// Sets d and bound from the spheres and from the triangle nearest to a parent. Needs cell.mesh.
 void Space::estimate(Cell& cell, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
   double d = reach_, bound = d + half_diagonal(cell.level);
@@ -131,7 +130,7 @@ void Space::estimate(Cell& cell, const std::vector<std::uint32_t>& near) const {
   cell.bound = round_up(bound);
 }
 
-// Looks for the nearest triangle where the estimate does not exclude a sphere.
+// Finds the nearest triangle, for cells whose estimate does not exclude a sphere.
 void Space::measure(Cell& cell) const {
   cell.measured = true;
   const SurfacePoint p = nearest_on_mesh(cell, cell.d);
@@ -142,13 +141,14 @@ void Space::measure(Cell& cell) const {
     cell.bound = std::min(cell.bound, round_up(farthest(cell, {p.point, 0})));
   }
   cell.mesh = std::max(cell.mesh, round_down(cell.d));
-  // This centre and the parent's may lie in a ball that the mesh does not meet.
+  // This centre and the parent's are on the same side if both lie in a ball that the mesh does not
+  // meet.
   const bool same = cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level);
   settle(cell, same ? cell.parent : cell.side);
 }
 
-// Asked of cells that are about to be cut: a cell much larger than the part is thin needs no
-// cutting until spheres of that size are looked for.
+// Bounds a cell before it is cut: a cell much larger than the part is thin needs no cutting until
+// spheres of that size are sought.
 void Space::bound_thin_part(Cell& cell) const {
   if (cell.thick || cell.mesh > kNearFace * half_diagonal(cell.level)) return;
   const ThinPart part = thin_part(solid_, cell.center(), edge(cell.level + 1));
@@ -156,8 +156,8 @@ void Space::bound_thin_part(Cell& cell) const {
   cell.bound = std::min(cell.bound, round_up(part.bound));
 }
 
-// Bounds the clearance over a cell by all that is near at once: distances are convex and curved by
-// at most 1 / distance, so that planes lie above them within the cell.
+// Bounds the clearance over a cell by all nearby obstacles together. Distances are convex with
+// curvature at most 1 / distance, so planes bound them from above within the cell.
 double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
                           std::vector<LinearBound>& bounds) const {
   const Vec3 x = cell.center();
@@ -183,15 +183,15 @@ double Space::joint_bound(Cell& cell, const std::vector<std::uint32_t>& near,
   return max_min_step(bounds, edge(cell.level + 1)).value;
 }
 
-// Largest distance that a point of the cell has from a sphere: some corner has it.
+// Returns the largest distance of a point of the cell from a sphere; it is at some corner.
 double Space::farthest(const Cell& cell, const Sphere& from) {
   const double h = edge(cell.level + 1);
   const Vec3 d = cell.center() - from.center;
   return norm({std::abs(d.x) + h, std::abs(d.y) + h, std::abs(d.z) + h}) - from.radius;
 }
 
-// Of the centre of a measured cell. What is nearest to it mostly tells: a face has the inside
-// behind it, and a sphere lies inside. Winding numbers take far longer.
+// Returns the side of a measured cell's centre. The nearest obstacle mostly decides: a face has the
+// inside behind it, and a sphere lies inside. Winding numbers take far longer.
 Space::Side Space::side_of(const Cell& cell, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
   std::uint32_t nearest = cell.exact ? cell.triangle : SurfacePoint::kNone;
@@ -209,7 +209,7 @@ Space::Side Space::side_of(const Cell& cell, const std::vector<std::uint32_t>& n
   return (told ? *told : solid_.inside(x)) ? Side::inside : Side::outside;
 }
 
-// Sets the side of the centre, which bounds the cell if it is the wrong one.
+// Sets the side of the centre; outside, that bounds the cell.
 void Space::settle(Cell& cell, Side side) {
   cell.side = side;
   if (side == Side::outside)
@@ -220,7 +220,8 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
                   std::vector<Cell>& parts) const {
   const auto level = static_cast<std::uint8_t>(cell.level + 1);
   const auto offset = static_cast<float>(edge(level + 1));
-  const float half = half_diagonal(level);  // distance of the parts' centres from the cell's
+  // Also the distance of the parts' centres from the cell's.
+  const float half = half_diagonal(level);
   for (int octant = 0; octant < 8; ++octant) {
     Cell part{};
     part.x = cell.x + (octant & 1 ? offset : -offset);
@@ -233,7 +234,7 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
     part.thick = cell.thick;
     estimate(part, near);
     part.bound = std::min(part.bound, cell.bound);
-    if (cell.mesh > half) settle(part, cell.side);  // both centres in a ball without triangles
+    if (cell.mesh > half) settle(part, cell.side);  // both centres lie in a ball without triangles
     if (part.bound > smallest_) parts.push_back(part);
   }
 }
@@ -254,7 +255,7 @@ void Space::split_blocks() {
           cells.push_back(cell);
           continue;
         }
-        if (!cell.measured) measure(cell);  // estimates of estimates would exclude nothing
+        if (!cell.measured) measure(cell);  // estimates from estimates would exclude nothing
         if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
           settle(cell, side_of(cell, block.spheres));
         bound_thin_part(cell);
@@ -301,13 +302,13 @@ void Space::split_blocks() {
   reach_ = reach;
 }
 
-// A thin plate has more blocks than memory holds, all with as much room. Those that stay are spread
-// over it.
+// Drops blocks of thin plates, which have more than memory holds, all with equal room. Those that
+// stay are spread over the plate.
 void Space::leave_out(std::vector<BlockIndex::Coordinates>& coordinates) {
   if (blocks_.size() <= most_blocks_) return;
   std::vector<std::uint32_t> order(blocks_.size());
   std::iota(order.begin(), order.end(), 0U);
-  // Bounds are loose until a block is searched: up to a factor of two they tell nothing.
+  // Bounds are loose until a block is searched: differences below a factor of two tell nothing.
   const float most_room = *std::max_element(bounds_.begin(), bounds_.end());
   const auto rank = [&](std::uint32_t b) {
     return std::tuple(2 * bounds_[b] < most_room, BlockIndex::scatter(coordinates[b].key()), b);
@@ -336,11 +337,11 @@ float Space::block_bound(const Block& block) {
   return bound;
 }
 
-// Cuts the promising cells of a block down to leaves; all others go to `rest`.
+// Cuts the promising cells of a block down to leaves; moves all others to `rest`.
 void Space::refine(const Block& block, double radius, double cap, std::vector<Cell>& leaves,
                    std::vector<Cell>& rest) const {
   std::vector<Cell> pending;
-  std::vector<LinearBound> bounds;  // of one cell
+  std::vector<LinearBound> bounds;  // scratch
   for (const Cell& cell : block.cells) (cell.bound < radius ? rest : pending).push_back(cell);
   while (!pending.empty()) {
     Cell cell = pending.back();
@@ -399,13 +400,13 @@ void Space::search(std::uint32_t number, double radius, double cap, std::vector<
   });
 }
 
-// Radius of the local maximum above a leaf; a new one joins the block's maxima.
+// Returns the radius of the local maximum above a leaf, and adds a new one to the block's maxima.
 double Space::local_maximum(Block& block, const Cell& leaf, double radius, double cap) const {
   const Vec3 x = leaf.center();
   const float half = half_diagonal(leaf.level);
   for (const Sphere& m : block.maxima) {
     const double distance = norm(x - m.center);
-    // The leaf lies on the slope of this maximum, or has no room left once it is placed.
+    // The leaf lies on the slope of this maximum, or has no room left once that is placed.
     if (distance < kSlope * half && leaf.d <= m.radius) return m.radius;
     if (m.radius >= radius && distance - m.radius + half < radius) return m.radius;
   }

@@ -1,13 +1,13 @@
-// The room that is left in a solid: an octree of cells with upper bounds of the clearance, in
-// blocks that know the spheres around them.
+// Room left in a solid: an octree of cells with upper bounds of the clearance, grouped in blocks
+// that know the spheres around them.
 //
-// The clearance d(x) = min(distance to the mesh, min_i |x - c_i| - r_i) changes by at most |x - y|
-// between two points, so d(centre) + half diagonal bounds it over a cell. A cell that cannot hold a
-// sphere of the radius looked for sleeps; the others are cut finer until their size is a fraction
-// of that radius. No resolution is fixed beforehand: thin parts cost cells only where they are.
+// The clearance d(x) = min(distance to the mesh, min_i |x - c_i| - r_i) is 1-Lipschitz, so
+// d(centre) + half diagonal bounds it over a cell. Cells that cannot hold a sphere of the sought
+// radius rest; others are cut until their size is a fraction of that radius. No resolution is fixed
+// beforehand, so thin parts cost cells only where they are.
 //
-// Cells are grouped in blocks, the cubes of one octree level (2 to 4 times as wide as the radius
-// looked for). A block lists every sphere within reach of it, so that a clearance costs one lookup.
+// Blocks are the cubes of one octree level, 2 to 4 times as wide as the sought radius. Each lists
+// all spheres within reach_, so that a clearance costs one lookup.
 #pragma once
 
 #include <cstdint>
@@ -23,40 +23,40 @@ namespace vpm {
 
 class Space {
  public:
-  // Nothing smaller than `smallest` (> 0) will be looked for. Of more than `most_blocks` those with
-  // the least room are left out. Keeps a reference to `solid`. Frame: the unit cube of `solid`.
+  // Prepares the cube of `solid` for radii of at least `smallest` (> 0). If there are more than
+  // `most_blocks` blocks, those with the least room are left out. Keeps a reference to `solid`. All
+  // coordinates are in its unit frame.
   Space(const SolidDistance& solid, double smallest, std::size_t most_blocks);
 
-  // No sphere larger than this fits anywhere, up to what local searches have missed and what was
-  // left out.
+  // Returns an upper bound on the radius of spheres that fit anywhere, except in blocks left out
+  // and where local searches missed a maximum.
   float bound() const;
 
-  bool left_out() const { return left_out_; }  // some blocks
+  bool left_out() const { return left_out_; }  // true if blocks were left out
 
-  // Prepares for searches of radius `radius` and above: blocks are cut to its size. Radii must not
-  // grow from call to call.
+  // Prepares for searches of at least `radius`: cuts blocks to its size. Radii must not grow from
+  // call to call.
   void focus(double radius);
 
   float bound(std::uint32_t block) const { return bounds_[block]; }
 
-  // Blocks that may still hold a sphere of this radius, ascending.
+  // Returns the blocks, ascending, that may still hold a sphere of this radius.
   std::vector<std::uint32_t> promising(double radius) const;
   bool is_promising(std::uint32_t block, double radius) const { return bounds_[block] >= radius; }
 
   // Appends local maxima of the clearance above the block with at least `radius`, cut to `cap`;
   // they may overlap. The block stays promising while one of them may still be placed. Changes only
-  // what belongs to the block, so that different blocks may be searched in parallel.
+  // the block's own data, so that different blocks may be searched in parallel.
   void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
 
-  // Clearance of a point in the solid where it is below `within`. kind == none and value == the
-  // smaller of `within` and the reach where nothing is nearer; value < 0 where no room is left
-  // around the point.
+  // Returns the clearance of a point in the solid if it is below `within`. Otherwise kind is none
+  // and the value is min(within, reach_). The value is negative if the point has no room.
   Clearance clearance(Vec3 x, double within = 2) const;
 
-  // Takes a sphere out of the room; appends the blocks around it to `touched`. Clearances know of
-  // it from now on, bounds and searches once the blocks are updated.
+  // Places a sphere and appends the blocks around it to `touched`. Clearances know it at once,
+  // bounds and searches after update() of these blocks.
   void place(const Sphere& sphere, std::vector<std::uint32_t>& touched);
-  void update(const std::vector<std::uint32_t>& blocks);  // all different
+  void update(const std::vector<std::uint32_t>& blocks);  // needs distinct blocks
 
   Vec3 closest_on_triangle(std::uint32_t triangle, Vec3 x) const {
     return solid_.closest_on(triangle, x);
@@ -66,24 +66,29 @@ class Space {
  private:
   enum class Side : std::uint8_t { unknown, inside, outside };
   struct Cell {
-    float x, y, z;       // centre: exact, a multiple of 2^-24
-    float d;             // at least the clearance of the centre were it inside
-    float mesh;          // the mesh is at least this far from the centre
-    float bound;         // no larger sphere is centred in the cell
+    float x, y, z;  // centre; exact, multiples of 2^-24
+    // Upper bound on the clearance of the centre, if that is inside.
+    float d;
+    // Lower bound on the distance of the centre from the mesh.
+    float mesh;
+    // Upper bound on spheres centred in the cell.
+    float bound;
     std::uint8_t level;  // edge length 2^-level
-    Side side;           // of the centre
-    Side parent;         // of the centre of the cell that this one was cut from
-    bool measured;       // d is exact, up to the reach
-    bool exact;          // `triangle` is nearest to the centre; otherwise it was to a parent's
-    bool thick;          // holds no thin part: see thin_part.h
+    Side side;           // side of the centre
+    Side parent;         // side of the parent cell's centre
+    bool measured;       // d is exact, up to reach_
+    // `triangle` is nearest to this centre, not to a parent's.
+    bool exact;
+    bool thick;  // holds no thin part (thin_part.h)
     std::uint32_t triangle;
     Vec3 center() const { return {x, y, z}; }
   };
   struct Block {
     std::vector<std::uint32_t> spheres;
-    std::size_t taken = 0;  // so many of them are known to cells and maxima
+    std::size_t taken = 0;  // number of spheres known to cells and maxima
     std::vector<Cell> cells;
-    std::vector<Sphere> maxima;  // local maxima met by searches of a larger radius
+    // Local maxima found by searches of a larger radius.
+    std::vector<Sphere> maxima;
   };
 
   void split_blocks();
@@ -110,11 +115,12 @@ class Space {
   std::size_t most_blocks_;
   bool left_out_ = false;
   std::vector<Sphere> spheres_;
-  int level_ = 0;     // of the blocks
-  double reach_ = 2;  // clearances in a block are exact up to this; the cube's diagonal is shorter
+  int level_ = 0;  // level of the blocks
+  // Clearances in a block are exact up to this. It starts above the cube's diagonal.
+  double reach_ = 2;
   BlockIndex index_;
   std::vector<Block> blocks_;
-  std::vector<float> bounds_;  // largest cell bound per block
+  std::vector<float> bounds_;  // largest cell bound of each block
 };
 
 }  // namespace vpm

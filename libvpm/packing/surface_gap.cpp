@@ -12,10 +12,10 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kSamples = 50000;
-// Roberts' sequence, the two-dimensional golden ratio: spreads any number of points evenly.
+// Roberts' sequence, the two-dimensional golden ratio, spreads any number of points evenly.
 constexpr double kRoberts1 = 0.7548776662466927, kRoberts2 = 0.5698402909980532;
 
-// Points of the surface, as many per area everywhere.
+// Returns points spread evenly over the surface's area.
 std::vector<Vec3> samples_of(const Solid& solid) {
   std::vector<double> area_up_to;
   double area = 0;
@@ -58,7 +58,7 @@ std::vector<double> gaps_of(const std::vector<Vec3>& points, const SphereBvh& bv
 }  // namespace
 
 SurfaceGap surface_gap(const Solid& solid, const std::vector<Sphere>& spheres) {
-  // The hierarchy wants coordinates of magnitude 1.
+  // Scales to coordinates of magnitude 1, which SphereBvh needs.
   const Vec3 origin = spheres.front().center;
   const double unit = reach(solid, origin);
   std::vector<Sphere> scaled;

@@ -12,16 +12,16 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kMostTriangles = 48;
-// Around the cube: the way from a point between the planes to the nearer one must not leave what
-// was looked at.
+// Size of the region searched, in half edges: the way from a point between the planes to the nearer
+// one must not leave it.
 constexpr double kAround = 1.5;
-// Points that say what is beyond the planes keep this distance from them, in half edges.
+// Distance from the planes, in half edges, of points that tell the side beyond them.
 constexpr double kBeyond = 0.1;
-constexpr double kRounding = 1e-13;  // of coordinates in the unit cube
+constexpr double kRounding = 1e-13;  // rounding of coordinates in the unit cube
 
 using Polygon = std::vector<Vec3>;
 
-// What of a convex polygon about the origin has sign * coordinate <= limit.
+// Returns the part of a convex polygon about the origin with sign * coordinate <= limit.
 Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -36,9 +36,9 @@ Polygon clipped(const Polygon& polygon, int axis, double sign, double limit) {
 }
 
 struct Face {
-  Polygon polygon;  // about the cube's centre
-  Vec3 normal;      // of the whole triangle, of unit length
-  double area = 0;  // of the polygon
+  Polygon polygon;  // relative to the cube's centre
+  Vec3 normal;      // unit normal of the triangle
+  double area = 0;  // area of the polygon
 };
 
 double area_of(const Polygon& polygon) {
@@ -52,7 +52,7 @@ Vec3 normal_of(const TriangleBvh::Corners& t) {
   return normalized_or_zero(cross(t.b - t.a, t.c - t.a));
 }
 
-// What of the triangles lies in the cube with this half edge.
+// Returns the parts of the triangles in the cube with this half edge.
 std::vector<Face> faces_in(const SolidDistance& solid, std::span<const std::uint32_t> triangles,
                            Vec3 center, double half_edge) {
   std::vector<Face> faces;

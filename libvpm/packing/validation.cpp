@@ -21,18 +21,20 @@ namespace vpm {
 namespace {
 
 constexpr float kBand = 3;  // voxels on both sides of the surface that carry distances
-constexpr int kMargin = 4;  // voxels around the box: more than the band
-// Distances are floats in voxels: up to this a sphere that touches the surface has not crossed it.
+constexpr int kMargin = 4;  // voxels around the box; more than the band
+// Float distances err by up to this, in voxels; a sphere that touches the surface has not crossed
+// it.
 constexpr double kRounding = 1e-4;
-// Sides are disputed nearer to the surface than this, in voxels: in gaps of up to twice the width.
+// Distance to the surface, in voxels, below which sides may be disputed: OpenVDB fills gaps of up
+// to twice this width.
 constexpr double kDisputed = 1.5;
 
-// A lattice turned against the mesh: faces along the axes, which CAD parts are full of, would all
-// fall between two layers of centres or all on one, and counting would err the same way everywhere.
-// Coordinates in voxels; voxel (i, j, k) has its centre at (i, j, k).
+// Lattice rotated against the mesh. Faces along the axes, of which CAD parts are full, would fall
+// between two layers of centres or on one, and counts would err alike everywhere. Coordinates in
+// voxels; voxel (i, j, k) has its centre at (i, j, k).
 struct Lattice {
   Rotation turn = rotation_from_quaternion({0.117, 0.083, 0.151, 0.978});
-  Vec3 low;  // after the turn
+  Vec3 low;  // after the rotation
   double voxel = 0;
   int nx = 0, ny = 0, nz = 0;
 
@@ -67,7 +69,7 @@ Lattice lattice_of(const Solid& solid, int voxels) {
   return lattice;
 }
 
-// What openvdb::tools::meshToVolume asks of a mesh; points in voxels.
+// Interface that openvdb::tools::meshToVolume expects of a mesh; points in voxels.
 class MeshAdapter {
  public:
   MeshAdapter(const Solid& solid, const std::vector<Triangle>& triangles, const Lattice& lattice)
@@ -86,8 +88,8 @@ class MeshAdapter {
   const Lattice& lattice_;
 };
 
-// OpenVDB fills whatever cannot be reached from outside, so shells that lie within others need
-// grids of their own: one for all shells of the same depth that face the same way.
+// Shells of equal depth and orientation, voxelised together. OpenVDB fills whatever cannot be
+// reached from outside, so shells within others need grids of their own.
 struct ShellGroup {
   std::vector<Triangle> triangles;
   int sign = 1;  // -1 for cavities
@@ -124,7 +126,7 @@ class Probe {
     for (const ShellGroup& group : groups)
       accessors_.push_back(group.distances->getConstAccessor());
   }
-  // Distance to the surface in voxels, at most kBand; negative inside of the solid.
+  // Returns the distance to the surface in voxels, at most kBand; negative inside the solid.
   double distance(openvdb::Coord voxel) {
     int enclosed = 0;
     double nearest = static_cast<double>(kBand);
@@ -141,11 +143,11 @@ class Probe {
   std::vector<openvdb::FloatGrid::ConstAccessor> accessors_;
 };
 
-// What was counted in one layer of voxels.
+// Counts of one layer of voxels.
 struct Layer {
   std::size_t solid_voxels = 0, covered = 0, cut_by_mesh = 0, cut_by_spheres = 0, protruding = 0,
               overlapping = 0, disputed = 0;
-  double farthest_out = 0;  // voxels
+  double farthest_out = 0;  // in voxels
   double deepest_overlap = 0;
 };
 
@@ -189,7 +191,7 @@ class Count {
            static_cast<std::size_t>(x);
   }
 
-  // In what it has filled, OpenVDB's distances are not those from the mesh.
+  // True if OpenVDB filled the voxel, so that its distance is not that from the mesh.
   bool is_disputed(Vec3 x, double distance) const {
     const bool inside = distance < 0;
     const bool is_near =
@@ -276,8 +278,8 @@ Validation validate_packing(const Solid& solid, const std::vector<Sphere>& spher
   const auto solid_voxels = static_cast<double>(std::max<std::size_t>(sum.solid_voxels, 1));
   result.volume_mesh = solid_voxels * h * h * h;
   result.coverage = static_cast<double>(sum.covered) / solid_voxels;
-  // A voxel of which a share f lies within is counted right on average with variance f (1 - f):
-  // 1/6 if every f is equally likely.
+  // A voxel with a fraction f inside is counted right on average, with variance f (1 - f); its mean
+  // over f is 1/6.
   const double standard_error =
       std::sqrt(static_cast<double>(sum.cut_by_mesh + sum.cut_by_spheres) / 6);
   result.coverage_error = (3 * standard_error + static_cast<double>(sum.disputed)) / solid_voxels;

@@ -76,7 +76,7 @@ PreparedChange FrameReader::prepare(FrameChange change) {
     } catch (const NothingMeasured& fault) {
       fails(FrameFault::empty, fault.what());
     } catch (const Error& fault) {
-      // What is wrong with the call is wrong for every frame.
+      // Errors other than `refused` concern the call, not this frame.
       if (fault.kind() != ErrorKind::refused) throw;
       fails(FrameFault::broken, fault.what());
     }

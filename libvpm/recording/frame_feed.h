@@ -1,5 +1,5 @@
-// Frames made ready for queries ahead of their time, on a thread of their own, so that a loop at
-// haptic rate does not wait for them. What a step gets depends on the data alone.
+// Prepares frames for queries ahead of time on a thread of its own, so that a loop at haptic rate
+// does not wait for them. The frame that a step gets depends on the data alone.
 #pragma once
 
 #include <condition_variable>
@@ -17,35 +17,36 @@
 namespace vpm {
 
 enum class FrameFault {
-  lost,    // no pose of the camera
-  empty,   // nothing measured in it
-  broken,  // not to be read
+  lost,    // no camera pose
+  empty,   // nothing measured
+  broken,  // unreadable
 };
 
 struct UnusableFrame {
-  std::size_t frame = 0;  // of the recording
+  std::size_t frame = 0;  // index in the recording
   FrameFault fault = FrameFault::broken;
   std::string message;
 };
 
-// What the frames that come at one step bring: the newest that can be used.
+// Prepared result of all frames that come at one step: the newest usable one.
 struct PreparedChange {
   FrameChange change;
-  // One of them, or none: the loop goes on with what it has.
+  // Frame on the CPU; both this and `depth` are empty if no frame is usable, and the loop keeps the
+  // last one.
   std::unique_ptr<PreparedCloud> cloud;
-  std::optional<DepthFrame> depth;  // on a device
-  std::size_t frame = 0;            // of the recording; where there is one
+  std::optional<DepthFrame> depth;  // frame on a device
+  std::size_t frame = 0;            // index in the recording, if there is a frame
   std::vector<UnusableFrame> unusable;
-  double seconds = 0;  // from the file to the prepared cloud
+  double seconds = 0;  // time from the file to the prepared frame
 
   bool has_frame() const { return cloud != nullptr || depth.has_value(); }
 };
 
-// Reads and prepares frames, on the calling thread. The recording must outlive it.
+// Reads and prepares frames on the calling thread. Keeps a reference to the recording.
 class FrameReader {
  public:
-  // `options`: how images become clouds, and where: those for a device are prepared there. The
-  // cameras' poses are the recording's.
+  // `options` tell how and where images become clouds; those for a device are prepared there.
+  // Camera poses come from the recording.
   FrameReader(const Recording& recording, const ImportOptions& options,
               PointReading points = PointReading::settled)
       : recording_(recording),
@@ -54,7 +55,7 @@ class FrameReader {
         preparation_(options.normals, points) {}
 
   PreparedChange prepare(FrameChange change);
-  // A cloud that is not needed any more: the next frame takes its memory.
+  // Takes back a cloud that is no longer needed, to reuse its memory for the next frame.
   void give_back(std::unique_ptr<PreparedCloud> cloud) { spare_ = std::move(cloud); }
 
  private:
@@ -68,43 +69,45 @@ class FrameReader {
   FramePreparation preparation_;
   std::unique_ptr<PreparedCloud> spare_;
   std::optional<DepthFrames> frames_;
-  Camera camera_;  // of frames_
+  Camera camera_;  // camera of frames_
 };
 
-// What the prepared frames of a loop were.
+// Statistics of the frames of a loop.
 struct FrameCounts {
-  std::size_t used = 0, unseen = 0;  // unseen: a newer one came before any step saw them
+  // Unseen frames were replaced by a newer one before any step saw them.
+  std::size_t used = 0, unseen = 0;
   std::size_t late = 0, lost = 0, empty = 0, broken = 0;
-  std::size_t waits = 0;          // steps that had to wait for the preparation
-  double longest_wait = 0;        // s
-  std::vector<double> seconds{};  // of each preparation
+  std::size_t waits = 0;    // steps that had to wait for the preparation
+  double longest_wait = 0;  // s
+  // Time of each preparation.
+  std::vector<double> seconds{};
 };
 
 class FrameFeed {
  public:
-  // The recording must outlive the feed. Preparation begins at once.
+  // Starts preparing. Keeps a reference to the recording.
   FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
             const ImportOptions& options, PointReading points = PointReading::settled);
   ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
 
-  // Waits until the first change is ready, so that a loop by the clock begins with a frame.
+  // Waits until the first change is ready, so that a real-time loop begins with a frame.
   void wait_for_first();
 
-  // To be called for each step in turn. What comes with this step, or null. It has the frame no
-  // more: that is cloud() or depth_frame() now, until the next change.
+  // Returns what comes with this step, or null; to be called for each step in turn. Moves the frame
+  // into the feed, where cloud() or depth_frame() returns it until the next change.
   const PreparedChange* advance_to(std::size_t step);
 
-  // Empty, and frame() nothing, before the first frame that can be used.
+  // Returns the current cloud; empty before the first usable frame.
   const PreparedCloud& cloud() const { return depth_ ? depth_->cloud() : *cloud_; }
-  // Null where the frame is not on a device.
+  // Returns the current frame on a device, or null if it is on the CPU.
   const DepthFrame* depth_frame() const { return depth_ ? &*depth_ : nullptr; }
   std::optional<std::size_t> frame() const { return frame_; }
   const FrameCounts& counts() const { return counts_; }
 
  private:
-  // Prepared changes that wait for their step. Each holds some 20 MB.
+  // Number of prepared changes that may wait for their step. Each holds some 20 MB.
   static constexpr std::size_t kAhead = 2;
 
   void prepare_all(FrameSchedule schedule, const ImportOptions& options, PointReading points);
@@ -112,7 +115,7 @@ class FrameFeed {
   void count(const PreparedChange& taken);
 
   const Recording& recording_;
-  FrameSchedule schedule_;  // of the loop; the thread has a copy
+  FrameSchedule schedule_;  // schedule of the loop; the thread has a copy
   std::optional<FrameChange> next_;
   std::unique_ptr<PreparedCloud> cloud_;
   std::optional<DepthFrame> depth_;
@@ -123,7 +126,7 @@ class FrameFeed {
   std::mutex mutex_;
   std::condition_variable moved_;
   std::deque<PreparedChange> ready_;
-  // Clouds that the loop has done with: the next frame takes the memory of one.
+  // Clouds that the loop is done with; the next frames reuse their memory.
   std::vector<std::unique_ptr<PreparedCloud>> done_;
   std::exception_ptr failure_;
   bool stop_ = false;

@@ -8,8 +8,8 @@
 namespace vpm {
 namespace {
 
-// Part of a step by which a frame may come after it and still be seen: times since 1970 are rounded
-// by as much.
+// Part of a step by which a frame may come after it and still be seen, since times since 1970 are
+// rounded by as much.
 constexpr double kRounding = 1e-3;
 
 double median_interval(const std::vector<RecordedFrame>& frames) {
@@ -35,7 +35,7 @@ FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& 
     refuse("frames that all come within one step cannot be repeated");
   time_ = turn_time_ = recording.frames.front().time;
   if (!options.repeat) return;
-  // Whole rounds that are over when the first step begins show nothing.
+  // Skips whole rounds that end before the first step.
   const double round = 2 * lasts, before = options.start - options.latency - time_;
   if (before > 2 * round) time_ = turn_time_ += round * (std::floor(before / round) - 1);
 }

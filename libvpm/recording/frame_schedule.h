@@ -1,4 +1,4 @@
-// Which frame each step of a loop sees: decided by the times of the data alone, never by a clock.
+// Assigns frames to the steps of a loop by the times in the data, never by a clock.
 #pragma once
 
 #include <optional>
@@ -10,31 +10,32 @@ namespace vpm {
 
 struct ScheduleOptions {
   double rate = 1000;     // steps per second
-  std::size_t steps = 0;  // of the loop
-  double start = 0;       // s: the time of step 0 on the recording's clock
+  std::size_t steps = 0;  // number of steps of the loop
+  double start = 0;       // s; time of step 0 on the recording's clock
   double latency = 0;     // s from a frame's time until a step can see it
-  bool repeat = false;    // from the last frame back to the first and forth again, without end
+  // After the last frame, plays them backwards to the first, then forwards, without end.
+  bool repeat = false;
 };
 
 // Frames that come between two steps.
 struct FrameChange {
-  std::size_t step = 0;             // the first that can see them
-  std::vector<std::size_t> frames;  // of the recording, in the order of their coming
-  bool is_late = false;             // the first of them is
+  std::size_t step = 0;             // first step that can see them
+  std::vector<std::size_t> frames;  // indices in the recording, in order of arrival
+  bool is_late = false;             // true if the first of them is late
 };
 
-// Gives the changes of a loop one after the other.
+// Returns the changes of a loop one after the other.
 class FrameSchedule {
  public:
-  // A frame that comes more than this many usual intervals (their median) after the one before is
-  // late. Numbered frames are never late, but missing.
+  // A frame is late if it comes more than this many median intervals after the one before. Numbered
+  // frames are never late, only missing.
   static constexpr double kLateAfter = 1.5;
 
-  // `recording` must outlive the schedule. Throws Error(refused) where frames that all come within
-  // one step are to be repeated.
+  // Keeps a reference to `recording`. Throws Error(refused) if frames are to be repeated that all
+  // come within one step.
   FrameSchedule(const Recording& recording, const ScheduleOptions& options);
 
-  // Nothing where no frame comes before the loop ends.
+  // Returns the next change; empty if no frame comes before the loop ends.
   std::optional<FrameChange> next();
 
  private:
@@ -44,13 +45,13 @@ class FrameSchedule {
   const Recording& recording_;
   ScheduleOptions options_;
   double usual_interval_ = 0;
-  double time_ = 0;        // of the next frame to come
-  std::size_t frame_ = 0;  // likewise
-  std::size_t turn_ = 0;   // the frame from which it goes one way
+  double time_ = 0;        // time of the next frame
+  std::size_t frame_ = 0;  // index of the next frame
+  std::size_t turn_ = 0;   // frame at which the direction last changed
   double turn_time_ = 0;
   bool backwards_ = false;
   bool is_over_ = false;
-  bool is_late_ = false;  // the next frame
+  bool is_late_ = false;  // true if the next frame is late
 };
 
 }  // namespace vpm

@@ -7,7 +7,7 @@
 namespace vpm {
 namespace {
 
-// A sleeping thread is woken up to this late; the rest is waited for awake.
+// Time by which a sleeping thread may wake late; the loop spins for the last part of a wait.
 constexpr std::chrono::microseconds kWakeUp{150};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Times of the steps of a loop: by the clock at its rate, or as fast as it goes.
+// Paces the steps of a loop, in real time at its rate or as fast as it goes, and records times.
 #pragma once
 
 #include <chrono>
@@ -7,14 +7,15 @@
 
 namespace vpm {
 
-// Order statistics of seconds. Quantiles are of those that occurred: at least this part is not
-// longer.
+// Order statistics of durations in seconds. A quantile is the smallest recorded duration that at
+// least this part of all does not exceed.
 class Durations {
  public:
-  explicit Durations(std::vector<double> seconds);  // at least one
+  explicit Durations(std::vector<double> seconds);  // needs at least one
   double quantile(double part) const;
   double mean() const;
-  double deviation() const;  // standard deviation
+  // Returns the standard deviation.
+  double deviation() const;
   std::size_t longer_than(double seconds) const;
   std::size_t size() const { return sorted_.size(); }
 
@@ -24,17 +25,20 @@ class Durations {
 
 class LoopClock {
  public:
-  // `rate`: steps per second; `realtime`: each step waits until it is due. The first is due now.
+  // `rate` in steps per second. If `realtime`, begin_step() waits until the step is due. The first
+  // step is due now.
   LoopClock(double rate, bool realtime);
 
   void begin_step();
   void end_step();
 
-  // s, of each step: until its end, from when it was due (real time) or from its beginning.
+  // Returns the latency of each step in seconds: until its end, from when it was due (real time) or
+  // from when it began.
   const std::vector<double>& latencies() const { return latencies_; }
-  // s, of each step in real time: how long after it was due it began.
+  // Returns how late each step of a real-time loop began, in seconds.
   const std::vector<double>& delays() const { return delays_; }
-  double seconds() const;  // since the first step was due
+  // Returns the seconds since the first step was due.
+  double seconds() const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
 
 constexpr const char* kBlank = " \t\r";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // that some editors write first
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // written first by some editors
 
 bool is_json(const std::string& line) {
   const std::size_t first = line.find_first_not_of(kBlank);
@@ -36,7 +36,7 @@ void refuse_empty_cells(const std::string& line) {
   }
 }
 
-// Between blanks, or single commas.
+// Returns the numbers of a line, separated by blanks or single commas.
 std::vector<double> numbers_of(const std::string& line) {
   constexpr const char* kBetween = " \t\r,";
   refuse_empty_cells(line);

@@ -11,36 +11,37 @@
 
 namespace vpm {
 
-// Poses from a stream, one at a time, so that a pipe is answered line by line. Each line tells what
-// it is:
+// Reads poses from a stream, one at a time, so that a pipe is answered line by line. Formats, told
+// apart line by line:
 //   JSON Lines   [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
 //                by row]}; "time" in an object, or an eighth number in front, is the time
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   4x4 text     four lines of four numbers for each pose
-// '#' begins a comment, but not within a line of JSON.
+// A '#' starts a comment, except in a line of JSON.
 class PoseReader {
  public:
-  explicit PoseReader(const std::string& path);  // "-" is standard input
+  explicit PoseReader(const std::string& path);  // "-" reads standard input
 
-  // The next pose; none at the end. Throws Error(refused) naming the line, or where the file cannot
-  // be read on.
+  // Returns the next pose; empty at the end. Throws Error(refused), naming the line, if it is no
+  // pose or the file cannot be read.
   std::optional<Pose> next();
 
-  // Of the last pose, in seconds; none where its line has none.
+  // Returns the time of the last pose in seconds; empty if its line has none.
   std::optional<double> time() const { return time_; }
-  // Where the reader is, for messages.
+  // Returns the name and line of the last pose, for messages.
   std::string place() const { return name_ + ", line " + std::to_string(line_); }
-  // Says that there is no pose.
+  // Throws Error(refused) that there is no pose.
   [[noreturn]] void refuse_empty() const;
 
-  // How far the worst rotation so far was from one before it was normalised.
+  // Returns the largest deviation of a rotation before it was normalised.
   double largest_deviation() const { return largest_deviation_; }
 
  private:
   std::optional<std::string> next_line();
   Pose parse_json(const std::string& line);
   Pose parse_text(const std::string& line);
-  Pose from_numbers(std::vector<double> numbers);  // a time may come first
+  // Takes 7 numbers, or 8 with the time first.
+  Pose from_numbers(std::vector<double> numbers);
 
   std::string name_;
   std::ifstream file_;

@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Also of links in a circle, which exists() would throw for: file_type::none.
+// Returns the status, file_type::none for links in a circle, for which exists() would throw.
 fs::file_status status_of(const fs::path& path) {
   std::error_code unknown;
   return fs::status(path, unknown);
 }
 
-// Or what cannot be looked at: that is said when it is read.
+// True for files, and for paths that cannot be examined: reading these reports why.
 bool is_file(const fs::path& path) {
   const fs::file_type type = status_of(path).type();
   return type == fs::file_type::regular || type == fs::file_type::none ||
@@ -34,7 +34,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Of "time file" or "time file time file" the pair that belongs to the depth image.
+// Returns the time and file of the depth image in a line "time file" or "time file time file".
 std::optional<std::pair<double, std::string>> entry_of(std::string_view line) {
   const std::vector<std::string_view> words = split_words(line);
   if (words.empty()) return std::nullopt;
@@ -78,7 +78,7 @@ std::string stem_of(const fs::path& path) {
   return name.substr(0, name.find('.'));
 }
 
-// Not a folder, nor what one waits for, like a pipe. What is broken is said when it is read.
+// True unless the path is a folder or something that blocks, like a pipe. Reading reports defects.
 bool may_be_read(const fs::path& path) {
   return is_file(path) || status_of(path).type() == fs::file_type::not_found;
 }
@@ -99,7 +99,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// Of a name that is a number with a point in it.
+// Returns the time in a name that is a number with a point.
 std::optional<double> time_in(const fs::path& path) {
   const std::string name = path.stem().string();
   if (name.find('.') == std::string::npos) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<double> time_in(const fs::path& path) {
   return time && std::isfinite(*time) ? time : std::nullopt;
 }
 
-// The last digits before the first dot.
+// Returns the last number before the first dot of a name.
 std::optional<std::uint64_t> number_in(const fs::path& path) {
   const std::string stem = stem_of(path);
   const std::size_t last = stem.find_last_of("0123456789");
@@ -197,7 +197,7 @@ void place_by_files(Recording& recording) {
       frame.camera = reader.next();
       recording.largest_deviation =
           std::max(recording.largest_deviation, reader.largest_deviation());
-    } catch (const Error&) {  // trackers write poses that are none where they are lost
+    } catch (const Error&) {  // trackers write invalid poses where they are lost
     }
     frame.is_lost = !frame.camera;
   }

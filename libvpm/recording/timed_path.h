@@ -1,4 +1,4 @@
-// Recorded motions between their poses.
+// Recorded motions, interpolated between poses.
 #pragma once
 
 #include <utility>
@@ -8,39 +8,40 @@
 
 namespace vpm {
 
-// All poses of a reader, with their times where they have them.
+// All poses of a reader, with their times if they have any.
 class TimedPath {
  public:
-  // Where poses have times these must ascend. Throws Error(refused): no pose, times that do not
-  // ascend or that only some have, and what the reader throws.
+  // Reads all poses. Throws Error(refused) if there is none, if times do not ascend, if only some
+  // poses have one, and for errors of the reader.
   explicit TimedPath(PoseReader& reader);
-  // As many times, ascending, as poses, or none; at least one pose.
+  // Needs at least one pose, and as many ascending times (s) or none.
   TimedPath(std::vector<double> times, std::vector<Pose> poses)
       : times_(std::move(times)), poses_(std::move(poses)) {}
 
   bool has_times() const { return !times_.empty(); }
-  double start() const { return times_.front(); }  // s, of paths with times
+  double start() const { return times_.front(); }  // s; needs has_times()
   double end() const { return times_.back(); }
   const std::vector<Pose>& poses() const { return poses_; }
 
-  // Of paths with times: on the shortest turn and the straight line between two poses; the first
-  // before, the last after all of them.
+  // Returns the pose at a time, interpolated along the straight line and the shortest rotation, or
+  // the first or last pose outside the path's times. Needs has_times().
   Pose at(double time) const;
 
  private:
-  std::vector<double> times_;  // empty where poses have none
+  std::vector<double> times_;  // empty if poses have no times
   std::vector<Pose> poses_;
 };
 
-// A path sampled at the rate of a loop.
+// Path sampled at the rate of a loop.
 class SampledPath {
  public:
-  // `rate`: steps per second, from the first pose to the last; of a path without times each pose is
+  // Samples at `rate` steps per second from the first pose to the last; without times each pose is
   // a step. Throws Error(refused) for more than 10^9 steps.
   SampledPath(TimedPath path, double rate);
 
   std::size_t steps() const { return steps_; }
-  double time(std::size_t step) const { return static_cast<double>(step) / rate_; }  // from 0
+  // S from the first step.
+  double time(std::size_t step) const { return static_cast<double>(step) / rate_; }
   Pose pose(std::size_t step) const;
   const TimedPath& path() const { return path_; }
 

@@ -9,8 +9,7 @@
 namespace vpm::synthetic {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood 2014): a bijection whose outputs for consecutive inputs are
-// uniform.
+// SplitMix64 (Steele, Lea, Flood 2014): a bijection with uniform outputs for consecutive inputs.
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -58,7 +57,7 @@ double NormalNumbers::uniform() {
   return static_cast<double>(mix(state_) >> 11) * 0x1p-53;
 }
 
-// Von Neumann 1951: the length of the first descending run decides whether its head is accepted.
+// Von Neumann 1951: the length of the first descending run decides if its head is accepted.
 double NormalNumbers::exponential() {
   for (double whole = 0;; whole += 1) {
     const double head = uniform();
@@ -72,7 +71,7 @@ double NormalNumbers::exponential() {
   }
 }
 
-// Kahn 1954: an exponential number x is accepted with probability exp(-(x - 1)^2 / 2).
+// Kahn 1954: accepts an exponential number x with probability exp(-(x - 1)^2 / 2).
 double NormalNumbers::next() {
   for (;;) {
     const double x = exponential();

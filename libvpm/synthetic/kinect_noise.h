@@ -1,5 +1,5 @@
-// The noise of a Kinect depth camera: Nguyen, Izadi, Lovell, "Modeling Kinect Sensor Noise for
-// Improved 3D Reconstruction and Tracking" (3DIMPVT 2012).
+// Noise of a Kinect depth camera (Nguyen, Izadi, Lovell, "Modeling Kinect Sensor Noise for Improved
+// 3D Reconstruction and Tracking", 3DIMPVT 2012).
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,19 @@
 
 namespace vpm::synthetic {
 
-// Standard deviation of the depth, m, at depth z (m) on a surface whose normal is `angle` (radians)
-// off the optical axis; the angle's term counts from 60 degrees on, as the authors fitted it.
+// Returns the standard deviation of depth, m, at depth z (m) on a surface whose normal is `angle`
+// radians off the optical axis. The term of the angle starts at 60 degrees, as the authors fitted
+// it.
 double axial_sigma(double z, double angle);
 
-// Standard deviation across the ray, pixels.
+// Returns the standard deviation across the ray, pixels.
 double lateral_sigma(double angle);
 
-// Angles beyond this one, where both models go to infinity, count as this one: the authors' data
-// end here.
+// Clamps angles, radians: both models diverge, and the authors' data end here.
 inline constexpr double kLargestAngle = 80 * 3.14159265358979323846 / 180;
 
-// A stream of standard normal numbers that depends on nothing but the seed and the counter: exact
-// sampling by comparisons of uniform numbers (von Neumann, Kahn), so the bits are the same on every
-// machine.
+// Stream of standard normal numbers that depends only on seed and counter. Exact sampling by
+// comparing uniform numbers (von Neumann, Kahn) gives the same bits on every machine.
 class NormalNumbers {
  public:
   NormalNumbers(std::uint64_t seed, std::uint64_t counter);
@@ -33,8 +32,8 @@ class NormalNumbers {
   std::uint64_t state_;
 };
 
-// What the camera sees with this noise: each pixel looks a little beside its centre and then errs
-// along its ray. The same seed gives the same image for any thread count.
+// Renders with this noise: each pixel looks slightly beside its centre and then errs along its ray.
+// The same seed gives the same image for any thread count.
 DepthImage render_with_kinect_noise(const Surface& surface, const Camera& camera,
                                     std::uint64_t seed);
 

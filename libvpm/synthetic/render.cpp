@@ -28,8 +28,7 @@ std::optional<double> RayCaster::depth(double u, double v) {
   for (std::size_t k = 0; k < crossings_.size(); ++k) {
     const double t = crossings_[k];
     if (t <= 0) continue;
-    // Just before the crossing, measured by the middle of the stretch since the last one, the ray
-    // is in free space or in the obstacle.
+    // Tests the middle of the stretch before the crossing for free space.
     const Vec3 before = origin + (0.5 * (crossings_[k - 1] + t)) * direction;
     if (surface_.distance(before) > 0) return t;
   }

@@ -1,4 +1,4 @@
-// What a depth camera without noise sees of a surface.
+// Renders what a noise-free depth camera sees of a surface.
 #pragma once
 
 #include <optional>
@@ -9,18 +9,19 @@
 
 namespace vpm::synthetic {
 
-// 640 x 480 pixels, f = 525 px, principal point in the middle, at the world's origin looking along
-// +z: the factory calibration of the Kinect class.
+// Returns a camera of 640 x 480 pixels with f = 525 px, the factory calibration of the Kinect
+// class; principal point in the middle, at the world's origin looking along +z.
 Camera default_camera();
 
-// Depth along the optical axis at the image position (u, v), pixels: the first place at which the
-// ray goes from free space into the obstacle. Surfaces have one side: a camera behind one looks
-// through it, so that it can look into an inverted ball from outside.
+// Intersects rays of a camera with a surface. depth() returns the depth, m, at image position (u,
+// v), pixels, where the ray first enters the obstacle. Surfaces are one-sided: a camera behind one
+// looks through it, e.g. into an inverted ball from outside.
 class RayCaster {
  public:
   RayCaster(const Surface& surface, const Camera& camera) : surface_(surface), camera_(camera) {}
   std::optional<double> depth(double u, double v);
-  Vec3 point(double u, double v, double depth) const;  // world
+  // Returns the world point.
+  Vec3 point(double u, double v, double depth) const;
 
  private:
   const Surface& surface_;
@@ -28,7 +29,7 @@ class RayCaster {
   std::vector<double> crossings_;
 };
 
-// Exact depth at every pixel's centre, rounded to float; 0 where the ray meets nothing.
+// Returns the exact depth at every pixel's centre, rounded to float; 0 where the ray meets nothing.
 DepthImage render(const Surface& surface, const Camera& camera);
 
 }  // namespace vpm::synthetic

@@ -8,7 +8,7 @@
 namespace vpm::synthetic {
 namespace {
 
-constexpr double kFar = 20;  // metres: where the profiles end, out of every camera's sight
+constexpr double kFar = 20;  // m; ends of the profiles, out of every camera's sight
 
 SurfacePtr make_groove() {
   constexpr double kDepth = 0.15;

@@ -14,14 +14,14 @@ namespace {
 
 using Index = std::uint32_t;
 
-// A quadrilateral with corners counter-clockwise from outside, as two triangles.
+// Adds a quadrilateral, corners counter-clockwise from outside, as two triangles.
 void add_quad(Solid& solid, Index a, Index b, Index c, Index d) {
   solid.triangles.push_back({a, b, c});
   solid.triangles.push_back({a, c, d});
 }
 
-// A ring of closed profiles: vertex (i, j) is i * across + j; after one turn the profile's corners
-// meet those `shift` further. Corners run so that x increasing i, then j, is counter-clockwise.
+// Connects a ring of closed profiles. Vertex (i, j) has index i * across + j; after one turn the
+// profile's corners meet those `shift` further. Increasing i, then j, must be counter-clockwise.
 void connect_ring(Solid& solid, Index around, Index across, Index shift) {
   for (Index i = 0; i < around; ++i) {
     const bool last = i + 1 == around;
@@ -149,7 +149,7 @@ Solid make_torus_knot(int p, int q, double ring_radius, double coil_radius, doub
     const Vec3 center{r * std::cos(a), r * std::sin(a), coil_radius * std::sin(b)};
     const Vec3 along{dr * std::cos(a) - r * p * std::sin(a), dr * std::sin(a) + r * p * std::cos(a),
                      coil_radius * q * std::cos(b)};
-    // The knot lies on a torus, whose normal comes back to itself after one round.
+    // The knot lies on a torus, whose normal returns to itself after one turn.
     const Vec3 out{std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b)};
     const Vec3 side = normalized_or_zero(cross(out, along));
     for (int j = 0; j < across; ++j) {

@@ -25,7 +25,7 @@ class Wall : public Surface {
 
 class Ball : public Surface {
  public:
-  // sign: 1 for a ball as obstacle, -1 for everything but the ball.
+  // `sign` is 1 for a ball as obstacle, -1 for everything outside the ball.
   Ball(Vec3 center, double radius, double sign) : center_(center), radius_(radius), sign_(sign) {}
 
   double distance(Vec3 p) const override { return sign_ * (norm(p - center_) - radius_); }
@@ -33,7 +33,8 @@ class Ball : public Surface {
   void crossings(Vec3 origin, Vec3 direction, std::vector<double>& t) const override {
     const Vec3 from = origin - center_;
     const double a = squared_norm(direction), b = dot(from, direction);
-    const Vec3 nearest = from - (b / a) * direction;  // of the line, without cancellation
+    // Nearest point of the line, without cancellation.
+    const Vec3 nearest = from - (b / a) * direction;
     const double rest = radius_ * radius_ - squared_norm(nearest);
     if (rest < 0) return;
     const double half = std::sqrt(rest / a);
@@ -84,7 +85,8 @@ class Block : public Surface {
   }
 
  private:
-  Vec3 beyond(Vec3 p) const {  // how far p lies outside of each pair of faces
+  // Returns how far p lies outside each pair of faces.
+  Vec3 beyond(Vec3 p) const {
     return {std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};
   }
   Vec3 half_;
@@ -105,8 +107,8 @@ class Prism : public Surface {
     const double length = norm(nearest(p).offset);
     return is_inside(p) ? -length : length;
   }
-  // Above an edge its normal, which holds on the surface too; beside its ends, away from the
-  // corner.
+  // Returns an edge's normal above its interior, also on the surface itself; beside its ends, the
+  // direction away from the corner.
   Vec3 gradient(Vec3 p) const override {
     const Nearest at = nearest(p);
     const Vec3 away = normalized_or_zero(-at.offset);
@@ -118,7 +120,7 @@ class Prism : public Surface {
   }
   void crossings(Vec3 origin, Vec3 direction, std::vector<double>& t) const override {
     for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      // Half-open in the line's own side, so that a corner counts once.
+      // Uses half-open intervals on the line's sides, so that a corner counts once.
       const auto [a, b] = edge(i);
       const double side_a = cross_xz(direction, a - origin),
                    side_b = cross_xz(direction, b - origin);
@@ -137,7 +139,7 @@ class Prism : public Surface {
     return {{a[0], 0, a[1]}, {b[0], 0, b[1]}};
   }
   struct Nearest {
-    Vec3 offset;  // from p
+    Vec3 offset;  // relative to p
     std::size_t edge = 0;
     bool is_corner = false;
   };
@@ -168,7 +170,7 @@ class Prism : public Surface {
   }
 
   std::vector<std::array<double, 2>> polygon_;
-  double turn_ = 1;  // -1 where the polygon runs the other way round
+  double turn_ = 1;  // -1 for the other orientation of the polygon
 };
 
 class Placed : public Surface {

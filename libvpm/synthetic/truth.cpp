@@ -8,25 +8,26 @@
 namespace vpm::synthetic {
 namespace {
 
-// Along no face or edge of a scene, so that G has kinks but no jumps.
+// Direction a of the integral of volume, parallel to no face or edge of a scene, so that G has
+// kinks but no jumps.
 const Vec3 kColumn = normalized_or_zero({0.1831, 0.2297, 1});
 
-// Triangles are cut at least this small, as a fraction of the reach, so that no corner that only
-// just dips in and no shadow of an edge falls between the points of the rule.
+// Largest size of the pieces of triangles, relative to the reach, so that no corner that barely
+// dips in and no shadow of an edge falls between the points of the rule.
 constexpr double kFaceSize = 1.0 / 12;
 constexpr double kCrossedSize = 1.0 / 32;  // where the surface may cross the triangle
-constexpr int kDeepest = 16;               // halvings: 4^-16 of a face, beyond which rounding rules
+constexpr int kDeepest = 16;               // halvings: below 4^-16 of a face rounding dominates
 
-// How many crossed triangles share the tolerance: the curve where the surface cuts the solid passes
-// through about this many.
+// Number of crossed triangles that share the tolerance; the curve in which the surface cuts the
+// solid passes through about this many.
 constexpr double kSharers = 500;
 
 using Corners = std::array<Vec3, 3>;
 
 struct Integrals {
-  double length = 0;  // of G
-  double depth = 0;   // of min(s, 0)
-  Vec3 moment;        // of min(s, 0) (x - C)
+  double length = 0;  // integral of G
+  double depth = 0;   // integral of min(s, 0)
+  Vec3 moment;        // integral of min(s, 0) (x - C)
 
   Integrals& operator+=(const Integrals& o) {
     length += o.length;
@@ -36,7 +37,7 @@ struct Integrals {
   }
 };
 
-// Integrates over one triangle after the other of one placed solid.
+// Integrates over the triangles of a placed solid, one after the other.
 class Cubature {
  public:
   Cubature(const Surface& surface, Vec3 center, double reach, double allowed)
@@ -46,7 +47,7 @@ class Cubature {
   double error() const { return error_; }
 
  private:
-  // Radon's rule of degree 5.
+  // Applies Radon's rule of degree 5.
   Integrals rule(const Corners& t) {
     static const double kRoot = std::sqrt(15.0);
     const double area = 0.5 * norm(cross(t[1] - t[0], t[2] - t[0]));
@@ -69,7 +70,8 @@ class Cubature {
     sum.moment += weight * s * (x - center_);
   }
 
-  // Length of the obstacle on the line along kColumn, from the plane before the solid to x.
+  // Returns the length of the obstacle on the line along kColumn, from the plane before the solid
+  // to x.
   double obstacle_before(Vec3 x) {
     const double back = dot(x - center_, kColumn) + reach_;
     crossings_.clear();
@@ -144,7 +146,7 @@ Penetration TrueSolid::penetration(const Pose& pose, const Surface& surface,
   const Vec3 center = pose * mass_.center_of_mass;
   if (surface.distance(center) > reach_) return {};
   const double allowed = tolerance * mass_.volume / kSharers;
-  constexpr std::size_t kTogether = 16;  // triangles
+  constexpr std::size_t kTogether = 16;  // triangles per task
   std::vector<Penetration> parts((solid_.triangles.size() + kTogether - 1) / kTogether);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {

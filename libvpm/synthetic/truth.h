@@ -1,5 +1,4 @@
-// The true penetration of a solid into a surface whose distance is known: what a measure should
-// say.
+// True penetration of a solid into a surface of known distance, as reference for a measure.
 #pragma once
 
 #include "libvpm/core/pose.h"
@@ -8,22 +7,23 @@
 
 namespace vpm::synthetic {
 
-// With the part P of the placed solid that lies inside of the obstacle, s the signed distance and C
-// the solid's centre of mass:
+// Integrals over the part P of the placed solid inside the obstacle; s is the signed distance and C
+// the solid's centre of mass.
 struct Penetration {
-  double volume = 0;  // m^3: integral of 1 over P
-  Vec3 force;         // m^3: integral of grad s; minus the gradient of the energy, which is the
-                      // integral of the depth -s
-  Vec3 torque;        // m^4: integral of (x - C) x grad s
-  double error = 0;   // estimated bound of the error of volume and force, m^3; times the reach, of
-                      // the torque
+  double volume = 0;  // integral of 1 over P, m^3
+  // Integral of grad s, m^3; the negative gradient of the energy, which is the integral of the
+  // depth -s.
+  Vec3 force;
+  Vec3 torque;  // integral of (x - C) x grad s, m^4
+  // Estimated error bound of volume and force, m^3; times reach(), of the torque.
+  double error = 0;
 };
 
-inline constexpr double kTruthTolerance = 1e-6;  // of the solid's volume
+inline constexpr double kTruthTolerance = 1e-6;  // relative to the solid's volume
 
-// A solid with what repeated poses need of it. What its mesh encloses twice counts twice: give it
-// enclosed_surface (outer_surface.h) of meshes that meet themselves. Immutable; safe to share
-// between threads.
+// Solid prepared for many poses. Regions that its mesh encloses twice count twice; pass the
+// enclosed_surface (outer_surface.h) of self-intersecting meshes. Immutable; safe to share between
+// threads.
 class TrueSolid {
  public:
   explicit TrueSolid(const Solid& solid);
@@ -32,11 +32,11 @@ class TrueSolid {
   const MassProperties& mass() const { return mass_; }
   double reach() const { return reach_; }
 
-  // Integrates over the solid's boundary, where s and so the integrands of force and torque vanish
-  // on the obstacle's surface:
+  // Returns the integrals, computed over the solid's boundary, since s and so the integrands of
+  // force and torque vanish on the obstacle's surface:
   //   force = int min(s, 0) n dA,  torque = int min(s, 0) (x - C) x n dA,
-  //   volume = int G (a . n) dA,   G = length of the obstacle on the line along a before x,
-  // by adaptive cubature of each triangle until the error is about `tolerance` times the volume.
+  //   volume = int G (a . n) dA,   G = length of the obstacle on the line along a before x.
+  // Adaptive cubature of each triangle stops at an error of about `tolerance` times the volume.
   Penetration penetration(const Pose& pose, const Surface& surface,
                           double tolerance = kTruthTolerance) const;
 
