@@ -36,7 +36,7 @@ class MemoryStream : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
-// The channels that hold depth, all equal: Z, Y, or R G B. Empty if there are none.
+// Returns the channels that hold depth, all equal: Z, Y, or R G B. Empty if there are none.
 std::vector<std::string> depth_channels(const Imf::ChannelList& channels) {
   for (const char* single : {"Z", "Y"}) {
     if (channels.findChannel(single) != nullptr) return {single};

@@ -1,4 +1,4 @@
-// A cloud of whatever a sensor left behind, told by its content: 16-bit PNG, OpenEXR, PCD, PLY.
+// Imports clouds from files of sensors, recognised by content: 16-bit PNG, OpenEXR, PCD, PLY.
 #pragma once
 
 #include <cstddef>
@@ -14,51 +14,53 @@
 namespace vpm {
 
 struct ImportOptions {
-  std::optional<Intrinsics> intrinsics;   // an organised PCD tells its own where this is not given
-  std::optional<double> units_per_metre;  // otherwise 1000 for PNG, 1 for the rest
-  std::optional<Pose> to_world;           // otherwise a PCD's VIEWPOINT, or identity
+  // If unset, an organised PCD gets its own by a fit.
+  std::optional<Intrinsics> intrinsics;
+  std::optional<double> units_per_metre;  // if unset, 1000 for PNG and 1 for others
+  std::optional<Pose> to_world;           // if unset, a PCD's VIEWPOINT, or identity
   NormalOptions normals;
-  Device device;  // where normals are computed; changes none
+  Device device;  // where normals are computed; does not affect them
 };
 
 inline constexpr double kPngUnitsPerMetre = 1000;
 
 struct ImportedCloud {
   Cloud cloud;
-  std::uint32_t width = 0, height = 0;  // of the image; of a list of points, its number and 1
-  std::size_t invalid = 0;              // pixels or points without measurement
-  std::size_t without_normal = 0;       // measured, but not in the cloud
+  // Size of the image, or number of points and 1.
+  std::uint32_t width = 0, height = 0;
+  std::size_t invalid = 0;         // pixels or points without measurement
+  std::size_t without_normal = 0;  // measured, but not in the cloud
   bool intrinsics_recovered = false;
   bool normals_estimated = false;  // false: taken from the file
 };
 
-// A sound depth image in which nothing was seen.
+// Refusal of a valid depth image in which nothing was measured.
 class NothingMeasured : public Error {
  public:
   explicit NothingMeasured(const std::string& message) : Error(ErrorKind::refused, message) {}
 };
 
-// What a file holds before normals are estimated: a depth image with its camera, or points.
+// Content of a file before normals are estimated: a depth image with its camera, or points.
 struct ImportedScan {
   std::optional<CloudSensor> image;
-  Cloud points;  // where there is no image
+  Cloud points;  // set if there is no image
   std::uint32_t width = 0, height = 0;
   std::size_t invalid = 0;
-  std::size_t without_normal = 0;  // of the points
+  std::size_t without_normal = 0;  // counts points
   bool intrinsics_recovered = false;
 };
 
-// The first half of import_cloud(), for those who make something else of an image.
+// Reads the scan only, for callers that process images themselves; throws as import_cloud does.
 ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& name,
                          const ImportOptions& options);
-// To be thrown where an image gives no point.
+// Returns the error to throw if an image gives no point.
 NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name);
 
-// Depth images and organised PCD become clouds with a sensor, their normals estimated from the
-// depth whatever the file holds. Other PCD and PLY need normals, which must point into free space.
-// Throws Error: refused for what is damaged, unknown, without normals or without any point (of
-// depth: NothingMeasured); usage for depth images without intrinsics; unavailable for OpenEXR in a
-// build without it.
+// Returns the cloud of a file. Depth images and organised PCD become clouds with a sensor, with
+// normals estimated from depth whatever the file holds. Other PCD and PLY must have normals,
+// pointing into free space. Throws Error(refused) for files that are damaged, unknown, without
+// normals or without any point (for depth: NothingMeasured), Error(usage) for depth images without
+// intrinsics, Error(unavailable) for OpenEXR in builds without it.
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
                            const ImportOptions& options);
 

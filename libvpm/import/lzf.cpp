@@ -28,7 +28,7 @@ bool decode_lzf(std::span<const std::byte> from, std::span<std::byte> to) {
     if (in == from.size()) return false;
     const std::size_t back = ((control & 31) << 8) + std::to_integer<std::size_t>(from[in++]) + 1;
     if (back > out || length > to.size() - out) return false;
-    // Byte by byte: a reference may overlap what it makes.
+    // Copies byte by byte, since a reference may overlap its output.
     for (std::size_t i = 0; i < length; ++i, ++out) to[out] = to[out - back];
   }
   return out == to.size();

@@ -5,11 +5,11 @@
 
 namespace vpm {
 
-// Most bytes that one byte of LZF data can stand for: three bytes give up to 264.
+// Largest expansion by LZF: three bytes give up to 264.
 inline constexpr std::size_t kMaxLzfRatio = 88;
 
-// Decodes LZF (as in binary_compressed PCD) into `to`. False where the data is not sound: a run or
-// a reference beyond either buffer, or a size that is not to.size() exactly.
+// Decodes LZF (as in binary_compressed PCD) into `to`. Returns false for unsound data: a run or
+// reference beyond either buffer, or a size other than to.size().
 bool decode_lzf(std::span<const std::byte> from, std::span<std::byte> to);
 
 }  // namespace vpm

@@ -17,7 +17,7 @@ struct Field {
   std::string name;
   ScalarType type;
   std::uint64_t count = 1;   // values of the field per point
-  std::uint64_t offset = 0;  // of the field in a point, bytes
+  std::uint64_t offset = 0;  // bytes from the start of a point
   std::uint64_t first = 0;   // index of its first value in a point
 };
 
@@ -29,9 +29,10 @@ struct Header {
   std::string encoding;
 };
 
-// The columns that matter: x, y, z, normal_x, normal_y, normal_z.
+// The columns used.
 constexpr std::array<const char*, 6> kColumns{"x", "y", "z", "normal_x", "normal_y", "normal_z"};
-// More fields or values per point than any sensor has; keeps products of sizes far from overflow.
+// Limits fields and values per point, far above any sensor's, so that products of sizes cannot
+// overflow.
 constexpr std::uint64_t kMaxFields = 4096;
 
 class PcdParser {
@@ -64,7 +65,7 @@ class PcdParser {
   void read_ascii();
   void read_binary();
   void read_compressed();
-  // Values of all points: of field f and point i at `data + start[f] + i * step[f]`.
+  // Reads the values of all points: field f of point i is at `data + start[f] + i * step[f]`.
   void read_values(const std::byte* data, bool by_field);
   std::uint64_t count_of(std::string_view word, const std::string& entry) const;
   double& value(std::size_t column, std::size_t point);
@@ -202,7 +203,7 @@ void PcdParser::find_columns() {
     }
     if (c < 3 && column_[c] == nullptr) fail(std::string("has no field ") + kColumns[c]);
   }
-  // Two components of a normal are none.
+  // Ignores incomplete normals.
   if (!column_[3] || !column_[4] || !column_[5]) column_[3] = column_[4] = column_[5] = nullptr;
 }
 
@@ -217,7 +218,7 @@ double& PcdParser::value(std::size_t column, std::size_t point) {
 }
 
 void PcdParser::read_ascii() {
-  // Each value takes a character and a blank, the last one perhaps no blank.
+  // A value takes a character and a blank; the last one perhaps no blank.
   if (header_.points > (cursor_.remaining() + 1) / 2 / header_.point_values)
     fail("is truncated: " + std::to_string(header_.points) + " points cannot fit into the file");
   allocate();

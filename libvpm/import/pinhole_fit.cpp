@@ -19,7 +19,7 @@ class LineFit {
   void add(double slope, double pixel) {
     n_ += 1, s_ += slope, p_ += pixel, ss_ += slope * slope, sp_ += slope * pixel;
   }
-  // Variance of the slope, times n^2; not more than rounding where all slopes are equal.
+  // Returns the variance of slopes times n^2, which is mere rounding if all are equal.
   double spread() const { return n_ * ss_ - s_ * s_; }
   bool solvable() const { return n_ >= 2 && spread() > 1e-12 * n_ * ss_; }
   double focal() const { return (n_ * sp_ - s_ * p_) / spread(); }

@@ -17,8 +17,8 @@ namespace {
 struct Property {
   std::string name;
   ScalarType type;
-  ScalarType count_type;  // of a list; size 0: a single value
-  int column = -1;        // which of x y z nx ny nz
+  ScalarType count_type;  // type of a list's length; size 0: a single value
+  int column = -1;        // index into x y z nx ny nz
 };
 
 struct Element {
@@ -41,7 +41,7 @@ ScalarType scalar_type(std::string_view name) {
   return {};
 }
 
-// "vertex 12": a row, for messages.
+// Returns e.g. "vertex 12", for messages.
 std::string where(const Element& element, std::uint64_t row) {
   return element.name.substr(0, 40) + " " + std::to_string(row);
 }
@@ -84,8 +84,8 @@ class PlyParser {
   const std::string& name_;
   TextCursor cursor_;
   std::size_t at_ = 0;
-  std::vector<std::string_view> row_;  // of text: a line
-  std::size_t word_ = 0;               // of it, that comes next
+  std::vector<std::string_view> row_;  // words of a line of text
+  std::size_t word_ = 0;               // index of the next
   bool ascii_ = false, big_endian_ = false, has_normals_ = false;
   std::vector<Element> elements_;
   PointSet points_;
@@ -93,7 +93,7 @@ class PlyParser {
 
 void PlyParser::read_header() {
   bool has_format = false;
-  cursor_.line();  // the magic, by which the file was told from others
+  cursor_.line();  // skips the magic
   for (;;) {
     const std::optional<std::string_view> line = cursor_.line();
     if (!line) fail("header ends before end_header");

@@ -8,9 +8,9 @@
 
 namespace vpm {
 
-// The vertices of a PLY file (ascii, binary of either byte order): x y z and, if there, nx ny nz.
-// Other elements and properties are passed over. Throws Error(refused) naming `name` and the
-// defect; counts are compared with the file's size before memory is taken.
+// Parses the vertices of a PLY file (ascii, or binary of either byte order): x y z and, if present,
+// nx ny nz; ignores other elements and properties. Throws Error(refused), naming `name` and the
+// defect. Checks counts against the file's size before allocating.
 PointSet parse_ply_points(std::span<const std::byte> bytes, const std::string& name);
 
 }  // namespace vpm

@@ -11,8 +11,8 @@
 namespace vpm {
 namespace {
 
-// libpng reports an error by a jump out of its functions. Only `run` is jumped out of, and it holds
-// nothing that would need a destructor; what the steps make lives in PngReader.
+// Reads by libpng, which reports errors by longjmp. Only `run` is jumped out of, and it has nothing
+// to destroy; results of the steps live in PngReader.
 class PngReader {
  public:
   explicit PngReader(std::span<const std::byte> bytes) : bytes_(bytes) {
@@ -76,7 +76,7 @@ class PngReader {
   char fault_[128] = {};
 };
 
-// Most bytes that a byte of deflated data can stand for, generously.
+// Upper bound on the expansion by deflate.
 constexpr std::uint64_t kMaxDeflateRatio = 1100;
 
 }  // namespace

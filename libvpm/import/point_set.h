@@ -9,9 +9,9 @@
 
 namespace vpm {
 
-// Points as a file gives them, in its own unit and frame. Not finite where nothing was measured.
+// Points as a file gives them, in its unit and frame. Not finite where nothing was measured.
 struct PointSet {
-  std::uint32_t width = 0, height = 1;  // a sensor's grid, row by row, where height > 1
+  std::uint32_t width = 0, height = 1;  // a sensor's grid, row by row, if height > 1
   std::vector<Vec3> positions;          // width * height
   std::vector<Vec3> normals;            // as many, or none; of any length
   Pose viewpoint;                       // frame of the points to world
@@ -19,7 +19,7 @@ struct PointSet {
   bool organised() const { return height > 1; }
 };
 
-// Most points or pixels that one file may hold: 8192 x 8192.
+// Largest number of points or pixels in a file: 8192 x 8192.
 inline constexpr std::uint64_t kMaxPoints = std::uint64_t{1} << 26;
 
 }  // namespace vpm

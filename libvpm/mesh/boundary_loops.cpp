@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// A side of a triangle, walked towards one of its ends.
+// Side of a triangle, walked towards one of its ends.
 struct Step {
   std::uint32_t triangle = 0, side = 0;
   std::uint32_t to = 0;  // vertex
@@ -21,7 +21,7 @@ class Walk {
 
   std::vector<BoundaryLoop> all() {
     std::vector<BoundaryLoop> loops;
-    // Rims that end somewhere are walked from there, so that none is found in two parts.
+    // Starts at the ends of open rims first, so that none is found in two parts.
     for (const bool open_only : {true, false}) {
       for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -51,11 +51,11 @@ class Walk {
     return std::binary_search(topology_.boundary.begin(), topology_.boundary.end(), edge, before);
   }
 
-  // The next side without a neighbour around the vertex that the step leads to; none where that
+  // Returns the next boundary side around the vertex that the step leads to; none if that side
   // belongs to more than two triangles.
   std::optional<Step> next(Step s) const {
     while (true) {
-      // The other side of the triangle that ends in the vertex.
+      // Turns to the triangle's other side at the vertex.
       const std::uint32_t corner = corner_at(s.triangle, s.to);
       s.side = s.side == corner ? (corner + 2) % 3 : corner;
       const std::uint32_t beyond = topology_.neighbor[s.triangle][s.side];
@@ -78,14 +78,14 @@ class Walk {
       step = next(*step);
     }
     loop.closed = step.has_value();
-    if (loop.closed) loop.vertices.pop_back();  // the first again
+    if (loop.closed) loop.vertices.pop_back();  // repeats the first
     return loop;
   }
 
   // Cuts a loop where it passes a vertex again.
   static void add_simple(const BoundaryLoop& loop, std::vector<BoundaryLoop>& loops) {
     BoundaryLoop open{{}, loop.closed};
-    std::unordered_map<std::uint32_t, std::size_t> place;  // of the vertices in `open`
+    std::unordered_map<std::uint32_t, std::size_t> place;  // index of each vertex in `open`
     for (const std::uint32_t vertex : loop.vertices) {
       const auto [before, is_new] = place.try_emplace(vertex, open.vertices.size());
       if (loop.closed && !is_new) {
@@ -141,7 +141,7 @@ double width_of(const BoundaryLoop& loop, const std::vector<Vec3>& vertices) {
     }
     narrowest = std::min(narrowest, high - low);
   }
-  return narrowest < HUGE_VAL ? narrowest : 0;  // a rim without an area lets nothing pass
+  return narrowest < HUGE_VAL ? narrowest : 0;  // a rim without area lets nothing pass
 }
 
 }  // namespace vpm

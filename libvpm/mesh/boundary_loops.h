@@ -1,4 +1,4 @@
-// The rims of the holes in an open mesh.
+// Rims of the holes in an open mesh.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,19 @@
 namespace vpm {
 
 struct BoundaryLoop {
-  // In the order in which a face that closes the hole would list them, if the triangles around it
-  // are consistently oriented.
+  // In the order of a face that would close the hole, if the triangles around it are consistently
+  // oriented.
   std::vector<std::uint32_t> vertices;
-  bool closed = true;  // false where the rim ends at an edge of more than two triangles
+  bool closed = true;  // false if the rim ends at an edge of more than two triangles
 };
 
-// Longest first; of equally long ones the one with the lower first vertex. A vertex that two holes
-// touch is in the loops of both.
+// Returns the loops, longest first, then by lower first vertex. A vertex where two holes touch is
+// in both loops.
 std::vector<BoundaryLoop> boundary_loops(const Topology& topology,
                                          const std::vector<Triangle>& triangles);
 
-// How wide a ball may be that passes through the hole, for a rim that is nearly flat and convex:
-// the rim's narrowest extent across one of its edges, in its mean plane. More for rims that are
-// neither.
+// Returns the diameter of a ball that can pass through a nearly flat and convex hole: the rim's
+// narrowest extent across one of its edges, in its mean plane. An upper bound for other rims.
 double width_of(const BoundaryLoop& loop, const std::vector<Vec3>& vertices);
 
 }  // namespace vpm

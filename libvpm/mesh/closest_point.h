@@ -1,4 +1,4 @@
-// The point of a triangle that is closest to a given point.
+// Closest points on triangles.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace vpm {
 
-// Below this sine of its smallest angle a triangle is treated as its three edges: its normal is
-// mostly rounding, and the error (its height) stays under 1e-10 of its longest edge.
+// Sine of the smallest angle below which a triangle counts as its three edges: its normal is mostly
+// rounding, and the error (its height) is below 1e-10 of its longest edge.
 inline constexpr double kSliverSine = 1e-10;
 
 inline Vec3 closest_point_on_segment(Vec3 x, Vec3 a, Vec3 b) {
@@ -18,7 +18,7 @@ inline Vec3 closest_point_on_segment(Vec3 x, Vec3 a, Vec3 b) {
   return a + std::clamp(dot(x - a, along) / length2, 0.0, 1.0) * along;
 }
 
-// Exact up to rounding for every triangle, degenerate ones included.
+// Returns the closest point, exact up to rounding for every triangle, also degenerate ones.
 inline Vec3 closest_point_on_triangle(Vec3 x, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 ab = b - a, bc = c - b, ca = a - c;
   const Vec3 normal = cross(bc, ca);

@@ -1,4 +1,5 @@
-// closest_point_on_triangle for four triangles at once: the same operations, so the same bits.
+// Computes closest_point_on_triangle for four triangles at once: the same operations, so the same
+// bits.
 #pragma once
 
 #include "libvpm/core/vec3x4.h"
@@ -6,7 +7,8 @@
 
 namespace vpm {
 
-// Where `take`, the point of the segment closest to x, if that is nearer than `best2`.
+// Where `take`, updates `best` with the point of the segment closest to x if that is nearer than
+// `best2`.
 template <class Mask>
 [[gnu::always_inline]] inline void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
                                                 const Mask& take, Vec3x4& best, Double4& best2) {
@@ -26,8 +28,8 @@ template <class Mask>
   best = {nearer ? p.x : best.x, nearer ? p.y : best.y, nearer ? p.z : best.z};
 }
 
-// The closest points and their squared distances from x, infinite or exact where they are not below
-// `within2`.
+// Computes the closest points and their squared distances from x. A distance that is not below
+// `within2` may come out infinite.
 [[gnu::always_inline]] inline void closest_points_on_triangles(const Vec3x4& x, const Vec3x4& a,
                                                                const Vec3x4& b, const Vec3x4& c,
                                                                double within2, Vec3x4& best,
@@ -45,7 +47,7 @@ template <class Mask>
   const Vec3x4 foot = x - (height / normal2) * normal, from_foot = x - foot;
   best = foot;
   best2 = on_edge ? infinite : dot(from_foot, from_foot);
-  // No edge is nearer than the plane. The slack is for rounding, of slivers' normals above all.
+  // No edge is nearer than the plane. The slack covers rounding, above all of slivers' normals.
   const Double4 reach2 = 1.01 * (within2 + 1e-6 * dot(from_a, from_a));
   if (!any(on_edge & (~flat | (height * height <= reach2 * normal2)))) return;
   take_segment(x, a, b, on_edge & (~flat | beyond_ab), best, best2);

@@ -7,10 +7,9 @@
 namespace vpm {
 namespace {
 
-// The solid is the signed sum of the cones from one apex over its triangles. For a plane the apex
-// lies on it, so that the plane's own face adds nothing; for a ball the apex is its centre, and a
-// cone meets the ball in the cone over the part of its triangle inside, and a sector of the ball
-// over the rest.
+// The solid is the signed sum of cones from an apex over its triangles. For a plane the apex lies
+// on it, so that the cut face adds nothing. For a ball the apex is its centre: a cone meets the
+// ball in the cone over the part of its triangle inside, plus a sector of the ball over the rest.
 
 double signed_solid_angle(Vec3 a, Vec3 b, Vec3 c) {  // seen from the origin
   const double la = norm(a), lb = norm(b), lc = norm(c);
@@ -19,9 +18,9 @@ double signed_solid_angle(Vec3 a, Vec3 b, Vec3 c) {  // seen from the origin
   return above == 0 ? 0 : 2 * std::atan2(above, below);
 }
 
-// Cone from the origin over the triangle (foot, a, b) of a plane at distance `height`, within the
-// ball of radius r; signed by the sense of (a, b) about `normal`. `disk` is the squared radius of
-// the disk in which the ball meets the plane.
+// Part in the ball of radius r of the cone from the origin over the triangle (foot, a, b), which
+// lies in a plane at distance `height`; signed by the sense of (a, b) about `normal`. `disk` is the
+// squared radius of the disk in which the ball meets the plane.
 class FacePart {
  public:
   FacePart(Vec3 normal, double height, double radius)
@@ -31,7 +30,7 @@ class FacePart {
         radius_(radius),
         disk_(radius * radius - height * height) {}
 
-  // The edge is cut where it enters and leaves the disk.
+  // Cuts the edge where it enters and leaves the disk.
   double edge(Vec3 a, Vec3 b) const {
     const Vec3 along = b - a, from = a - foot_;
     const double aa = squared_norm(along);
@@ -49,9 +48,9 @@ class FacePart {
 
  private:
   double area(Vec3 p, Vec3 q) const { return 0.5 * dot(normal_, cross(p - foot_, q - foot_)); }
-  // The edge lies outside of the disk: the sector of the disk before it, and a sector of the ball.
+  // Returns the part over an edge outside the disk: a sector of the disk and a sector of the ball.
   double outside(Vec3 p, Vec3 q) const {
-    if (height_ == 0) return 0;  // flat, as is the sector over it
+    if (height_ == 0) return 0;  // both sectors are flat
     const double ball = radius_ * radius_ * radius_ / 3;
     const double all = signed_solid_angle(foot_, p, q);
     if (!(disk_ > 0)) return ball * all;
@@ -65,7 +64,8 @@ class FacePart {
   double height_, radius_, disk_;
 };
 
-// Part of the cone from the origin, a point of the cutting plane, over the triangle's part below.
+// Returns the part of the cone from the origin, a point of the cutting plane, over the part of the
+// triangle below that plane.
 double cone_below(const std::array<Vec3, 3>& t, Vec3 normal) {
   std::array<Vec3, 4> kept;
   std::size_t count = 0;

@@ -1,5 +1,4 @@
-// Exact volumes of a solid cut by a plane or a ball: the truth that approximations are measured
-// against.
+// Exact volumes of a solid cut by a plane or a ball, as reference for approximations.
 #pragma once
 
 #include "libvpm/model/solid.h"
@@ -7,10 +6,11 @@
 
 namespace vpm {
 
-// Volume of the part of the solid where dot(normal, x) < offset; `normal` must have unit length.
+// Returns the volume of the part of the solid where dot(normal, x) < offset; `normal` must be of
+// unit length.
 double volume_below_plane(const Solid& solid, Vec3 normal, double offset);
 
-// Volume of the part of the solid inside the ball.
+// Returns the volume of the part of the solid inside the ball.
 double volume_in_ball(const Solid& solid, const Sphere& ball);
 
 }  // namespace vpm

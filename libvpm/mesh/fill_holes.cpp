@@ -9,7 +9,7 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kMostEdges = 1000;  // time grows with their cube
-// In a plane every triangulation has the same area: then the one with short edges is taken.
+// Weight of short edges, which decides among triangulations of equal area, as all are in a plane.
 constexpr double kShortEdges = 1e-6;
 
 FilledHole describe(const std::vector<Vec3>& rim) {
@@ -32,7 +32,7 @@ FilledHole describe(const std::vector<Vec3>& rim) {
   return hole;
 }
 
-// Edges of the mesh, by their two vertices.
+// Edges of a mesh, by their two vertices.
 class EdgeSet {
  public:
   explicit EdgeSet(const std::vector<Triangle>& triangles) {
@@ -50,7 +50,7 @@ class EdgeSet {
   std::unordered_set<std::uint64_t> edges_;
 };
 
-// The least-area triangulation of a rim; empty where each needs an edge that the mesh has.
+// Returns the least-area triangulation of a rim; empty if all need an edge that the mesh has.
 std::vector<Triangle> least_area(const std::vector<Vec3>& rim,
                                  const std::vector<std::uint32_t>& vertices, const EdgeSet& taken) {
   const std::size_t n = rim.size();

@@ -9,16 +9,16 @@
 
 namespace vpm {
 
-// A hole is filled if its rim lies in a plane, or if it is small: then no surface that the mesh
-// could have had there is far away. Shares of the rim's size and of the mesh's, both diagonals of
-// boxes.
+// Largest deviation of a rim from a plane, relative to its size, and largest size of a rim,
+// relative to the mesh's; sizes are diagonals of bounding boxes. A hole within either limit is
+// filled: any surface that the mesh could have had there is near.
 inline constexpr double kPlanarRim = 1e-3;
 inline constexpr double kSmallHole = 0.2;
 
 struct FilledHole {
   std::size_t edges = 0;
   Vec3 center;      // mean of the rim's vertices
-  double size = 0;  // diagonal of the rim's box
+  double size = 0;  // diagonal of the rim's bounding box
   bool planar = false;
 };
 
@@ -27,10 +27,10 @@ struct HoleFilling {
   std::vector<BoundaryLoop> left;  // neither planar nor small, or not closed
 };
 
-// Appends triangles, and vertices where a rim has no triangulation of its own. The triangulation
-// has the least area (Barequet, Sharir 1995, "Filling gaps in the boundary of a polyhedron"), and
-// uses no edge that the mesh has; rims of more than 1000 edges become a fan about their middle.
-// The triangles given must be consistently oriented. `diagonal` is that of the mesh's box.
+// Appends triangles, and a vertex where a rim has no triangulation of its own. Triangulations have
+// the least area (Barequet, Sharir 1995, "Filling gaps in the boundary of a polyhedron") and use no
+// edge of the mesh; rims of more than 1000 edges become a fan about their middle. The given
+// triangles must be consistently oriented; `diagonal` is that of the mesh's bounding box.
 HoleFilling fill_holes(const Topology& topology, double diagonal, std::vector<Vec3>& vertices,
                        std::vector<Triangle>& triangles);
 

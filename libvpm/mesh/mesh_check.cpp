@@ -15,10 +15,11 @@
 namespace vpm {
 namespace {
 
-// Beyond these the products of the measure (fourth powers of lengths) leave the range of doubles.
+// Range of extents, m, in which the products of the measure (fourth powers of lengths) are in the
+// range of doubles.
 constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
-// Rounding leaves a flat closed mesh a volume of about 1e-16 of area times diagonal; the thinnest
-// plate worth packing has far more.
+// Least volume relative to area times diagonal. Rounding gives a flat closed mesh about 1e-16; the
+// thinnest plate worth packing has far more.
 constexpr double kFlat = 1e-12;
 constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
 
@@ -32,7 +33,7 @@ std::string counted(std::size_t count, const std::string& thing, const std::stri
   return std::to_string(count) + " " + (count == 1 ? thing : things);
 }
 
-// "; at A, B, C, ...": where the first few of a list are.
+// Returns "; at A, B, C, ...": the first few places of a list.
 template <class T, class Place>
 std::string places(const std::vector<T>& list, Place place) {
   std::string text;
@@ -57,7 +58,7 @@ double area_of(const Solid& solid) {
   return area;
 }
 
-// Carries one mesh from its raw triangles to the solid; each step is one of the checks.
+// Takes one mesh from raw triangles to the solid; each step is one check.
 class Check {
  public:
   Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
@@ -79,7 +80,7 @@ class Check {
     close_by_welding();
     if (options_.repair == Repair::holes) repair_holes();
     refuse_defects();
-    // Joined vertices are unused too, but were not so in the file.
+    // Joined vertices are unused too, but were used in the file.
     facts().unused_vertices = drop_unused(vertices(), triangles()) - facts().joined_vertices;
     if (facts().unused_vertices > 0)
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
@@ -130,7 +131,7 @@ class Check {
     refuse(mesh_.name + ": every triangle has two equal corners; the mesh has no surface");
   }
 
-  // Formats with indices may still list a point of the surface twice, as at a seam of textures.
+  // Formats with indices may still list a point twice, e.g. at a seam of textures.
   void close_by_welding() {
     if (topology_.boundary.empty() || mesh_.format == MeshFormat::stl || options_.weld.has_value())
       return;
@@ -217,7 +218,7 @@ class Check {
     }
     if (topology_.boundary.empty()) return;
     orient_consistently(topology_, triangles());
-    topology_ = topology_of(vertices().size(), triangles());  // turned ones have other sides
+    topology_ = topology_of(vertices().size(), triangles());  // turned triangles have other sides
     HoleFilling done = fill_holes(topology_, diagonal_, vertices(), triangles());
     for (FilledHole& hole : done.filled) {
       note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +
@@ -229,7 +230,7 @@ class Check {
     topology_ = topology_of(vertices().size(), triangles());
   }
 
-  // "A, B, C, ..."
+  // Returns "A, B, C, ...".
   std::string text_of_rim(const BoundaryLoop& loop) const {
     std::string text;
     for (std::size_t v = 0; v < std::min(loop.vertices.size(), kRimPlacesShown); ++v)
@@ -237,7 +238,7 @@ class Check {
     return text + (loop.vertices.size() > kRimPlacesShown ? ", ..." : "");
   }
 
-  // "around 2 holes: a loop of 8 edges through A, B, C, ...; ..."
+  // Returns "around 2 holes: a loop of 8 edges through A, B, C, ...; ...".
   std::string text_of_holes() const {
     const std::vector<BoundaryLoop> loops = boundary_loops(topology_, result_.solid.triangles);
     std::string text = ", around " + counted(loops.size(), "hole", "holes") + ": ";
@@ -336,7 +337,7 @@ class Check {
     }
     const auto place = [&](std::uint32_t triangle) {
       const Triangle& t = triangles()[triangle];
-      // In the file's unit.
+      // Uses the file's unit.
       return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) /
                      (3 * options_.scale));
     };
@@ -345,7 +346,7 @@ class Check {
          "; what it encloses at least once is the solid, and overlaps count once");
   }
 
-  // Shells that lie wholly within the solid would only be in the way of the spheres.
+  // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
     const OuterSurface outer(result_.solid, contacts_);
     std::size_t shell_count = 0;
@@ -369,7 +370,7 @@ class Check {
     }
     triangles() = std::move(kept);
     drop_unused(vertices(), triangles());
-    if (contacts_.empty()) result_.enclosure.surface.reset();  // it is what was kept
+    if (contacts_.empty()) result_.enclosure.surface.reset();  // equals the remaining solid
     facts().shells -= facts().inner_shells;
   }
 
@@ -379,7 +380,7 @@ class Check {
     facts().high = box.high;
     facts().vertices = vertices().size();
     facts().triangles = triangles().size();
-    // Every edge of a closed mesh has two triangles of three edges.
+    // A closed mesh has three edges per two triangles.
     facts().euler = static_cast<std::int64_t>(vertices().size()) -
                     static_cast<std::int64_t>(triangles().size() / 2);
     facts().area = area_of(result_.solid);

@@ -1,5 +1,5 @@
-// From what a file says to a solid: diagnoses a mesh, mends what can be mended without guessing,
-// refuses the rest by name and place.
+// Turns a mesh file into a solid: diagnoses the mesh, repairs what needs no guessing, and refuses
+// the rest by name and place.
 #pragma once
 
 #include <cstddef>
@@ -18,40 +18,42 @@ namespace vpm {
 
 enum class Repair {
   none,   // refuse what is not a solid
-  holes,  // drop repeated triangles; fill holes that are planar or small (fill_holes.h)
-  voxel,  // a new surface about the voxels that the mesh encloses (voxel_repair.h)
-  flood,  // the same about those that a ball of max_hole cannot reach from outside
+  holes,  // drop repeated triangles, fill planar and small holes (fill_holes.h)
+  voxel,  // new surface about the voxels that the mesh encloses (voxel_repair.h)
+  flood,  // new surface about the voxels that a ball of max_hole cannot reach
 };
 
 struct SolidOptions {
-  double scale = 1;  // the file's unit in metres
-  // Vertices nearer than this share of the box's diagonal are one. Unset: kDefaultWeld for STL;
-  // for formats with indices only if the mesh is open as its indices have it and closed after.
+  double scale = 1;  // unit of the file in metres
+  // Vertices nearer than this, relative to the bounding box's diagonal, are joined. If unset:
+  // kDefaultWeld for STL; for formats with indices too, but only if the mesh is open before and
+  // closed after.
   std::optional<double> weld = std::nullopt;
   Repair repair = Repair::none;
   int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel and flood
-  // m: wider holes (width_of in boundary_loops.h) are refused. Unset: none with Repair::voxel,
-  // kDefaultMaxHole with Repair::flood.
+  // m; wider holes (width_of in boundary_loops.h) are refused. If unset: no limit for
+  // Repair::voxel, kDefaultMaxHole for Repair::flood.
   std::optional<double> max_hole = std::nullopt;
 };
 
-// CAD exporters write one coordinate as 0 here and as -2.7e-16 there.
+// Default of SolidOptions::weld: CAD exporters write the same coordinate as 0 and as -2.7e-16.
 inline constexpr double kDefaultWeld = 1e-9;
-// Of the longest side.
+// Default of SolidOptions::max_hole for a flood, relative to the longest side.
 inline constexpr double kDefaultMaxHole = 1.0 / 16;
-// A larger tolerance would eat parts of the mesh instead of joining them.
+// Larger tolerances are refused, since they would destroy parts of the mesh.
 inline constexpr double kLargestWeld = 0.1;
 
-// Lengths, areas and volumes after scaling: metres.
+// Facts of a mesh; lengths, areas and volumes in metres after scaling.
 struct MeshFacts {
   MeshFormat format = MeshFormat::obj;
-  std::size_t vertices = 0, triangles = 0;  // of the solid
+  std::size_t vertices = 0, triangles = 0;  // counts of the solid
   std::size_t shells = 0, cavities = 0;
-  std::int64_t euler = 0;  // vertices - edges + triangles: 2 - 2 genus for one shell
-  double area = 0;         // of the triangles, also of parts that lie inside
-  double volume = 0;       // of what is enclosed at least once
+  // vertices - edges + triangles; 2 - 2 genus for one shell.
+  std::int64_t euler = 0;
+  double area = 0;    // area of all triangles, also in the solid's interior
+  double volume = 0;  // volume enclosed at least once
   Vec3 low, high;
-  std::size_t inner_shells = 0;  // dropped: they had solid on both sides
+  std::size_t inner_shells = 0;  // dropped, since solid was on both sides
   std::size_t joined_vertices = 0;
   std::size_t unused_vertices = 0;
   std::size_t collapsed_triangles = 0;
@@ -67,13 +69,14 @@ struct CheckedSolid {
   Solid solid;
   Enclosure enclosure;
   MeshFacts facts;
-  std::vector<std::string> notes;     // what was mended
-  std::vector<std::string> warnings;  // what was accepted though it may surprise
+  std::vector<std::string> notes;     // repairs that were made
+  std::vector<std::string> warnings;  // oddities that were accepted
 };
 
-// Throws Error(refused) for meshes that are empty, that are open, non-manifold or one-sided beyond
-// the repair that was asked for (naming the rims of holes by their first vertices), that enclose no
-// volume, or whose extent leaves 1e-30 .. 1e30 m; Error(usage) for options out of range.
+// Checks, repairs and orients a mesh. Throws Error(refused) for meshes that are empty; open,
+// non-manifold or one-sided beyond the requested repair (naming rims of holes by their first
+// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws Error(usage) for
+// options out of range.
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// One parser per format; parse_mesh chooses. Contracts as there.
+// Parsers of the formats, between which parse_mesh chooses and whose contract they share.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@ namespace vpm {
 
 RawMesh parse_obj(std::string_view text, const std::string& name);
 RawMesh parse_off(std::string_view text, const std::string& name);
-RawMesh parse_off_binary(std::string_view body, const std::string& name);  // after its first line
+// Takes what follows the first line.
+RawMesh parse_off_binary(std::string_view body, const std::string& name);
 RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
@@ -20,10 +21,11 @@ bool looks_like_om(std::string_view bytes);
 bool looks_like_ply(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 
-// Indices are 32 bits wide and the largest stands for "none".
+// Indices have 32 bits; the largest stands for "none".
 inline constexpr std::size_t kMaxVertices = 0xfffffffe;
 
-// Refuses where a header promises more than the file can hold: `least_bytes` for `what`.
+// Throws Error(refused) if the header promises more than the file can hold: `least_bytes` for
+// `what`.
 void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
                          std::size_t file_bytes);
 

@@ -20,7 +20,7 @@ std::string extension_of(const std::string& name) {
   return extension;
 }
 
-// OBJ has no magic: its first statement must be one that OBJ files begin with.
+// True if the first statement is one with which OBJ files begin; OBJ has no magic.
 bool looks_like_obj(std::string_view text) {
   TextLines lines(text.substr(0, 65536), "", '#');
   if (!lines.next_line()) return false;
@@ -58,7 +58,7 @@ void check_header_counts(const std::string& name, const std::string& what, doubl
 RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) refuse(name + ": the file is empty");
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as some editors write
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
     text.remove_prefix(kByteOrderMark.size());
   const std::string extension = extension_of(name);

@@ -1,10 +1,10 @@
-// Reads triangle and polygon meshes: OBJ, OFF and PLY (text, binary of either byte order), STL
+// Reads triangle and polygon meshes: OBJ, OFF and PLY (text, or binary of either byte order), STL
 // (text, binary), and OM by OpenMesh.
 //
-// The other parsers are our own for two reasons: coordinates keep their double precision, and every
-// polygon is kept, also those that no half-edge structure takes, so that a defect can be named.
-// OpenMesh's readers round to floats and drop such faces; for OM, which only half-edge structures
-// write, faces are taken from its reader before that.
+// The other parsers are our own for two reasons: coordinates keep double precision, and all
+// polygons are kept, also those that no half-edge structure accepts, so that defects can be named.
+// OpenMesh's readers round to floats and drop such faces. OM files come from half-edge structures;
+// their faces are taken from OpenMesh's reader before it builds its own.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +15,13 @@
 
 namespace vpm {
 
-// The format is told by content, and by the extension of `name` where the content is silent.
-// Throws Error(refused) with the file's name and the line, the byte or the element for: unknown
-// formats, empty and truncated files, counts in a header that the file cannot hold (before any
-// memory is taken), indices out of range, coordinates that are not finite.
+// Parses a mesh. The format is recognised by content, or by the extension of `name` if the content
+// does not tell. Throws Error(refused) with the file's name and the line, byte or element for
+// unknown formats, empty or truncated files, counts that the file cannot hold (checked before
+// allocating), indices out of range, and coordinates that are not finite.
 RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name);
 
-// The same for a file; "-" is standard input.
+// Reads a mesh from a file, or from standard input ("-"); throws as parse_mesh does.
 RawMesh read_mesh(const std::string& path);
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// Wavefront OBJ: v and f lines; all other statements carry no geometry of polygons.
+// Wavefront OBJ: v and f lines; other statements carry no polygons.
 #include <charconv>
 
 #include "libvpm/core/error.h"
@@ -8,8 +8,8 @@
 namespace vpm {
 namespace {
 
-// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn": counted from 1, or backwards from the
-// last vertex so far.
+// Returns the vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", which counts from 1, or
+// backwards from the last vertex so far.
 std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::size_t so_far) {
   const std::string_view digits = word.substr(0, word.find('/'));
   std::int64_t index = 0;
@@ -30,7 +30,7 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
   RawMesh mesh;
   mesh.format = MeshFormat::obj;
   mesh.name = name;
-  std::uint32_t largest = 0;  // a face may name a vertex that follows it
+  std::uint32_t largest = 0;  // a face may name a later vertex
   std::size_t largest_line = 0;
   TextLines lines(text, name, '#');
   while (lines.next_line()) {

@@ -1,6 +1,6 @@
-// Binary OFF. Its bytes do not say their order, nor whether faces carry colours: Geomview writes
-// big-endian with a count of colour components after each face, OpenMesh little-endian without.
-// The variant that uses up the file is the right one.
+// Binary OFF. Files state neither byte order nor colours of faces: Geomview writes big-endian with
+// a count of colour components after each face, OpenMesh little-endian without. The variant that
+// uses up the file is taken.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -21,7 +21,7 @@ class Words {
   }
   bool has(std::uint64_t words) const { return words <= (bytes_.size() - at_) / kWord; }
   bool at_end() const { return at_ == bytes_.size(); }
-  std::uint32_t integer() {  // has(1)
+  std::uint32_t integer() {  // needs has(1)
     char word[kWord];
     std::memcpy(word, bytes_.data() + at_, kWord);
     if (swap_) std::reverse(word, word + kWord);
@@ -58,7 +58,7 @@ std::optional<RawMesh> attempt(std::string_view body, bool big_endian, bool has_
   Words words(body, big_endian);
   if (!words.has(3)) return std::nullopt;
   const std::uint32_t vertices = words.integer(), faces = words.integer();
-  words.skip(1);  // edges
+  words.skip(1);  // edge count
   if (!words.has(3 * std::uint64_t{vertices} + 4 * std::uint64_t{faces})) return std::nullopt;
   RawMesh mesh;
   for (std::uint32_t k = 0; k < vertices; ++k) {

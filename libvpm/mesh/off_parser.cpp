@@ -1,4 +1,4 @@
-// Object file format, text: a keyword, three counts, one vertex and one face per line.
+// Object File Format as text: a keyword, three counts, one vertex and one face per line.
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/text_lines.h"
@@ -6,7 +6,8 @@
 namespace vpm {
 namespace {
 
-// Vertices may carry texture coordinates, colours and normals; x, y, z come first in all of these.
+// True for keywords whose vertices begin with x, y, z; texture coordinates, colours and normals may
+// follow.
 bool is_plain_keyword(std::string_view word) {
   for (const char* const prefix : {"ST", "C", "N"}) {
     if (word.starts_with(prefix)) word.remove_prefix(std::string_view(prefix).size());
@@ -68,7 +69,7 @@ RawMesh parse_off(std::string_view text, const std::string& name) {
   const std::int64_t vertices = lines.integer("the number of vertices");
   const std::int64_t faces = lines.integer("the number of faces");
   if (vertices < 0 || faces < 0) lines.refuse_here("a count is negative");
-  // At least "0 0 0\n" for a vertex and "3 0 1 2\n" for a face.
+  // A vertex takes at least "0 0 0\n", a face "3 0 1 2\n".
   check_header_counts(
       name, std::to_string(vertices) + " vertices and " + std::to_string(faces) + " faces",
       6.0 * static_cast<double>(vertices) + 8.0 * static_cast<double>(faces) - 1, text.size());

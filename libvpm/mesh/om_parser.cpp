@@ -1,5 +1,5 @@
-// OpenMesh's own format, by OpenMesh's reader. Polygons are taken from the reader before they reach
-// a half-edge structure, so that none is lost, and every index is checked.
+// OpenMesh's own format, read by OpenMesh. Polygons are taken from its reader before they reach a
+// half-edge structure, so that none is lost, and every index is checked.
 #include <OpenMesh/Core/IO/importer/ImporterT.hh>
 #include <OpenMesh/Core/IO/reader/OMReader.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
@@ -15,7 +15,7 @@ namespace {
 using OpenMesh::IO::OMFormat::Chunk;
 using Mesh = OpenMesh::PolyMesh_ArrayKernelT<>;
 
-// The mesh behind it stays empty: attributes that it does not have are skipped.
+// Receives the reader's elements. The mesh behind it stays empty, so attributes are skipped.
 class Collector : public OpenMesh::IO::ImporterT<Mesh> {
  public:
   explicit Collector(Mesh& empty) : ImporterT(empty) {}
@@ -53,7 +53,7 @@ class Collector : public OpenMesh::IO::ImporterT<Mesh> {
   std::vector<int> faces, to_vertex, next;
 };
 
-// Follows the half-edges of each face; each belongs to one face at most.
+// Follows the half-edges of each face; each may belong to one face only.
 void walk_faces(Collector& found, const std::string& name) {
   std::vector<char> used(found.next.size(), 0);
   for (const int first : found.faces) {
@@ -83,8 +83,8 @@ Header header_of(std::string_view bytes) {
   return header;
 }
 
-// Bytes of one element of a chunk as OpenMesh's reader takes them; 0 for chunks that it stumbles
-// over.
+// Returns the bytes of one element of a chunk as OpenMesh's reader takes them; 0 for chunks that it
+// cannot read.
 std::size_t element_bytes(const Chunk::Header& chunk) {
   const std::size_t dimensions = OpenMesh::IO::OMFormat::dimensions(chunk);
   const std::size_t integer = std::size_t{1} << chunk.bits_;
@@ -116,8 +116,7 @@ std::size_t elements(const Chunk::Header& chunk, const Header& header) {
   return chunk.entity_ == Chunk::Entity_Halfedge ? 2 * std::size_t{header.edges} : 0;
 }
 
-// OpenMesh's reader trusts a file, and ends the program over one that is damaged: so the chunks are
-// looked through first.
+// Checks chunks before OpenMesh's reader, which trusts a file and aborts on a damaged one.
 void check_chunks(std::string_view bytes, const Header& header, const std::string& name) {
   std::size_t at = sizeof header;
   while (true) {
@@ -156,7 +155,7 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
   mesh.name = name;
   if (!looks_like_om(bytes)) refuse(name + ": an OM file must begin with OMT, OMQ or OMP");
   const Header header = header_of(bytes);
-  // Three floats for a vertex, at least one byte for a face and six indices for an edge.
+  // A vertex takes three floats, a face at least one byte, an edge six indices.
   check_header_counts(name,
                       std::to_string(header.vertices) + " vertices, " +
                           std::to_string(header.faces) + " faces and " +
@@ -169,7 +168,7 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
   Collector found(empty);
   OpenMesh::IO::Options options;
   std::istringstream stream{std::string(bytes)};
-  omerr().disable();  // it says to standard error what the refusal says
+  omerr().disable();  // it would print to standard error what the refusal says
   const bool is_read = OpenMesh::IO::OMReader().read(stream, found, options);
   omerr().enable();
   if (!is_read || found.vertices.size() != header.vertices)

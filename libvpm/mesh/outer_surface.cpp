@@ -15,9 +15,9 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-// A triangle with coordinates in its own plane.
+// Triangle with coordinates in its plane.
 struct Flat {
-  Vec3 a, ab, ac, normal;  // of unit length
+  Vec3 a, ab, ac, normal;  // normal of unit length
   Vec3 dual_b, dual_c;     // dot(dual_b, p - a) is the coordinate along ab
 
   Flat(Vec3 from, Vec3 b, Vec3 c) : a(from), ab(b - from), ac(c - from) {
@@ -35,12 +35,12 @@ struct Flat {
   }
 };
 
-// What is lost of a surface, as an area, by this share of it lets spheres of the size of the solid
-// through by less than kCertificateTolerance (packing/certificate.h).
+// Area that may be lost, relative to the surface's: spheres of the solid's size could pass through
+// by less than kCertificateTolerance (packing/certificate.h).
 constexpr double kOpen = 1e-9;
 
-// Whether the pieces leave no gap. A closed surface has no sum of areas, and fluxes of coordinates
-// that are its volume or nothing; pieces that are lost change one or the other.
+// True if the pieces leave no gap. A closed surface has a zero sum of areas, and fluxes of
+// coordinates that equal its volume or zero; lost pieces change one of them.
 bool is_closed(const Solid& pieces) {
   const Vec3 origin = pieces.vertices.front();
   double area = 0, extent = 0;
@@ -67,7 +67,7 @@ bool is_closed(const Solid& pieces) {
 
 }  // namespace
 
-// Cuts the triangles that meet others, and asks for winding numbers.
+// Cuts triangles that meet others, and computes winding numbers.
 struct OuterSurface::Cells {
   Cells(const Solid& s, const std::vector<TrianglePair>& contacts)
       : solid(s),
@@ -91,7 +91,7 @@ struct OuterSurface::Cells {
   }
   Flat flat(std::uint32_t t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
 
-  // `number` is the mean of the winding numbers on both sides, `step` what the inner has more.
+  // `number` is the mean winding number of both sides, `step` inner minus outer.
   static Side side_of(double number, double step) {
     const bool in_front = number - 0.5 * step > 0.5, behind = number + 0.5 * step > 0.5;
     if (in_front == behind) return Side::none;
@@ -103,7 +103,8 @@ struct OuterSurface::Cells {
     return side_of(winding.at(middle, std::array{t}), 1);
   }
 
-  // Of a cell whose middle is x. Where several triangles coincide the first stands for all.
+  // Returns the side of a cell with centre x. The first of several coinciding triangles stands for
+  // all.
   Side side_of_cell(std::uint32_t t, const Flat& plane, Vec3 x,
                     const std::vector<std::uint32_t>& in_plane) const {
     std::vector<std::uint32_t> here{t};
@@ -118,7 +119,7 @@ struct OuterSurface::Cells {
     return side_of(winding.at(x, here), step);
   }
 
-  // Heights of the corners over the plane, 0 for those that lie in it.
+  // Returns the heights of the corners over the plane, 0 for those in it.
   std::array<double, 3> heights(const Flat& plane, std::uint32_t t) const {
     std::array<double, 3> height{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -128,12 +129,13 @@ struct OuterSurface::Cells {
     return height;
   }
 
-  // Where another triangle meets the plane of this one; false where it lies in it.
+  // Adds the segments where another triangle meets the plane of this one. Returns false if it lies
+  // in that plane.
   bool add_segments(std::uint32_t t, const Flat& plane, std::uint32_t other,
                     std::vector<TriangleSegment>& segments) const {
     const std::array<Vec3, 3> p{corner(other, 0), corner(other, 1), corner(other, 2)};
     const std::array<double, 3> height = heights(plane, other), flat_height{};
-    // Asked both ways, so that both say the same.
+    // Tests both ways, so that both triangles get the same answer.
     if (height == flat_height || heights(flat(other), t) == flat_height) {
       for (std::size_t k = 0; k < 3; ++k)
         segments.push_back({plane.flatten(p[k]), plane.flatten(p[(k + 1) % 3])});
@@ -150,7 +152,7 @@ struct OuterSurface::Cells {
     return true;
   }
 
-  // What of a triangle that meets others bounds the solid, facing outward.
+  // Returns the parts of an intersecting triangle that bound the solid, facing outward.
   std::vector<Corners> pieces_of_cut(std::uint32_t t) const {
     const Flat plane = flat(t);
     std::vector<TriangleSegment> segments;
@@ -205,14 +207,14 @@ struct OuterSurface::Cells {
   const Solid& solid;
   TriangleBvh bvh;
   WindingNumber winding;
-  std::vector<std::size_t> begin;  // rows of `partners`
+  std::vector<std::size_t> begin;  // row offsets of `partners`
   std::vector<std::uint32_t> partners;
   double coplanar;  // m
 };
 
 void OuterSurface::find_sides(const Cells& cells, const Topology& topology) {
   const auto count = static_cast<std::uint32_t>(side_.size());
-  // Between triangles that meet no other both sides go on: one answer for each connected part.
+  // Sides continue between triangles that meet no other: one answer per connected part.
   std::vector<std::uint32_t> part;
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (cells.is_cut(seed)) side_[seed] = Side::cut;

@@ -1,9 +1,9 @@
-// Which parts of a closed mesh bound the solid that its winding number describes.
+// Parts of a closed mesh that bound the solid given by its winding number.
 //
-// Inside is what the mesh encloses at least once (winding number > 0): bodies that overlap make one
-// body, a shell that faces inward takes away. What lies wholly inside bounds nothing. Triangles
-// that meet others are cut along them into cells, and each cell asks for the winding number on its
-// two sides, so that volumes are exact up to rounding.
+// Inside is what the mesh encloses at least once (winding number > 0): overlapping bodies form one,
+// and inward shells subtract. Triangles in the interior bound nothing. Intersecting triangles are
+// cut into cells, and each cell takes the winding numbers on its two sides, so that volumes are
+// exact up to rounding.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +18,18 @@ namespace vpm {
 
 class OuterSurface {
  public:
-  // `contacts` as from find_contacts; the solid is closed and consistently oriented, with at least
+  // Needs `contacts` from find_contacts, and a closed, consistently oriented solid with at least
   // one triangle.
   OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts);
 
-  // Whether the triangle meets no other and has the inside, or the outside, on both of its sides.
+  // True if the triangle meets no other and has the inside, or the outside, on both sides.
   bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }
-  // See enclosed_surface; nothing where that is the solid as it is.
+  // Returns enclosed_surface(solid), or nothing if that is the solid itself.
   const std::optional<Solid>& surface() const { return surface_; }
   const MassProperties& mass() const { return mass_; }
 
  private:
-  // `turned` bounds the solid with the side that its triangle calls the inner one.
+  // Relation of a triangle to the solid; `turned` bounds it with the back as outside.
   enum class Side : char { unknown, outward, turned, none, cut };
   struct Cells;
 
@@ -40,25 +40,24 @@ class OuterSurface {
   MassProperties mass_;
 };
 
-// The boundary of what the mesh encloses at least once, for integrals over it. The solid as it is
-// where the surface neither meets itself nor lies within itself; else its triangles, cut where they
-// meet, without the pieces inside: each with its own corners, facing outward.
+// Returns the boundary of what the mesh encloses at least once, for integrals over it: the solid
+// itself if its surface neither meets nor encloses itself; else its triangles, cut where they meet,
+// without the pieces inside, each with its own corners and facing outward.
 Solid enclosed_surface(const Solid& solid);
 
-// What bounds a solid and how much it holds, for all that asks more than once.
+// Boundary and volume of a solid, computed once for several users.
 struct Enclosure {
-  // As enclosed_surface; nothing where that is the solid as it is, and where its pieces do not
-  // close up: then every triangle is a bound.
+  // The enclosed_surface, or nothing if every triangle bounds: the surface is the solid itself, or
+  // its pieces do not close.
   std::optional<Solid> surface;
-  bool faces_tell =
-      true;           // what bounds the solid has the inside behind it and the outside in front
+  bool faces_tell = true;  // each face of the boundary has the inside behind it
   double volume = 0;  // m^3
 };
 Enclosure enclosure_of(const Solid& solid);
 Enclosure enclosure_of(const OuterSurface& outer);
 
-// Volume and centre of mass of what the mesh encloses, overlaps counted once. Equals
-// mass_properties to the bit where the surface neither meets itself nor lies within itself.
+// Returns volume and centre of mass of what the mesh encloses, counting overlaps once. Equals
+// mass_properties to the bit if the surface neither meets nor encloses itself.
 MassProperties enclosed_mass(const Solid& solid);
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// Polygon file format (Stanford): a header that describes elements and their properties, then the
+// Polygon File Format (Stanford): a header describing elements and their properties, then the
 // elements, as text or as binary of either byte order.
 #include <algorithm>
 #include <array>
@@ -126,7 +126,7 @@ Header parse_header(std::string_view bytes, const std::string& name) {
   return header;
 }
 
-// A list is at least its length; a value of text is at least a digit and a separator.
+// Checks counts. A list takes at least its length, a text value at least a digit and a separator.
 void check_counts(const Header& header, std::size_t file_bytes, const std::string& name) {
   double least = static_cast<double>(header.body) - 1;
   std::string what;
@@ -139,7 +139,7 @@ void check_counts(const Header& header, std::size_t file_bytes, const std::strin
         each += static_cast<double>(size_of(p.is_list ? p.count_type : p.type));
       }
     }
-    // An element without properties has no bytes to hold its count to.
+    // An element without properties would take no bytes, so its count could be anything.
     if (element.properties.empty() && element.count > 0)
       refuse(name + ": the element '" + element.name + "' has no properties");
     least += each * static_cast<double>(element.count);
@@ -160,7 +160,7 @@ class TextBody {
   void begin_record() { lines_.require_line("another element"); }
   double value(Type) { return lines_.number("a value"); }
   [[noreturn]] void refuse_here(const std::string& defect) const { lines_.refuse_here(defect); }
-  // Could `count` more values of this type follow? A line has no more than the file has bytes.
+  // True if `count` more values may follow; lines are bounded by the file's size.
   bool holds(std::size_t, Type) const { return true; }
 
  private:

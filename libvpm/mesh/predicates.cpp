@@ -6,13 +6,13 @@
 namespace vpm {
 namespace {
 
-// A number as the exact sum of doubles that do not overlap, smallest first, none of them zero.
+// Number as an exact sum of non-overlapping doubles, smallest first, none zero.
 template <int Capacity>
 struct Expansion {
   std::array<double, Capacity> term;
   int size = 0;
 
-  // Shewchuk's Grow-Expansion with zero elimination.
+  // Adds b by Shewchuk's Grow-Expansion with zero elimination.
   void add(double b) {
     int kept = 0;
     for (int k = 0; k < size; ++k) {
@@ -38,7 +38,7 @@ Expansion<2> difference(double a, double b) {
   return result;
 }
 
-// sum += factor * a * b
+// Computes sum += factor * a * b.
 template <int N, int M, int K>
 void add_product(Expansion<N>& sum, double factor, const Expansion<M>& a, const Expansion<K>& b) {
   static_assert(N >= 2 * M * K);
@@ -81,7 +81,7 @@ int exact_orientation(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return determinant.sign();
 }
 
-// Rounding error of the determinants below, relative to the sum of the magnitudes of their terms:
+// Rounding error of the determinants below, relative to the sum of magnitudes of their terms:
 // Shewchuk's first bounds, (3 + 16 e) e and (7 + 56 e) e with e = 2^-53.
 constexpr double kEpsilon = 0x1p-53;
 constexpr double kBound2 = (3 + 16 * kEpsilon) * kEpsilon;

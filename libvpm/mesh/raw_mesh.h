@@ -1,4 +1,4 @@
-// What a mesh file says, before anybody asks whether it bounds a solid.
+// Mesh as its file states it, whether or not it bounds a solid.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace vpm {
 
 enum class MeshFormat { obj, off, ply, stl, om };
 
-// Polygons as the file lists them. Corners are vertex indices, all below vertices.size();
-// coordinates are finite.
+// Polygons of a file. Corners are vertex indices, all below vertices.size(); coordinates are
+// finite.
 struct RawMesh {
   MeshFormat format = MeshFormat::obj;
   std::string name;  // of the file, for messages
@@ -25,11 +25,11 @@ struct RawMesh {
   std::size_t polygon_count() const { return polygon_end.size(); }
 };
 
-const char* name_of(MeshFormat format);  // "OBJ", "OFF", ...
+// Returns "OBJ", "OFF", ...
+const char* name_of(MeshFormat format);
 
-// Polygons of more than three corners are cut into triangles by ear clipping in their own plane;
-// a polygon that has no plane or crosses itself becomes a fan. Refuses polygons of more than 4096
-// corners.
+// Cuts polygons into triangles by ear clipping in their own plane; polygons without a plane, or
+// that cross themselves, become fans. Throws Error(refused) for more than 4096 corners.
 std::vector<Triangle> triangulate(const RawMesh& mesh);
 
 }  // namespace vpm

@@ -13,7 +13,7 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kMostPartners = 100;
-constexpr double kTouching = 1e-12;  // of the mesh's diagonal
+constexpr double kTouching = 1e-12;  // relative to the mesh's diagonal
 
 struct Leaf {
   const TriangleBvh::Node* node;
@@ -32,8 +32,8 @@ bool boxes_meet(const TriangleBvh::Node& a, std::size_t i, const TriangleBvh::No
 
 using Corners = std::array<Vec3, 3>;
 
-// Do the corners of t lie in the plane of s, and do the two overlap there by more than the
-// tolerance in every direction? Decided by the normals of the six edges.
+// True if the corners of t lie in the plane of s and the two overlap there by more than the
+// tolerance in every direction, which the normals of the six edges decide.
 bool overlap_in_plane_of(const Corners& s, const Corners& t, double tolerance) {
   const Vec3 normal = normalized_or_zero(cross(s[1] - s[0], s[2] - s[0]));
   for (const Vec3& p : t) {
@@ -57,7 +57,7 @@ bool overlap_in_plane_of(const Corners& s, const Corners& t, double tolerance) {
 
 class Search {
  public:
-  // A negative tolerance asks for true intersections only.
+  // A negative tolerance finds true intersections only.
   Search(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
          double tolerance)
       : vertices_(vertices),
@@ -90,7 +90,7 @@ class Search {
   }
 
  private:
-  // Pairs of a triangle of this leaf with one that comes later in the order of the hierarchy.
+  // Returns pairs of a triangle of this leaf and a later one in the hierarchy's order.
   std::vector<TrianglePair> partners_of(const Leaf& leaf) const {
     std::vector<TrianglePair> pairs;
     std::vector<std::uint32_t> stack{0};

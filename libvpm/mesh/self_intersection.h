@@ -1,5 +1,4 @@
-// Pairs of triangles of one mesh that cut or touch each other beyond the vertices and edges they
-// share.
+// Pairs of triangles of one mesh that intersect beyond the vertices and edges they share.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +12,16 @@ namespace vpm {
 // Two triangles, the lower index first.
 using TrianglePair = std::pair<std::uint32_t, std::uint32_t>;
 
-// Ascending. Decided by exact predicates. Triangles without area are left out. A group of a few
-// triangles stops at 100 partners each, so that a mesh of coinciding triangles costs no quadratic
-// memory.
+// Returns the pairs in ascending order, found by exact predicates; triangles without area are left
+// out. A group of a few triangles stops at 100 partners each, so that coinciding triangles need no
+// quadratic memory.
 std::vector<TrianglePair> find_self_intersections(const std::vector<Vec3>& vertices,
                                                   const std::vector<Triangle>& triangles);
 
-// Parts that were made to meet are a rounding apart: what is nearer than this, in metres, touches.
+// Returns the distance, m, below which parts touch: those made to meet are off by rounding.
 double contact_tolerance(const std::vector<Vec3>& vertices);
 
-// These, and pairs that overlap in one plane as far as the tolerance tells.
+// Returns self-intersections, and pairs that overlap in a common plane within the tolerance.
 std::vector<TrianglePair> find_contacts(const std::vector<Vec3>& vertices,
                                         const std::vector<Triangle>& triangles);
 

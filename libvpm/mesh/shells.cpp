@@ -10,21 +10,21 @@
 namespace vpm {
 namespace {
 
-// Vertices that say whether a shell lies within another one.
+// Number of vertices that decide if a shell lies within another one.
 constexpr std::size_t kSamples = 16;
-// A closed shell winds around a point an integer number of times; otherwise the point lies on it.
+// Deviation from an integer winding number above which a point lies on the shell.
 constexpr double kOnSurface = 0.1;
-// A triangle that shows this nearly half of the full solid angle has the point in its plane.
+// Deviation from half the full solid angle below which a triangle has the point in its plane.
 constexpr double kFlat = 1e-9;
 
 struct Shell {
   std::vector<std::uint32_t> triangles;
   Vec3 low, high;
-  std::vector<Vec3> samples;  // vertices of it
+  std::vector<Vec3> samples;  // some of its vertices
   double volume = 0;          // signed
 };
 
-// Some of the vertices, spread over the list of triangles.
+// Returns some vertices, spread over the list of triangles.
 std::vector<Vec3> samples_of(const std::vector<Vec3>& vertices,
                              const std::vector<Triangle>& triangles,
                              const std::vector<std::uint32_t>& shell) {
@@ -68,8 +68,8 @@ std::vector<Shell> collect(const std::vector<Vec3>& vertices,
   return shells;
 }
 
-// How often the shell encloses p, by the solid angles of its triangles (van Oosterom and Strackee
-// 1983); none where p lies on the shell.
+// Returns the winding number of the shell about p, from the solid angles of its triangles (van
+// Oosterom and Strackee 1983); none if p lies on the shell.
 std::optional<double> winding_number(const std::vector<Vec3>& vertices,
                                      const std::vector<Triangle>& triangles, const Shell& shell,
                                      Vec3 p) {
@@ -95,7 +95,7 @@ bool box_holds(const Shell& shell, Vec3 p) {
 
 enum class Enclosure { none, half, whole };
 
-// Vertices on the other shell's surface do not count: parts may meet.
+// Ignores vertices on the other shell's surface, since parts may touch.
 Enclosure enclosure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                     const Shell& outer, const Shell& inner) {
   std::size_t inside = 0, outside = 0;
@@ -112,7 +112,7 @@ Enclosure enclosure(const std::vector<Vec3>& vertices, const std::vector<Triangl
   return outside == 0 ? Enclosure::whole : Enclosure::half;
 }
 
-// For each shell, the shells that enclose at least so much of it.
+// Returns for each shell the shells that enclose at least `least` of it.
 std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& vertices,
                                                        const std::vector<Triangle>& triangles,
                                                        const std::vector<Shell>& shells,
@@ -148,10 +148,10 @@ ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                std::size_t shell_count, bool given_consistent,
                                std::vector<Triangle>& triangles) {
   std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
-  // Where the file does not say which way a shell faces, one that crosses another is a body.
+  // Without consistent orientation, a shell that crosses another is a body.
   const auto enclosing = find_enclosing(vertices, triangles, shells,
                                         given_consistent ? Enclosure::half : Enclosure::whole);
-  // Shells around one another turn together: as the outermost one has to.
+  // Nested shells turn with the outermost one.
   const auto faces_wrong = [&](std::size_t k) {
     if (given_consistent) {
       const auto outermost = [&](std::uint32_t other) { return enclosing[other].empty(); };

@@ -1,4 +1,4 @@
-// Which way the closed surfaces of a mesh face, and which of them lie within which.
+// Orientation and nesting of the closed surfaces of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@
 namespace vpm {
 
 struct ShellPlace {
-  std::size_t depth = 0;  // shells around it: each encloses half of its vertices or more
-  bool outward = true;    // as its triangles face
+  // Number of shells around it, each of which encloses at least half of its vertices.
+  std::size_t depth = 0;
+  bool outward = true;  // as its triangles face
 };
 
-// Of each shell, by number (see shells_of in topology.h).
+// Returns the place of each shell, numbered as by shells_of in topology.h.
 std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
                                      const std::vector<std::uint32_t>& shell_of_triangle,
                                      std::size_t shell_count,
@@ -25,10 +26,10 @@ struct ShellOrientation {
   std::size_t cavities = 0;  // shells that face inward within another one
 };
 
-// Turns shells so that the mesh bounds a solid from outside. Shells that lie within no other one
-// face outward. Shells within others: where the file is consistent they are left as they are (but
-// turn with the shell around them); where not (`given_consistent` false) they alternate, a shell
-// wholly within an odd number of others being a cavity.
+// Turns shells so that the mesh bounds a solid. Outermost shells come to face outward. If the file
+// is consistent, shells within others keep their orientation relative to the shell around them; if
+// not (`given_consistent` is false), they alternate: a shell wholly within an odd number of others
+// is a cavity.
 ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& shell_of_triangle,
                                std::size_t shell_count, bool given_consistent,

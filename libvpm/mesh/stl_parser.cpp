@@ -1,5 +1,5 @@
-// Stereolithography: triangles with their own three corners each; facet normals are ignored, the
-// order of the corners says which side is out.
+// Stereolithography: each triangle has its own three corners. Facet normals are ignored; the order
+// of corners tells the outside.
 #include <bit>
 #include <cstring>
 
@@ -105,7 +105,7 @@ RawMesh parse_stl(std::string_view bytes, const std::string& name) {
   RawMesh mesh;
   mesh.format = MeshFormat::stl;
   mesh.name = name;
-  // Exporters of binary files write "solid" into the header too: the size decides first.
+  // The size decides first, since exporters of binary files write "solid" into the header too.
   if (!has_binary_size(bytes) && looks_like_ascii(bytes)) {
     parse_ascii(bytes, mesh);
   } else if (bytes.size() < kFacetsAt) {

@@ -9,10 +9,10 @@
 namespace vpm {
 namespace {
 
-// A triangle as large as the mesh is at most this finely sampled along an edge.
+// Limits the samples along an edge, for triangles as large as the mesh.
 constexpr double kMostSteps = 2000;
 
-// The largest distance over a triangular lattice on one triangle.
+// Returns the largest distance over a triangular lattice on one triangle.
 double farthest(Vec3 a, Vec3 b, Vec3 c, const TriangleBvh& to, double spacing) {
   const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
   const int steps = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, kMostSteps));

@@ -1,4 +1,4 @@
-// How far two surfaces lie apart.
+// Distance between two surfaces.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace vpm {
 
-// The largest distance from a point of the first surface to the second, in metres: over the
-// vertices of the first and points of its triangles at most `spacing` apart, so that the true value
-// is at most `spacing` larger. The larger one of both directions is the Hausdorff distance.
+// Returns the largest distance, m, of a point of `from` to the surface `to`. Samples the vertices
+// and points of triangles at most `spacing` apart, so that the true value is at most `spacing`
+// larger. The maximum over both directions is the Hausdorff distance.
 double farthest_from_surface(const Solid& from, const Solid& to, double spacing);
 
 }  // namespace vpm

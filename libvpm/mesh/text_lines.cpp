@@ -72,7 +72,7 @@ double TextLines::number(const char* what) {
   if (stop != text.data() + text.size() || fault == std::errc::invalid_argument) {
     refuse_here(std::string(what) + " is " + quoted(given) + ", which is not a number");
   }
-  // Beyond the range of a double: strtod tells the tiny (rounded) from the huge (infinite).
+  // Beyond the range of doubles, strtod tells tiny numbers (rounded) from huge ones (infinite).
   if (fault == std::errc::result_out_of_range)
     value = std::strtod(std::string(text).c_str(), nullptr);
   return value;

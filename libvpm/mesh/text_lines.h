@@ -1,4 +1,4 @@
-// Walks the lines of a text file word by word and knows where it is.
+// Reads a text file by lines and words, and knows its position for messages.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,24 @@ namespace vpm {
 
 class TextLines {
  public:
-  // Everything after `comment` on a line is skipped; 0 for formats without comments.
+  // Skips everything after `comment` on a line; 0 for formats without comments.
   TextLines(std::string_view text, std::string name, char comment);
 
-  // Goes to the next line that holds a word; false at the end of the text.
+  // Moves to the next line that has a word; false at the end of the text.
   bool next_line();
-  // As next_line, but refuses the end of the text: "ends where <what> should follow".
+  // Moves like next_line(), but throws Error(refused) at the end: "ends where <what> should
+  // follow".
   void require_line(const char* what);
 
-  std::string_view word();  // the next of this line; empty at its end
+  // Returns the next word of this line; empty at its end.
+  std::string_view word();
   double number(const char* what);
   std::int64_t integer(const char* what);
-  Vec3 point();  // three numbers, all finite
+  // Returns three finite numbers.
+  Vec3 point();
 
   std::size_t line_number() const { return line_number_; }
-  std::size_t offset() const { return at_; }  // of the first byte after this line
+  std::size_t offset() const { return at_; }  // position after this line
   [[noreturn]] void refuse_here(const std::string& defect) const;
 
  private:

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kNone = Topology::kNone;
 
-// One side of a triangle: from corner k to corner k + 1.
+// Side of a triangle from corner k to corner k + 1.
 struct Side {
   std::uint32_t low, high;  // vertices
   std::uint32_t triangle;
@@ -56,8 +56,8 @@ std::uint32_t corner_at(const Triangle& t, std::uint32_t vertex) {
   return t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
 }
 
-// Corners of one vertex are one fan if edges lead from each to each; more than one fan pinches the
-// vertex.
+// Finds vertices with more than one fan. Corners of a vertex form one fan if edges lead from each
+// to each.
 std::vector<std::uint32_t> find_pinched(std::size_t vertex_count,
                                         const std::vector<Triangle>& triangles,
                                         const Topology& topology) {
@@ -112,7 +112,7 @@ Topology topology_of(std::size_t vertex_count, const std::vector<Triangle>& tria
     topology.neighbor[first.triangle][first.corner] = second.triangle;
     topology.neighbor[second.triangle][second.corner] = first.triangle;
   }
-  // Around a non-manifold edge fans fall apart too; only what it leaves unsaid is worth looking at.
+  // Fans fall apart at non-manifold edges too, so pinched vertices matter only without those.
   if (topology.non_manifold.empty())
     topology.pinched = find_pinched(vertex_count, triangles, topology);
   topology.duplicate_triangles = count_duplicates(triangles);
@@ -144,7 +144,7 @@ std::size_t orient_consistently(const Topology& topology, std::vector<Triangle>&
   enum State : char { unseen, kept, turned };
   std::vector<State> state(triangles.size(), unseen);
   std::vector<std::uint32_t> stack;
-  // Two neighbours agree as given if they run their common edge in opposite directions.
+  // Neighbours agree if they run their common edge in opposite directions.
   const auto agree = [&](std::uint32_t t, std::uint32_t k, std::uint32_t other) {
     const std::uint32_t from = triangles[t][k], to = triangles[t][(k + 1) % 3];
     return triangles[other][(corner_at(triangles[other], from) + 1) % 3] != to;

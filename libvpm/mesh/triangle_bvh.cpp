@@ -14,12 +14,12 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kLeafTriangles = 4;
-// Float boxes grow by this share of the mesh's extent, and squared bounds are compared with this
-// slack: several float roundings, so that a box never hides its triangles.
+// Padding of float boxes relative to the mesh's extent, and slack of squared bounds: several float
+// roundings, so that a box never hides its triangles.
 constexpr double kBoxPadding = 0x1p-21;
 constexpr float kBoundSlack = 1.0f + 0x1p-20f;
 
-// The closest point on up to four triangles, if it is nearer than `best2`.
+// Updates `best` with the closest point on up to four triangles, if it is nearer than `best2`.
 [[gnu::always_inline]] inline void take_closest(const TriangleBvh::Corners* first,
                                                 std::uint32_t count, Vec3 x, SurfacePoint& best,
                                                 double& best2) {
@@ -52,7 +52,8 @@ struct TriangleBvh::Build {
     return begin + (end - begin + 1) / 2;
   }
 
-  // Halves [begin, end) about the median centroid along the longest side of the centroids' box.
+  // Halves [begin, end) at the median centroid along the longest side of the centroids' bounding
+  // box.
   void halve(std::size_t begin, std::size_t end) {
     Box box;
     for (std::size_t i = begin; i < end; ++i) box.add(items[i].centroid);
@@ -68,7 +69,7 @@ struct TriangleBvh::Build {
                      });
   }
 
-  // Puts the items in order: halves of halves, until they are leaves.
+  // Orders the items by halving recursively down to leaves.
   void order() {
     using Range = std::array<std::size_t, 2>;
     std::vector<Range> ranges{{0, items.size()}};
@@ -94,7 +95,7 @@ struct TriangleBvh::Build {
     }
   }
 
-  // Returns the box of all.
+  // Builds the nodes of [begin, end) and returns their bounding box.
   Box build(std::size_t begin, std::size_t end) {
     const std::size_t index = bvh.nodes_.size();
     Node node;
@@ -184,7 +185,7 @@ SurfacePoint TriangleBvh::closest(Vec3 x, double within) const {
     float bound2;
     std::uint32_t child, count;
   };
-  // Each level leaves at most three siblings behind, and a level quarters the triangles.
+  // Each level leaves at most three siblings, and each level quarters the triangles.
   std::array<Pending, 64> stack;
   std::size_t top = 0;
   stack[top++] = {0.0f, 0, 0};
@@ -225,7 +226,7 @@ std::size_t TriangleBvh::around(Vec3 x, double half, std::span<std::uint32_t> fo
     return low.x > y.x + half || high.x < y.x - half || low.y > y.y + half || high.y < y.y - half ||
            low.z > y.z + half || high.z < y.z - half;
   };
-  std::array<std::uint32_t, 64> stack;  // see closest
+  std::array<std::uint32_t, 64> stack;  // large enough, see closest()
   std::size_t top = 0, count = 0;
   stack[top++] = 0;
   while (top > 0) {

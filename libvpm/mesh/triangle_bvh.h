@@ -1,4 +1,4 @@
-// A bounding-volume hierarchy over triangles: closest points in logarithmic time.
+// Bounding volume hierarchy over triangles: closest points in logarithmic time.
 #pragma once
 
 #include <cstdint>
@@ -18,32 +18,33 @@ struct SurfacePoint {
   std::uint32_t triangle = kNone;
 };
 
-// Four boxes per node. Box corners are floats about the box centre of the whole mesh, rounded
-// outward, so that a far origin costs nothing; triangles stay in double precision.
+// Hierarchy with four boxes per node. Boxes are floats relative to the mesh's centre, rounded
+// outward, so that a far origin costs nothing; triangles stay in double.
 class TriangleBvh {
  public:
-  // Four lanes; GCC and clang make vector code of it on every architecture.
+  // Four lanes; GCC and Clang emit vector code on every architecture.
   using Float4 = float __attribute__((vector_size(16)));
   struct Node {
     Float4 low[3], high[3];
-    // count[k] == 0: child[k] is a node (0 where the slot is empty); otherwise triangles
-    // child[k] .. child[k] + count[k] of corners().
+    // If count[k] is 0, child[k] is a node (0: empty slot); otherwise the child is the triangles
+    // child[k] to child[k] + count[k] of corners().
     std::uint32_t child[4], count[4];
   };
   struct Corners {
     Vec3 a, b, c;
-    std::uint32_t triangle;  // its index in the mesh
+    std::uint32_t triangle;  // index in the mesh
   };
 
-  // Needs at least one triangle and finite vertices; throws Error(refused) otherwise.
+  // Throws Error(refused) without triangles or if a vertex is not finite.
   TriangleBvh(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
-  // The closest surface point nearer than `within`; triangle == kNone where there is none. Exact
-  // in double precision; of equally near triangles any, but always the same. Thread-safe.
+  // Returns the closest surface point nearer than `within`; triangle is kNone if there is none.
+  // Exact in double; of equally near triangles the choice is arbitrary but fixed. Thread-safe.
   SurfacePoint closest(Vec3 x, double within = std::numeric_limits<double>::infinity()) const;
 
-  // Triangles whose boxes come within `half` of x along every axis, as indices of corners(): the
-  // first of them in `found`, the count returned. Stops counting beyond found.size().
+  // Returns the number of triangles whose boxes come within `half` of x along every axis, and
+  // stores the first of them, as indices of corners(), in `found`. Counts no further than
+  // found.size() + 1.
   std::size_t around(Vec3 x, double half, std::span<std::uint32_t> found) const;
 
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -51,7 +52,7 @@ class TriangleBvh {
 
  private:
   struct Build;
-  std::vector<Node> nodes_;  // nodes_[0] is the root
+  std::vector<Node> nodes_;  // root first
   std::vector<Corners> corners_;
   Vec3 origin_;
 };

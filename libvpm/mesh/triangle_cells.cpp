@@ -8,11 +8,12 @@
 namespace vpm {
 namespace {
 
-// Of coordinates of magnitude 1: well above their rounding, well below what has a volume.
+// Tolerance for coordinates of magnitude 1: well above their rounding, well below what has a
+// volume.
 constexpr double kTolerance = 1e-12;
 
 struct Line {
-  Vec2 normal;  // of unit length
+  Vec2 normal;  // unit length
   double offset = 0;
   double side(Vec2 p) const { return normal.x * p.x + normal.y * p.y - offset; }
 };
@@ -29,7 +30,7 @@ std::optional<Line> line_through(const TriangleSegment& s) {
   return Line{normal, normal.x * s.from.x + normal.y * s.from.y};
 }
 
-// The part of the segment where `distance` is at least 0; false where it is too short to cut.
+// Clips the segment to `distance` >= 0. Returns false if the rest is too short to cut.
 template <class Distance>
 bool clip(TriangleSegment& s, Distance distance) {
   const double a = distance(s.from), b = distance(s.to);
@@ -44,7 +45,7 @@ bool clip_to_triangle(TriangleSegment& s) {
          clip(s, [](Vec2 p) { return 1 - p.x - p.y; });
 }
 
-// What of a convex polygon lies on the side of the line where sign * side >= 0.
+// Returns the part of a convex polygon where sign * side >= 0.
 std::vector<Vec2> half_of(const std::vector<Vec2>& polygon, const Line& line, double sign) {
   std::vector<Vec2> half;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -83,16 +84,16 @@ class Partition {
 
  private:
   struct Node {
-    std::vector<Vec2> polygon;  // of a leaf
+    std::vector<Vec2> polygon;  // set in leaves
     Line line;
-    std::size_t front = 0, back = 0;  // 0 in a leaf
+    std::size_t front = 0, back = 0;  // 0 in leaves
   };
 
   void descend(std::size_t at, const TriangleSegment& piece,
                std::vector<std::pair<std::size_t, TriangleSegment>>& rest) const {
     const Node& node = nodes_[at];
     const double a = node.line.side(piece.from), b = node.line.side(piece.to);
-    if (std::abs(a) <= kTolerance && std::abs(b) <= kTolerance) return;  // was cut here already
+    if (std::abs(a) <= kTolerance && std::abs(b) <= kTolerance) return;  // cut here already
     if (a >= -kTolerance && b >= -kTolerance) return rest.emplace_back(node.front, piece), void();
     if (a <= kTolerance && b <= kTolerance) return rest.emplace_back(node.back, piece), void();
     const Vec2 middle = between(piece.from, piece.to, a / (a - b));

@@ -8,14 +8,14 @@
 
 namespace vpm {
 
-// Points of the triangle a, b, c are (x, y) for a + x (b - a) + y (c - a).
+// Segment in the coordinates of a triangle a, b, c: (x, y) is a + x (b - a) + y (c - a).
 struct TriangleSegment {
   Vec2 from, to;
 };
 
-// The cells of 0 <= x, 0 <= y, x + y <= 1, each a convex polygon that turns counter-clockwise.
-// Segments may reach beyond the triangle; what is shorter than 1e-12 is left out. A binary space
-// partition: a segment cuts no cell that it does not enter.
+// Returns the cells of 0 <= x, 0 <= y, x + y <= 1 as convex counter-clockwise polygons. Segments
+// may extend beyond the triangle; parts shorter than 1e-12 are ignored. Uses a binary space
+// partition, so a segment cuts only cells that it enters.
 std::vector<std::vector<Vec2>> triangle_cells(const std::vector<TriangleSegment>& segments);
 
 }  // namespace vpm

@@ -16,7 +16,7 @@ Vec2 without(Vec3 p, int axis) {
   return {p.x, p.y};
 }
 
-// An axis along which the triangle is not seen edge-on; -1 if there is none.
+// Returns an axis along which the triangle is not seen edge-on; -1 if there is none.
 int open_axis(const Corners& t) {
   const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
   const std::array<double, 3> size{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
@@ -28,7 +28,7 @@ int open_axis(const Corners& t) {
   return -1;
 }
 
-// Do the closed segments a-b and c-d of a plane meet?
+// True if the closed segments a-b and c-d of a plane meet.
 bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
   const int abc = orientation(a, b, c), abd = orientation(a, b, d);
   const int cda = orientation(c, d, a), cdb = orientation(c, d, b);
@@ -68,7 +68,8 @@ Corners corners_of(const std::vector<Vec3>& vertices, const Triangle& t) {
   return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
 }
 
-// Sharing one edge: they overlap only if they lie in one plane on the same side of the edge.
+// True if triangles that share one edge overlap: both lie in one plane, on the same side of the
+// edge.
 bool folded_flat(const Corners& s, Vec3 edge_from, Vec3 edge_to, Vec3 s_apex, Vec3 t_apex) {
   if (orientation(s[0], s[1], s[2], t_apex) != 0) return false;
   const int axis = open_axis(s);
@@ -110,7 +111,8 @@ bool triangles_intersect(const std::vector<Vec3>& vertices, const Triangle& s, c
     const std::size_t i = place(s_shared, false), j = place(t_shared, false);
     return folded_flat(a, a[(i + 1) % 3], a[(i + 2) % 3], a[i], b[j]);
   }
-  // Sharing one vertex: anything else in common reaches the edge opposite to it of one of the two.
+  // Triangles that share one vertex: any other common point reaches the opposite edge of one of
+  // them.
   const std::size_t i = place(s_shared, true), j = place(t_shared, true);
   return segment_meets(a[(i + 1) % 3], a[(i + 2) % 3], b) ||
          segment_meets(b[(j + 1) % 3], b[(j + 2) % 3], a);

@@ -7,19 +7,19 @@
 namespace vpm {
 namespace {
 
-// Ear clipping takes time that grows with the square of the corners, and no honest file has more.
+// Limits corners, since ear clipping takes quadratic time; no honest file has more.
 constexpr std::size_t kMostCorners = 4096;
 
 struct Point2 {
   double x = 0, y = 0;
 };
 
-// Twice the signed area of the triangle a, b, c.
+// Returns twice the signed area of the triangle a, b, c.
 double turn(Point2 a, Point2 b, Point2 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Newell's normal, which averages a polygon that is not quite flat.
+// Returns Newell's normal, which averages a polygon that is not quite flat.
 Vec3 newell_normal(const std::vector<Vec3>& corners) {
   Vec3 normal;
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -29,7 +29,7 @@ Vec3 newell_normal(const std::vector<Vec3>& corners) {
   return normal;
 }
 
-// Drops the axis along which the polygon is seen largest, keeping its turning sense.
+// Drops the axis along which the polygon's projection is largest, keeping its orientation.
 std::vector<Point2> project(const std::vector<Vec3>& corners, Vec3 normal) {
   const double ax = std::abs(normal.x), ay = std::abs(normal.y), az = std::abs(normal.z);
   std::vector<Point2> flat(corners.size());
@@ -59,7 +59,7 @@ bool is_ear(const std::vector<Point2>& flat, const std::vector<std::size_t>& rin
   });
 }
 
-// Cuts ears in the plane of the polygon; whatever has no ear (degenerate, crossing) is closed by a
+// Cuts ears in the plane of the polygon. The rest without an ear (degenerate, crossing) becomes a
 // fan. `emit` takes positions within the polygon.
 template <class Emit>
 void clip_ears(const std::vector<Vec3>& corners, Emit emit) {

@@ -16,10 +16,12 @@ namespace vpm {
 namespace {
 
 constexpr double kBand = double{kVoxelBand};
-// In a hole the winding number falls from 1 to 0 over about the width of the hole, and the surface
-// goes where it is one half. On triangles it jumps; with this slope their distance decides there.
+// Slope of the field in voxels per winding number. In a hole the number falls from 1 to 0 over
+// about the hole's width, and the surface goes where it is one half. On triangles it jumps; with
+// this slope their distance decides there.
 constexpr double kVoxelsPerWinding = 2 * kBand;
-// A block without triangles whose middle and corners are this clearly inside, or outside, is so.
+// Distance of the winding number from one half at which the centre and corners of a block without
+// triangles decide for the whole block.
 constexpr double kClear = 0.1;
 
 float cut_off(double voxels) {
@@ -60,7 +62,7 @@ class WindingField : public VoxelField {
   WindingNumber winding_;
 };
 
-// Inside is what is nearer to the mesh than `radius`, whichever side.
+// Field whose inside is nearer to the mesh than `radius`, on either side.
 class CoatField : public VoxelField {
  public:
   CoatField(const Solid& mesh, double voxel, double radius)
@@ -82,7 +84,7 @@ class CoatField : public VoxelField {
   TriangleBvh bvh_;
 };
 
-// Inside is what lies deeper than `radius` within a closed surface.
+// Field whose inside lies deeper than `radius` within a closed surface.
 class CoreField : public VoxelField {
  public:
   CoreField(const Solid& coat, double voxel, double radius)
@@ -107,7 +109,7 @@ class CoreField : public VoxelField {
   WindingNumber winding_;
 };
 
-// The outermost shells: what the flood from outside comes up against.
+// Returns the outermost shells, which stop the flood from outside.
 Solid outermost_shells(const Solid& surface) {
   const Topology topology = topology_of(surface.vertices.size(), surface.triangles);
   std::size_t count = 0;
@@ -165,7 +167,7 @@ Solid repair_by_flood(const Solid& mesh, int voxels, double width, VoxelRepair& 
                 "repair: a flood closes holes of at least two voxels; give a wider hole or more "
                 "voxels");
   }
-  // The centres of balls that touch the mesh from outside, and what lies a radius within them.
+  // The coat is the surface of the centres of balls that touch the mesh from outside.
   const Vec3 around = radius * Vec3{1, 1, 1};
   const VoxelBox wide{box.low - around, box.high + around, box.voxel};
   const Solid coat = outermost_shells(voxel_surface(CoatField(mesh, box.voxel, radius), wide));

@@ -14,11 +14,11 @@ namespace vpm {
 namespace {
 
 constexpr int kBlock = 8;   // edge of OpenVDB's leaves
-constexpr int kMargin = 4;  // voxels around the box: more than the band
+constexpr int kMargin = 4;  // voxels around the box; more than the band
 
 using Block = std::array<float, kBlock * kBlock * kBlock>;
 
-// Voxel (i, j, k) has its centre at low + voxel * (i, j, k).
+// Lattice of voxels; voxel (i, j, k) has its centre at low + voxel * (i, j, k).
 struct Lattice {
   Vec3 low;
   double voxel = 0;

@@ -27,8 +27,8 @@ struct CellHash {
   }
 };
 
-// Vertices that stand for themselves, by the cell of a grid as wide as the tolerance: whatever lies
-// within the tolerance lies in the same or a neighbouring cell.
+// Vertices that were not joined, in a grid as wide as the tolerance: whatever lies within the
+// tolerance is in the same or a neighbouring grid cell.
 class Representatives {
  public:
   Representatives(const std::vector<Vec3>& vertices, Vec3 low, double tolerance)
@@ -36,7 +36,7 @@ class Representatives {
     first_.reserve(vertices.size());
   }
 
-  // The first one within the tolerance, or kNone.
+  // Returns the first one within the tolerance, or kNone.
   std::uint32_t find(Vec3 p) const {
     const Cell home = cell_of(p);
     std::uint32_t found = kNone;

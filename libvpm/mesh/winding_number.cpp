@@ -8,19 +8,19 @@ namespace vpm {
 namespace {
 
 // A group counts as a dipole from this multiple of its radius on. The paper's 2 keeps the error of
-// a closed mesh well under the half that decides.
+// a closed mesh well below the half that decides.
 constexpr double kFarFactor = 2.0;
 constexpr double kFullSolidAngle = 4 * 3.14159265358979323846;
 
-constexpr double kOnTriangle = 1e-12;  // of its size: far above rounding
+constexpr double kOnTriangle = 1e-12;  // relative to its size; far above rounding
 
-// Signed solid angle of a triangle about the origin (van Oosterom, Strackee 1983).
+// Returns the signed solid angle of a triangle about the origin (van Oosterom, Strackee 1983).
 double solid_angle(Vec3 a, Vec3 b, Vec3 c) {
   const double la = norm(a), lb = norm(b), lc = norm(c);
   const double numerator = dot(a, cross(b, c));
   const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  // On the triangle it is half of all directions to either side, and rounding would choose: two
-  // that lie on one another and enclose nothing would count for something.
+  // On the triangle, the angle is half of all directions with a sign that rounding would choose;
+  // two coinciding triangles that enclose nothing would then count.
   if (denominator < 0 && std::abs(numerator) <= kOnTriangle * (la * lb * lc)) return 0;
   return 2 * std::atan2(numerator, denominator);
 }
@@ -35,7 +35,7 @@ struct Group {
 WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * bvh.nodes().size()) {
   const auto& nodes = bvh.nodes();
   std::vector<std::array<std::uint32_t, 2>> range(4 * nodes.size());
-  // Children follow their parent, so that a backward pass meets them first.
+  // Children follow their parent, so that a backward pass visits them first.
   for (std::size_t n = nodes.size(); n-- > 0;) {
     for (std::size_t slot = 0; slot < 4; ++slot) {
       const std::uint32_t child = nodes[n].child[slot], count = nodes[n].count[slot];
@@ -82,7 +82,7 @@ WindingNumber::WindingNumber(const TriangleBvh& bvh) : bvh_(bvh), dipoles_(4 * b
 template <class Counts>
 double WindingNumber::enclosures(Vec3 x, Counts counts) const {
   const auto& nodes = bvh_.nodes();
-  std::array<std::uint32_t, 64> stack;  // see TriangleBvh::closest
+  std::array<std::uint32_t, 64> stack;  // large enough, see TriangleBvh::closest
   std::size_t top = 0;
   stack[top++] = 0;
   double sum = 0;
@@ -114,7 +114,7 @@ double WindingNumber::at(Vec3 x) const {
 }
 
 double WindingNumber::at(Vec3 x, std::span<const std::uint32_t> without) const {
-  // No group that holds x counts as a dipole, so that each of these triangles is met.
+  // No group that holds x counts as a dipole, so each of these triangles is visited.
   return enclosures(x, [&](std::uint32_t t) {
     return std::find(without.begin(), without.end(), t) == without.end();
   });
