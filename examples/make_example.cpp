@@ -1,5 +1,6 @@
-// make-example FOLDER [SCENE]: a tool, what a noisy depth camera sees of a scene, a path of the
-// tool into it, and what is true on it. Scenes: libvpm/synthetic/scenes.h; by default a bowl.
+// make-example FOLDER [SCENE]: writes a tool, the image of a scene by a noisy depth camera, a path
+// of the tool into the scene, and the true results along it. SCENE is one of
+// libvpm/synthetic/scenes.h, by default a bowl.
 //   tool.off      a twisted torus of 0.2 m
 //   depth.png     640 x 480 pixels, 5000 units per metre, f = 525 px, Kinect noise
 //   poses.jsonl   one pose per line: [tx,ty,tz,qx,qy,qz,qw]
@@ -34,7 +35,7 @@ void make_example(const std::string& folder, const std::string& name) {
       synthetic::render_with_kinect_noise(*scene.surface, scene.camera, kNoiseSeed),
       kUnitsPerMetre);
 
-  // The ring stands upright and leans a little.
+  // Stands the ring upright, leaning a little.
   const Rotation upright = rotation_from_quaternion({0.7, 0.1, 0.0, std::sqrt(0.5)});
   const Quaternion q = quaternion_from_rotation(upright);
   std::string poses, truth = "pose,depth,volume,force_x,force_y,force_z\n";

@@ -23,7 +23,7 @@ void write_depth_png(const std::string& path, const DepthImage& image, double sc
   png.version = PNG_IMAGE_VERSION;
   png.width = image.width;
   png.height = image.height;
-  // libpng takes "linear" 16-bit samples as they are, in the machine's byte order.
+  // Makes libpng write the 16-bit samples unchanged; they are in the machine's byte order.
   png.format = PNG_FORMAT_LINEAR_Y;
   png_alloc_size_t size = 0;
   std::vector<std::byte> bytes;

@@ -6,8 +6,8 @@
 
 namespace vpm::examples {
 
-// 16-bit grey PNG with `scale` units per metre, 0 where nothing was measured. Throws
-// Error(cannot_write); refuses a depth that does not fit into 16 bits.
+// Writes a 16-bit grey PNG with `scale` units per metre, 0 where nothing was measured. Throws
+// Error(cannot_write), and Error(refused) for a depth that does not fit into 16 bits.
 void write_depth_png(const std::string& path, const DepthImage& image, double scale);
 
 }  // namespace vpm::examples

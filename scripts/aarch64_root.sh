@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# aarch64_root.sh FOLDER: unpacks Debian's arm64 packages that the query path needs there, and writes a CMake toolchain file
-# for aarch64-linux-gnu-g++. For scripts/same_bits.sh. Needs g++-aarch64-linux-gnu and qemu-user, and `dpkg
-# --add-architecture arm64; apt-get update` once.
+# aarch64_root.sh FOLDER: unpacks Debian's arm64 packages that the query path needs, and writes a CMake toolchain file
+# for aarch64-linux-gnu-g++, for scripts/same_bits.sh. Needs g++-aarch64-linux-gnu and qemu-user, and once before `dpkg
+# --add-architecture arm64; apt-get update`.
 set -euo pipefail
 root=$(mkdir -p "$1" && cd "$1" && pwd)
 packages=(libc6 libgcc-s1 libstdc++6 libtbb-dev libtbb12 libtbbmalloc2 libtbbbind-2-5 libpng-dev libpng16-16 zlib1g-dev zlib1g

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# bundle.sh BUILD FOLDER [EXECUTABLE ...]: makes a folder that runs on a machine with nothing installed but the C library
-# (and an NVIDIA driver, for --device cuda): executables in bin/, libvpm and every shared library that they need in lib/,
-# found by their place relative to the executable. Without names: the tools and control-loop, as far as they are built.
-# It runs on the devices that BUILD is made for: of the preset "cuda" on all that CMakeLists.txt names, and later ones.
+# bundle.sh BUILD FOLDER [EXECUTABLE ...]: makes a folder that runs on a machine with nothing installed but the C
+# library, and an NVIDIA driver for --device cuda. Executables go to bin/, libvpm and every shared library that they
+# need to lib/, where they are found by their place relative to the executable. Without names it takes the tools and
+# control-loop, if they are built. It runs on the devices that BUILD is made for; a build of the preset "cuda" runs on
+# all that CMakeLists.txt names, and on later ones.
 set -euo pipefail
 if [[ $# -lt 2 || ! -d $1/bin ]]; then
   echo "usage: bundle.sh BUILD FOLDER [EXECUTABLE ...]; BUILD is a build tree, like build/cuda" >&2
@@ -17,7 +18,7 @@ if [[ ${#names[@]} -eq 0 ]]; then
   done
 fi
 
-# What belongs to the machine: the C library, which goes with its loader, and the driver.
+# True for libraries that belong to the machine: the C library, which goes with its loader, and the driver.
 is_of_the_machine() {
   case $(basename "$1") in
     ld-linux* | libc.so.* | libm.so.* | libdl.so.* | librt.so.* | libpthread.so.* | libcuda.so.*) true ;;

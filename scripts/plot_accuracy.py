@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench accuracy` measured: volume against the truth, and the errors of each case.
+"""Draws the results of `vpm-bench accuracy`: volume against the truth, and the errors of each case.
 
 usage: plot_accuracy.py FOLDER    (reads accuracy.csv and accuracy.json, writes accuracy.png)
 """

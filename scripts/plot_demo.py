@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Says in words what vpm-query found on the path of the demo, and draws it.
+"""Explains the results of vpm-query on the path of the demo, and draws them.
 
 usage: plot_demo.py FOLDER
 """
@@ -65,7 +65,7 @@ def draw(folder, results, truth):
     curve.legend()
 
     data = read_spheres(folder / "spheres.ply")
-    # From the side, the nearest last: the camera is above, the bowl below.
+    # Draws the nearest spheres last, seen from the side: the camera is above, the bowl below.
     for x, _, z, radius, state in data[np.argsort(-data[:, 1])]:
         spheres.add_patch(plt.Circle((x, -z), radius, fc=STATES[int(state)][1], ec="k", lw=0.2))
     for name, colour in STATES:

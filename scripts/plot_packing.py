@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench packing` measured: what is left uncovered, what growing adds, cost per sphere.
+"""Draws the results of `vpm-bench packing`: the uncovered volume, the gain by growing, the cost per sphere.
 
 usage: plot_packing.py FOLDER    (reads packing.json, writes packing.png)
 """

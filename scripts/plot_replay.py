@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench replay` measured on a recording: the volume along the tool's path for each number of spheres,
+"""Draws the results of `vpm-bench replay` on a recording: the volume along the tool's path for each number of spheres,
 and the time of each frame.
 
 usage: plot_replay.py FOLDER    (reads replay.json, writes replay_profile.png and replay_frames.png)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench scaling` measured on a device: time of a query against the number of spheres, split into
+"""Draws the results of `vpm-bench scaling` on a device: time of a query against the number of spheres, split into
 boundary and flood, and along the path of the tool, both logarithmic (figures 7 and 9 of the paper).
 
 usage: plot_scaling.py FOLDER    (reads scaling.json, writes scaling.png)
@@ -13,7 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# Measure: its name, its color, and what its boundary and its flood took.
+# Maps a measure to its label, its color, and the fields with the times of its boundary and its flood.
 MEASURES = {
     "refined": ("refined", "tab:blue", lambda r: r["refined_median_us"] - r["refined_flood_us"],
                 lambda r: r["refined_flood_us"]),

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench timing` measured: median and quartiles of every stage, 1 and 2 threads.
+"""Draws the results of `vpm-bench timing`: median and quartiles of every stage, 1 and 2 threads.
 
 usage: plot_timing.py FOLDER    (reads timing.json, writes timing.png)
 """

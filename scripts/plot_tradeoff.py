@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `vpm-bench tradeoff` measured: time against error, both logarithmic.
+"""Draws the results of `vpm-bench tradeoff`: time against error, both logarithmic.
 
 usage: plot_tradeoff.py FOLDER    (reads tradeoff.json, writes tradeoff.png)
 """

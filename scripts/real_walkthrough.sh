@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The main job on real input: each tool is moved along a path into every scene of a data folder.
+# Does the main job on real input: moves each tool along a path into every scene of a data folder.
 #
 # usage: scripts/real_walkthrough.sh [DATA_FOLDER [OUTPUT_FOLDER]]
 #

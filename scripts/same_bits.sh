@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Builds the query path with each compiler and set of flags, replays 2016 queries with each build, and compares the
-# bytes with those of the first and their hash with the recorded one. Compilers that are not installed are skipped and
-# named. Build trees go to build/same-bits, or where SAME_BITS_DIR says.
-# Compilers by name in COMPILERS; default: "g++ clang++". aarch64-linux-gnu-g++ builds against Debian's arm64 packages, which
-# are unpacked in AARCH64_ROOT (scripts/aarch64_root.sh), and qemu-aarch64 runs what it built.
+# bytes with those of the first build and their hash with the recorded one. Compilers that are not installed are skipped
+# and named. COMPILERS names them, by default "g++ clang++". Builds go to build/same-bits, or to SAME_BITS_DIR.
+# aarch64-linux-gnu-g++ builds against Debian's arm64 packages, unpacked in AARCH64_ROOT by scripts/aarch64_root.sh, and
+# qemu-aarch64 runs the result.
 set -euo pipefail
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 trees=${SAME_BITS_DIR:-$repository/build/same-bits}

@@ -1,19 +1,19 @@
 #!/usr/bin/python3
-"""Moves every tool into every scene of a folder and checks what vpm-query says on the way.
+"""Moves every tool into every scene of a folder and checks the results of vpm-query on the way.
 
 usage: walk_into_scenes.py VPM_QUERY FOLDER
 
 FOLDER holds tools (NAME.vpmg with NAME.pack.csv and NAME.graph.json) and scenes (NAME.vpmc with
 NAME.ply, its points and normals, and NAME.normals.json). Each tool goes along the normal of a flat place near the middle
-of the image, from clear of everything to deep inside. Of `refined` it is required that
+of the image, from clear of everything to deep inside. The results of `refined` must keep these promises:
   - every number is finite,
   - the volume is 0 while the tool is clear of every point,
   - it grows: it never falls by more than NOISE of the tool's volume,
   - it does not jump: no step is larger than twice the largest step into a plane, plus NOISE,
-  - it ends where a plane through that place would make it end, less what the camera has seen to be
-    free (under a table top, say), within what is not flat or not seen there,
+  - it ends at the volume behind a plane through that place, less the places that the camera has seen to be
+    free (under a table top, say), up to the part that is not flat or not seen there,
   - force and motion oppose each other at the end.
-`paper` goes the same way for comparison. Writes real.png, real.json and the poses.
+`paper` takes the same path for comparison. Writes real.png, real.json and the poses.
 """
 import json
 import pathlib
@@ -36,7 +36,7 @@ TYPES = {"float": "<f4", "float32": "<f4", "double": "<f8", "float64": "<f8", "u
 
 
 def read_ply(path):
-    """Positions and normals of a PLY file's vertices, ASCII or little-endian."""
+    """Returns positions and normals of a PLY file's vertices, ASCII or little-endian."""
     data = path.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
     header = [line.split() for line in data[:end].decode().splitlines()]
@@ -53,7 +53,7 @@ def read_ply(path):
 
 
 class View:
-    """Which directions the camera, at the origin, has measured. Looks along +z or -z, whichever way
+    """Holds the directions that the camera, at the origin, has measured. It looks along +z or -z, where
     the points lie."""
 
     def __init__(self, points, report):
@@ -69,27 +69,27 @@ class View:
         return u, v, (u >= 0) & (v >= 0) & (u < self.depth.shape[1]) & (v < self.depth.shape[0])
 
     def measured(self, places):
-        """The depth measured in the direction of each place; 0 where none is."""
+        """Returns the depth measured in the direction of each place, 0 where none is."""
         u, v, inside = self.project(places)
         return np.where(inside, self.depth[v * inside, u * inside], 0)
 
     def fraction_flat(self, places, origin, normal):
-        """How many of the places on a plane have a measured point near the plane in their direction."""
+        """Returns the fraction of the places on a plane with a measured point near the plane in their direction."""
         measured = self.measured(places)
         points = places * (measured / np.abs(places[:, 2]))[:, None]
         return np.mean((measured > 0) & (np.abs((points - origin) @ normal) < FLAT))
 
     def fraction_clear(self, places):
-        """How many of the places lie before what the camera has measured."""
+        """Returns the fraction of the places that lie in front of the measured depth."""
         return np.mean(np.abs(places[:, 2]) < self.measured(places))
 
     def is_free(self, centers, radii):
-        """Whether the camera saw past a sphere: it lies wholly before the measured depth."""
+        """True for spheres wholly in front of the measured depth, which the camera saw past."""
         return np.abs(centers[:, 2]) + radii < self.measured(centers)
 
 
 def disc(origin, normal, radius):
-    """About 500 places spread over a disc."""
+    """Returns about 500 places spread over a disc."""
     side = np.cross(normal, [1, 0, 0] if abs(normal[0]) < 0.7 else [0, 1, 0])
     side /= np.linalg.norm(side)
     k = np.arange(500)
@@ -98,7 +98,7 @@ def disc(origin, normal, radius):
 
 
 def choose_contact(points, normals, reach, view):
-    """A flat place near the optical axis whose surroundings, and the way to it, the camera sees:
+    """Returns a flat place near the optical axis whose surroundings, and the way to it, the camera sees:
     (point, normal, fraction that is flat and seen, greatest height of a point near the way)."""
     angle = np.degrees(np.arctan2(np.hypot(points[:, 0], points[:, 1]), np.abs(points[:, 2])))
     central = np.flatnonzero(angle < 20)
@@ -132,14 +132,14 @@ def make_poses(tool, contact):
 
 
 def ball_places():
-    """50 places spread over the unit ball, each for an equal part of its volume."""
+    """Returns 50 places spread over the unit ball, each for an equal part of its volume."""
     k = np.arange(50) + 0.5
     z, a, r = 1 - 2 * k / 50, k * 2.399963, (k * 0.618034 % 1) ** (1 / 3)
     return (r * np.array([np.sqrt(1 - z * z) * np.cos(a), np.sqrt(1 - z * z) * np.sin(a), z])).T
 
 
 def expected_volume(tool, view, position):
-    """Fraction of the tool's spheres behind the measured depth, counted place by place."""
+    """Returns the fraction of the tool's spheres behind the measured depth, counted place by place."""
     centers, radius = tool["spheres"][:, :3] + position, tool["spheres"][:, 3]
     places = (centers[:, None] + radius[:, None, None] * ball_places()).reshape(-1, 3)
     inside = ~view.is_free(places, 0)
@@ -154,7 +154,7 @@ def query(executable, folder, tool, scene, poses_file, measure):
 
 
 def check(results, contact, expected):
-    """The complaints about one path."""
+    """Returns the broken promises of one path."""
     numbers = np.array([[r["volume"], r["volume_fraction"], *r["force"], *r["torque"]] for r in results])
     fraction = numbers[:, 1]
     step = np.diff(fraction)

@@ -1,4 +1,4 @@
-// What a call refuses.
+// Catches refusals of calls.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace vpm::test {
 
-// The Error that the action throws; none where it throws none.
+// Returns the Error that the action throws; nothing if it throws none.
 template <class Action>
 std::optional<Error> fault_of(const Action& action) {
   try {
@@ -25,7 +25,7 @@ std::optional<ErrorKind> kind_of_fault(const Action& action) {
   return fault ? std::optional(fault->kind()) : std::nullopt;
 }
 
-// The words of the fault; "" where there is none.
+// Returns the message of the fault, or "" if there is none.
 template <class Action>
 std::string refusal(const Action& action) {
   const std::optional<Error> fault = fault_of(action);

@@ -1,4 +1,4 @@
-// Where a test writes files: ctest runs tests side by side, and their temporary folder is one.
+// A folder of its own for each test, since ctest runs tests side by side in one temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 
 namespace vpm::test {
 
-// What GoogleTest takes for a name: letters and digits stay, all else becomes '_'.
+// Returns a name that GoogleTest accepts: keeps letters and digits and replaces all else by '_'.
 inline std::string test_name(std::string text) {
   for (char& c : text) c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   return text;

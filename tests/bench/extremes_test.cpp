@@ -1,4 +1,4 @@
-// Every extreme case of the suite is right, or refused with a message.
+// Every extreme case of the suite is answered right or refused with a message.
 #include <gtest/gtest.h>
 
 #include "tools/bench/suite.h"

@@ -30,7 +30,7 @@ TEST(Path, StartsClearAndGoesDeeperAllTheWay) {
 TEST(Path, FirstContactIsWhereTheShapeTouches) {
   const synthetic::Scene scene = synthetic::make_scene("wall");
   const synthetic::TrueSolid cube(make_shape("cube"));
-  const auto path = make_path(cube, {}, *scene.surface, 18);  // one step is 5 % of the height
+  const auto path = make_path(cube, {}, *scene.surface, 18);  // steps of 5 % of the height
   EXPECT_NEAR(path[1].translation.z, 0.9, 1e-6);
   EXPECT_NEAR(path.back().translation.z, 0.9 + 0.2 * kDeepest, 1e-6);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every result that lies in tests/results can be drawn.
+"""Checks that every result in tests/results can be drawn.
 
 usage: plots_test.py SOURCE    (the repository's root)
 """
@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-# accuracy.png needs every pose too, which only a run of the suite has (accuracy.csv).
+# accuracy.png is left out: it needs accuracy.csv with every pose, which is not kept.
 PICTURES = {"packing": ["packing.png"], "replay": ["replay_profile.png", "replay_frames.png"],
             "scaling": ["scaling.png"], "timing": ["timing.png"], "tradeoff": ["tradeoff.png"]}
 

@@ -8,7 +8,7 @@
 namespace vpm::bench {
 namespace {
 
-// A wall at 1 m, and a cube half of which is behind it.
+// Sets up a wall at 1 m and a cube, half of which is behind it.
 class ReplayPeers : public testing::Test {
  protected:
   const synthetic::Scene scene_ = synthetic::make_scene("wall");
@@ -30,7 +30,7 @@ TEST_F(ReplayPeers, PushTheToolBackFromTheWall) {
   const Wrench pushed = peers_.penalty(cloud_, {{}, {0, 0, 0.95}});
   EXPECT_LT(pushed.force.z, 0);
   EXPECT_NEAR(pushed.force.x, 0, 1e-3 * -pushed.force.z);
-  // Each pixel's point is as deep in the cube as the nearest of its faces is far.
+  // Each pixel's point has the depth of the nearest face of the cube.
   const Wrench deeper = peers_.penalty(cloud_, {{}, {0, 0, 0.98}});
   EXPECT_LT(deeper.force.z, pushed.force.z);
 }

@@ -58,11 +58,11 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
       "timing", [](SuiteOptions& o) { o.shadows = Shadows::solid; }, "accuracy");
 }
 
-// Before it measures for minutes.
+// Refuses before minutes of measuring.
 TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
   for (const char* name : {"accuracy", "timing"}) {
     SuiteOptions options;
-    options.all = name == std::string("accuracy");  // which asks them then only
+    options.all = name == std::string("accuracy");  // accuracy reads the folder with --all only
     options.data = "/nowhere";
     const auto fault = test::fault_of([&] { run_suite(name, options); });
     ASSERT_TRUE(fault) << name;
@@ -71,7 +71,7 @@ TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
   }
 }
 
-// On a machine without devices it says so, whatever was asked for.
+// Refuses on a machine without devices, whatever options are given.
 TEST(Suite, ScalingTimesOneDevice) {
   EXPECT_TRUE(needs_device("scaling"));
   for (const Device& device : {Device{}, Device{Device::Kind::cuda, Device::kAll}}) {

@@ -34,7 +34,7 @@ TEST(MakeCloud, DisksOfNeighbouringPixelsCoverThePlane) {
   const Vec3 normal = Vec3{0.9, -0.5, -1} / norm({0.9, -0.5, -1});
   const DepthImage image = plane_image(kCamera, normal, 0.8);
   const Cloud cloud = make_cloud(image, kCamera, {});
-  // The corners between four pixels are farthest from all of them.
+  // The corners between four pixels are the places farthest from all pixels.
   for (std::uint32_t v = 0; v + 1 < image.height; ++v) {
     for (std::uint32_t u = 0; u + 1 < image.width; ++u) {
       const Vec3 ray = unproject(kCamera.intrinsics, u + 0.5, v + 0.5, 1);
@@ -54,7 +54,7 @@ TEST(MakeCloud, KeepsTheDepthImageAndOnlyPointsWithNormals) {
   image.depth[6] = -2;
   for (std::uint32_t v = 0; v < image.height; ++v) {
     for (std::uint32_t u = 20; u < image.width; ++u)
-      image.depth[image.index(u, v)] = u == 26 && v == 12 ? 1.0F : 0.0F;  // an island
+      image.depth[image.index(u, v)] = u == 26 && v == 12 ? 1.0F : 0.0F;  // one pixel on its own
   }
   const Cloud cloud = make_cloud(image, kCamera, {});
   validate(cloud, "cloud");
@@ -66,7 +66,7 @@ TEST(MakeCloud, KeepsTheDepthImageAndOnlyPointsWithNormals) {
 }
 
 TEST(MakeCloud, GrazingDisksStayBounded) {
-  // 89 degrees off the ray: the pixel's footprint would be 57 times its width.
+  // At 89 degrees off the ray the pixel's footprint would be 57 times its width.
   const double tilt = 89 * 3.14159265358979323846 / 180;
   const DepthImage image = plane_image({{5000, 5000, 15.5, 11.5}, 32, 24, {}},
                                        {std::sin(tilt), 0, -std::cos(tilt)}, 0.01);

@@ -10,7 +10,7 @@
 namespace vpm {
 namespace {
 
-// Three directions at right angles to each other.
+// Three perpendicular unit vectors.
 struct Axes {
   Vec3 a, b, c;
 };
@@ -30,11 +30,13 @@ Symmetric3<double> with_eigenvalues(const Axes& axes, double a, double b, double
 }
 
 TEST(CovarianceFit, FindsTheDirectionOfLeastVariance) {
-  // What floats know of a matrix of trace 1 turns the eigenvector by so much over the gap.
+  // Relative rounding of float entries in a matrix of trace 1; it turns the eigenvector by this
+  // over the gap.
   constexpr double kKnown = 4e-6;
   std::mt19937 random(3);
-  for (const double least : {0.0, 1e-7, 1e-4, 0.01, 0.1, 0.3, 0.6}) {  // of the second
-    for (const double second : {1e-3, 0.1, 1.0}) {                     // of the greatest
+  for (const double least :
+       {0.0, 1e-7, 1e-4, 0.01, 0.1, 0.3, 0.6}) {    // fraction of the second eigenvalue
+    for (const double second : {1e-3, 0.1, 1.0}) {  // fraction of the greatest
       for (int i = 0; i < 200; ++i) {
         const Axes axes = random_axes(random);
         const double scale = std::ldexp(1.0, i - 100);

@@ -20,7 +20,7 @@ std::vector<Vec3f> random_points(std::size_t count, bool on_grid) {
 }
 
 TEST(KdTree, FindsWhatASearchOverAllFinds) {
-  for (const bool on_grid : {false, true}) {  // the grid repeats many points
+  for (const bool on_grid : {false, true}) {  // a grid has many points at one place
     for (const std::size_t count : {1U, 5U, 13U, 14U, 700U}) {
       const std::vector<Vec3f> points = random_points(count, on_grid);
       const KdTree tree(points);

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kHalfWindow = 3;
-// Neighbours on one surface: depth within 3 %, normals within 37 degrees.
+// Limits within which neighbours belong to one surface: relative depth, and the cosine between
+// normals (37 degrees).
 constexpr double kSameDepth = 0.03, kSameNormal = 0.8;
 
 bool on_one_surface(const NormalScene& s, int u, int v) {

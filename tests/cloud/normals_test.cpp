@@ -27,7 +27,7 @@ bool same_bits(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3f)) == 0;
 }
 
-// Both methods make the same promises.
+// Runs each test with both methods, which make the same promises.
 class Normals : public testing::TestWithParam<NormalMethod> {
  protected:
   NormalOptions options(int window = 7, double gate = kEdgeGate) const {
@@ -90,19 +90,19 @@ TEST_P(Normals, AreAccurateOnCurvedScenesAndUnderNoise) {
   EXPECT_LT(mean_error(scene, clean, all), 0.3);
   const DepthImage noisy = synthetic::render_with_kinect_noise(*room(), scene.camera, 1);
   const auto found = normals(noisy, scene.camera);
-  // Noise along the ray makes total least squares nearly twice as wrong.
+  // Noise along the ray nearly doubles the error of total least squares.
   EXPECT_LT(mean_error(scene, found, scene.inside), pca ? 10.5 : 5.6);
   EXPECT_LT(mean_error(scene, found, all), pca ? 10.5 : 5.9);
 }
 
 TEST_P(Normals, DoNotBleedAcrossAStep) {
-  // Left half at 1 m, right half at 1.1 m, both facing the camera.
+  // The left half is at 1 m, the right half at 1.1 m, both facing the camera.
   DepthImage image = plane_image(kSmallCamera, {0, 0, -1}, 1);
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     if (i % image.width >= 16) image.depth[i] = 1.1F;
   }
   for (const Vec3f& n : normals(image, kSmallCamera)) ASSERT_LT(angle_between(n, {0, 0, -1}), 1e-4);
-  // Without the gate they do, which is what the gate is for.
+  // Without the gate, windows at the edge mix both sides.
   const auto ungated = estimate_normals(image, kSmallCamera.intrinsics, options(7, 0));
   EXPECT_GT(angle_between(ungated[image.index(15, 12)], {0, 0, -1}), 0.5);
 }
@@ -152,7 +152,7 @@ TEST_P(Normals, ReachFromAMicrometreToTheEndOfSixteenBits) {
     for (const Vec3f& n : normals(plane_image(kSmallCamera, {0, 0, -1}, distance), kSmallCamera))
       ASSERT_LT(angle_between(n, {0, 0, -1}), 1e-4);
   }
-  // Both in one image: neither disturbs the other.
+  // Both planes are in one image, and neither disturbs the other.
   DepthImage image = plane_image(kSmallCamera, {0, 0, -1}, 65);
   for (std::size_t i = 0; i < image.depth.size() / 2; ++i) image.depth[i] = 1e-6F;
   for (const Vec3f& n : normals(image, kSmallCamera)) ASSERT_LT(angle_between(n, {0, 0, -1}), 1e-4);
@@ -176,8 +176,8 @@ TEST_P(Normals, DoNotChangeABitWithScaleOrThreads) {
 }
 
 TEST_P(Normals, DependOnTheWindowAlone) {
-  // Whatever lies outside of a pixel's window, and where the image ends, changes nothing; whether
-  // its column is even, PCA's last bits.
+  // Normals depend on the pixel's window alone, except that PCA's last bits depend on the parity of
+  // its column.
   const NormalScene scene = see(room());
   const auto whole = normals(scene.depth, scene.camera);
   constexpr std::uint32_t kV = 151, kWidth = 60, kHeight = 50, kMargin = 3;
@@ -204,8 +204,8 @@ TEST_P(Normals, DependOnTheWindowAlone) {
   }
 }
 
-// The plane of inverse depth that is nearest to a window's pixels, or the direction in which their
-// points vary least, in doubles from the definitions.
+// Returns the plane of inverse depth nearest to a window's pixels, or the direction in which their
+// points vary least, in double precision from the definitions.
 Vec3 plane_by_definition(const std::vector<Vec3>& pixels, const Intrinsics& k) {
   Vec3 mean{};
   for (const Vec3& p : pixels)
@@ -232,7 +232,7 @@ Vec3 least_variance_by_definition(const std::vector<Vec3>& pixels, const Intrins
     const Vec3 d = point - mean;
     x = x + d.x * d, y = y + d.y * d, z = z + d.z * d;
   }
-  // The adjugate's powers turn to the eigenvector of the least eigenvalue.
+  // Powers of the adjugate converge to the eigenvector of the least eigenvalue.
   Vec3 n{0, 0, -1};
   for (int i = 0; i < 100; ++i) {
     n = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
@@ -274,14 +274,14 @@ TEST_P(Normals, AreThoseOfAWindowsPixelsWhereverTheBorderCutsIt) {
 }
 
 TEST_P(Normals, WhereNothingIsAnEdgeTheGateChangesNothing) {
-  // Noise below the gate, and holes: all that was measured belongs to the surface.
+  // Noise stays below the gate, so all measured pixels belong to the surface.
   DepthImage image = plane_image(kSmallCamera, Vec3{0.2, -0.1, -1} / norm({0.2, -0.1, -1}), 1);
   std::mt19937 random(7);
   for (float& depth : image.depth)
     depth = random() % 5 == 0 ? 0 : depth * (1 + 0.007F * static_cast<float>(random() % 100) / 100);
   EXPECT_TRUE(same_bits(normals(image, kSmallCamera),
                         estimate_normals(image, kSmallCamera.intrinsics, options(7, 0))));
-  // An edge gates the windows that it crosses, and no others.
+  // An edge gates only the windows that it crosses.
   image.depth[image.index(16, 12)] *= 2;
   const auto gated = normals(image, kSmallCamera),
              open = estimate_normals(image, kSmallCamera.intrinsics, options(7, 0));

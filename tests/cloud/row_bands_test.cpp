@@ -26,7 +26,7 @@ TEST(RowBands, CoverEveryRowOnce) {
   set_thread_count(0);
 }
 
-// Rows are made band by band, the bands in any order.
+// Makes the bands of rows in several orders.
 TEST(FollowingRows, FollowOnceAndNotBeforeWhatTheyRead) {
   std::mt19937 random(3);
   FollowingRows following;
@@ -56,7 +56,7 @@ TEST(FollowingRows, FollowOnceAndNotBeforeWhatTheyRead) {
   }
 }
 
-// What a row reads was made by several threads: run with the thread sanitizer this shows races.
+// Reads rows that several threads made; the thread sanitizer shows races here.
 TEST(FollowingRows, SeeWhatOtherThreadsMade) {
   constexpr int kHeight = 20 * kRowsPerBand, kReach = 4;
   set_thread_count(4);

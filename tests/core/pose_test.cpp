@@ -43,7 +43,7 @@ std::vector<Quaternion> random_quaternions() {
     const double length = std::sqrt(x * x + y * y + z * z + w * w);
     all.push_back({x / length, y / length, z / length, w / length});
   }
-  // Half turns, where w gives no direction.
+  // Half turns have w = 0.
   all.insert(all.end(), {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}});
   return all;
 }
@@ -101,7 +101,7 @@ TEST(Matrices, SlightlyScaledAreNormalised) {
   }
 }
 
-// M = R S with S symmetric and positive has R for its polar rotation, whatever S is.
+// M = R S with S symmetric and positive definite has the polar rotation R for every S.
 TEST(Matrices, ThePolarRotationIsFound) {
   const Rotation stretch{{1.002, 0.003, -0.001}, {0.003, 0.997, 0.002}, {-0.001, 0.002, 1.001}};
   for (const Quaternion& q : random_quaternions()) {
@@ -124,7 +124,7 @@ TEST(Rotations, AreMadeExactWhereTheyAreNot) {
   const Rotation exact = rotation_from_quaternion({0.5, 0.1, -0.7, 0.5 * std::sqrt(1.0)});
   const Rotation again = exact_rotation(exact);
   EXPECT_TRUE(again.row0 == exact.row0 && again.row1 == exact.row1 && again.row2 == exact.row2);
-  const auto rounded = [](Vec3 row) { return widen(narrow(row)); };  // to float
+  const auto rounded = [](Vec3 row) { return widen(narrow(row)); };  // rounds to float
   const Rotation of_floats{rounded(exact.row0), rounded(exact.row1), rounded(exact.row2)};
   EXPECT_FALSE(is_rotation(of_floats, kRotationExact));
   const Rotation mended = exact_rotation(of_floats);

@@ -11,7 +11,7 @@ std::span<const std::byte> bytes_of(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-// Known answers of XXH3 with seed 0, as the xxHash project's xxhsum prints them.
+// Compares with known answers of XXH3 with seed 0, from the xxHash project's xxhsum.
 TEST(Checksum, IsXxh3) {
   EXPECT_EQ(checksum({}), 0x2d06800538d394c2U);
   EXPECT_EQ(content_hash({}), "99aa06d3014798d86001c324468d497f");

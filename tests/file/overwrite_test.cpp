@@ -15,7 +15,7 @@ class Overwrite : public test::InTemporaryFolder {
     write_all(path("empty"), std::string_view());
   }
 
-  // The exit code of the refusal, 0 where none.
+  // Returns the exit code of the refusal, or 0 if there is none.
   template <class Check>
   static int outcome(const Check& check) {
     const std::optional<ErrorKind> kind = test::kind_of_fault(check);

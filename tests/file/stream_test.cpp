@@ -24,10 +24,10 @@ namespace fs = std::filesystem;
 using Stream = test::InTemporaryFolder;
 using Names = std::vector<std::string>;
 
-constexpr std::size_t kLimit = 1 << 16;  // of a file's size, in children that must fail
+constexpr std::size_t kLimit = 1 << 16;  // bytes, in children that must fail
 
-// Runs `action` in a child whose files may not grow over kLimit, with `handler` for the signal that
-// says so; gives the child's exit status.
+// Runs `action` in a child process whose files may not grow beyond kLimit, with `handler` for the
+// signal of that limit. Returns the child's exit status.
 int in_limited_child(void (*handler)(int), const std::function<int()>& action) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -95,7 +95,7 @@ TEST_F(Stream, PartsAppearAsOneFile) {
   write_all(path("file"), std::string_view("old"));
   std::string all;
   Output output(path("file"));
-  for (int k = 0; k < 3000; ++k) {  // more than waits at once
+  for (int k = 0; k < 3000; ++k) {  // more parts than wait at once
     const std::string part(static_cast<std::size_t>(k % 100), static_cast<char>('a' + k % 26));
     output.append(part);
     all += part;
@@ -134,7 +134,7 @@ TEST_F(Stream, AnInterruptedRunLeavesNoneOfItsOutputs) {
   EXPECT_EQ(names(), Names{"third"});
 }
 
-// A reader sees each part before the next one is there.
+// A reader of the pipe sees each part before the next is written.
 TEST_F(Stream, APipeHasEachPartAtOnce) {
   ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
   const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
@@ -164,7 +164,7 @@ TEST_F(Stream, AFullDiskLeavesTheOldFile) {
   EXPECT_EQ(names(), Names{"file"});
 }
 
-// The signal comes in the middle of the write, as ctrl-C would.
+// Sends the signal in the middle of the write, as ctrl-C would.
 TEST_F(Stream, AnInterruptedRunLeavesTheOldFile) {
   write_all(path("file"), std::string_view("old"));
   const auto clean_up = [](int) {

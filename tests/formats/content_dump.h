@@ -1,4 +1,4 @@
-// Everything that a file holds, as JSON: what formats/golden/v1/*.json list.
+// Writes all of a file's content as JSON, the form of formats/golden/v1/*.json.
 #pragma once
 
 #include <nlohmann/json.hpp>

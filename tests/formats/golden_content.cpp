@@ -5,10 +5,10 @@
 namespace vpm::golden {
 namespace {
 
-constexpr double kHalf = 0.1;      // of the cube's side
-constexpr double kQuarter = 0.05;  // octant centres are this far from the axes' planes
+constexpr double kHalf = 0.1;      // half of the cube's side
+constexpr double kQuarter = 0.05;  // distance of octant centres from the axes' planes
 
-// Bit 0 of `octant` is the sign of x, bit 1 of y, bit 2 of z.
+// Returns a corner of the cube: bit 0 of `octant` is the sign of x, bit 1 of y, bit 2 of z.
 Vec3 corner(std::uint32_t octant, double size) {
   return {(octant & 1) != 0 ? size : -size, (octant & 2) != 0 ? size : -size,
           (octant & 4) != 0 ? size : -size};
@@ -18,7 +18,7 @@ nlohmann::json provenance() {
   return {{"tool", "vpm-make-golden"}, {"version", "0.1.0"}, {"parameters", {{"side", 0.2}}}};
 }
 
-// Spheres touch where their octants share a face.
+// Joins spheres whose octants share a face, where they touch.
 SphereGraph octant_graph(std::uint32_t count) {
   SphereGraph graph;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -32,7 +32,7 @@ SphereGraph octant_graph(std::uint32_t count) {
   return graph;
 }
 
-// A root over one node per layer of four spheres.
+// Returns a root over one node per layer of four spheres.
 Hierarchy layered_hierarchy(std::uint32_t count) {
   const double root_two = std::sqrt(2.0);
   const std::uint32_t layers = count / 4;
@@ -54,8 +54,8 @@ Hierarchy layered_hierarchy(std::uint32_t count) {
   return tree;
 }
 
-// One grid cell, one block and one sample per sphere. With four spheres each share is a column of
-// the cube, with eight an octant.
+// Returns one grid cell, one block and one sample per sphere. With four spheres each cell is a
+// column of the cube, with eight an octant.
 Level octant_level(std::uint32_t count) {
   const bool columns = count == 4;
   Level level;
@@ -66,7 +66,7 @@ Level octant_level(std::uint32_t count) {
   level.hierarchy = layered_hierarchy(count);
   level.grid = {corner(0, kHalf), kHalf, 2, 2, columns ? 1U : 2U, {}, {}};
   const double half_height = columns ? kHalf : kQuarter;
-  // Mean squared distance of a box from its centre: a third of its squared half diagonal.
+  // The mean squared distance of a box from its centre is a third of its squared half diagonal.
   const double half_diagonal = std::sqrt(2 * kQuarter * kQuarter + half_height * half_height);
   for (std::uint32_t i = 0; i < count; ++i) {
     Vec3 centroid = corner(i, kQuarter);

@@ -1,4 +1,4 @@
-// Golden files give the content that is listed beside them, and are written again byte by byte.
+// Golden files give the content listed beside them, and are written again byte by byte.
 #include <gtest/gtest.h>
 
 #include "libvpm/cloud/cloud_file.h"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Reads the golden files by the words of formats/*.md alone, and compares with what is listed beside
-them. Shares no code with libvpm: if this works, the specification is enough to write a reader.
+"""Reads the golden files by formats/*.md alone, and compares with the content listed beside them. Shares
+no code with libvpm, so it shows that the specification suffices to write a reader.
 """
 import json
 import pathlib

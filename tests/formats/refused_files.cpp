@@ -15,7 +15,7 @@ using file::ChunkEntry;
 using file::Kind;
 using file::Preamble;
 
-// The bytes of a container, to be spoiled field by field; bytes() makes the checksums right again.
+// The bytes of a container, to be damaged field by field. bytes() renews the checksums.
 class Spoiled {
  public:
   explicit Spoiled(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) { load(); }

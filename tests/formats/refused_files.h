@@ -1,4 +1,4 @@
-// Files that must be refused, and what the refusal must say.
+// Files that must be refused, with a part of the message.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace vpm::golden {
 
-// The bytes with all checksums made right again, as far as the tables still make sense.
+// Renews all checksums, as far as the tables still make sense.
 std::vector<std::byte> resealed(std::vector<std::byte> bytes);
 
 struct RefusedFile {
   std::string name;
-  file::Kind kind;      // as which it is read
-  std::string message;  // a part of the refusal
+  file::Kind kind;      // kind of file that the reader asks for
+  std::string message;  // part of the refusal
   std::vector<std::byte> bytes;
 };
 
-// Made from sound files, one defect each; apart from checksum_*, all checksums are right.
+// Makes files from sound ones with one defect each; apart from checksum_*, all checksums are right.
 std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
                                        const std::vector<std::byte>& model,
                                        const std::vector<std::byte>& calibrated_model,

@@ -1,4 +1,4 @@
-// Unsound files are refused in words, whatever is wrong with them.
+// Damaged files are refused with a message, wherever the damage is.
 #include <gtest/gtest.h>
 
 #include "libvpm/cloud/cloud_file.h"
@@ -21,7 +21,7 @@ void parse_as(const std::string& kind, std::vector<std::byte> bytes) {
   if (kind == "cloud") parse_cloud(std::move(bytes), "the file");
 }
 
-// The refusal's words, or "" where the bytes are accepted.
+// Returns the message of the refusal, or "" if the bytes are accepted.
 std::string refusal_of(const std::string& kind, const std::vector<std::byte>& bytes) {
   const auto fault = test::fault_of([&] { parse_as(kind, bytes); });
   if (!fault) return "";
@@ -74,8 +74,8 @@ TEST_P(DamagedFile, EveryChangedByteIsRefused) {
   }
 }
 
-// With right checksums the content itself must be looked at. Accepted or refused, never a crash:
-// the sanitizers listen.
+// Changes each byte under right checksums, so that the content itself is checked. Accepts both
+// answers; the sanitizers catch crashes.
 TEST_P(DamagedFile, EveryChangedByteUnderRightChecksumsIsReadOrRefused) {
   std::vector<std::byte> bytes = good_;
   std::size_t refused = 0;

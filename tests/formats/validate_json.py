@@ -4,8 +4,8 @@
     validate_json.py SCHEMA FILE...
 
 SCHEMA is a file, or the name of a schema in formats/schemas without ".json". A FILE that ends in
-.jsonl is checked line by line; "-" is JSON Lines on standard input. Exit status: 0 where all are
-valid, 1 otherwise (each fault is said on standard output), 2 where python3-jsonschema is missing.
+.jsonl is checked line by line; "-" is JSON Lines on standard input. Prints each fault. Exit status: 0 if all
+are valid, 1 otherwise, 2 if python3-jsonschema is missing.
 """
 import json
 import pathlib
@@ -21,14 +21,14 @@ SCHEMAS = pathlib.Path(__file__).resolve().parents[2] / "formats" / "schemas"
 
 
 def strict(text):
-    """JSON has no NaN and no infinity; Python's reader would let them pass."""
+    """Refuses NaN and infinity, which Python's reader accepts and JSON does not have."""
     def refuse(constant):
         raise ValueError(f"{constant} is not JSON")
     return json.loads(text, parse_constant=refuse)
 
 
 def documents(name):
-    """Pairs of a place and the text of a document."""
+    """Yields pairs of a place and the text of a document."""
     if name == "-":
         text, by_line = sys.stdin.read(), True
     else:

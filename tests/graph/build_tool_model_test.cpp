@@ -26,7 +26,7 @@ Packing scaled(Packing packing, double by) {
   return packing;
 }
 
-// The model with all lengths multiplied.
+// Returns the model with all lengths multiplied.
 ToolModel scaled(ToolModel m, double by) {
   const double cubed = by * by * by;
   const float narrow_by = static_cast<float>(by);

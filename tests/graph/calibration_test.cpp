@@ -42,7 +42,7 @@ TEST(Calibration, FallsWithTheNumberOfSpheres) {
   EXPECT_LT(levels.back().worst, 2e-3);
 }
 
-// Cuts that the calibration has not seen, by planes of another source of randomness.
+// Uses cuts that the calibration has not seen, by planes of another random source.
 TEST(Calibration, HoldsForOtherCuts) {
   const Made& made = octahedron();
   test::Numbers numbers(7);

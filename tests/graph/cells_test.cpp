@@ -13,7 +13,8 @@
 namespace vpm {
 namespace {
 
-// What the samples say lies where distance(x) < 0, as a fraction; x is about the centre of mass.
+// Returns the volume fraction of the samples where distance(x) < 0; x is relative to the centre of
+// mass.
 double fraction_inside(const Level& level, const std::function<double(Vec3)>& distance) {
   double sum = 0;
   for (const CellSample& s : level.samples) {
@@ -34,7 +35,7 @@ struct Error {
 
 class Cells : public testing::TestWithParam<test::Shape (*)()> {};
 
-// The promise of samples_per_length.
+// Checks the promise of samples_per_length.
 TEST_P(Cells, CutByPlanesAndBallsAsTheSolid) {
   const test::Shape shape = GetParam()();
   const Packing packing = test::greedy_packing(shape, 1000);
@@ -66,7 +67,7 @@ TEST_P(Cells, CutByPlanesAndBallsAsTheSolid) {
   EXPECT_LE(level.samples.size(), 100000u);
 }
 
-// A plane along a face, where the errors of neighbouring samples add up.
+// Cuts along a face, where the errors of neighbouring samples add up.
 TEST_P(Cells, SmoothFacesByLittle) {
   const test::Shape shape = GetParam()();
   const Packing packing = test::greedy_packing(shape, 1000);
@@ -116,7 +117,7 @@ TEST_P(Cells, HoldTheShareOfTheirSphere) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-// Sum of squared distances from their mean.
+// Returns the sum of squared distances from their mean.
 double scatter(std::span<const CellSample> samples) {
   Vec3 mean;
   for (const CellSample& s : samples) mean += widen(s.center) / static_cast<double>(samples.size());
@@ -125,8 +126,8 @@ double scatter(std::span<const CellSample> samples) {
   return sum;
 }
 
-// Cut into n equal parts each way, a body's parts scatter by 1 / n^2 of it: blocks of 64 samples in
-// groups of 4 by (4 / 64)^(2/3) = 0.16, if both were cubes.
+// A body cut into n equal parts each way has parts that scatter by 1 / n^2 of it: blocks of 64
+// samples in groups of 4 by (4 / 64)^(2/3) = 0.16, if both were cubes.
 TEST_P(Cells, SamplesThatFollowOneAnotherLieSideBySide) {
   const ToolModel model = build_tool_model(test::greedy_packing(GetParam()(), 300, 40000), {});
   const Level& level = model.levels.back();
@@ -140,7 +141,7 @@ TEST_P(Cells, SamplesThatFollowOneAnotherLieSideBySide) {
   EXPECT_LT(of_neighbors, 0.2 * of_blocks);
 }
 
-// Every point of the solid in a block of the sphere whose surface is nearest.
+// Every point of the solid lies in a block of the sphere whose surface is nearest.
 TEST_P(Cells, BlocksEncloseTheirShare) {
   const test::Shape shape = GetParam()();
   const Packing packing = test::greedy_packing(shape, 300, 40000);
@@ -163,8 +164,7 @@ TEST_P(Cells, BlocksEncloseTheirShare) {
     }
     found += enclosed;
   }
-  // Shares are known to the spacing of lines: what lies between two lines may belong to a
-  // neighbour.
+  // Cells are known to the spacing of lines: places between two lines may belong to a neighbour.
   EXPECT_GE(found, 0.999 * inside);
 }
 
@@ -189,7 +189,8 @@ TEST(BallPieces, SumToTheBall) {
     const double exact = volume({{}, radius});
     EXPECT_NEAR(sum / exact, 1, 1e-13);
     EXPECT_LT(norm(moment) / exact, 1e-12 * radius);
-    EXPECT_NEAR(second / (exact * 0.6 * radius * radius), 1, 0.01);  // mean squared radius: 3/5 r^2
+    EXPECT_NEAR(second / (exact * 0.6 * radius * radius), 1,
+                0.01);  // 3/5 r^2 is the mean squared radius
     if (radius > 2) {
       EXPECT_NEAR(static_cast<double>(pieces.size()) / exact, 1, 0.5);
     }

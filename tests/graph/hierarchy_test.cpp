@@ -13,7 +13,8 @@
 namespace vpm {
 namespace {
 
-// Every sphere once; children after their parent; every node encloses the spheres below it.
+// Expects every sphere once, children after their parent, and every node to enclose the spheres
+// below it.
 void expect_sound(const Hierarchy& tree, const std::vector<Sphere>& spheres) {
   std::vector<std::uint32_t> leaves = tree.leaves;
   std::sort(leaves.begin(), leaves.end());
@@ -44,7 +45,7 @@ TEST(Hierarchy, EnclosesPackings) {
   const Packing packing = test::greedy_packing(test::octahedron(), 600, 40000);
   const Hierarchy tree = build_hierarchy(packing.spheres);
   expect_sound(tree, packing.spheres);
-  // A tree of four children each, not a chain.
+  // A tree of four children per node has this depth at most; a chain is deeper.
   EXPECT_LE(depth(tree), 10u);
 }
 
@@ -61,17 +62,17 @@ TEST(Hierarchy, EndsForFewAndDegenerateSpheres) {
   for (const int count : {1, 2, 3, 4, 5, 6, 17, 500}) {
     expect_sound(build_hierarchy(in_row(count, 1)), in_row(count, 1));
   }
-  // Radii from 1 to 1e-12 that crowd in one point.
+  // Radii fall from 1 to 1e-12 and crowd in one point.
   const std::vector<Sphere> crowded = in_row(120, 0.8);
   expect_sound(build_hierarchy(crowded), crowded);
   EXPECT_LE(depth(build_hierarchy(crowded)), 40u);
-  // Not even distinct, as no packing is.
+  // Equal spheres, which no packing has, must not break the tree either.
   const std::vector<Sphere> equal(50, Sphere{{1, 2, 3}, 0.5});
   expect_sound(build_hierarchy(equal), equal);
 }
 
 TEST(EnclosingSphere, IsNearTheSmallest) {
-  // Corners of a cube: circumradius sqrt(3); two spheres: half their length.
+  // The corners of a cube have the circumradius sqrt(3); two spheres have half their length.
   std::vector<Sphere> corners;
   for (int k = 0; k < 8; ++k) {
     corners.push_back({{k & 1 ? 1.0 : -1.0, k & 2 ? 1.0 : -1.0, k & 4 ? 1.0 : -1.0}, 0.1});

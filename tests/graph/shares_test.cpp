@@ -26,7 +26,7 @@ Solid shifted(Solid solid, Vec3 by) {
   return solid;
 }
 
-// The union of the triangles of several solids.
+// Returns the union of the triangles of several solids.
 Solid joined(const Solid& a, const Solid& b) {
   Solid both = a;
   const std::uint32_t first = static_cast<std::uint32_t>(a.vertices.size());
@@ -64,8 +64,8 @@ TEST(Shares, SymmetricSpheresShareAlike) {
 }
 
 TEST(Shares, BoundariesLieWhereSurfacesAreEquallyFar) {
-  // Two balls in a long box: on the axis between them the boundary is in the middle of the gap; far
-  // from it, it is a hyperboloid. Counted on a fine lattice of points.
+  // Two balls lie in a long box. On the axis between them the boundary is in the middle of the gap;
+  // far from it, it is a hyperboloid. The volumes are counted on a fine lattice of points.
   const Solid box = synthetic::make_box(2, 0.5, 0.5);
   const std::vector<Sphere> spheres{{{-0.5, 0, 0}, 0.25}, {{0.4, 0.1, 0}, 0.1}};
   const Shares shares = shares_of(box, spheres);

@@ -35,7 +35,8 @@ std::set<SpherePair> pairs_of(const SphereGraph& graph) {
   return pairs;
 }
 
-// Prim's algorithm over all pairs, with edges shorter than epsilon for free.
+// Finds the bridges by Prim's algorithm over all pairs, where edges shorter than epsilon cost
+// nothing.
 std::set<SpherePair> bridges_by_force(const std::vector<Sphere>& spheres, double epsilon) {
   struct Link {
     double gap;
@@ -103,7 +104,7 @@ TEST(SphereGraph, BridgesAreTheShortestThatConnect) {
 }
 
 TEST(SphereGraph, EqualGapsAreTakenByIndex) {
-  // A lattice, where all gaps are equal: a spanning tree, and always the same one.
+  // All gaps of a lattice are equal; the spanning tree must be the same each time.
   std::vector<Sphere> spheres;
   for (int k = 0; k < 125; ++k) {
     spheres.push_back({{0.25 * (k % 5), 0.25 * (k / 5 % 5), 0.25 * (k / 25)}, 0.0625});

@@ -90,7 +90,7 @@ Shape octahedron() {
 Shape torus() {
   constexpr double kRing = 0.07, kTube = 0.03;
   constexpr int kAround = 96, kAcross = 48;
-  // The facets lie inside of the round torus by no more than their sagittas.
+  // The facets lie inside the round torus by their sagittas at most.
   const double inner =
       kTube * std::cos(kPi / kAcross) - (kRing + kTube) * (1 - std::cos(kPi / kAround));
   const auto depth = [inner](Vec3 p) {
@@ -115,7 +115,8 @@ Packing greedy_packing(const Shape& shape, std::size_t spheres, double candidate
 }
 
 double volume_below(const Solid& solid, Vec3 normal, double offset) {
-  // Cones over the clipped triangles from a point of the plane: the cut itself adds nothing.
+  // Sums cones over the clipped triangles from a point of the plane, so that the cut itself adds
+  // nothing.
   const Vec3 apex = normal * (offset / squared_norm(normal));
   double sum = 0;
   for (const Triangle& t : solid.triangles) {

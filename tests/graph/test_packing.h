@@ -10,7 +10,7 @@
 
 namespace vpm::test {
 
-// Numbers that look random and are the same everywhere (SplitMix64).
+// Makes pseudorandom numbers that are the same on every machine (SplitMix64).
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : state_(seed) {}
@@ -24,7 +24,7 @@ class Numbers {
 struct Shape {
   std::string name;
   Solid solid;
-  std::function<double(Vec3)> depth;  // not above the distance from the surface, positive inside
+  std::function<double(Vec3)> depth;  // at most the distance from the surface, positive inside
 };
 
 Shape convex(std::string name, Solid solid);
@@ -33,10 +33,11 @@ Shape tetrahedron();
 Shape octahedron();
 Shape torus();
 
-// Greedy, largest sphere first, with centres on a lattice of about `candidates` points in the box.
+// Packs greedily, largest sphere first, with centres on a lattice of about `candidates` points in
+// the box.
 Packing greedy_packing(const Shape& shape, std::size_t spheres, double candidates = 125000);
 
-// Volume of the part of the solid where dot(normal, x) < offset; exact.
+// Returns the exact volume of the part of the solid where dot(normal, x) < offset.
 double volume_below(const Solid& solid, Vec3 normal, double offset);
 
 }  // namespace vpm::test

@@ -26,13 +26,13 @@ Pose at(Vec3 place, Vec3 turn = {}) {
   return {rotation_from_vector(turn), place};
 }
 
-// Smooth, without a period that the steps could meet.
+// Returns a smooth path without a period that the steps could match.
 Pose wander(double t) {
   return at({0.1 * std::sin(2.1 * t), 0.05 * std::sin(3.7 * t + 1), 0.08 * std::cos(1.3 * t)},
             {0.4 * std::sin(1.7 * t), 0.3 * std::cos(2.3 * t), 0.2 * std::sin(0.9 * t)});
 }
 
-// A floor z = 0 that pushes a point up.
+// Returns the force of a floor z = 0 that pushes a point up.
 Wrench floor_push(const Pose& tool, double stiffness) {
   return {{0, 0, stiffness * std::max(0.0, -tool.translation.z)}, {}};
 }
@@ -73,7 +73,7 @@ TEST(VirtualCoupling, LosesEnergyAndNeverMakesAnyInFreeSpace) {
   EXPECT_GT(coupling.energy().supplied, 0);
 }
 
-// What comes out was put in or stored before, however the floor is hit.
+// Energy that comes out was put in or stored before, however the tool hits the floor.
 TEST(VirtualCoupling, IsPassiveAgainstASampledFloor) {
   for (const double stiffness : {1e3, 1e4, 3e4}) {
     VirtualCoupling coupling(parameters(), {}, at({0, 0, 0.02}));
@@ -86,7 +86,7 @@ TEST(VirtualCoupling, IsPassiveAgainstASampledFloor) {
       const Vec3 before = coupling.tool().translation;
       coupling.advance(device, floor_push(coupling.tool(), stiffness));
       fastest = std::max(fastest, 1e3 * norm(coupling.tool().translation - before));
-      // Up to what one step can make before the controller knows.
+      // One step can make some energy before the controller knows.
       EXPECT_GE(coupling.energy().supplied, -mass * fastest * fastest) << stiffness << ' ' << k;
     }
   }
@@ -102,8 +102,8 @@ TEST(VirtualCoupling, RestsWhereSpringAndContactBalance) {
   EXPECT_NEAR(felt.force.z, 2000 * depth, 1e-6);
 }
 
-// The implicit step against a linear contact, without the passivity controller: how far it still
-// swings after 4000 steps from 1 mm.
+// Runs the implicit step against a linear contact without the passivity controller. Returns the
+// swing that is left after 4000 steps from 1 mm.
 double swing_without_controller(const CouplingParameters& p, double contact) {
   const double h = 1 / p.rate, inert = p.mass + h * p.damping + h * h * p.stiffness;
   double x = 1e-3, v = 0;
@@ -154,7 +154,7 @@ TEST(VirtualCoupling, RefusesToStartAtNoPose) {
   EXPECT_THROW(VirtualCoupling(parameters(), {0, std::nan(""), 0}, at({0, 0, 0})), Error);
 }
 
-// One bad sample of a device's driver, or of a measure, must not be the end.
+// One bad sample of a device's driver, or of a measure, must not stop the coupling.
 TEST(VirtualCoupling, GoesOnAfterASampleThatIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = HUGE_VAL;
   VirtualCoupling coupling(parameters(), {0.01, 0, 0}, at({0, 0, 0})), other = coupling;

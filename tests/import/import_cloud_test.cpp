@@ -14,7 +14,7 @@ namespace {
 const Intrinsics kCamera{100, 110, 9.5, 7.5};
 constexpr std::uint32_t kWidth = 20, kHeight = 16;
 
-// A tilted plane seen by the camera, as organised PCD in text.
+// Returns a tilted plane seen by the camera, as organised PCD in text.
 std::string organised_pcd(double bend = 0) {
   std::string file =
       "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\n"

@@ -25,7 +25,7 @@ std::string header(const std::string& fields, const std::string& size, const std
          "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA ";
 }
 
-// Fields in an unusual order, of unusual types, with one of several values between.
+// Fields in an unusual order and of unusual types, one of them with several values.
 constexpr const char* kFields = "normal_z rgb y x z normal_x hist normal_y";
 constexpr const char* kSizes = "4 4 8 4 2 4 1 4";
 constexpr const char* kTypes = "F U F F I F U F";
@@ -67,7 +67,7 @@ std::string by_field() {
   return bytes;
 }
 
-// LZF without references: runs of literals.
+// Returns LZF without references: runs of literals.
 std::string as_literals(const std::string& data) {
   std::string bytes;
   for (std::size_t i = 0; i < data.size(); i += 32) {
@@ -109,7 +109,7 @@ TEST(Pcd, EveryEncodingGivesTheSamePoints) {
 TEST(Pcd, EveryDamageIsRefused) {
   for (const std::string& file : {binary_file(), compressed_file()})
     expect_damage_is_refused(file, 10000, [](auto bytes) { parse_pcd(bytes, "file"); });
-  // A text may lose its last digits and still be one: only whole values are missed.
+  // Text may lose its last digits and remain valid, so only whole values are missed.
   const std::string ascii = ascii_file();
   expect_damage_is_refused(ascii.substr(0, ascii.size() - 1), 10000,
                            [](auto bytes) { parse_pcd(bytes, "file"); });
@@ -136,7 +136,7 @@ TEST(Pcd, KeepsGridAndViewpoint) {
 TEST(Pcd, SaysWhatIsWrong) {
   const std::string plain = header("x y z", "4 4 4", "F F F", "1 1 1", 2);
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 x 6\n"), "point 1: 'x' is not a number"));
-  // A number too many would make others of all that follow.
+  // A surplus number must not shift the numbers of the points after it.
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3 4\n5 6\n"), "point 0 has 4 numbers"));
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2\n3 4 5 6\n"), "point 0 has 2 numbers"));
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 5 6\n7 8 9\n"), "more points"));
@@ -162,7 +162,7 @@ TEST(Pcd, CountsAreCheckedBeforeMemoryIsTaken) {
                    "holds no points"));
   EXPECT_TRUE(says(refused(fields + "WIDTH 3\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3 4 5 6\n"),
                    "is not POINTS 2"));
-  // Compressed to almost nothing: more than LZF can do.
+  // A compression beyond what LZF can do is refused before memory is taken.
   std::string bomb = fields + "WIDTH 50000000\nHEIGHT 1\nPOINTS 50000000\nDATA binary_compressed\n";
   append(bomb, std::uint32_t{4});
   append(bomb, std::uint32_t{600000000});
@@ -170,7 +170,7 @@ TEST(Pcd, CountsAreCheckedBeforeMemoryIsTaken) {
 }
 
 TEST(Lzf, CopiesRunsThatOverlapThemselves) {
-  // "ab", then 7 bytes from 2 back, then a long reference of 9 + 1 bytes from 1 back.
+  // The data are "ab", then 7 bytes from 2 back, then a long reference of 9 + 1 bytes from 1 back.
   const std::string data{'\x01', 'a', 'b', '\xA0', '\x01', '\xE0', '\x01', '\x00'};
   std::string out(2 + 7 + 10, '?');
   EXPECT_TRUE(decode_lzf(bytes_of(data), std::as_writable_bytes(std::span(out))));

@@ -25,7 +25,8 @@ void append(std::string& bytes, Value value, bool big_endian) {
   bytes += one;
 }
 
-// A list before the points, properties in an unusual order, faces after them.
+// Returns a header with a list before the points, properties in an unusual order, and faces after
+// them.
 std::string header(const std::string& format) {
   return "ply\nformat " + format +
          " 1.0\ncomment made by hand\nelement patch 1\nproperty list uchar short ids\n"
@@ -79,7 +80,7 @@ TEST(PlyPoints, SaysWhatIsWrong) {
   const std::string two =
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
       "property float z\nend_header\n";
-  // A number too many would make others of all that follow.
+  // A surplus number must not shift the numbers of the points after it.
   EXPECT_TRUE(says(refused(two + "1 2 3 4\n5 6\n"), "vertex 0 has more numbers"));
   EXPECT_TRUE(says(refused(two + "1 2\n3 4 5 6\n"), "vertex 0 has fewer numbers"));
   EXPECT_TRUE(says(refused(two + "1 2 3\n4 5 6\n7 8 9\n"), "more rows"));

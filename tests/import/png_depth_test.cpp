@@ -33,7 +33,7 @@ TEST(PngDepth, RefusesOtherImages) {
 TEST(PngDepth, RefusesSizesThatTheFileCannotHold) {
   std::string file = make_png(3, 2, 16, kValues);
   file.replace(16, 8, std::string("\x00\x00\x20\x00\x00\x00\x20\x00", 8));  // 8192 x 8192
-  // libpng finds the checksum of the header wrong; either way no memory is taken.
+  // Refuses without taking memory; libpng notices the wrong checksum of the header.
   EXPECT_NE(refused(file), "");
   const std::vector<std::uint16_t> row(100000);
   EXPECT_EQ(refused(make_png(100000, 1, 16, row)), "");

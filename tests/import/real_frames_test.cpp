@@ -1,4 +1,4 @@
-// Frames of real cameras, where the data set lies beside the repository.
+// Frames of real cameras, if the data set lies beside the repository.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,7 +46,7 @@ TEST_P(RealFrame, BecomesASoundCloud) {
   EXPECT_EQ(imported.width, frame.width);
   EXPECT_EQ(imported.height, frame.height);
   EXPECT_EQ(frame.width * frame.height - imported.invalid, frame.measured);
-  // Nearly every measured pixel has neighbours enough.
+  // Nearly every measured pixel has enough neighbours.
   EXPECT_GT(static_cast<double>(imported.cloud.size()),
             0.999 * static_cast<double>(frame.measured));
 }

@@ -48,7 +48,7 @@ void expect_damage_is_refused(const std::string& file, std::size_t samples,
                               const std::function<void(std::span<const std::byte>)>& parse) {
   const std::size_t step = 1 + file.size() / samples;
   for (std::size_t size = 0; size < file.size(); size += step) {
-    // A copy of its own size, so that reading past the end is seen by the sanitizer.
+    // Copies to a buffer of exactly this size, so that the sanitizer notices reads past the end.
     const std::string cut(file, 0, size);
     const std::string message = test::refusal([&] { parse(bytes_of(cut)); });
     ASSERT_EQ(message.substr(0, 4), "file") << "cut to " << size << " bytes: " << message;

@@ -21,7 +21,8 @@ TEST(CutVolume, OfACubeByPlanes) {
   EXPECT_NEAR(volume_below_plane(cube, {0, 0, -1}, -1), 4, 1e-13);  // upper half
   EXPECT_EQ(volume_below_plane(cube, {1, 0, 0}, 3.5), 0);
   EXPECT_NEAR(volume_below_plane(cube, {1, 0, 0}, 9), 8, 1e-13);
-  const double third = 1 / std::sqrt(3.0);  // a corner: a tetrahedron with three edges of 1
+  const double third =
+      1 / std::sqrt(3.0);  // cuts a corner off: a tetrahedron with three edges of 1
   const Vec3 diagonal{third, third, third};
   EXPECT_NEAR(volume_below_plane(cube, diagonal, dot(diagonal, Vec3{5, -4, 0})), 1.0 / 6, 1e-13);
 }
@@ -40,7 +41,7 @@ TEST(CutVolume, OfACubeByBalls) {
   EXPECT_NEAR(volume_in_ball(cube, {{1.25, 0, 0}, 0.5}), cap, 1e-12);
 }
 
-// Against the integrals of libvpm/synthetic, which are good to about 1e-6.
+// Compares with the integrals of libvpm/synthetic, which are accurate to about 1e-6.
 TEST(CutVolume, AgreesWithIntegration) {
   const Solid torus = synthetic::make_twisted_torus(0.09, 0.05, 3, 24);
   const synthetic::TrueSolid truth(torus);

@@ -70,7 +70,7 @@ TEST(MeshCheck, ACavityIsLeftOut) {
   EXPECT_EQ(checked.facts.shells, 2U);
   EXPECT_EQ(checked.facts.cavities, 1U);
   EXPECT_TRUE(checked.notes.empty());
-  // Turned inside out it is the same body.
+  // A body turned inside out is the same body.
   EXPECT_DOUBLE_EQ(solid_of(turned_over(hollow)).facts.volume, 7);
 }
 
@@ -88,7 +88,7 @@ TEST(MeshCheck, ASolidWithinASolidIsDropped) {
   EXPECT_EQ(checked.facts.inner_shells, 1U);
   EXPECT_EQ(checked.facts.shells, 1U);
   EXPECT_TRUE(says(checked.notes, "1 shell inside of the solid dropped"));
-  // A hole within what is dropped is filled too; a hole through both stays.
+  // A hole within a dropped shell is filled too; a hole through both stays.
   const Solid filled = together(together(make_cube(3), make_cube(2)), turned_over(make_cube(1)));
   EXPECT_DOUBLE_EQ(solid_of(filled).facts.volume, 27);
   const CheckedSolid hollow =
@@ -110,7 +110,7 @@ TEST(MeshCheck, OverlapsOfBodiesCountOnce) {
   EXPECT_GT(checked.facts.self_intersections, 0U);
   EXPECT_TRUE(says(checked.warnings, "intersects itself"));
   EXPECT_NEAR(checked.facts.volume, 16 - 1 * 1.1 * 1.2, 1e-13);
-  // Bodies, whichever way they face.
+  // Bodies count whichever way they face.
   EXPECT_NEAR(solid_of(together(make_cube(2), turned_over(moved(make_cube(2), {1, 0.9, 0.8}))))
                   .facts.volume,
               16 - 1 * 1.1 * 1.2, 1e-13);
@@ -125,7 +125,7 @@ TEST(MeshCheck, RefusesAnOpenMeshWithCountAndPlace) {
 }
 
 TEST(MeshCheck, RefusesNonManifoldEdges) {
-  // Two cubes that share an edge by index.
+  // Two cubes share an edge by index.
   Solid pair = together(make_cube(2), moved(make_cube(2), {2, 2, 0}));
   SolidOptions weld;
   weld.weld = 1e-9;
@@ -156,7 +156,7 @@ TEST(MeshCheck, RefusesAKleinBottle) {
       bottle.vertices.push_back({double(i), double(j), std::sin(double(3 * i + 5 * j))});
   }
   const auto at = [&](std::uint32_t i, std::uint32_t j) {
-    return i < n ? n * i + j % n : (n - j % n) % n;  // the last row meets the first mirrored
+    return i < n ? n * i + j % n : (n - j % n) % n;  // the last row meets the first one mirrored
   };
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
@@ -208,7 +208,7 @@ TEST(MeshCheck, UnusedVerticesAndCollapsedTrianglesAreDropped) {
 }
 
 TEST(MeshCheck, SeamsOfAnIndexedMeshAreClosedWithANote) {
-  // A ball as a soup of triangles in an indexed format.
+  // A ball is given as a soup of triangles in an indexed format.
   const Solid ball = make_icosphere(1, 1);
   Solid soup;
   for (const Triangle& t : ball.triangles) {

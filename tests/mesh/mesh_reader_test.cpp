@@ -12,7 +12,7 @@ namespace {
 using synthetic::make_cube;
 using synthetic::make_icosphere;
 
-// Coordinates that no short decimal and no float holds.
+// Returns a solid whose coordinates need all digits of a double.
 Solid awkward() {
   return moved(make_icosphere(1.0 / 3, 1), {1e3 + 1.0 / 7, -1e-5 / 3, 0.1});
 }
@@ -32,7 +32,7 @@ TEST(MeshReader, TextAndBinaryKeepEveryBitOfACoordinate) {
 }
 
 TEST(MeshReader, StlListsEachCorner) {
-  const Solid cube = make_cube(0.5);  // its coordinates are floats
+  const Solid cube = make_cube(0.5);  // with coordinates that floats hold exactly
   for (const std::string& content : {as_ascii_stl(cube), as_binary_stl(cube)}) {
     const RawMesh mesh = parse(content, "a.stl");
     ASSERT_EQ(mesh.polygon_count(), 12U);
@@ -102,7 +102,7 @@ TEST(MeshReader, PlySkipsWhatItDoesNotNeed) {
 struct Bad {
   const char* name;
   std::string content;
-  const char* message;  // a part of the refusal
+  const char* message;  // part of the refusal
 };
 
 TEST(MeshReader, RefusesNamingFileAndPlace) {

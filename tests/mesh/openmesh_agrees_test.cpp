@@ -1,5 +1,5 @@
-// What OpenMesh thinks of our input and output. Its readers round to floats and give up on some of
-// the real files, so only what it reads soundly is compared.
+// Compares our reading and writing with OpenMesh's. Its readers round to floats and give up on some
+// real files, so only meshes that it reads soundly are compared.
 #include <gtest/gtest.h>
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
@@ -19,7 +19,7 @@ namespace {
 
 using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<>;
 
-// Every accepted solid must be a closed manifold of half-edges to somebody else too.
+// Expects an accepted solid to be a closed manifold of half-edges to OpenMesh too.
 void expect_closed_manifold(const Solid& solid) {
   HalfEdgeMesh mesh;
   std::vector<HalfEdgeMesh::VertexHandle> handles;
@@ -78,7 +78,7 @@ TEST(OpenMeshAgrees, OnWhatTheFilesSay) {
   expect_same_mesh(as_binary_ply(ball, true), "ply");
 }
 
-// A mesh with triangles and quadrilaterals, as OpenMesh writes it.
+// Returns a mesh of triangles and quadrilaterals as OpenMesh writes it.
 std::string written_by_openmesh(const std::string& extension) {
   OpenMesh::PolyMesh_ArrayKernelT<> mesh;
   std::vector<OpenMesh::VertexHandle> v;

@@ -54,7 +54,7 @@ TEST(TriangleCells, FillTheTriangleAndNoSegmentCrossesThem) {
       for (int k = 1; k < 50; ++k) {
         const double t = k / 50.0;
         const Vec2 p{s.from.x + t * (s.to.x - s.from.x), s.from.y + t * (s.to.y - s.from.y)};
-        double inside = HUGE_VAL;  // least distance from an edge times its length
+        double inside = HUGE_VAL;  // least distance from an edge times the edge's length
         for (std::size_t i = 0; i < cell.size(); ++i) {
           const Vec2 a = cell[i], b = cell[(i + 1) % cell.size()];
           inside = std::min(inside, (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x));
@@ -80,20 +80,20 @@ TEST(EnclosedMass, IsThatOfTheMeshWhereNothingMeets) {
 }
 
 TEST(EnclosedMass, OverlappingBoxesCountOnce) {
-  // Two arms of a cross, one arm shorter on one side.
+  // Two arms make a cross; one arm is shorter on one side.
   const Solid cross = together(make_box(1, 0.5, 0.5), moved(make_box(0.5, 1, 0.5), {0, 0.25, 0}));
   for (const Solid& solid : {cross, turned(cross), moved(turned(cross), {1e3, -2e3, 5e2})}) {
     const MassProperties mass = enclosed_mass(solid);
     EXPECT_NEAR(mass.volume, 0.25 + 0.25 - 0.125, 1e-10);
   }
-  const double low = -0.25, high = 0.75;              // of the second arm, along y
+  const double low = -0.25, high = 0.75;              // ends of the second arm along y
   const double moment = 0.25 * (low + high) / 2 - 0;  // the overlap is centred on y = 0
   EXPECT_NEAR(enclosed_mass(cross).center_of_mass.y, moment / 0.375, 1e-14);
   EXPECT_NEAR(enclosed_mass(cross).center_of_mass.x, 0, 1e-14);
 }
 
 TEST(EnclosedMass, FacesThatCoincideBoundNothing) {
-  // Stacked, of different sizes, and the same body three times.
+  // Bodies of different sizes are stacked, and one body is given three times.
   const Solid stack = together(make_cube(2), moved(make_cube(1), {0.2, 0.1, 1.5}));
   const Vec3 center = enclosed_mass(stack).center_of_mass;
   EXPECT_NEAR(enclosed_mass(stack).volume, 9, 1e-13);
@@ -103,7 +103,7 @@ TEST(EnclosedMass, FacesThatCoincideBoundNothing) {
   const Solid ball = turned(make_icosphere(1, 2));
   const double volume = mass_properties(ball).volume;
   EXPECT_NEAR(enclosed_mass(together(together(ball, ball), ball)).volume, volume, 1e-9);
-  // A pocket cut flush with a face.
+  // A pocket is cut flush with a face.
   const Solid pocket = together(make_cube(2), turned_over(moved(make_cube(1), {0, 0, 0.5})));
   EXPECT_NEAR(enclosed_mass(pocket).volume, 7, 1e-12);
   EXPECT_NEAR(enclosed_mass(turned(pocket)).volume, 7, 1e-9);
@@ -118,7 +118,7 @@ TEST(EnclosedMass, AgreesWithALensInClosedForm) {
   EXPECT_NEAR(enclosed_mass(together(a, turned_over(b))).volume, ball - lens, 2e-3 * lens);
 }
 
-// A cross of two boxes of 3 x 1 x 1, cut at x = c and by a ball about its middle.
+// A cross of two boxes of 3 x 1 x 1 is cut at x = c and by a ball about its middle.
 TEST(EnclosedSurface, IntegralsOverItCountOverlapsOnce) {
   const Solid cross = together(make_box(3, 1, 1), make_box(1, 3, 1));
   const Solid surface = enclosed_surface(cross);

@@ -43,7 +43,7 @@ TEST(Predicates, AgreeWithIntegersNearThePlane) {
     const P d{integer(kRange), integer(kRange), integer(kRange)};
     const P u{integer(kRange), integer(kRange), integer(kRange)};
     const P v{integer(kRange), integer(kRange), integer(kRange)};
-    // Three points in the plane of d, u, v, one of them off it by at most a unit.
+    // Three points lie in the plane of d, u, v, one of them off it by at most a unit.
     const auto in_plane = [&](std::int64_t s, std::int64_t t) {
       return P{d.x + s * u.x + t * v.x, d.y + s * u.y + t * v.y, d.z + s * u.z + t * v.z};
     };
@@ -68,7 +68,7 @@ TEST(Predicates, FlatCaseAgreesWithIntegers) {
   for (int round = 0; round < 20000; ++round) {
     const auto integer = [&] { return static_cast<std::int64_t>(random() % (1ULL << 50)); };
     const std::int64_t px = integer(), py = integer(), qx = integer(), qy = integer();
-    // The middle of p and q, off by at most a unit.
+    // The point is the middle of p and q, off by at most a unit.
     const std::int64_t rx = (px + qx) / 2 + static_cast<std::int64_t>(random() % 3) - 1,
                        ry = (py + qy) / 2;
     const Int128 truth =

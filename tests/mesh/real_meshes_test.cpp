@@ -1,4 +1,4 @@
-// Files from the world: scans, CAD parts and artists' models, with facts that others computed.
+// Real files: scans, CAD parts and artists' models, with facts that others computed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -24,7 +24,7 @@ bool contains(const std::string& message, const std::string& part) {
   return message.find(part) != std::string::npos;
 }
 
-// Without the triangles whose corners all lie above the height.
+// Returns the solid without the triangles whose corners all lie above the height.
 Solid cut_open(Solid solid, double height) {
   std::erase_if(solid.triangles, [&](const Triangle& t) {
     return solid.vertices[t[0]].z > height && solid.vertices[t[1]].z > height &&
@@ -52,7 +52,7 @@ TEST(BoundaryLoops, GoAroundEachHole) {
   for (const BoundaryLoop& loop : loops) {
     EXPECT_TRUE(loop.closed);
     ASSERT_EQ(loop.vertices.size(), 4U);
-    Vec3 normal;  // of the face that is missing
+    Vec3 normal;  // the missing face's
     const double z = cube.vertices[loop.vertices[0]].z;
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3 p = cube.vertices[loop.vertices[k]], q = cube.vertices[loop.vertices[(k + 1) % 4]];
@@ -64,7 +64,7 @@ TEST(BoundaryLoops, GoAroundEachHole) {
 }
 
 TEST(BoundaryLoops, HolesThatTouchInAVertexAreTwo) {
-  // A flat sheet of 4 x 4 squares without two that meet in a corner.
+  // A flat sheet of 4 x 4 squares lacks two that meet in a corner.
   Solid sheet;
   for (std::uint32_t i = 0; i < 25; ++i) sheet.vertices.push_back({i % 5 * 1.0, i / 5 * 1.0, 0});
   for (std::uint32_t i = 0; i < 4; ++i) {
@@ -117,7 +117,8 @@ TEST(RepairHoles, PlanarOnesGiveTheBodyBack) {
 }
 
 TEST(RepairHoles, ARingIsFilledByItsTwoRims) {
-  // A tube without the ring that closes it on top: two planar rims, one within the other.
+  // A tube lacks the ring that closes it on top, which leaves two planar rims, one within the
+  // other.
   const auto tube = [](double inner, double outer, int around) {
     Solid solid;
     for (int k = 0; k < around; ++k) {
@@ -186,7 +187,7 @@ TEST(SurfaceDistance, OfSpheresIsThatOfTheirRadii) {
   const Solid one = make_icosphere(1, 4), two = make_icosphere(1.25, 4);
   EXPECT_NEAR(farthest_from_surface(two, one, 0.05), 0.25, 5e-3);
   EXPECT_NEAR(farthest_from_surface(one, two, 0.05), 0.25, 5e-3);
-  // One-sided: a part is near the whole, the whole is not near its part.
+  // The distance is one-sided: a part is near the whole, the whole is not near its part.
   const Solid part = cut_open(one, 0);
   EXPECT_EQ(farthest_from_surface(part, one, 0.1), 0);
   EXPECT_GT(farthest_from_surface(one, part, 0.1), 0.9);
@@ -208,7 +209,8 @@ TEST(RepairByVoxels, AClosedMeshComesBackWithinAVoxel) {
 TEST(RepairByVoxels, ClosesWideHolesWhateverTheOrientation) {
   const Solid ball = make_icosphere(1, 4), open = cut_open(ball, 0.8);
   for (Solid mesh : {open, turned_over(open)}) {
-    std::swap(mesh.triangles[100][0], mesh.triangles[100][1]);  // one that disagrees
+    std::swap(mesh.triangles[100][0],
+              mesh.triangles[100][1]);  // turns one triangle against the others
     const CheckedSolid checked = solid_of(mesh, repair(Repair::voxel));
     EXPECT_EQ(checked.facts.euler, 2);
     const double cap = kPi * 0.04 * (3 - 0.2) / 3;
@@ -240,7 +242,7 @@ TEST(RepairByFlood, ClosesWhatIsNarrowWhateverTheOrientation) {
   torus = together(torus, make_icosphere(0.1, 2));  // a body in the hole of the ring
   const CheckedSolid checked = solid_of(torus, repair(Repair::flood));
   EXPECT_EQ(checked.facts.shells, 2U);
-  EXPECT_EQ(checked.facts.euler, 2);  // of the torus 0, of the ball 2
+  EXPECT_EQ(checked.facts.euler, 2);  // 0 for the torus plus 2 for the ball
   EXPECT_NEAR(checked.facts.volume, volume, 0.02 * volume);
   const VoxelRepair& done = *checked.facts.voxel_repair;
   EXPECT_NEAR(done.max_hole, 2.7 / 16, 0.02);
@@ -313,7 +315,7 @@ TEST(RepairByVoxels, RefusesWhatHoldsNoVoxelAndWrongResolutions) {
 
 TEST(RealMeshes, BadBunniesAreRepaired) {
   if (shared_mesh("bad_bunny_open.obj").empty()) GTEST_SKIP() << "the shared data is not here";
-  const double bunny = 0.00075393;  // of the sound one, with other fillings below
+  const double bunny = 0.00075393;  // volume of the sound bunny, with other fillings below
   const CheckedSolid filled =
       make_solid(read_mesh(shared_mesh("bad_bunny_open.obj")), repair(Repair::holes));
   EXPECT_EQ(filled.facts.filled_holes.size(), 5U);

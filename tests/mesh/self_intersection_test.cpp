@@ -20,9 +20,9 @@ TEST(TriangleIntersection, KnowsDisjointTriangles) {
   EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, -1}, {0.5, 0.5, 1}, {3, 3, 1}}));
   EXPECT_FALSE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}, {2, 0, 1}, {0, 2, 1}}));
   EXPECT_FALSE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1.5, 1.5, -1}, {1.5, 1.5, 1}, {3, 3, 1}}));
-  // A corner that touches from above.
+  // A corner touches from above.
   EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0}, {0, 0, 1}, {1, 0, 1}}));
-  // In one plane: overlapping, one within the other, apart.
+  // Triangles in one plane overlap, lie within each other, or lie apart.
   EXPECT_TRUE(meet({{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.5, 0.5, 0}, {3, 3, 0}, {3, 2, 0}}));
   EXPECT_TRUE(meet({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}));
   EXPECT_TRUE(meet({{1, 1, 0}, {2, 1, 0}, {1, 2, 0}, {0, 0, 0}, {9, 0, 0}, {0, 9, 0}}));

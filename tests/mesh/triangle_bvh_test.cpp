@@ -54,7 +54,7 @@ TEST(ClosestPoint, NoSampleOfTheTriangleIsNearer) {
   }
 }
 
-// Four triangles are looked at together, with the bits of one.
+// Four triangles processed together give the bits of each alone.
 TEST(TriangleBvh, ALeafHasTheBitsOfItsTriangles) {
   std::mt19937_64 engine(5);
   for (int round = 0; round < 3000; ++round) {

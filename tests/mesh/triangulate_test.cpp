@@ -17,7 +17,7 @@ RawMesh polygon(const std::vector<Vec3>& corners) {
   return mesh;
 }
 
-// A polygon is cut well if the triangles' areas, none of them turned over, add up to its area.
+// Expects the areas of the triangles, none of them turned over, to add up to the polygon's area.
 void expect_cut_well(const std::vector<Vec3>& corners, Vec3 unit_normal, double area) {
   const std::vector<Triangle> triangles = triangulate(polygon(corners));
   EXPECT_EQ(triangles.size(), corners.size() - 2);
@@ -31,10 +31,10 @@ void expect_cut_well(const std::vector<Vec3>& corners, Vec3 unit_normal, double 
 }
 
 TEST(Triangulate, CutsConcavePolygonsInAnyPlane) {
-  // An arrow that a fan from its first corner would leave.
+  // A fan from the arrow's first corner would leave the polygon.
   const std::vector<Vec3> arrow{{0, 0, 0}, {4, -3, 0}, {1, 0, 0}, {4, 3, 0}};
   expect_cut_well(arrow, {0, 0, 1}, 3);
-  std::vector<Vec3> comb;  // teeth: many reflex corners
+  std::vector<Vec3> comb;  // its teeth make many reflex corners
   for (int k = 0; k < 10; ++k) {
     comb.push_back({2.0 * k, 0, 0});
     comb.push_back({2.0 * k + 1, 0, 5});

@@ -22,7 +22,7 @@ TEST(Weld, JoinsEqualPositionsAndSignedZeros) {
   EXPECT_EQ(triangles, (std::vector<Triangle>{{0, 1, 3}, {0, 1, 3}}));
 }
 
-// Against the definition, checked over all pairs.
+// Compares with the definition, over all pairs.
 TEST(Weld, JoinsToTheFirstWithinTheTolerance) {
   std::mt19937 random(2);
   std::vector<Vec3> vertices;

@@ -10,8 +10,7 @@
 namespace vpm {
 namespace {
 
-// Far groups are approximated: the number may miss its integer by this much, a fifth of what
-// decides.
+// Error of the approximation of far groups: a fifth of the difference that decides.
 constexpr double kApproximation = 0.1;
 
 Solid joined(Solid a, const Solid& b, bool reverse) {
@@ -43,7 +42,7 @@ TEST(WindingNumber, CountsHowOftenAPointIsEnclosed) {
   }
 }
 
-// Two sheets that lie on one another, facing apart, enclose nothing: not what lies on them either.
+// Two sheets that lie on one another and face apart enclose nothing, not even points on them.
 TEST(WindingNumber, FoldedSheetsEncloseNothing) {
   std::mt19937_64 engine(2);
   const auto lattice = [&] { return 0.05 * static_cast<double>(engine() % 9) - 0.2; };
@@ -72,7 +71,8 @@ TEST(WindingNumber, TorusAgreesWithItsEquation) {
   for (int k = 0; k < 3000; ++k) {
     const double x = uniform(0.8), y = uniform(0.8), z = uniform(0.3);
     const double from_ring = std::hypot(std::hypot(x, y) - 0.5, z);
-    if (std::abs(from_ring - 0.2) < 1e-3) continue;  // between the torus and its facets
+    if (std::abs(from_ring - 0.2) < 1e-3)
+      continue;  // skips places between the torus and its facets
     EXPECT_NEAR(winding.at({x, y, z}), from_ring < 0.2 ? 1 : 0, kApproximation);
   }
 }

@@ -13,7 +13,7 @@ namespace {
 
 using PackingFile = test::InTemporaryFolder;
 
-// What a writer refuses, a reader does.
+// The writer refuses the same content as the reader.
 TEST_F(PackingFile, NoPackingHasWhatNoSolidCanHold) {
   const auto refused = [&](const std::function<void(Packing&)>& change) {
     Packing packing = golden::cube_packing();

@@ -28,7 +28,7 @@ TEST(ToolModel, SoundModelsAreValid) {
   EXPECT_NO_THROW(validate(golden::cube_model(), "model"));
 }
 
-// What readers of files refuse, writers do not write either.
+// The writer refuses the same content as the reader.
 TEST(ToolModel, UnsoundModelsAreNotWritten) {
   const auto expect_refused = [](const char* defect, auto spoil) {
     ToolModel model = golden::cube_model();

@@ -26,14 +26,14 @@ Point about(Vec3 x, Vec3 origin) {
   return {Long{x.x} - origin.x, Long{x.y} - origin.y, Long{x.z} - origin.z};
 }
 
-// Distance of the origin from the segment.
+// Returns the distance of the origin from the segment.
 Long to_segment(const Point& a, const Point& b) {
   const Point ab = minus(b, a);
   const Long t = std::clamp(-inner(a, ab) / inner(ab, ab), Long{0}, Long{1});
   return length({a[0] + t * ab[0], a[1] + t * ab[1], a[2] + t * ab[2]});
 }
 
-// Distance of the origin from the triangle, by barycentric coordinates of its foot.
+// Returns the distance of the origin from the triangle, by barycentric coordinates of its foot.
 Long to_triangle(const Point& a, const Point& b, const Point& c) {
   const Point ab = minus(b, a), ac = minus(c, a);
   const Long bb = inner(ab, ab), bc = inner(ab, ac), cc = inner(ac, ac);

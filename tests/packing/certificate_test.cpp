@@ -36,7 +36,7 @@ TEST(Certificate, CentreOutsideIsProtrusion) {
   const Certificate c = certify(kCube, {{{0, 0, 1.5}, .25}});
   EXPECT_FALSE(c.holds);
   EXPECT_DOUBLE_EQ(c.max_protrusion, .75);
-  // In the cavity of a shell: far enough from the mesh, but not in the solid.
+  // The cavity of a shell is far enough from the mesh, but not in the solid.
   const Solid shell = joined(kCube, reversed(synthetic::make_cube(1)));
   EXPECT_FALSE(certify(shell, {{{0, 0, 0}, .1}}).holds);
   EXPECT_TRUE(certify(shell, {{{.75, 0, 0}, .25}}).holds);

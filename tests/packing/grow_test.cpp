@@ -46,7 +46,7 @@ TEST(Grow, OneSphereBecomesTheInsphere) {
 TEST(Grow, TwoSpheresShareABox) {
   const Solid box = synthetic::make_box(2, 1, 1);
   const std::vector<Sphere> grown = grow(box, {{{-.2, .1, 0}, .1}, {{.3, 0, .2}, .1}}, {});
-  EXPECT_NEAR(filled(grown), kPi / 3, 1e-3);  // two balls of diameter 1: there is no more room
+  EXPECT_NEAR(filled(grown), kPi / 3, 1e-3);  // two balls of diameter 1 leave no room to grow
   expect_packing(box, grown);
 }
 
@@ -129,8 +129,8 @@ TEST(Grow, GainsOnRealMeshes) {
   }
 }
 
-// Equal balls in a tube, small ones in the wedges between them: growing shrinks some of these, and
-// there is more room elsewhere.
+// A tube holds equal balls, and small ones in the wedges between them. Growing shrinks some small
+// ones, and there is more room elsewhere.
 TEST(Grow, MovesTheSmallestToWhereThereIsRoom) {
   const Solid knot = synthetic::make_torus_knot(2, 3, 1, 0.5, 0.177, 240, 24);
   const double all = mass_properties(knot).volume;
@@ -139,7 +139,7 @@ TEST(Grow, MovesTheSmallestToWhereThereIsRoom) {
   expect_packing(knot, grown);
   EXPECT_GE(filled(grown) / all, greedy.coverage + .004);
   EXPECT_GT(greedy.coverage_bound, filled(grown) / all);
-  // Ten of its largest balls cannot gain.
+  // Ten of the largest balls cannot gain.
   const PackResult ten = pack(knot, {.spheres = 10});
   EXPECT_GT(ten.coverage, .999 * ten.coverage_bound);
   EXPECT_LE(filled(grow(knot, ten.spheres, {})) / all, ten.coverage_bound * (1 + 1e-9));

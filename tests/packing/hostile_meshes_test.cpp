@@ -1,5 +1,5 @@
-// Meshes as they come, each with the verdict that is expected of it: refused with a reason, or a
-// solid of known volume whose packing is certified and agrees with a count of voxels.
+// Difficult meshes, each with the expected verdict: refused with a reason, or a solid of known
+// volume whose packing is certified and agrees with a count of voxels.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ Solid shifted(Solid solid, Vec3 by) {
   return solid;
 }
 
-// As in a file that lists each point once.
+// Joins equal vertices, as in a file that lists each point once.
 Solid welded(Solid solid) {
   for (Triangle& t : solid.triangles) {
     for (std::uint32_t& corner : t) {
@@ -80,7 +80,7 @@ Solid no_top(Solid solid) {
   return without(std::move(solid), [](Vec3 p) { return p.z > 0.99; });
 }
 
-// A corner of the cube is cut off by an edge that has a vertex on one of its sides only.
+// Cuts a corner of the cube off by an edge with a vertex on one of its sides only.
 Solid t_junction() {
   Solid cube = make_cube(2);
   const auto [a, b, c] = cube.triangles[0];
@@ -93,7 +93,7 @@ Solid t_junction() {
 
 Solid divided_box() {
   Solid two = welded(joined(make_cube(2), shifted(make_cube(2), {2, 0, 0})));
-  // The wall between the halves once instead of twice.
+  // Leaves the wall between the halves once instead of twice.
   std::vector<Triangle> kept;
   int wall = 0;
   for (const Triangle& t : two.triangles) {
@@ -124,8 +124,8 @@ Solid moebius_band() {
   return band;
 }
 
-// The tube is thicker than the ring: the lens about the axis is enclosed twice, in opposite senses,
-// so the volume is what Pappus says.
+// Returns a torus whose tube is thicker than its ring. The lens about the axis is enclosed twice,
+// in opposite senses, so the volume is that of Pappus' theorem.
 Solid spindle_torus() {
   return make_torus(0.3, 0.5, 64, 32);
 }
@@ -247,8 +247,8 @@ const Hostile kMeshes[] = {
      {0x1p-6, 1e-3}},
 };
 
-constexpr int kVoxels = 32;       // of repairs, and of counts where no detail is fine
-constexpr int kFineVoxels = 128;  // for real parts
+constexpr int kVoxels = 32;       // resolution of repairs, and of counts without fine details
+constexpr int kFineVoxels = 128;  // resolution for real parts
 
 void expect_certified(const CheckedSolid& checked, int voxels) {
   const PackResult result = pack(checked.solid, {.spheres = 15});

@@ -26,7 +26,8 @@ TEST(Inertia, SecondMomentsOfABox) {
 }
 
 TEST(Inertia, SecondMomentsTurnWithTheSolid) {
-  // A box turned by 45 degrees about z: xx = yy = mean of both, xy = half of their difference.
+  // A box turned by 45 degrees about z has xx = yy = the mean of both, and xy = half of their
+  // difference.
   const double h = std::sqrt(0.5);
   const Rotation turn = rotation_from_quaternion({0, 0, std::sin(kPi / 8), std::cos(kPi / 8)});
   const SecondMoments m = second_moments(moved(synthetic::make_box(2, 1, 1), turn, {1, 1, 1}));
@@ -37,10 +38,11 @@ TEST(Inertia, SecondMomentsTurnWithTheSolid) {
 }
 
 TEST(Inertia, ErrorOfOneSphereInACube) {
-  // Per volume: 2/5 r^2 against a^2/6, the same for all axes.
+  // Per volume the moments are 2/5 r^2 and a^2/6, the same for all axes.
   const Solid cube = synthetic::make_cube(2);
   EXPECT_NEAR(error_of(cube, {{{0, 0, 0}, 1}}), 1 - 0.4 / (4.0 / 6), 1e-12);
-  // A shifted sphere has d^2 more about two axes: where it is too small, that can only mend two.
+  // A shifted sphere has d^2 more about two axes, which can make up for a deficit about those two
+  // only.
   const double ixx = 0.4 * 0.25 - 4.0 / 6, iyy = ixx + 0.25;
   EXPECT_NEAR(error_of(cube, {{{.5, 0, 0}, .5}}),
               std::sqrt(ixx * ixx + 2 * iyy * iyy) / (std::sqrt(3.0) * 4.0 / 6), 1e-12);
@@ -61,7 +63,7 @@ TEST(Inertia, ErrorFallsAndStopsThePacker) {
   EXPECT_GT(error_of(solid, spheres), 0.01);
 }
 
-// Two boxes that overlap by a third are the inertia of one long box.
+// Two boxes that overlap by a third have the inertia of one long box.
 TEST(Inertia, OverlapsCountOnce) {
   const Solid box = synthetic::make_box(2, 1, 1);
   const Solid pair =

@@ -13,7 +13,7 @@ namespace {
 
 using Four = LinearProgramme::Four;
 constexpr auto kNone = LinearProgramme::kNone;
-constexpr double kGap = 1e-3, kLeast = 1e-6;  // promised, of the gain and of its bound
+constexpr double kGap = 1e-3, kLeast = 1e-6;  // promised accuracy of the gain and of its bound
 
 double product(const Four& a, const Four& x) {
   return a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3];
@@ -45,7 +45,7 @@ TEST(LinearProgramme, WithoutRowsEveryUnknownGoesToItsBound) {
 
 TEST(LinearProgramme, NothingIsGainedWhereRowsForbidIt) {
   const LinearProgramme p{{{0, 0, 0, 1}, {0, 0, 0, 1}},
-                          {{0, 1, {0, 0, 0, 1}, {0, 0, 0, 1}, 0}}};  // both sum to at most 0
+                          {{0, 1, {0, 0, 0, 1}, {0, 0, 0, 1}, 0}}};  // both blocks sum to at most 0
   const auto x = solve(p);
   EXPECT_NEAR(gain(p, x), 0, 2 * kLeast);
   EXPECT_LT(worst_violation(p, x), 1e-6);
@@ -62,7 +62,7 @@ TEST(LinearProgramme, RowsShareTheirLimitAmongBlocks) {
 TEST(LinearProgramme, AgreesWithTheSimplexOfOneSphere) {
   Random random(5);
   for (int round = 0; round < 200; ++round) {
-    // Maximise s where s - g . delta <= v: by the simplex, and in a programme of many such blocks.
+    // Maximises s where s - g . delta <= v, by the simplex, and in a programme of many such blocks.
     LinearProgramme p;
     double expected = 0;
     const auto blocks = static_cast<std::uint32_t>(1 + round % 7);

@@ -36,7 +36,7 @@ TEST(MaxMinStep, NoPointOfTheBoxIsBetter) {
     for (int i = 0; i < 1 + round % 20; ++i) {
       bounds.push_back({normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1})),
                         1 + box * random.uniform(0, 0.5)});
-      if (round % 3 == 0) bounds.push_back(bounds.back());  // two triangles that share an edge
+      if (round % 3 == 0) bounds.push_back(bounds.back());  // two triangles share an edge
     }
     const MaxMinStep step = max_min_step(bounds, box);
     EXPECT_LE(std::max({std::abs(step.delta.x), std::abs(step.delta.y), std::abs(step.delta.z)}),

@@ -30,7 +30,7 @@ RawMesh raw(const Solid& solid) {
   return mesh;
 }
 
-// What the bodies' packing covers, certified and counted on voxels too.
+// Returns the coverage of the bodies' packing, certified and counted on voxels too.
 double covered(const Solid& solid, std::size_t spheres) {
   const PackResult result = pack(solid, {.spheres = spheres});
   EXPECT_TRUE(certify(solid, result.spheres).holds);
@@ -80,18 +80,18 @@ TEST(OverlappingBodies, HoldTheLargestBallOfTheirUnion) {
     return joined(shifted(half, {-.5 * (1 + apart), 0, 0}),
                   shifted(half, {.5 * (1 + apart), 0, 0}));
   };
-  EXPECT_NEAR(radius(halves(0)), 1, 1e-9);      // they touch face to face
-  EXPECT_NEAR(radius(halves(-.3)), .85, 1e-9);  // and overlap: 1.7 wide
-  EXPECT_NEAR(radius(halves(1e-3)), .5, 1e-9);  // a gap is outside
+  EXPECT_NEAR(radius(halves(0)), 1, 1e-9);      // face to face
+  EXPECT_NEAR(radius(halves(-.3)), .85, 1e-9);  // overlapping, 1.7 wide together
+  EXPECT_NEAR(radius(halves(1e-3)), .5, 1e-9);  // with a gap, which is outside
   EXPECT_NEAR(radius(joined(make_cube(2), make_cube(2))), 1, 1e-9);
   const Solid inner = joined(make_cube(1), shifted(make_icosphere(.5, 2), {.3, .2, .1}));
   EXPECT_NEAR(radius(joined(make_cube(2), inner)), 1, 1e-9);
-  // The pocket takes away what it shares with the cube: 1.6 is left beside it.
+  // The pocket removes its common part with the cube, which leaves 1.6 beside it.
   const Solid pocket = reversed(shifted(make_box(2, 4, 4), {1.6, 0, 0}));
   EXPECT_NEAR(radius(joined(make_cube(2), pocket)), .8, 1e-9);
 }
 
-// Points of the spheres are asked for the winding number of the mesh, triangle by triangle.
+// Computes the winding number of the mesh at points of the spheres, triangle by triangle.
 void expect_enclosed(const Solid& solid, std::size_t spheres) {
   const PackResult result = pack(solid, {.spheres = spheres});
   EXPECT_TRUE(certify(solid, result.spheres).holds);

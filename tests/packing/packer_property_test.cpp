@@ -1,4 +1,4 @@
-// What every packing promises, on random solids, by brute force.
+// Promises of every packing, on random solids, checked by brute force.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 
 class RandomSolids : public ::testing::TestWithParam<int> {};
 
-constexpr std::uint64_t kSeeds = 25;  // of each of the eight families: 200 solids
+constexpr std::uint64_t kSeeds = 25;  // for each of the eight families: 200 solids
 constexpr std::size_t kSpheres = 40;
-constexpr double kRounding = 1e-13;  // of coordinates up to 5 and of triangles up to 1:1000
+constexpr double kRounding = 1e-13;  // for coordinates up to 5 and triangles up to 1:1000
 
 TEST_P(RandomSolids, NothingOverlapsNorProtrudes) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -70,7 +70,7 @@ TEST_P(RandomSolids, NoRoomIsLeftForALargerSphere) {
   }
 }
 
-// Asks the mesh as it is, so that nothing depends on how its inner parts were found.
+// Checks the given mesh itself, so that nothing depends on how its inner parts were found.
 TEST_P(RandomSolids, EveryPointOfASphereIsEnclosed) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     SCOPED_TRACE(seed);

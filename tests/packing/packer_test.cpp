@@ -24,7 +24,7 @@ TEST(Packer, CubeIsFilledAsGeometrySays) {
   const PackResult result = pack(synthetic::make_cube(2), {.spheres = 9});
   EXPECT_NEAR(result.spheres[0].radius, 1, kRounding);
   EXPECT_LT(norm(result.spheres[0].center), kRounding);
-  // The eight corners: between three faces and the first sphere.
+  // Eight spheres fill the corners, between three faces and the first sphere.
   const double corner = (std::sqrt(3.0) - 1) / (std::sqrt(3.0) + 1);
   for (std::size_t i = 1; i < 9; ++i) {
     EXPECT_NEAR(result.spheres[i].radius, corner, kRounding);
@@ -37,14 +37,15 @@ TEST(Packer, FirstSphereIsTheInsphere) {
   const auto first = [](const Solid& solid) { return pack(solid, {.spheres = 1}).spheres.at(0); };
   EXPECT_NEAR(first(synthetic::make_tetrahedron(1)).radius, std::sqrt(6.0) / 12, kRounding);
   EXPECT_NEAR(first(synthetic::make_octahedron(1)).radius, std::sqrt(6.0) / 6, kRounding);
-  const Solid ball = synthetic::make_icosphere(1, 3);  // symmetric: the insphere is in the middle
+  const Solid ball =
+      synthetic::make_icosphere(1, 3);  // symmetric, so the insphere is in the middle
   const Sphere inner = first(ball);
   EXPECT_NEAR(inner.radius, distance_to_mesh(ball, {0, 0, 0}), 1e-9);
   EXPECT_LT(norm(inner.center), 1e-4);
 }
 
 TEST(Packer, CoverageOfAGreedyPacking) {
-  // Measured with an independent packer that starts from 256^3 voxels.
+  // The values come from an independent packer that starts from 256^3 voxels.
   const struct {
     Solid solid;
     double at_10, at_100, at_1000;
@@ -68,11 +69,13 @@ TEST(Packer, CoverageOfAGreedyPacking) {
 
 TEST(Packer, EqualSpheresOfATubeTouch) {
   const double ring = 1, tube = 0.2;
-  const auto fit = static_cast<std::size_t>(kPi / std::asin(tube / ring));  // touching, in a circle
+  const auto fit =
+      static_cast<std::size_t>(kPi / std::asin(tube / ring));  // touching each other in a circle
   const PackResult result = pack(synthetic::make_torus(ring, tube, 240, 24), {.spheres = 2 * fit});
   std::size_t full = 0;
   for (const Sphere& s : result.spheres) full += s.radius > 0.99 * result.spheres[0].radius ? 1 : 0;
-  EXPECT_GE(full, fit - 1);  // spheres anywhere would leave a quarter of their places empty
+  EXPECT_GE(full,
+            fit - 1);  // spheres at arbitrary places would leave a quarter of the circle empty
 }
 
 TEST(Packer, SameBytesForEveryThreadCount) {

@@ -1,4 +1,4 @@
-// What a control loop relies on: after the first query no memory is taken.
+// Control loops rely on it: no memory is allocated after the first query.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ TEST_P(Allocation, NoneAfterTheFirstQuery) {
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
   Query query(tool,
               {.measure = tested.measure, .coherent = tested.coherent, .reuse = tested.reuse});
-  const auto pose = [](int k) {  // from free space into contact
+  const auto pose = [](int k) {  // moves from free space into contact
     return Pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.015 * k}};
   };
   EXPECT_EQ(query.run(cloud, pose(0)).volume, 0);

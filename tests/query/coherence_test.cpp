@@ -24,7 +24,7 @@ QueryOptions coherent() {
   return options;
 }
 
-// The wall is at 1 m; the cube goes in until it is `deepest` and comes back.
+// Returns poses of the cube that goes into the wall at 1 m until it is `deepest`, and comes back.
 std::vector<Pose> through_the_wall(double deepest) {
   std::vector<Pose> path;
   const auto add = [&](double z) { path.push_back({generic_rotation(), {0.013, -0.008, z}}); };
@@ -37,7 +37,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   Query query(tool, coherent()), alone(tool, {});
-  int near = 0, far = 0;  // poses wholly behind the wall, where one alone may be right and is not
+  int near = 0, far = 0;  // poses wholly behind the wall, within reach of it and beyond
   for (const Pose& pose : through_the_wall(1.6)) {
     const double z = pose.translation.z;
     const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
@@ -69,8 +69,8 @@ TEST(CoherentPoses, ForgetWhenTold) {
   EXPECT_EQ(query.run(cloud, deep).volume, 0);
 }
 
-// In free space behind an object, further than the tool reaches, as the camera sees it: never
-// inside.
+// The tool is in free space behind an object, further than its reach as the camera sees it; it is
+// never inside.
 TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
@@ -82,8 +82,8 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   }
 }
 
-// What counts only since an object hides it, near its front, is not remembered where it moves away
-// behind the object.
+// Places that count only because an object hides them, near its front, are not remembered when the
+// tool moves away behind the object.
 TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 5, 3);
@@ -101,8 +101,8 @@ TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
   EXPECT_EQ(query.run(cloud, {generic_rotation(), {0, 0.01, 1.3}}).volume, 0);
 }
 
-// A tool that cuts a wall, and then moves behind a hand in front of it: what counts there only
-// since the hand hides it is not remembered.
+// A tool cuts a wall and then moves behind a hand in front of it. Places that count there only
+// because the hand hides them are not remembered.
 TEST(CoherentPoses, DoNotRememberWhatAnotherObjectHides) {
   DepthImage depth;
   depth.width = 160;
@@ -134,7 +134,7 @@ Cloud wall_at(double z) {
   return see(scene);
 }
 
-// A frame every 33 poses, of a wall that moves; then a hand before the lens.
+// Shows a moving wall, a frame every 33 poses, and then a hand in front of the lens.
 TEST(CoherentPoses, FollowFramesThatChange) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   Query query(tool, coherent());
@@ -147,12 +147,12 @@ TEST(CoherentPoses, FollowFramesThatChange) {
     query.run(cloud, path[k]);
   }
   EXPECT_NEAR(query.run(cloud, path[k]).volume_fraction, 1, 1e-12);
-  EXPECT_EQ(query.run(PreparedCloud(wall_at(0.4)), path[k]).volume, 0);  // what is seen is another
+  EXPECT_EQ(query.run(PreparedCloud(wall_at(0.4)), path[k]).volume, 0);  // another wall is seen
   EXPECT_EQ(query.run(cloud, path[k]).volume, 0);                        // and the memory is gone
   EXPECT_EQ(query.run(PreparedCloud(wall_at(3)), path[k]).volume, 0);
 }
 
-// A wall as a small camera sees it from `camera`; the wall is the plane of this z.
+// Returns the cloud of a small camera at `camera` that sees the plane of this z.
 Cloud small_view(double z, const Pose& camera = {}) {
   synthetic::Scene scene = synthetic::make_scene("wall");
   scene.surface = synthetic::make_wall({0, 0, z}, {0, 0, -1});
@@ -160,7 +160,7 @@ Cloud small_view(double z, const Pose& camera = {}) {
   return see(scene);
 }
 
-// A loop of 33 queries for each frame, while a wall comes over the tool, passes it and goes back.
+// Runs 33 queries for each frame, while a wall comes over the tool, passes it and goes back.
 template <class MakeFrame>
 void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   constexpr int kQueriesPerFrame = 33;
@@ -198,7 +198,7 @@ TEST(CoherentPoses, AreRightInAMovingSceneOfPoints) {
   expect_right_in_a_moving_scene([](double z) { return without_camera(small_view(z)); });
 }
 
-// The memory is of places in the world, not of pixels.
+// The memory holds places in the world, not pixels.
 TEST(CoherentPoses, AreRightWhileTheCameraMoves) {
   expect_right_in_a_moving_scene([](double z) {
     const double angle = 2 * (z - 1);
@@ -208,8 +208,8 @@ TEST(CoherentPoses, AreRightWhileTheCameraMoves) {
   });
 }
 
-// What frames of before said of a tool deep inside ends with the frame that shows it to be free, or
-// shows nothing; no later frame brings it back.
+// Earlier frames' knowledge of a tool deep inside ends with the frame that shows the tool to be
+// free, or shows nothing; no later frame brings it back.
 TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   const PreparedCloud wall(small_view(1)), far_wall(small_view(2)), hand(small_view(0.4)),
@@ -227,7 +227,7 @@ TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
   }
 }
 
-// A wall that jumps over the tool within a frame has not been seen to pass it.
+// A wall that jumps over the tool within a frame was not seen to pass it.
 TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   Query query(tool, coherent());

@@ -1,4 +1,4 @@
-// Coherent poses that use again what was read of the surface.
+// Coherent poses that reuse surface readings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,8 @@ QueryOptions reusing(double reuse) {
   return options;
 }
 
-// By steps of this length about a pose in the middle of the contact with a wall at 1 m, turning.
+// Returns poses by steps of this length about a pose in the middle of the contact with a wall at 1
+// m, turning.
 std::vector<Pose> wandering(double step, int poses) {
   constexpr double kRadius = 0.012;
   std::vector<Pose> path;
@@ -42,7 +43,8 @@ std::vector<Pose> wandering(double step, int poses) {
 }
 
 struct Differences {
-  double volume = 0, force = 0, torque = 0;  // largest ones, of the tool's volume and reach
+  double volume = 0, force = 0,
+         torque = 0;  // largest ones, relative to the tool's volume and reach
   int same_bits = 0;
 };
 
@@ -64,13 +66,13 @@ Differences differences(const ToolModel& tool, const PreparedCloud& cloud, doubl
   return largest;
 }
 
-// Where the surface is a plane, what first order leaves out is of second order: for half the way
-// about a quarter. Of the volume that may pass the surface on the way it is a small part.
+// On a plane the error of the first order is of second order: about a quarter for half the way. It
+// is a small part of the volume that may pass the surface on the way.
 TEST(Reuse, ErrsByTheSecondOrder) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 12, 2);
   constexpr double kWay = 0.004;
-  const double passing = kWay * 1.8 * kEdge * kEdge / tool.volume;  // a cut of the cube at most
+  const double passing = kWay * 1.8 * kEdge * kEdge / tool.volume;  // at most a cut of the cube
   const std::vector<Pose> path = wandering(kWay / 16, 1500);
   const Differences far = differences(tool, cloud, kWay, path),
                     near = differences(tool, cloud, kWay / 2, path);
@@ -115,7 +117,7 @@ TEST(Reuse, EndsWithTheFrameAndWhereThePosesEnd) {
   EXPECT_GT(others, 40);
 }
 
-// Free space is looked at at every pose.
+// Free space is checked at every pose.
 TEST(Reuse, MissesNoNewContact) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 12, 2);
@@ -158,7 +160,7 @@ TEST(Reuse, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_TRUE(results[0] == results[1]);
 }
 
-// The flood needs all of what is read.
+// The flood needs all readings.
 TEST(Reuse, IsNotForPointsWithoutACamera) {
   const PreparedCloud cloud(without_camera(see(synthetic::make_scene("wall"))));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
@@ -180,8 +182,8 @@ TEST(Reuse, IsRefusedWhereItMeansNothing) {
   }
 }
 
-// Samples that planes cross, seen by a tool that moves: the difference quotient of small motions,
-// to both sides, errs by the third order.
+// Cuts samples by planes, seen by a tool that moves. The difference quotient of small motions to
+// both sides errs by the third order.
 TEST(ContactSlopes, AreTheDerivatives) {
   std::mt19937 numbers(7);
   const auto between = [&](double a, double b) {
@@ -204,7 +206,7 @@ TEST(ContactSlopes, AreTheDerivatives) {
                                     {normalized_or_zero(place(1)), place(0.05)}};
     const Vec3 pushed = place(0.1), arm = place(1), pushed_along = normalized_or_zero(place(1));
     ContactSlopes slopes;
-    // The surface moves as the tool sees it.
+    // The surface moves in the tool's frame.
     const auto sums = [&](const SmallMotion& motion, bool notes) {
       const Rotation turn = rotation_from_vector(motion.turn);
       Sums all;

@@ -1,9 +1,9 @@
-// Whoever links this counts the memory that its process takes.
+// Counts the memory that the process of the linking program takes.
 #pragma once
 
 namespace vpm::testing {
 
-// Calls of operator new so far.
+// Returns the number of calls of operator new so far.
 int allocations();
 
 }  // namespace vpm::testing

@@ -1,4 +1,4 @@
-// The nearest of the shares that a surface cuts.
+// Search for the nearest of the cells that a surface cuts.
 #include "libvpm/query/cut_shares.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace vpm {
 namespace {
 
-// By going through all of them.
+// Goes through all of them.
 std::uint32_t nearest_of_all(const ToolModel& tool, const SpatialLevel& level,
                              const std::vector<std::uint32_t>& cut, std::uint32_t row) {
   const auto rank = [&](std::uint32_t k) {
@@ -26,7 +26,7 @@ std::uint32_t nearest_of_all(const ToolModel& tool, const SpatialLevel& level,
 
 TEST(CutShares, FindTheNearest) {
   std::mt19937 random(1);
-  for (const std::uint32_t edge : {3U, 12U}) {  // on a lattice many are as near
+  for (const std::uint32_t edge : {3U, 12U}) {  // on a lattice many are equally near
     const ToolModel tool = testing::lattice_cube(0.2, edge, 1);
     const SpatialLevel level(tool, tool.levels[0]);
     const Pose to_surface;

@@ -1,4 +1,4 @@
-// What is read of a camera's surface together, against one after the other: the same bits.
+// Readings of a camera's surface by vectors have the bits of single readings.
 #include "libvpm/query/depth_readings.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class Numbers {
   std::mt19937 random_{1};
 };
 
-// With creases, jumps, noise and holes.
+// Returns a cloud with creases, jumps, noise and holes.
 Cloud rough_cloud(const char* scene) {
   Camera camera = synthetic::default_camera();
   camera.intrinsics = {130, 131, 79.5, 60};
@@ -46,7 +46,8 @@ Cloud rough_cloud(const char* scene) {
   return make_cloud(image, camera, {.window = 3});
 }
 
-// About the surface, beside the image, behind the camera, and where nothing can be read.
+// Returns a place near the surface, beside the image, behind the camera, or where nothing can be
+// read.
 Vec3 any_place(Numbers& numbers) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   static const Vec3 odd[] = {{0, 0, 0},      {0.1, HUGE_VAL, 1}, {0, 0, 1e-40}, {0, 0, 0x1p-100},
@@ -90,7 +91,7 @@ int known_of_four(const DepthSurface& surface, Numbers& numbers) {
   return known;
 }
 
-// Of `count` places behind the surface.
+// Compares the normals of `count` places behind the surface.
 void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers& numbers,
                          int& turned) {
   std::vector<PlaceReading> places(count);
@@ -111,7 +112,7 @@ void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers
 
 class DepthReadings : public ::testing::TestWithParam<const char*> {
  protected:
-  // Some normals are lost, or cannot be right.
+  // Loses some normals, and makes some that cannot be right.
   DepthReadings() {
     for (Vec3f& normal : normals_) {
       const double kind = numbers_.between(0, 1);
@@ -189,7 +190,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
                           {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
-    // Shares of two blocks.
+    // Cells of two blocks.
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, ToolReach{tool.reach, Shadows::near},
@@ -295,7 +296,7 @@ TEST(SmallImages, AreReadTogetherAsInTurn) {
   }
 }
 
-// There 0.5 less than an ulp and another 0.5 round to 1, which is no pixel.
+// There, 0.5 less than an ulp plus another 0.5 rounds to 1, which is no pixel.
 TEST(SmallImages, HaveNoPixelBeyondTheirRim) {
   const SmallImage image(1, 1);
   const double rim = 0.5 - 0x1p-54;

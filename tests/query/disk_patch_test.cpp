@@ -13,7 +13,7 @@
 namespace vpm {
 namespace {
 
-constexpr double kReach = 0.02;  // of the patches
+constexpr double kReach = 0.02;  // radius of the patches
 constexpr double kSpacing = 0.002;
 
 class Noise {
@@ -29,7 +29,7 @@ struct Height {
   double height = 0;
   Vec3 normal{0, 0, 1};
 };
-// Points over a square of the xy plane.
+// Adds points over a square of the xy plane.
 void add_points(const std::function<Height(double x, double y)>& at, Cloud& cloud) {
   constexpr int kHalf = 30;
   for (int i = -kHalf; i <= kHalf; ++i) {
@@ -43,7 +43,8 @@ void add_points(const std::function<Height(double x, double y)>& at, Cloud& clou
   }
 }
 
-// Deviations of the height, m, and of the normal's slopes.
+// Returns a wall with noise; `height` and `slope` are deviations of the height, m, and of the
+// normal's slopes.
 Cloud noisy_wall(double height, double slope) {
   Noise noise;
   Cloud cloud;
@@ -83,7 +84,7 @@ TEST(PatchOfPoints, IsAsHighAsACurvedSurfaceInTheMean) {
       cloud);
   TangentPlane plane;
   ASSERT_TRUE(sees_plane(cloud, {}, plane));
-  // Over a cube in the ball the mean of the sagitta (x^2 + y^2) / 2r is this.
+  // This is the mean of the sagitta (x^2 + y^2) / 2r over a cube in the ball.
   const double sagitta = kReach * kReach / (9 * kRadius);
   EXPECT_NEAR(plane.foot.z, -sagitta, 0.1 * sagitta);
 }
@@ -121,7 +122,8 @@ TEST(PatchOfPoints, ThereIsNoneBeyondTheRim) {
   EXPECT_FALSE(sees_plane(cloud, {0.065, 0, 0}, plane));
 }
 
-// Behind the wall everything is pushed, before it nothing, and the cut shares by the mean plane.
+// Everything behind the wall is pushed, nothing in front of it, and the cut cells by the mean
+// plane.
 TEST(PatchOfPoints, CountsWhatIsBehindANoisyWall) {
   constexpr double kEdge = 0.08;
   const PreparedCloud prepared(noisy_wall(0.001, 0.1));

@@ -1,4 +1,4 @@
-// Points alone that show two walls: where tools behind both are pushed.
+// Points alone that show two walls: directions in which tools behind both are pushed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,18 +16,18 @@ constexpr double kSpacing = 0.002;  // m
 constexpr double kSlope = 0.70710678118654752;
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
-// Two walls at 45 degrees that meet over the y axis: a roof, or the groove that it would leave. The
-// solid is below.
+// Two walls at 45 degrees that meet over the y axis, as a roof or the groove that it would leave.
+// The solid is below.
 struct TwoWalls {
   bool is_roof;
 
   Vec3 normal(bool right) const { return {is_roof == right ? kSlope : -kSlope, 0, kSlope}; }
   double height(double x) const { return is_roof ? -std::fabs(x) : std::fabs(x); }
   bool is_solid(Vec3 p) const { return p.z < height(p.x); }
-  // Gradient of the distance, behind the surface.
+  // Returns the gradient of the distance, behind the surface.
   Vec3 gradient(Vec3 p) const {
     if (is_roof || -p.z < std::fabs(p.x)) return normal(p.x > 0);
-    return normalized_or_zero(-1.0 * Vec3{p.x, 0, p.z});  // to where they meet
+    return normalized_or_zero(-1.0 * Vec3{p.x, 0, p.z});  // towards their common edge
   }
   // Each point has the normal of its own wall.
   Cloud seen() const {
@@ -69,8 +69,8 @@ TEST(TwoWallsOfPoints, TheOtherOneIsFoundWhereABodyReachesIt) {
   }
 }
 
-// The riser of a step ends at the floor. Further down its foot is nearest, in another direction:
-// the border in a body above that is not told from there.
+// The riser of a step ends at the floor. Further down its foot is nearest, in another direction,
+// which says nothing about the border in a body above that.
 TEST(TwoWallsOfPoints, TheBorderIsThatOfTheWallNotOfItsEnd) {
   constexpr double kHeight = 0.05;
   constexpr int kHalf = 60;
@@ -101,7 +101,7 @@ TEST(TwoWallsOfPoints, TheBorderIsThatOfTheWallNotOfItsEnd) {
 }
 
 TEST(TwoWallsOfPoints, OneWallHasNoOther) {
-  for (const double bulge : {0.0, 3.0, -3.0}) {  // 1/m: flat, and a bowl and a hill
+  for (const double bulge : {0.0, 3.0, -3.0}) {  // 1/m: flat, a bowl and a hill
     Cloud seen = TwoWalls{true}.seen();
     for (std::size_t i = 0; i < seen.size(); ++i) {
       Vec3f& p = seen.positions[i];
@@ -121,7 +121,7 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
   }
 }
 
-// Which disks face one way is told by cones of whole nodes, where these suffice.
+// Cones of whole nodes, where they suffice, tell which disks face one way.
 TEST(TwoWallsOfPoints, ConesSayWhatEachDiskSays) {
   for (const bool is_roof : {true, false}) {
     const PreparedCloud cloud(TwoWalls{is_roof}.seen());
@@ -146,7 +146,7 @@ TEST(TwoWallsOfPoints, ConesSayWhatEachDiskSays) {
   }
 }
 
-// The nodes of a bowl: no cone leaves a normal out, and none is much wider than its normals.
+// In the nodes of a bowl no cone leaves a normal out, and none is much wider than its normals.
 TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
   Cloud seen = TwoWalls{true}.seen();
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -179,7 +179,7 @@ TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
   EXPECT_GT(held, 1000);
 }
 
-// What is read from a list of near disks is what all of them say.
+// A list of near disks gives the readings of all disks.
 TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
   const PreparedCloud cloud(TwoWalls{true}.seen());
   const DiskSurface disks = cloud.disk_surface();
@@ -203,7 +203,7 @@ TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
   EXPECT_GT(found, 50);
 }
 
-// Seen at a grazing angle, one disk of a room may be wide. Far from it that changes nothing.
+// Seen at a grazing angle, a disk of a room may be wide. Far from it that changes nothing.
 TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
   Cloud seen = TwoWalls{false}.seen();
   const PreparedCloud alone(seen);
@@ -225,8 +225,8 @@ TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
   }
 }
 
-// The nearest point is one beside the crease. Its disk alone would lead past the crease by as much
-// as disks may be wide.
+// The nearest point lies beside the crease. Its disk alone would lead past the crease by up to the
+// width of disks.
 TEST(TwoWallsOfPoints, BelowAGrooveTheCreaseIsNearest) {
   const TwoWalls groove{false};
   const PreparedCloud cloud(groove.seen());
@@ -241,7 +241,7 @@ TEST(TwoWallsOfPoints, BelowAGrooveTheCreaseIsNearest) {
   }
 }
 
-// Force and torque on a cube, in parts of its volume, by midpoints.
+// Computes force and torque on a cube, relative to its volume, by midpoints.
 Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
   constexpr int kPlaces = 90;
   Wrench sum;
@@ -259,7 +259,7 @@ Wrench true_force(const TwoWalls& walls, double edge, const Pose& pose) {
   return {sum.force / kCount, sum.torque / kCount};
 }
 
-// One piece below the edge of a roof, cut by both walls: neither has it alone.
+// A piece below the edge of a roof is cut by both walls, and neither has it alone.
 TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
   constexpr double kEdge = 0.012;
   const TwoWalls roof{true};
@@ -273,7 +273,7 @@ TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
   }
 }
 
-// A cube of 27 shares, of which most reach both walls: pushed whole to the nearest one, the force's
+// Most of the cube's 27 cells reach both walls. Pushed whole to the nearest one, the force's
 // direction would err by up to 10 degrees.
 TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
   constexpr double kEdge = 0.06;

@@ -7,7 +7,7 @@
 
 namespace vpm::testing {
 
-// `scale`, a power of two: lengths of b's scene in those of a's.
+// Expects equal bits. `scale`, a power of two, is the length unit of b's scene in that of a's.
 inline void expect_equal(const Result& a, const Result& b, double scale = 1) {
   const double cubed = scale * scale * scale;
   EXPECT_EQ(cubed * a.volume, b.volume);

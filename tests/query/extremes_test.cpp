@@ -1,4 +1,5 @@
-// Inputs at the edge of what is possible: right, or refused in words; never a number that is none.
+// Inputs at the edge of what is possible: answered right or refused with a message, never by a
+// result that is not finite.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,7 @@ using testing::see;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Disks larger than the tool: planes.
+// Returns disks larger than the tool, which are planes to it.
 Cloud points(std::vector<Vec3f> positions, std::vector<Vec3f> normals, float radius = 3) {
   Cloud cloud;
   cloud.positions = std::move(positions);
@@ -147,7 +148,7 @@ TEST(ExtremeOptions, AStiffnessThatOverflowsIsRefused) {
   }
 }
 
-// A camera's image with one measured pixel, or one whose depths no inverse holds.
+// An image has one measured pixel, or depths that no inverse holds.
 TEST(ExtremeImages, WhatIsNotMeasuredCountsForNothing) {
   const ToolModel tool = lattice_cube(0.2, 4, 4);
   const Camera camera = synthetic::default_camera();
@@ -178,7 +179,7 @@ TEST(ExtremeImages, OfOnePixelAreFine) {
   }
 }
 
-// Count limits of the fixed-point sums: a model that would break them does not get through.
+// Fixed-point sums have limits, and a model beyond them is refused.
 TEST(ExtremeTools, SumsBeyondTheirLimitAreRefused) {
   const ToolModel good = lattice_cube(2, 2, 2);
   ASSERT_EQ(refusal([&] { validate(good, "tool"); }), "");
@@ -225,7 +226,7 @@ TEST(ExtremeTools, AHierarchyThatIsAChainIsRefused) {
 
 TEST(ExtremeTools, AMillionSpheresCountAsTheWholeDoes) {
   const ToolModel tool = lattice_cube(2, 100, 1);
-  std::vector<Vec3f> floor;  // every share that it cuts has points nearby
+  std::vector<Vec3f> floor;  // gives every cell that it cuts points nearby
   for (int x = -75; x < 75; ++x) {
     for (int y = -75; y < 75; ++y)
       floor.push_back({0.02f * (float(x) + 0.5f), 0.02f * (float(y) + 0.5f), 0});

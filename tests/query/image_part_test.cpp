@@ -1,4 +1,4 @@
-// A query reads of an image what part_read() says, and notes where it would read more.
+// A query reads the part of an image that part_read() names, and notes where it would read more.
 #include "libvpm/query/image_part.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class Numbers {
   std::mt19937 random_{3};
 };
 
-// Balls of a tool, about its centre of mass: many small ones, a few large ones.
+// Balls of a tool about its centre of mass: many small ones, a few large ones.
 struct Tool {
   double reach;
   std::vector<Ball> balls;
@@ -47,7 +47,7 @@ struct Tool {
   }
 };
 
-// Before a camera that sees about a metre, some of them beside its image, or around it.
+// Returns a place before a camera that sees about a metre, sometimes beside its image or around it.
 Vec3 place(Numbers& numbers) {
   const double depth = numbers.between(-0.1, 2);
   return {depth * numbers.between(-0.8, 0.8), depth * numbers.between(-0.7, 0.7), depth};
@@ -108,14 +108,14 @@ TEST_P(ImagePart, NotesWhatWouldBeReadBeyondIt) {
       const Reading reading = part.read(at);
       const bool is_in_image = u >= -0.5 && v >= -0.5 && u < 639.5 && v < 479.5;
       const bool is_in_part = u >= 68 && v >= 100 && u < 123 && v < 155;
-      // Their neighbours kAcross further on lie in it too.
+      // Neighbours kAcross further on lie in it too.
       EXPECT_EQ(beyond, is_in_image && !is_in_part ? 1U : 0U) << u << " " << v;
       EXPECT_TRUE(is_same(reading, is_in_part ? whole_.read(at) : Reading{})) << u << " " << v;
     }
   }
 }
 
-// Nothing is read there: these pixels cannot be.
+// Nothing is read there, since these pixels cannot be.
 TEST_P(ImagePart, NotesLooksBeyondIt) {
   volatile std::uint32_t beyond = 0;
   DepthSurface part = whole_;
@@ -149,7 +149,7 @@ TEST(LookSizes, GoByPowersOfTwoAndAreTheLargest) {
   looks.add({1, 0, 0}, 0.5);
   looks.add({3, 0, 0}, 0.9);
   looks.add({0, 0, 4}, 0.25);
-  looks.add({0, 0, 1}, 0.1);  // outdone
+  looks.add({0, 0, 1}, 0.1);  // smaller than the first
   looks.add({0, 9, 0}, 0);    // no ball
   const std::vector<LooksOfSize> largest = looks.largest();
   ASSERT_EQ(largest.size(), 2U);
@@ -159,7 +159,8 @@ TEST(LookSizes, GoByPowersOfTwoAndAreTheLargest) {
   EXPECT_EQ(largest[1].reach, 4.25);
 }
 
-// Empty where the tool cannot be seen; all where it may be around the camera.
+// The part is empty if the tool cannot be seen, and the whole image if the tool may be around the
+// camera.
 TEST_P(ImagePart, OfToolsNotSeenOrAroundTheCamera) {
   const Tool tool(0.1, numbers_);
   const auto part_at = [&](Vec3 at) {

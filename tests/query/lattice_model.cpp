@@ -30,7 +30,7 @@ void connect_neighbors(std::uint32_t n, SphereGraph& graph) {
   }
 }
 
-// One leaf level below a root.
+// Puts one leaf level below a root.
 void wrap(std::uint32_t count, double reach, Hierarchy& hierarchy) {
   hierarchy.leaves.resize(count);
   std::iota(hierarchy.leaves.begin(), hierarchy.leaves.end(), 0u);

@@ -50,7 +50,7 @@ TEST(Deadline, TakesTheFinestLevelWithAMargin) {
   EXPECT_FALSE(hopeless.keeps());
 }
 
-// Times drift slowly from a half to ten times what was probed and back, each with some noise.
+// Times drift slowly from a half to ten times the probed time and back, each with some noise.
 TEST(Deadline, StepsDownBeforeItMissesAndUpAgain) {
   const std::vector<double> probed{10, 50, 300};
   DeadlineLevel choice(probed, 500, 2);

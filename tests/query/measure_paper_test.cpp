@@ -1,4 +1,4 @@
-// The paper's measure against what can be worked out by hand.
+// Compares the paper's measure with results computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ Result paper(const ToolModel& tool, const Cloud& cloud, const Pose& pose = {}) {
 TEST(PaperMeasure, OnePointInOneSphereGivesItsCap) {
   const ToolModel tool = lattice_cube(2, 1, 1);  // the unit sphere
   const Result r = paper(tool, points({{0, 0, -0.5f}}, {0, 0, 1}));
-  const double height = 0.5;  // below the plane z = -0.5
+  const double height = 0.5;  // of the sphere's part below the plane z = -0.5
   const double cap = kPi * height * height * (3 - height) / 3;
   EXPECT_NEAR(r.volume, cap, 1e-9);
   EXPECT_NEAR(r.wrench.force.z, cap, 1e-9);
@@ -78,8 +78,8 @@ TEST(PaperMeasure, FloodsBehindTheEntryAndNotBefore) {
 }
 
 TEST(PaperMeasure, TorqueDoesTheWorkOfTurning) {
-  // A ball beside the centre of mass, in a floor: turning with the torque lifts it out, against it
-  // pushes it in.
+  // A ball lies beside the centre of mass, in a floor: turning with the torque lifts it out,
+  // turning against it pushes it in.
   ToolModel tool = lattice_cube(2, 1, 1);
   tool.center_of_mass = {-1.5, 0.7, 0.2};
   tool.reach = 3;

@@ -1,4 +1,4 @@
-// The refined measure against analytic truth, through everything a camera's cloud passes.
+// Compares the refined measure with analytic truth, through all steps that a camera's cloud passes.
 
 #include <gtest/gtest.h>
 
@@ -22,13 +22,13 @@ using testing::lattice_cube;
 using testing::see;
 
 constexpr double kEdge = 0.2;
-constexpr double kDegrees = 1;         // of the force, where it is not near zero:
-constexpr double kNotNearZero = 0.03;  // parts of the tool's volume
+constexpr double kDegrees = 1;         // bound of the force's direction
+constexpr double kNotNearZero = 0.03;  // fraction of the tool's volume from which it holds
 
 struct SceneCase {
   const char* scene;
   bool camera;
-  double volume_bound;     // worst error, part of the tool's volume
+  double volume_bound;     // worst error, fraction of the tool's volume
   bool sees_whole_wrench;  // the step's riser is thinner than a pixel: what it pushes cannot be
                            // known
 };
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
       return test::test_name(variant.param.scene) + (variant.param.camera ? "_camera" : "_points");
     });
 
-// A block of a large share is wider than the step is high.
+// A block of a large cell is wider than the step is high.
 TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
   const synthetic::Scene scene = synthetic::make_scene("step");
   const PreparedCloud cloud(see(scene));
@@ -94,8 +94,8 @@ TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
   }
 }
 
-// Along the rays the walls are half as far again: one cut share's plane, of both walls, must not
-// decide for what lies near one of them.
+// Along the rays the walls are half as far again. One cut cell's plane, a mean of both walls, must
+// not decide for places near one of them.
 TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
   const synthetic::Scene scene = synthetic::make_scene("groove");
   const PreparedCloud cloud(see(scene));
@@ -129,15 +129,15 @@ TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
 }
 
 TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
-  // Before, beside and far from a free-standing block, also where the block hides the wall behind
-  // it.
+  // The tool is before, beside and far from a free-standing block, also where the block hides the
+  // wall behind it.
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(0.1, 6, 2);
   Query query(tool, {});
   double before = 0;
   for (int k = 0; k <= 60; ++k) {
-    // Across the silhouette, in the gap between block (ends at 1.2) and wall (1.5).
+    // The tool crosses the silhouette, in the gap between block (ends at 1.2) and wall (1.5).
     const Result r = query.run(cloud, {generic_rotation(), {-0.3 + 0.01 * k, 0.01, 1.33}});
     EXPECT_LE(std::abs(r.volume - before), 0.02 * tool.volume) << k;
     EXPECT_EQ(r.volume, 0) << k;
@@ -145,8 +145,8 @@ TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   }
 }
 
-// Behind the block's front (z = 1, 0.2 m wide), no further than this, as far as the camera's rays
-// cross it.
+// Returns the fraction of the places behind the block's front (z = 1, 0.2 m wide) by `near` at
+// most, as the camera's rays cross it.
 double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, double near) {
   const auto count = std::count_if(places.begin(), places.end(), [&](const Vec3& place) {
     const Vec3 x = pose * place;
@@ -155,8 +155,8 @@ double behind_the_front(const std::vector<Vec3>& places, const Pose& pose, doubl
   return static_cast<double>(count) / static_cast<double>(places.size());
 }
 
-// A tool that comes from the side meets a face of the block that the camera cannot see. Where it
-// touches the front, that vouches for what is deeper.
+// A tool from the side meets a face of the block that the camera cannot see. Where it touches the
+// front, the front supports deeper places.
 TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
@@ -182,7 +182,7 @@ TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
 }
 
 TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
-  // Half of the tool touches the wall in sight, the other half is hidden by the block in front.
+  // Half of the tool touches the wall in sight; the block in front hides the other half.
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 10, 2);
@@ -193,7 +193,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
     const double truth = solid.penetration(pose, *scene.surface).volume;
     const double error = (query.run(cloud, pose).volume - truth) / tool.volume;
     EXPECT_LE(error, 0.02) << k << " of " << truth / tool.volume;
-    if (truth > 0.1 * tool.volume) {  // by now in sight too; what is hidden, up to 2/3, is missing
+    if (truth > 0.1 * tool.volume) {  // by now in sight too; the hidden part, up to 2/3, is missing
       EXPECT_GE(error, -0.67 * truth / tool.volume) << k;
     }
   }
@@ -217,8 +217,8 @@ TEST(RefinedMeasure, DoesNotJumpWhileAToolInTheWallPassesBehindAnObject) {
 }
 
 TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
-  // Into a wall the energy is E(d) = integral of V; the force must be V along the normal at every
-  // pose.
+  // Into a wall the energy is E(d) = integral of V, so the force must be V along the normal at
+  // every pose.
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 8, 3);
   Query query(tool, {});
@@ -228,7 +228,7 @@ TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   }
 }
 
-// Each place of the surface is seen by hundreds of pixels; the force must not follow few of them.
+// Hundreds of pixels see each place of the surface; the force must not follow few of them.
 TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
   const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
   const Vec3 normal = scene.surface->gradient({0, 0, 1.1});
@@ -259,7 +259,8 @@ TEST(RefinedMeasure, PushesFromOneWallBesideACrease) {
     const int column = k % 40, row = k / 40;
     const Vec3 x{-0.1 + 0.005 * column, 0.01, 0.98 + 0.004 * row};
     if (scene.surface->distance(x) > -0.001) continue;
-    const double from_bottom = (std::abs(x.x) - (x.z - 1)) / 2;  // of the foot on the nearer wall
+    const double from_bottom =
+        (std::abs(x.x) - (x.z - 1)) / 2;  // distance of the foot on the nearer wall
     if (from_bottom < kTwoPixels) continue;
     const Vec3 normal = surface.closest_normal(x, surface.read(x));
     EXPECT_GT(dot(normal, scene.surface->gradient(x)), std::cos(kWithin * kPi / 180))
@@ -267,8 +268,8 @@ TEST(RefinedMeasure, PushesFromOneWallBesideACrease) {
   }
 }
 
-// Deep below the bottom of a groove the nearest place is the bottom, whose pixels noise moves most:
-// both walls together tell where it is.
+// Deep below the bottom of a groove the nearest place is the bottom, whose pixels noise moves most.
+// Both walls together locate it.
 TEST(RefinedMeasure, FindsTheBottomOfAGrooveUnderNoise) {
   const synthetic::Scene scene = synthetic::make_scene("groove");
   double sum = 0;
@@ -286,10 +287,10 @@ TEST(RefinedMeasure, FindsTheBottomOfAGrooveUnderNoise) {
       ++count;
     }
   }
-  EXPECT_LE(sum / count, 3);  // by the nearest of the pixels that a search meets: 7.5
+  EXPECT_LE(sum / count, 3);  // the nearest pixel of a search would give 7.5
 }
 
-// Integral of the depth over what is inside, by counting: the energy per stiffness.
+// Integrates the depth over the inside by counting: the energy per stiffness.
 double energy(const Pose& pose, const synthetic::Surface& surface) {
   constexpr int kSteps = 80;
   double sum = 0;
@@ -306,7 +307,7 @@ Rotation turn_about(Vec3 axis, double angle) {
   return rotation_from_quaternion({s * axis.x, s * axis.y, s * axis.z, std::cos(angle / 2)});
 }
 
-// Moving and turning the tool a little takes from the energy what force and torque do as work.
+// Small motions and turns of the tool take as much from the energy as force and torque do work.
 TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
   Query query(tool, {});

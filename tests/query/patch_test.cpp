@@ -14,16 +14,17 @@ namespace {
 
 using testing::see;
 
-constexpr double kReach = 0.015;  // of the patches
+constexpr double kReach = 0.015;  // radius of the patches
 
-// The plane of a patch about a place of the scene, if it is seen as one; camera coordinates.
+// Finds the plane of a patch about a place of the scene, in camera coordinates. Returns false if
+// the patch is not seen as one plane.
 bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
   const DepthSurface surface = cloud.depth_surface();
   return sees_patch(surface, surface.look_at_ball(center, kReach), center, kReach, ReadInTurn{},
                     plane);
 }
 
-// Mean of the plane's height over the surface's at places of a box in the patch's ball.
+// Returns the mean height of the plane over the surface, at places of a box in the patch's ball.
 double mean_height(const TangentPlane& plane, const synthetic::Surface& surface, Vec3 center) {
   constexpr int kPlaces = 5;
   const double half = kReach / std::sqrt(3.0);
@@ -42,7 +43,7 @@ class PatchOnABall : public ::testing::TestWithParam<const char*> {};
 TEST_P(PatchOnABall, IsAsHighAsTheSurfaceInTheMean) {
   const synthetic::Scene scene = synthetic::make_scene(GetParam());
   const PreparedCloud cloud(see(scene));
-  // Of a tangent plane the mean height is this much.
+  // Bounds the mean height of a tangent plane.
   constexpr double kSmallestRadius = 0.25, kLargestRadius = 0.3;
   const double sagitta = kReach * kReach / (9 * kLargestRadius);
   int seen = 0;
@@ -96,7 +97,7 @@ TEST(Patch, NoneWhereTheImageHasAHole) {
   EXPECT_FALSE(plane_at(PreparedCloud(cloud), middle, plane));
 }
 
-// Whether every pixel that a ball may cover shows a surface behind all of it.
+// True if every pixel that a ball may cover shows a surface behind all of it.
 bool is_seen_free(const DepthImage& depth, const Intrinsics& k, Vec3 center, double radius) {
   const double nearest = center.z - radius, farthest = center.z + radius;
   const auto first = [&](double f, double x, double c) {
@@ -115,7 +116,7 @@ bool is_seen_free(const DepthImage& depth, const Intrinsics& k, Vec3 center, dou
   return true;
 }
 
-// Small pits in a wall leave patches as they are, and are wider than shares.
+// Small pits in a wall leave patches unchanged, and are wider than cells.
 TEST(Patch, SharesThatAreSeenFreeDoNotCount) {
   constexpr std::uint32_t kPit = 14, kEvery = 40;  // pixels
   constexpr float kDeep = 0.016F;
@@ -134,11 +135,11 @@ TEST(Patch, SharesThatAreSeenFreeDoNotCount) {
     const Pose pose{testing::generic_rotation(), {0.003 * k, 0.002 * k, 0.88 + 0.001 * k}};
     query.run(cloud, pose);
     for (std::size_t i = 0; i < tool.spheres.size(); ++i) {
-      // A tenth beyond the share: rounding of pixels is not what this is about.
+      // Adds a tenth, since the rounding of pixels is not tested here.
       const double reach = 1.1 * tool.levels[0].share_reach[i];
       const Vec3 center = pose * tool.spheres[i].center;
       if (!is_seen_free(depth, scene.camera.intrinsics, center, reach)) continue;
-      if (center.z < 1) continue;  // free before the wall too
+      if (center.z < 1) continue;  // free in front of the wall too
       ++free;
       EXPECT_EQ(query.states()[i], SphereState::outside) << "pose " << k << ", sphere " << i;
     }

@@ -16,8 +16,8 @@ Rotation random_rotation(std::mt19937_64& random) {
   return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
 }
 
-// A point that lies on the sphere is inside or not as rounding decides; what searches for it must
-// leave that to the test itself.
+// Rounding decides about a point that lies on the sphere; searches must leave that decision to the
+// exact test.
 TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
   const Sphere sphere{{2, 1, 7}, 5};
   const Vec3 on_sphere{5, 5, 7};

@@ -1,4 +1,4 @@
-// Options that leave out what nobody asks for.
+// Options that leave out results which nobody asks for.
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"

@@ -57,14 +57,14 @@ Camera camera() {
   return camera;
 }
 
-// As the camera has them: before it, touched at a depth of 1 m.
+// Returns the surfaces in front of the camera, touched at a depth of 1 m.
 std::vector<synthetic::SurfacePtr> surfaces(Vec3 at) {
   return {synthetic::make_wall(at + Vec3{0, 0, 1}, {0.36, 0.48, -0.8}),
           synthetic::make_inverted_ball(at + Vec3{0, 0, 0.7}, 0.3),
           synthetic::make_ball(at + Vec3{0, 0, 1.25}, 0.25)};
 }
 
-// Errors of a third of a per cent, and one pixel in a hundred lost.
+// Adds errors of a third of a per cent and loses one pixel in a hundred.
 DepthImage spoiled(DepthImage image, Numbers& numbers) {
   for (float& depth : image.depth) {
     depth *= static_cast<float>(numbers.between(0.997, 1.003));

@@ -1,5 +1,5 @@
-// A long replay of queries whose every input is made here, by IEEE operations alone, so that its
-// bytes must be the same from every compiler, flag and machine.
+// A long replay of queries. It makes all inputs by IEEE operations alone, so its bytes must be the
+// same from every compiler, flag and machine.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace vpm::testing {
 
-// Noisy images of three scenes become clouds by both estimators of normals, with and without their
-// camera; two tools move through each, by both measures: 2016 queries. The bytes are those of the
-// clouds, of every result and of the spheres' states. Takes about two seconds. `device`: of the
-// queries.
+// Makes clouds of noisy images of three scenes by both estimators of normals, with and without
+// their camera, and moves two tools through each by both measures: 2016 queries, computed on
+// `device`. Returns the bytes of the clouds, of every result and of the spheres' states. Takes
+// about two seconds.
 std::vector<std::byte> replay(const Device& device = {});
 
 }  // namespace vpm::testing

@@ -1,5 +1,5 @@
 // From the mesh to the wrench: packing, graph, normals and query of a scene scaled by a power of
-// two give the same digits, only the exponents change.
+// two give the same digits; only exponents change.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ ToolModel make_tool(double scale) {
   return build_tool_model(packing, {});
 }
 
-// The same digits in float32: a power of two changes exponents only.
+// Scales depths by a power of two, which changes the exponents of float32 only.
 DepthImage scaled(DepthImage image, double scale) {
   for (float& depth : image.depth) depth *= static_cast<float>(scale);
   return image;
@@ -43,7 +43,7 @@ class Pipeline {
       : camera_(synthetic::default_camera()),
         image_(synthetic::render(*synthetic::make_inverted_ball({0, 0, 0.7}, 0.3), camera_)) {}
 
-  // Refined and paper's results with both estimators of normals, with and without the camera.
+  // Returns results of both measures, with both estimators of normals, with and without the camera.
   std::vector<Result> run(double scale) const {
     const ToolModel tool = make_tool(scale);
     std::vector<Result> results;

@@ -57,7 +57,7 @@ void expect_same(const std::vector<Result>& a, const std::vector<Result>& b, dou
   }
 }
 
-// As a program gives it that keeps matrices in single precision.
+// Rounds a pose as programs do that keep matrices in single precision.
 Pose in_floats(const Pose& pose) {
   const auto rounded = [](Vec3 row) { return widen(narrow(row)); };
   const Rotation& r = pose.rotation;
@@ -90,8 +90,8 @@ TEST_P(SameBits, ForAnyNumberOfThreads) {
   set_thread_count(0);
 }
 
-// The lattice's spheres in one long line, which leads from one side of the cube to the other again
-// and again: so does the flood.
+// Joins the lattice's spheres to one long line, which leads back and forth between two sides of the
+// cube, and so does the flood.
 ToolModel lattice_line(double edge, std::uint32_t n) {
   ToolModel tool = lattice_cube(edge, n, 2);
   SphereGraph& graph = tool.levels[0].graph;
@@ -128,7 +128,7 @@ std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) 
   return steps;
 }
 
-// Of tools large enough that the threads share out the flood.
+// The tools are so large that threads share the flood.
 TEST(SameBitsOfAFlood, ForAnyNumberOfThreads) {
   const PreparedCloud cloud(see(synthetic::make_scene("inverted-ball")));
   for (const ToolModel& tool : {lattice_cube(0.2, 24, 2), lattice_line(0.2, 24)}) {
@@ -216,8 +216,8 @@ TEST_P(SameBits, FarFromTheOriginToWhatDoubleHolds) {
   }
 }
 
-// A change of any bit of any result shows here. Where it is meant, renew the hash (target
-// renew_replay_hash) and say in the commit why results change.
+// Shows a change of any bit of any result. For a change that is meant, renew the hash (target
+// renew_replay_hash) and give the reason in the commit.
 TEST(Replay, GivesTheBytesThatItAlwaysGave) {
   const std::vector<std::byte> text = file::read_all(VPM_SOURCE_DIR "/tests/query/replay.hash");
   const std::string recorded(reinterpret_cast<const char*>(text.data()), text.size());

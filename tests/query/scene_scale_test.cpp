@@ -57,7 +57,7 @@ TEST(SceneScale, TellsTheNoiseOfTheSensor) {
 }
 
 TEST(SceneScale, LooksNearTheToolOnly) {
-  // Half a metre in front of a wall stands a plate: points on it are closer to each other.
+  // A plate stands half a metre in front of a wall; its points are closer to each other.
   const PreparedCloud cloud(testing::see(synthetic::make_scene("plate")));
   EXPECT_NEAR(scene_scale(cloud, kReach, Vec3{0, 0, 1}).spacing, kPixel, 0.1 * kPixel);
   EXPECT_GT(scene_scale(cloud, kReach, std::nullopt).spacing, 1.3 * kPixel);
@@ -102,12 +102,12 @@ TEST(SceneLevel, StopsAtTheSmallestSphereThatPointsResolve) {
   EXPECT_EQ(chosen(0.0015), 1u);
   EXPECT_EQ(chosen(0.015), 0u);
   EXPECT_EQ(chosen(0.05), 0u);
-  // Calibrated: what is not more accurate is not required.
+  // With a calibration, a level that is not more accurate is not required.
   tool.calibration = {{0.01, 0.02, 0.03}, {0.001, 0.002, 0.003}, {0.0009, 0.002, 0.003}};
   EXPECT_EQ(chosen(0.0005), 1u);
 }
 
-// Points that a query looks at: those in the ranges that hold all of the tool's ball.
+// Counts the points that a query reads: those in the ranges that hold all of the tool's ball.
 std::size_t looked_at(const Cloud& cloud) {
   std::size_t count = 0;
   const PreparedCloud prepared(cloud);

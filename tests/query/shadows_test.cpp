@@ -24,7 +24,8 @@ QueryOptions solid() {
   return options;
 }
 
-// The scene "block": its front is 0.2 m wide at z = 1, and the wall behind it stands at z = 1.5.
+// True for places in the scene "block" behind its front, which is 0.2 m wide at z = 1, or behind
+// the wall at z = 1.5.
 bool is_behind_what_is_seen(Vec3 x) {
   return x.z > 1.5 || (x.z > 1 && std::abs(x.x) < 0.1 * x.z && std::abs(x.y) < 0.1 * x.z);
 }
@@ -43,7 +44,7 @@ TEST(SolidShadows, CountAllThatIsBehindTheImage) {
   Query query(tool, solid()), near(tool, {});
   int hidden = 0;
   for (int k = 0; k < 300; ++k) {
-    // Through the block, its shadow, the gap beside it and the wall.
+    // The tool passes through the block, its shadow, the gap beside it and the wall.
     const Pose pose{generic_rotation(), {0.004 * (k % 75), 0.01, 0.95 + 0.15 * (k / 75)}};
     const Result r = query.run(cloud, pose);
     const double expected = part_behind_what_is_seen(places, pose);
@@ -54,7 +55,7 @@ TEST(SolidShadows, CountAllThatIsBehindTheImage) {
   EXPECT_GT(hidden, 50);
 }
 
-// Deep behind the front all is pushed back to it, or out at the nearest side.
+// Deep behind the front everything is pushed back to it, or out at the nearest side.
 TEST(SolidShadows, PushToTheNearestPlaceThatIsSeen) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 6, 3);
@@ -63,7 +64,7 @@ TEST(SolidShadows, PushToTheNearestPlaceThatIsSeen) {
   EXPECT_GT(dot(normalized_or_zero(r.wrench.force), Vec3{0, 0, -1}), std::cos(0.02));
 }
 
-// To the bit: what hides nothing is no shadow.
+// Without hidden places the results have the same bits.
 TEST(SolidShadows, ChangeNothingNearTheSurface) {
   for (const char* scene : {"wall", "groove", "plate", "block"}) {
     const PreparedCloud cloud(see(synthetic::make_scene(scene)));

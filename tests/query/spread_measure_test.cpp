@@ -1,5 +1,5 @@
-// Batches spread over several devices: each pose is answered once, in its place, and what a device
-// throws comes out. The devices here are made of nothing; tests/cuda has real ones.
+// Batches spread over several devices: each pose is answered once, in its place, and a device's
+// exception is passed on. These devices are fakes; tests/cuda uses real ones.
 
 #include "libvpm/query/spread_measure.h"
 
@@ -35,7 +35,7 @@ class EchoMeasure : public DeviceMeasure {
   std::atomic<std::size_t>& answered_;
 };
 
-// Answers with the tool's place, too.
+// Answers with the tool's index too.
 class EchoTool : public EchoMeasure {
  public:
   EchoTool(std::atomic<std::size_t>& answered, double place)

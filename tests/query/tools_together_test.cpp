@@ -1,4 +1,4 @@
-// Poses of several tools that are asked together.
+// Poses of several tools in one call.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -25,7 +25,7 @@ class ToolsTogether : public ::testing::Test {
     results_.resize(poses_.size());
   }
 
-  // The message of the usage error.
+  // Returns the message of the usage error.
   std::string refusal() {
     try {
       Query::run_together(together_, cloud_, poses_, results_);

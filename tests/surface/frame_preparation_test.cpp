@@ -23,7 +23,7 @@ void add(std::string& bytes, const T* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
-// All that a query can see.
+// Returns the bytes of all that a query reads.
 std::string bytes_of(const PreparedCloud& cloud) {
   std::string bytes;
   add(bytes, cloud.positions().data(), cloud.positions().size());
@@ -48,7 +48,8 @@ struct Frame {
   Camera camera;
 };
 
-// A ball before nothing under noise, with holes of many widths and numbers that are no depth.
+// Returns a noisy ball in front of nothing, with holes of many widths and depths that are not valid
+// numbers.
 Frame frame(std::uint32_t width, std::uint32_t height) {
   synthetic::Scene scene = synthetic::make_scene("inverted-ball");
   scene.camera.width = width;
@@ -97,7 +98,8 @@ TEST_P(FramePreparationOf, HasTheBitsOfTheCloud) {
   PreparedCloud cloud{Cloud{}};
   for (const int threads : {1, 4}) {
     set_thread_count(threads);
-    // One after the other in the same memory: larger, smaller, with fewer points and with more.
+    // Frames share the memory of the frame before: larger, smaller, with fewer points and with
+    // more.
     expect_same(preparation, frame(200, 150), options, cloud);
     Frame full = frame(200, 150);
     full.depth.depth.assign(full.depth.depth.size(), 1.0F);
@@ -126,7 +128,8 @@ TEST(FramePreparation, TakesACloudWhoseMemoryWasMovedAway) {
   const Frame f = frame(64, 48);
   expect_same(preparation, f, options, cloud);
   const PreparedCloud taken = std::move(cloud);
-  expect_same(preparation, f, options, cloud);  // NOLINT(bugprone-use-after-move): that is the test
+  expect_same(preparation, f, options,
+              cloud);  // NOLINT(bugprone-use-after-move): tests reuse after a move
   EXPECT_TRUE(bytes_of(taken) == bytes_of(cloud));
 }
 
@@ -156,7 +159,7 @@ TEST(FramePreparation, ReadsPointsAsMeasured) {
   PreparedCloud cloud{Cloud{}};
   Frame f = frame(200, 150);
   expect_same(preparation, f, options, cloud, PointReading::as_measured);
-  f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};  // beyond the usual
+  f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};  // beyond usual intrinsics
   expect_same(preparation, f, options, cloud, PointReading::as_measured);
 }
 

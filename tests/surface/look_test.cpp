@@ -1,4 +1,4 @@
-// What a look at a ball tells of the balls in it.
+// Classifying a ball also classifies all balls in it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,13 +18,14 @@ struct Ball {
 
 class RandomBalls {
  public:
-  // Anywhere before a camera that sees about a metre; some of them beside its image, or around it.
+  // Returns a ball anywhere before a camera that sees about a metre, sometimes beside its image or
+  // around it.
   Ball next() {
     const double depth = between(0.05, 1.6);
     return {{depth * between(-0.8, 0.8), depth * between(-0.7, 0.7), depth},
             std::exp(between(std::log(2e-4), std::log(0.3)))};
   }
-  // Some of them touch the ball from within.
+  // Returns a ball in `ball`; some touch it from within.
   Ball next_in(const Ball& ball) {
     const Vec3 direction = normalized_or_zero(Vec3{between(-1, 1), between(-1, 1), between(-1, 1)});
     const double radius = ball.radius * between(0, 1);
@@ -78,8 +79,8 @@ TEST(Look, OverflowsNowhere) {
   surface.k.fx = surface.k.fy = 1e300;
   for (const Vec3 center : {Vec3{1e20, 0, 0.3}, Vec3{-1e20, 1e20, 0.3}})
     EXPECT_EQ(surface.look_at_ball(center, 1e-301).side, Side::free);
-  // So near to the camera pixels tell nothing: what is there may be free, and is not said to be
-  // behind.
+  // Pixels tell nothing so near to the camera: the place may be free, so it must not be classified
+  // as behind.
   for (const Vec3 center : {Vec3{0, 0, 1e-300}, Vec3{1e30, 1e30, 1e-290}})
     EXPECT_EQ(surface.look_at_ball(center, 1e-301).side, Side::mixed);
 }

@@ -24,7 +24,7 @@ std::vector<Vec3f> in_leaf_order(const std::vector<Vec3f>& points) {
   return ordered;
 }
 
-// With the boxes of its nodes.
+// Points in the tree's order, with the boxes of its nodes.
 struct OrderedPoints {
   std::vector<Vec3f> points;
   std::vector<BoxQuad> boxes;
@@ -40,7 +40,7 @@ struct OrderedPoints {
 float quarter(double x) {
   return static_cast<float>(std::round(4 * x) / 4);
 }
-// On a coarse lattice, so that many distances are equal, or anywhere.
+// Returns points anywhere, or on a coarse lattice, where many distances are equal.
 std::vector<Vec3f> scattered(std::size_t count, bool on_lattice) {
   std::mt19937 random(static_cast<unsigned>(count));
   std::uniform_real_distribution<float> at(-1, 1);
@@ -79,7 +79,7 @@ TEST_P(TreeOf, FindsTheNearest) {
       for (const double bound : {HUGE_VAL, 0.5, 0.1}) {
         const std::uint32_t found = nearest_of_all(ordered.points, x, bound);
         ASSERT_EQ(tree.nearest(x, bound), found) << bound << ' ' << on_lattice;
-        // A hint beyond the bound is none.
+        // A hint beyond the bound is no hint.
         const auto near = static_cast<std::uint32_t>(random() % ordered.points.size());
         ASSERT_EQ(tree.nearest(x, bound, near), found);
       }
@@ -132,7 +132,7 @@ TEST_P(TreeOf, FindsTheNearestOfTheBallsThatTouch) {
   }
 }
 
-// Searches that begin near a place, of places about it and elsewhere.
+// Searches begin near a place, for places about it and elsewhere.
 TEST_P(TreeOf, FindsTheSameFromNearby) {
   const OrderedPoints ordered(scattered(GetParam(), true));
   std::mt19937 random(3);
@@ -173,7 +173,7 @@ TEST_P(TreeOf, FindsTheSameFromNearby) {
   }
 }
 
-// One leaf, full and not; trees with an even and an odd number of levels.
+// Tests one leaf, full and not, and trees with an even and an odd number of levels.
 INSTANTIATE_TEST_SUITE_P(Points, TreeOf,
                          ::testing::Values(1, 2, 7, 8, 9, 16, 17, 31, 33, 64, 65, 100, 129, 1000,
                                            4096, 5000),

@@ -42,7 +42,7 @@ TEST(PreparedCloud, RangesHoldEveryPointOfABall) {
   }
 }
 
-// Tiles of the image cover more than a ball does: what they show nearby must not count.
+// Tiles of the image cover more than a ball does, and the surface beside the ball must not count.
 TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
   const PreparedCloud prepared(see(synthetic::make_scene("step")));
   const DepthSurface surface = prepared.depth_surface();
@@ -62,7 +62,7 @@ TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
     beside_the_step += in_front && look.side == Side::mixed;
   }
   EXPECT_GT(free, 1000);
-  EXPECT_GT(beside_the_step, 20);  // tiles alone do not tell
+  EXPECT_GT(beside_the_step, 20);  // tiles alone do not decide these
 }
 
 TEST(PreparedCloud, NearestIsTheNearest) {
@@ -82,7 +82,7 @@ TEST(PreparedCloud, NearestIsTheNearest) {
   }
 }
 
-// Whatever side_of_ball says of a ball must be true of every place in it.
+// A side that side_of_ball returns for a ball must be true of every place in it.
 TEST(DepthSurface, SideOfBallIsConservative) {
   for (const char* name : {"wall", "groove", "block", "inverted-ball"}) {
     const PreparedCloud cloud(see(synthetic::make_scene(name)));
@@ -111,8 +111,7 @@ TEST(DepthSurface, SideOfBallIsConservative) {
 }
 
 TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
-  // A lattice, so that many distances are equal, coarse enough for short lists and too fine for
-  // such.
+  // Many distances on a lattice are equal. The spacings make short lists of points and long ones.
   for (const double spacing : {0.001, 0.01, 0.1}) {
     Cloud cloud;
     for (int i = -20; i <= 20; ++i) {

@@ -1,4 +1,4 @@
-// Points without a camera, freed of noise, and what they tell of edges and thin plates.
+// Points without a camera after denoising, at edges and thin plates.
 #include "libvpm/surface/settled_disks.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ void add_point(Vec3 place, Vec3 normal, Cloud& cloud) {
   cloud.radii.push_back(static_cast<float>(kSpacing / std::sqrt(2.0)));
 }
 using Point = std::function<void(double x, double y, Cloud&)>;
-// For a lattice over a square of 12 cm.
+// Adds points of a lattice over a square of 12 cm.
 Cloud over_square(const Point& add) {
   constexpr int kHalf = 30;
   Cloud cloud;
@@ -49,7 +49,7 @@ bool is_inner(Vec3 p) {
   return std::fabs(p.x) < 0.04 && std::fabs(p.y) < 0.04;
 }
 
-// A wall z = 0 with noise along z, and in the normals' slopes.
+// Returns a wall z = 0 with noise along z and in the normals' slopes.
 Cloud noisy_wall(double height, double slope) {
   return over_square([=, noise = Noise()](double x, double y, Cloud& cloud) mutable {
     const double z = noise.next(height), a = noise.next(slope), b = noise.next(slope);
@@ -57,14 +57,14 @@ Cloud noisy_wall(double height, double slope) {
   });
 }
 
-// A roof over y (edge at x = z = 0), or the groove that it leaves, the normals estimated across
+// A roof over y (edge at x = z = 0), or the groove that it leaves, with normals estimated across
 // windows of seven pixels.
 struct Roof {
   bool is_convex;
 
   Vec3 normal_at(double x) const { return {is_convex == (x > 0) ? 1.0 : -1.0, 0, 1}; }
   double height(double x) const { return is_convex ? -std::fabs(x) : std::fabs(x); }
-  double distance(Vec3 p) const {  // exact but for places beyond the edge
+  double distance(Vec3 p) const {  // exact except for places beyond the edge
     const double left = (is_convex ? p.x : -p.x) + p.z, right = (is_convex ? -p.x : p.x) + p.z;
     return std::sqrt(0.5) * (is_convex ? std::max(left, right) : std::min(left, right));
   }
@@ -80,7 +80,7 @@ struct Roof {
   }
 };
 
-// Two sheets at z = +-half, that face away from each other, with noise along z.
+// Returns two sheets at z = +-half that face away from each other, with noise along z.
 Cloud plate(double half, double deviation) {
   return over_square([=, noise = Noise()](double x, double y, Cloud& cloud) mutable {
     add_point({x, y, half + noise.next(deviation)}, {0, 0, 1}, cloud);
@@ -88,8 +88,8 @@ Cloud plate(double half, double deviation) {
   });
 }
 
-// Of places near the obstacle, but further than `clear` from its surface: the part that is taken to
-// be on the wrong side.
+// Returns the fraction of places classified on the wrong side, of those near the obstacle but
+// further than `clear` from its surface.
 double part_wrong(const PreparedCloud& cloud, double clear,
                   const std::function<double(Vec3)>& distance) {
   constexpr int kPlaces = 20000;
@@ -164,7 +164,7 @@ TEST(SettledDisks, EdgesAndGroovesAreSharp) {
   }
 }
 
-// The windows by which normals were estimated reach across an edge. What is settled does not.
+// The windows for normals reach across an edge; denoised normals do not mix its sides.
 TEST(SettledDisks, NormalsBesideAnEdgeAreThoseOfTheirSide) {
   for (const bool is_convex : {true, false}) {
     const Roof roof{is_convex};
@@ -181,9 +181,9 @@ TEST(SettledDisks, NormalsBesideAnEdgeAreThoseOfTheirSide) {
   }
 }
 
-// The riser of a step, little wider than two windows of normals, which lean towards top and floor
-// at its ends. Disks that noise has turned that way see less that is unlike them; if they were
-// thought to be further from the ends for that, the riser's mean would lean too.
+// The riser of a step is little wider than two windows of normals, which lean towards top and floor
+// at its ends. Disks that noise has turned that way have fewer unlike neighbours. If that made them
+// count as further from the ends, the riser's mean would lean too.
 TEST(SettledDisks, ANarrowWallDoesNotLean) {
   constexpr double kWide = 17 * kSpacing, kWindow = 3.5 * kSpacing;
   constexpr double kHeight = 0.0007, kTilt = 0.05;
@@ -191,7 +191,8 @@ TEST(SettledDisks, ANarrowWallDoesNotLean) {
   int inner = 0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Noise noise(seed);
-    // The profile's length from the riser's foot, which rises in x from -kWide to 0.
+    // Returns the length of the profile from the riser's foot; the riser rises in x from -kWide to
+    // 0.
     const auto part_of_riser = [&](double along) {
       const double on = std::min(along + kWindow, kWide) - std::max(along - kWindow, 0.0);
       return std::clamp(on / (2 * kWindow), 0.0, 1.0);
@@ -221,7 +222,7 @@ TEST(SettledDisks, ANarrowWallDoesNotLean) {
   EXPECT_NEAR(lean / inner, 0, 0.006);
 }
 
-// Noise is as large as the plate is thick: points of its front lie behind its back.
+// Noise is as large as the plate is thick, so points of its front lie behind its back.
 TEST(SettledDisks, ThinPlatesKeepTheirSides) {
   constexpr double kHalf = 0.002;
   const auto distance = [](Vec3 x) { return std::fabs(x.z) - kHalf; };
@@ -230,10 +231,10 @@ TEST(SettledDisks, ThinPlatesKeepTheirSides) {
   EXPECT_GT(part_wrong(PreparedCloud(noisy, PointReading::as_measured), 0.001, distance), 0.01);
 }
 
-// What is opposite is told by both sides as they are when noise has been taken from them: points
-// that it has moved beyond the other side do not make a slot of the plate.
+// Opposite sides are recognised after denoising, so that points moved beyond the other side do not
+// turn the plate into a slot.
 TEST(SettledDisks, SheetsWithoutThicknessHoldNothing) {
-  for (const double offset : {0.0, 0.4 * kSpacing}) {  // of the lattice of one side
+  for (const double offset : {0.0, 0.4 * kSpacing}) {  // offset of one side's lattice
     const PreparedCloud cloud(over_square([&](double x, double y, Cloud& sheet) {
       add_point({x, y, 0}, {0, 0, 1}, sheet);
       add_point({x + offset, y - offset, 0}, {0, 0, -1}, sheet);
@@ -297,15 +298,15 @@ TEST(SettledDisks, SmallFeaturesStay) {
 // A place beyond an outlier's plane is not behind the surface.
 TEST(SettledDisks, OutliersJoinTheirSurface) {
   Cloud seen = plate(0.002, 0.0003);
-  add_point({0.0102, 0.0107, 0.008}, {0, 0, -1}, seen);          // of the back, before the front
-  add_point({-0.0201, -0.0052, 0.010}, {-0.5, 0.2, 0.8}, seen);  // of nothing
+  add_point({0.0102, 0.0107, 0.008}, {0, 0, -1}, seen);  // of the back, in front of the front
+  add_point({-0.0201, -0.0052, 0.010}, {-0.5, 0.2, 0.8}, seen);  // of no surface
   const auto distance = [](Vec3 x) { return std::fabs(x.z) - 0.002; };
   EXPECT_EQ(part_wrong(PreparedCloud(seen), 0.001, distance), 0);
   EXPECT_GT(part_wrong(PreparedCloud(seen, PointReading::as_measured), 0.001, distance), 0.001);
 }
 
-// Such are far before a step's edge. On the plane of the riser, on which they may lie best, they
-// would make a wall where there is none.
+// These outliers are far in front of a step's edge. They may fit the plane of the riser best, but
+// there they would make a wall in free space.
 TEST(SettledDisks, OutliersContinueNoWall) {
   Cloud seen = over_square([](double x, double y, Cloud& cloud) {
     add_point({x, y, x > 0 ? -0.04 : 0.0}, {0, 0, 1}, cloud);
@@ -335,7 +336,7 @@ void expect_same(const SettledDisks& a, const SettledDisks& b, float scale = 1) 
   }
 }
 
-// One to three points that lie together far before a wall, where nothing else is.
+// One to three points lie together far in front of a wall, with nothing else near.
 TEST(SettledDisks, StraysJoinTheNearestDisk) {
   for (const int strays : {1, 2, 3}) {
     for (const double height : {0.007, 0.014, 0.021, 0.03}) {
@@ -355,7 +356,7 @@ TEST(SettledDisks, StraysJoinTheNearestDisk) {
   }
 }
 
-// A disk wider than its spacing sees more of them than are looked at.
+// A disk wider than its spacing has more neighbours than are searched.
 TEST(SettledDisks, StraysOfDenseCloudsJoinTheNearestDisk) {
   Cloud cloud = noisy_wall(0, 0);
   std::fill(cloud.radii.begin(), cloud.radii.end(), static_cast<float>(5 * kSpacing));
@@ -439,7 +440,7 @@ TEST(BallFraction, OfTwoPlanesIsBetweenItsBounds) {
         EXPECT_DOUBLE_EQ(both, fraction_of_both(b, a, cosine));
         EXPECT_GE(both, std::max(a + b - 1, 0.0) - 1e-15);
         EXPECT_LE(both, std::min(a, b) + 1e-15);
-        // A wedge through the centre: the exact part is the angle between its sides.
+        // For a wedge through the centre, the exact fraction is the angle between its sides.
         const double wedge = 0.5 - std::acos(cosine) / (2 * std::acos(-1.0));
         EXPECT_NEAR(fraction_of_both(0.5, 0.5, cosine), wedge, 0.06);
       }

@@ -53,7 +53,7 @@ double angle(Vec3f a, Vec3 b) {
   return std::atan2(norm(cross(widen(a), b)), dot(widen(a), b));
 }
 
-// Depths and normals of a scene beside what is true, where a smooth surface faces the camera.
+// Errors of depths and normals where a smooth surface faces the camera.
 struct Errors {
   double depth = 0, normal = 0;  // root mean squares
 };
@@ -126,7 +126,7 @@ TEST(SettledImage, NoiseFallsToWhatAWindowLeaves) {
     const SeenImage noisy = seen(scene.noisy_depth(), scene.intrinsics());
     const Errors before = scene.errors(noisy), after = scene.errors(Settled(noisy));
     // A paraboloid over 7 by 7 pixels keeps sqrt(11 / 147) of independent noise; the noise of
-    // neighbouring windows of normals is nearly so.
+    // neighbouring windows of normals is nearly independent.
     EXPECT_LT(after.depth, 0.35 * before.depth);
     EXPECT_LT(after.normal, 0.55 * before.normal);
   }
@@ -142,14 +142,14 @@ TEST(SettledImage, WhatHasNoNoiseStaysWhereItIs) {
   }
 }
 
-// Two planes that meet in the column `kCrease`, at right angles; further right the second one lies
-// `step` m behind.
+// Two planes meet in the column kCrease at right angles; right of the column kStep the second one
+// lies `step` m behind.
 constexpr int kCrease = 60, kStep = 90;
 DepthImage creased(double step) {
   DepthImage depth{120, 40, {}};
   for (int v = 0; v < 40; ++v) {
     for (int u = 0; u < 120; ++u) {
-      // z = 1 + |x| with x = (u - kCrease) / 525 z.
+      // Solves z = 1 + |x| with x = (u - kCrease) / 525 z.
       const double slope = std::abs(u - kCrease) / 525.0;
       depth.depth.push_back(static_cast<float>(1 / (1 - slope) + (u >= kStep ? step : 0)));
     }
@@ -185,7 +185,7 @@ TEST(SettledImage, NormalsBesideACreaseLeanToNoSide) {
   }
 }
 
-// So what they show to be free is not taken for behind.
+// Depths stay between those around, so a place that they show as free is not classified as behind.
 TEST(SettledImage, DepthsStayAmongThoseOfTheNinePixelsAround) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> number(0, 1);
@@ -226,7 +226,7 @@ TEST(SettledImage, NothingComesOfNothing) {
   }
 }
 
-// The same arithmetic pixel by pixel, in loops of its own.
+// Repeats the arithmetic pixel by pixel in loops of its own.
 class OneByOne {
  public:
   explicit OneByOne(const SeenImage& seen) : seen_(seen) {}

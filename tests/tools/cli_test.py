@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs transcripts of command lines and compares what the tools say.
+"""Runs transcripts of command lines and compares the output.
 
     cli_test.py --bin DIR[:DIR...] [--renew] CASE.t...
 
-A transcript is text. A line "$ COMMAND" is run by bash (with pipefail) in a fresh folder that all
-commands of the transcript share; then follow what must come back:
+A transcript is text. A line "$ COMMAND" is run by bash (with pipefail) in a new folder that all
+commands of the transcript share. The lines after it are the expected output:
 
     $ vpm-pack open.off -o open.vpmp
     2> vpm-pack: error: open.off: ... (glob)
@@ -15,8 +15,8 @@ line that ends in " (glob)" is a pattern of fnmatch. Lines that start with "#" a
 commands find the tools on PATH, the repository in $SOURCE, and schemas are checked by
 `$VALIDATE SCHEMA FILE` (tests/formats/validate_json.py).
 
---renew writes what the commands say now into the transcripts, patterns that still match stay.
-Exit status: 0 where all agree, 1 otherwise.
+--renew writes the present output into the transcripts; patterns that still match stay.
+Exit status: 0 if all agree, 1 otherwise.
 """
 import argparse
 import difflib
@@ -32,7 +32,7 @@ SECONDS_PER_COMMAND = 120
 
 
 def parse(text):
-    """The transcript as a list of (lines before and with the command, command, expected lines)."""
+    """Returns the transcript as a list of (lines before the command, command, expected lines)."""
     steps, before = [], []
     for line in text.splitlines():
         if line.startswith("$ "):
@@ -69,7 +69,7 @@ def agree(expected, actual):
 
 
 def renewed(expected, actual):
-    """What came back, with the patterns of before in the places where they match."""
+    """Returns the actual lines, with the expected patterns in the places where they match."""
     patterns = [line for line in expected if line.endswith(" (glob)")]
     lines = []
     for line in actual:

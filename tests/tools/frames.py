@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A recording of a wall that comes 10 mm nearer with each frame: frames.py numbered|timed FOLDER COUNT.
+"""Makes a recording of a wall that comes 10 mm nearer with each frame: frames.py numbered|timed FOLDER COUNT.
 
 16-bit PNG of 64 x 48 pixels, millimetres, f = 60 px; the first frame sees the wall at 1 m. `numbered`: frame-000000.depth.png
 with .pose.txt, as 7-Scenes has it; `timed`: depth.txt, depth/TIME.png and groundtruth.txt, 30 frames a second from

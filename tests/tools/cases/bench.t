@@ -1,4 +1,4 @@
-# vpm-bench: what it says where a suite cannot run. Why there is no device depends on the build.
+# vpm-bench: messages of suites that cannot run. The reason why there is no device depends on the build.
 
 $ CUDA_VISIBLE_DEVICES= vpm-bench scaling --baseline 2>&1 | sed 's/scaling: this .*/scaling: WHY/'
 vpm-bench: error: scaling: WHY

@@ -1,4 +1,4 @@
-# What all tools share.
+# Behaviour that all tools share.
 
 $ vpm-probe --version
 vpm-probe 0.1.0
@@ -47,7 +47,7 @@ $ vpm-probe --dump-config
 $ vpm-probe --dump-config > defaults.json && vpm-probe --config defaults.json in.off -o -
 in.off none 3 0.100000 []
 
-# Wrong configurations.
+# Wrong configurations are refused.
 $ echo '{"threadz": 2}' | vpm-probe --config - in.off -o -
 2> vpm-probe: error: --config: there is no option 'threadz' (see vpm-probe --help)
 [2]
@@ -72,7 +72,7 @@ $ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
 2> vpm-probe: error: Could not convert: --count = five (see vpm-probe --help)
 [2]
 
-# Exit codes.
+# Each kind of error has its exit code.
 $ vpm-probe in.off -o - --act refuse
 2> vpm-probe: error: input.off: refused as asked
 [1]
@@ -100,7 +100,7 @@ $ vpm-probe in.off -o - --threads -1
 $ vpm-probe in.off -o - --device tpu
 2> vpm-probe: error: --device: tpu not in {auto,cpu,cuda,cuda:N,cuda:all} (see vpm-probe --help)
 [2]
-# Why there is no such device depends on the build and the machine.
+# The reason why there is no device depends on the build and the machine.
 $ vpm-probe in.off -o - --device cuda:999 2>&1 | sed 's/cuda:999: .*;/cuda:999: WHY;/'
 vpm-probe: error: --device cuda:999: WHY; use --device cpu, or leave the option out
 [3]
@@ -123,7 +123,7 @@ $ vpm-probe --dump-config > /dev/full
 2> vpm-probe: error: cannot write to standard output
 [4]
 
-# Messages, and no progress where there is no terminal.
+# Messages appear, and no progress, if there is no terminal.
 $ vpm-probe in.off -o /dev/null --act say
 2> vpm-probe: note: a note
 2> vpm-probe: warning: a warning
@@ -134,7 +134,7 @@ $ vpm-probe in.off -o /dev/null --act say --verbose
 2> vpm-probe: warning: a warning
 2> vpm-probe: a detail
 
-# Provenance names no files and nothing that changes no result.
+# Provenance names no files and no option that changes no result.
 $ vpm-probe in.off -o out.txt --act parameters --threads 2 --levels 4 --flag
 {"act":"parameters","count":3,"factor":0.1,"flag":true,"levels":4,"text":"none"}
 
@@ -146,7 +146,7 @@ $ printf '\x89VPM\r\n\x1a\n\x01\0\0\0\x03\0\0\0' > frame.vpmc && vpm-probe in.of
 $ vpm-probe in.off -o frame.vpmc --force && cat frame.vpmc
 in.off none 3 0.100000 []
 
-# Links, pipes and devices.
+# Outputs may be links, pipes and devices.
 $ ln -s out.txt link && vpm-probe in.off -o link --text through && readlink link && cat out.txt
 out.txt
 in.off through 3 0.100000 []

@@ -1,10 +1,10 @@
-# Motions: a haptic device holds the tool by a spring and a damper; poses that follow each other.
+# Motions: a haptic device holds the tool by a spring and a damper; poses follow each other.
 
 $ cp $SOURCE/tests/tools/inputs/* .
 $ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --quiet
 
-# From free space to 40 mm into the wall in half a second, and a second at rest: 1501 steps at 1 kHz.
+# The path goes from free space to 40 mm into the wall in half a second, and rests for a second: 1501 steps at 1 kHz.
 $ printf '%s\n' '10 0 0 0.85 0 0 0 1' '10.5 0 0 0.94 0 0 0 1' '11.5 0 0 0.94 0 0 0 1' > device.txt
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o steps.jsonl --stats stats.json
 2> vpm-query: note: coupling: mass 0.0125 kg, radius of gyration 0.0817 m; to be passive a device that renders this needs a damping of its own of 5.25 N s/m
@@ -17,13 +17,13 @@ True True True
 $ tail -n 1 steps.jsonl | python3 -c 'import json; e = json.loads(input())["energy"]; print(abs(e["supplied"] - e["stored"] - e["dissipated"] - e["absorbed"] - e["lost"]) < 1e-12, e["lost"] >= 0)'
 True True
 
-# The same bytes for any number of threads; a path without times is a step for each pose.
+# Any number of threads gives the same bytes; a path without times has a step for each pose.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5,rate=1000,mass=0.0125 --stiffness 2e4 --threads 1 --quiet | cmp - steps.jsonl
 $ cut -d' ' -f2- device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | wc -l
 3
 
-# One motion: a tool that has passed wholly behind the wall is still inside; seen alone, only what is no further behind it
-# than the tool's reach is known to be.
+# Coherent poses: a tool that has passed wholly behind the wall is still inside. A single pose counts only places within
+# the tool's reach behind the wall.
 $ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 1.05 0 0 0 1' '0 0 1.12 0 0 0 1' '0 0 1.3 0 0 0 1' > deep.txt
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
 [0.25, 0.75, 1.0, 1.0]
@@ -36,18 +36,18 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --mea
 2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
 [2]
 
-# Where each step is longer than what may be used again, nothing is.
+# Steps longer than the reuse length reuse nothing.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent > anew.jsonl
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001 | cmp - anew.jsonl
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --reuse 0.001
 2> vpm-query: error: --reuse is for poses that are one motion: give --coherent too
 [2]
 
-# What the steps cannot stand is said, with what mends it.
+# Parameters that cannot stand the scene's stiffness are warned about, with a cure.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 1e7 -o /dev/null --quiet
 2> vpm-query: warning: --coupling is stable against contacts up to 6.05e+04 N/m, but with --stiffness 1e+07 this tool can make one of 9.42e+05 N/m: take rate=4242 or more, a larger mass, or less --stiffness
 
-# Wrong usage.
+# Wrong usage is refused.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500 --stiffness 2e4
 2> vpm-query: error: --coupling stiffness=500: give stiffness=N/m,damping=N s/m and, if wanted, mass=kg,rate=Hz
 [2]

@@ -4,7 +4,7 @@ $ printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 
 $ sed 's/^1 1 1$/1 1 2/' cube.off > other.off
 $ vpm-pack cube.off -o cube.vpmp --spheres 60 --scale 0.5 --quiet
 
-# A model with levels, and what the report says of it.
+# A model has levels, and the report describes them.
 $ vpm-graph cube.vpmp -o cube.vpmg --levels 10,40,40,500 --report report.json
 2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 $ $VALIDATE graph-report report.json
@@ -13,7 +13,7 @@ $ python3 -c "import json; r = json.load(open('report.json')); print(r['spheres'
 $ python3 -c "import json; r = json.load(open('report.json')); print(max(abs(l['share_sum'] / r['volume'] - 1) for l in r['levels']) < 1e-12)"
 True
 
-# Pipes, and the same bytes for any number of threads.
+# The tool pipes, and any number of threads gives the same bytes.
 $ vpm-graph - -o - --levels 10,40,40,500 --threads 1 < cube.vpmp | cmp - cube.vpmg
 2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 $ vpm-graph cube.vpmp -o - --levels 10,40,40,500 --threads 4 | cmp - cube.vpmg
@@ -28,7 +28,7 @@ $ vpm-graph - -o cube.vpmg --mesh - < cube.vpmp
 2> vpm-graph: error: only one of the packing and --mesh can be standard input
 [2]
 
-# What it refuses.
+# Unsuitable inputs are refused.
 $ vpm-graph cube.vpmg -o out.vpmg
 2> vpm-graph: error: cube.vpmg: * (glob)
 [1]

@@ -1,11 +1,11 @@
-# Mistakes of scripts and fingers: said before anything is lost.
+# Mistakes of scripts and fingers are reported before anything is lost.
 
 $ cp $SOURCE/tests/tools/inputs/* .
 $ vpm-pack cube.off -o cube.vpmp --spheres 30 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 10,20
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5
 $ printf '%s\n' '0 0 0 0.8 0 0 0 1' '1 0 0 0.95 0 0 0 1' > path.txt
 
-# No output takes the place of an input, unless that is forced.
+# No output replaces an input without --force.
 $ vpm-pack cube.off -o new.vpmp --spheres 3 --report cube.off
 2> vpm-pack: error: --report would overwrite the input cube.off; name another output, or give --force
 [2]
@@ -23,7 +23,7 @@ $ cmp cube.off $SOURCE/tests/tools/inputs/cube.off && cmp wall.png $SOURCE/tests
 $ cp cube.off gone.off; vpm-pack gone.off --spheres 3 --report gone.off --force --quiet; head -c 1 gone.off
 {
 
-# Nor of another output.
+# No output replaces another output.
 $ vpm-pack cube.off --spheres 3 --report same.json --export ./same.json
 2> vpm-pack: error: --report and --export would both be written to ./same.json; name two files
 [2]
@@ -38,7 +38,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o both.json --s
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o /dev/null --stats /dev/null
 
-# A variable that is not set is no value.
+# An empty variable is not a value.
 $ vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose "$POSE"
 2> vpm-normals: error: --camera-pose: its value is empty; give one, or leave the option out
 [2]
@@ -52,7 +52,7 @@ $ echo '{"output": ""}' > empty.json; vpm-pack cube.off --spheres 3 --report - -
 2> vpm-pack: error: --output: its value is empty; give one, or leave the option out
 [2]
 
-# A file without poses.
+# A file without poses is refused.
 $ echo '# none' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
 2> vpm-query: error: standard input: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
 [1]
@@ -60,7 +60,7 @@ $ echo '0 wall.png' > list.txt; : > none.txt; vpm-query --tool cube.vpmg --frame
 2> vpm-query: error: none.txt: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
 [1]
 
-# Numbers that are none, or out of range.
+# Numbers that are not numbers, or out of range, are refused.
 $ vpm-pack cube.off -o new.vpmp --spheres -5
 2> vpm-pack: error: --spheres: -5 is not a whole number from 1 to 4294967294 (see vpm-pack --help)
 [2]
@@ -81,7 +81,7 @@ $ vpm-query --tool cube.vpmg --frames . --trajectory path.txt --rate nan
 [2]
 $ vpm-graph --levels 10,20 cube.vpmp -o - | cmp - cube.vpmg
 
-# Options that would do nothing.
+# Options without effect are refused.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9
 2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
 [2]
@@ -89,7 +89,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --frame-latency 
 2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
 [2]
 
-# Poses: what is no text file, times and number signs in JSON, a time too many.
+# Lines that are not poses are refused: binary files, times and number signs in JSON, a time too many.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses .
 2> vpm-query: error: cannot read .: Is a directory
 [1]
@@ -107,7 +107,7 @@ $ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cu
 2> vpm-query: error: standard input, line 1: "time" must be a number of seconds
 [1]
 
-# Nothing is shifted into an empty cell, a zero in front makes no octal number, a byte order mark is none.
+# Empty cells shift no numbers, a leading zero makes no octal number, and a byte order mark is passed over.
 $ for p in '0,0,,0.95,0,0,0,1' ',0,0.95,0,0,0,1' '0,0,0.95,0,0,0,1,'; do echo "$p" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
 2> vpm-query: error: standard input, line 1: number 3 is missing: nothing stands between the commas
 2> vpm-query: error: standard input, line 1: number 1 is missing: nothing stands between the commas
@@ -121,7 +121,7 @@ $ echo '1e300 0 0 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --pose
 2> vpm-query: error: standard input, line 1: pose: the translation is not finite, or further than 2^100 m from the origin
 [1]
 
-# A device stands by for single poses whose points nobody counts; elsewhere that changes nothing.
+# A device stands by for single poses without counted points; otherwise the option is refused or has no effect.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
 2> vpm-query: error: --standby-us waits for single poses of the refined measure; give --no-points too, and leave --batch, --measure paper and --coherent out
 [2]
@@ -131,16 +131,16 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby
 $ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --no-points --standby-us $s | md5sum; done | uniq | wc -l
 1
 
-# Help that nobody can read.
+# Help that cannot be written is an error.
 $ vpm-pack --help > /dev/full
 2> vpm-pack: error: cannot write to standard output
 [4]
 
-# A packing of a mesh that was repaired is known by the mesh.
+# A packing of a repaired mesh is recognised by the mesh.
 $ vpm-pack cube.off --repair voxel=20 --spheres 5 -o voxels.vpmp --quiet
 $ vpm-graph voxels.vpmp -o voxels.vpmg --mesh cube.off
 
-# A value that a script has left empty is none, whatever follows it.
+# A value that a script has left empty is refused, whatever follows it.
 $ vpm-pack cube.off -o x.vpmp --report= --quiet; ls ./--quiet 2>&1 | wc -l
 1
 2> vpm-pack: error: --report: its value is empty; give one, or leave the option out
@@ -149,7 +149,8 @@ $ vpm-pack cube.off --spheres 5 -o x.vpmp --link part
 2> vpm-pack: error: --link is a name in .yml, .urdf and .srdf; give --export with one of these
 [2]
 
-# However a stream is named, two outputs do not share it; closed ones take no notes into a file.
+# Two outputs do not share a stream, however it is named; notes do not go into an output file if standard error is
+# closed.
 $ for out in /dev/stdout /dev/fd/1 /proc/self/fd/1; do vpm-pack cube.off --spheres 5 -o - --report $out; done
 2> vpm-pack: error: only one output can be standard output: --output or --report
 2> vpm-pack: error: only one output can be standard output: --output or --report
@@ -161,7 +162,7 @@ first
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --for-scene -o closed.jsonl 2>&-; head -c 8 closed.jsonl
 {"pose":
 
-# Numbers as CLI11 takes them, and as JSON does not.
+# Numbers may be written as CLI11 reads them, which JSON does not.
 $ vpm-pack cube.off --scale .001 --spheres 5 -o small.vpmp && vpm-graph small.vpmp --mesh cube.off -o small.vpmg && echo made
 made
 $ vpm-graph cube.vpmp --levels 010 -o x.vpmg

@@ -6,7 +6,7 @@ $ $VALIDATE normals-report report.json
 $ python3 -c 'import json; r = json.load(open("report.json")); del r["seconds"]; print(json.dumps(r, sort_keys=True))'
 {"edge_gate": 0.02, "height": 48, "intrinsics": [60.0, 60.0, 31.5, 23.5], "invalid": 1, "method": "inverse-depth", "points": 3071, "width": 64, "window": 7, "without_normal": 0}
 
-# The same bytes from a pipe, with any number of threads.
+# The same bytes come from a pipe, with any number of threads.
 $ vpm-normals - -o - --intrinsics 60,60,31.5,23.5 --threads 1 < wall.png | cmp - wall.vpmc
 $ vpm-normals -o - --intrinsics 60,60,31.5,23.5 wall.png --threads 2 | cmp - wall.vpmc
 $ vpm-normals wall.png -o pca.vpmc --intrinsics 60,60,31.5,23.5 --method pca --window 5 --edge-gate 0 --camera-pose 1,2,3,0,0,0,1
@@ -25,7 +25,7 @@ $ vpm-normals grid.pcd -o x.vpmc --intrinsics 90,90,31.5,23.5
 2> vpm-normals: error: grid.pcd: the organised cloud does not fit the intrinsics given: point (0, 0) is 15.7 pixels away from where the pinhole camera fx 90 fy 90 cx 31.5 cy 23.5 sees it (at most 0.5 is accepted); leave --intrinsics out to have them recovered
 [1]
 
-# Wrong usage.
+# Wrong usage is refused.
 $ vpm-normals
 2> vpm-normals: error: no depth image is given: name a file, or - for a pipe
 [2]
@@ -68,7 +68,7 @@ $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report wall.v
 $ vpm-normals wall.png -o x.vpmc --intrinsics 600,600,319.5,239.5
 2> vpm-normals: warning: wall.png: the principal point of 600.000000,600.000000,319.500000,239.500000 lies outside of the image of 64 x 48 pixels; are these the intrinsics of this image's size?
 
-# Inputs that are refused.
+# Unsuitable inputs are refused.
 $ vpm-normals nowhere.png -o x.vpmc --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: cannot read nowhere.png: No such file or directory
 [1]

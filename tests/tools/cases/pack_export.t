@@ -1,4 +1,4 @@
-# vpm-pack --export: each format, read by somebody else.
+# vpm-pack --export: other programs read each format.
 
 $ printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' > cube.off
 $ for f in csv json ply points.ply vtk yaml urdf srdf; do vpm-pack cube.off --spheres 9 --link 'left "hand"' --export all.$f || echo $f; done

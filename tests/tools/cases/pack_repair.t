@@ -1,4 +1,4 @@
-# vpm-pack --repair: meshes that are no solids.
+# vpm-pack --repair: meshes that are not closed.
 
 $ printf 'OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n' > open.off
 $ vpm-pack open.off -o open.vpmp
@@ -26,7 +26,7 @@ $ vpm-pack --dump-config | grep -c repair
 0
 [1]
 
-# What follows --repair is its mode where it is one of the words, and the mesh where it is not.
+# A word after --repair is its mode if it is one of the modes, and the mesh otherwise.
 $ vpm-pack --repair open.off --spheres 1 --quiet -o - | cmp - filled.vpmp
 $ vpm-pack --spheres 1 --quiet -o - open.off --repair | cmp - filled.vpmp
 $ vpm-pack --repair=holes open.off --spheres 1 --quiet -o - | cmp - filled.vpmp
@@ -42,7 +42,7 @@ $ vpm-pack open.off --repair voxel=1e3 -o open.vpmp
 2> vpm-pack: error: --repair: 'voxel=1e3' is none of holes, voxel, voxel=RES, flood and flood=RES
 [2]
 
-# Holes up to a width, by winding number or by a flood from outside.
+# Holes are closed up to a width, by winding number or by a flood from outside.
 $ vpm-pack open.off --repair voxel=20 --max-hole 0.5 -o open.vpmp
 2> vpm-pack: error: open.off: a hole is 1 m wide, more than 0.5 m, through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1); close it, or give a wider --max-hole
 [1]

@@ -10,13 +10,13 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o result.jsonl 
 $ $VALIDATE pack-report pack.json && $VALIDATE graph-report graph.json && $VALIDATE normals-report normals.json
 $ $VALIDATE query-result result.jsonl && $VALIDATE query-stats stats.json
 
-# The wall is at 1 m, the cube's half side 0.1 m: nothing, a quarter, half of it is behind the wall.
+# The wall is at 1 m and the cube's half side 0.1 m: nothing, a quarter, and half of it is behind the wall.
 $ python3 -c 'import json; print([round(json.loads(line)["volume_fraction"], 2) for line in open("result.jsonl")])'
 [0.0, 0.25, 0.5]
 $ python3 -c 'import json; print([round(x, 4) + 0.0 for x in json.loads(open("result.jsonl").readlines()[1])["force"]])'
 [0.0, 0.0, -0.002]
 
-# One pose says the same as the path; so does the paper's measure's schema.
+# A single pose gives the same line as the path; results of the printed measure keep their schema too.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.8,0,0,0,1 | cmp - <(head -n 1 result.jsonl)
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --measure paper --level 50 | $VALIDATE query-result -
 

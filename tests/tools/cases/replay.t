@@ -15,7 +15,7 @@ $ python3 volumes.py < steps.jsonl
 [('frame-000000.depth.png', 0.25, 34), ('frame-000001.depth.png', 0.3, 33), ('frame-000002.depth.png', 0.35, 33), ('frame-000003.depth.png', 0.4, 34), ('frame-000004.depth.png', 0.45, 33), ('frame-000005.depth.png', 0.5, 34)]
 $ $VALIDATE query-result steps.jsonl && $VALIDATE query-stats stats.json
 
-# A step says what its pose says in the cloud of its frame.
+# A step gives the result of its pose in the cloud of its frame.
 $ vpm-normals steps/frame-000002.depth.png -o two.vpmc --intrinsics 60,60,31.5,23.5 --quiet
 $ vpm-query --tool cube.vpmg --cloud two.vpmc --pose 0,0,0.95,0,0,0,1 | cut -d, -f2- > one
 $ grep 000002 steps.jsonl | cut -d, -f4- | sort -u | cmp - one
@@ -26,7 +26,7 @@ $ $VALIDATE query-stats stats.json && python3 -c 'import json; r = json.load(ope
 True True 1000.0 201
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --threads 1 --quiet | cmp - steps.jsonl
 
-# Frames are seen late by their latency, fewer at a lower rate, and go back and forth where asked.
+# Frames are seen late by their latency, some are passed over at a low rate, and they go back and forth if asked for.
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --frame-latency 0.05 --quiet | python3 volumes.py
 [('', 0.0, 50), ('frame-000000.depth.png', 0.25, 34), ('frame-000001.depth.png', 0.3, 33), ('frame-000002.depth.png', 0.35, 33), ('frame-000003.depth.png', 0.4, 34), ('frame-000004.depth.png', 0.45, 17)]
 2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
@@ -37,7 +37,7 @@ $ python3 -c 'import json; f = json.load(open("stats.json"))["replay"]["frames"]
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --frame-rate 60 --repeat-frames --quiet | python3 volumes.py | grep -o 00000. | tr -d '\n' && echo
 000000000001000002000003000004000005000004000003000002000001000000000001000002
 
-# A list of times and a path of the same clock; the camera's path lies beside.
+# A list of times and a path share a clock; the camera's path lies beside the frames.
 $ vpm-query --tool cube.vpmg --frames tum --trajectory still_tum.txt --intrinsics 60,60,31.5,23.5 --quiet | python3 volumes.py
 [('', 0.0, 50), ('1000.000000.png', 0.25, 34), ('1000.033333.png', 0.3, 33), ('1000.066667.png', 0.35, 33), ('1000.100000.png', 0.4, 34), ('1000.133333.png', 0.45, 33), ('1000.166667.png', 0.5, 84)]
 2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
@@ -49,7 +49,8 @@ $ vpm-query --tool cube.vpmg --frames tum/depth.txt --trajectory still.txt --int
 $ vpm-query --tool cube.vpmg --frames tum --trajectory still.txt --intrinsics 60,60,31.5,23.5 --align-starts --camera-pose 0,0,0.01,0,0,0,1 2>&1 | python3 -c 'import sys; print(*[l for l in sys.stdin.read().splitlines() if "camera" in l], sep="\n")'
 vpm-query: note: the camera does not move: tum is seen from --camera-pose
 
-# What comes late, is missing, empty, broken or has lost its camera: the loop goes on with the last good frame and says so.
+# Frames that are late, missing, empty, broken or without a camera pose are reported, and the loop goes on with the last
+# good frame.
 $ cp -r tum bad && grep -v 1000.033333 tum/depth.txt > bad/depth.txt && vpm-query --tool cube.vpmg --frames bad --trajectory still_tum.txt --intrinsics 60,60,31.5,23.5 -o late.jsonl --quiet
 2> vpm-query: warning: bad/depth/1000.066667.png: came late; the loop went on with the frame before
 2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
@@ -68,13 +69,13 @@ $ mkdir none && cp dark/frame-000100.depth.png none/1.png && vpm-query --tool cu
 2> vpm-query: error: none: no frame can be used; the last one: none/1.png: no pixel holds a measurement
 [1]
 
-# With what holds for other queries: coherent poses, deadlines, a virtual coupling.
+# Frames go with the other kinds of queries: coherent poses, deadlines, a virtual coupling.
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coherent --quiet | cmp - steps.jsonl
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --deadline-us 1e6 --quiet --stats stats.json | $VALIDATE query-result - && $VALIDATE query-stats stats.json
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | tee coupled.jsonl | $VALIDATE coupling-step - && tail -n 1 coupled.jsonl | python3 -c 'import json; s = json.loads(input()); print(s["step"], s["frame"], s["tool"][2] < 0.95)'
 200 frame-000005.depth.png True
 
-# Wrong usage.
+# Wrong usage is refused.
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coupling stiffness=500,damping=5,rate=500 --rate 1000 --stiffness 2e4
 2> vpm-query: error: --rate and the rate of --coupling differ; give one of them
 [2]

@@ -1,4 +1,4 @@
-# Every pose of every tool: the lines of each by itself, pose by pose.
+# Every pose is asked of every tool; each tool's lines are those of the tool alone, pose by pose.
 
 $ cp $SOURCE/tests/tools/inputs/* .
 $ vpm-pack cube.off -o cube.vpmp --spheres 200 --quiet && vpm-graph cube.vpmp -o cube.vpmg --levels 50 --calibrate
@@ -14,7 +14,7 @@ $ for batch in 2 100; do vpm-query --tool cube.vpmg --tool small.vpmg --cloud wa
 $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt --dump-config > call.json && $VALIDATE config.vpm-query call.json && vpm-query --config call.json | cmp - both.jsonl
 $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 | cmp - <(sed -n '3,4s/"pose":1/"pose":0/p' both.jsonl)
 
-# Levels are chosen for each tool; all must have the one that is named.
+# Levels are chosen for each tool; a level that is named must exist in all.
 $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt --level 50 | python3 -c "import json, sys; print({json.loads(l)['level'] for l in sys.stdin})"
 {50}
 $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt --max-error 50% | python3 -c "import json, sys; print({(r['level'], r['level_reason']) for r in map(json.loads, sys.stdin)})"
