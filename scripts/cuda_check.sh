@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench, vpm-normals and vpm-query; LEVELS
+# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench and vpm-query; LEVELS
 # are like 1000,17000. The README's tool is bunny.off of `vpm-pack --spheres 100000` and `vpm-graph --levels 1000,17000`, its cloud
 # what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
 # 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path

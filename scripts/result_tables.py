@@ -247,14 +247,6 @@ def packing_cost(report):
         for r in meshes) + ", checks of the mesh and certificate included."
 
 
-def single_precision(report):
-    rows = [[thousands(r["spheres"]), f"{r['double']['median_us']:.0f}", f"{r['single']['median_us']:.0f}",
-             f"{r['single']['median_us'] / r['double']['median_us']:.2f}", f"{r['volume_difference']:.0e}",
-             f"{r['force_difference']:.0e}", f"{r['torque_difference']:.0e}"] for r in report["results"]]
-    return table(["spheres", "double, µs", "single, µs", "ratio", "volume differs by, of the tool's", "force, of itself",
-                  "torque, of V times reach"], rows)
-
-
 def median_and_p99(r):
     return f"{r['median_us']:.0f} / {r['p99_us']:.0f}"
 
@@ -296,11 +288,11 @@ def cuda_frame_rows(report):
 
 
 def cuda_frames(report):
-    keys = ("copy_us", "take_us", "make_us", "normals_us")
+    keys = ("copy_us", "take_us", "make_us")
     stages = [[r["method"], r["image"]] + [f"{r[key]:.1f}" for key in keys] for r in report["stages"]]
     return (cuda_frame_rows(report)
             + "\n\n" + table([f"{report['bus']}, the device's clock: normals", "whole image", "copy alone (the floor), µs",
-                              "brought by the kernel", "normals and all that queries read", "normals alone"], stages))
+                              "brought by the kernel", "normals and all that queries read"], stages))
 
 
 def cuda_devices(report):
@@ -344,8 +336,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "replay stream on a device": (replay_stream, "replay_cuda"),
                        "cuda": (cuda, "cuda"), "cuda new images": (cuda_new_images, "cuda_frames"), "scaling": (scaling, "scaling")},
-         "libvpm/query/README.md": {"single precision": (single_precision, "single_precision"),
-                                    "cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
+         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
                                     "cuda million": (cuda_frame_rows, "cuda_frames_million"),
                                      "cuda devices": (cuda_devices, "cuda_devices")},
          "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}

@@ -10,7 +10,6 @@
 #include "libvpm/import/pcd.h"
 #include "libvpm/import/pinhole_fit.h"
 #include "libvpm/import/ply_points.h"
-#include "libvpm/surface/depth_frames.h"
 
 namespace vpm {
 namespace {
@@ -121,8 +120,7 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
     return imported;
   }
   const auto& [camera, depth] = *scan.image;
-  imported.cloud = assemble_cloud(
-      depth, camera, estimate_normals(depth, camera.intrinsics, options.normals, options.device));
+  imported.cloud = make_cloud(depth, camera, options.normals);
   if (imported.cloud.size() == 0) throw nothing_with_normal(scan, name);
   imported.without_normal = depth.depth.size() - scan.invalid - imported.cloud.size();
   return imported;

@@ -9,7 +9,6 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/device/device.h"
 
 namespace vpm {
 
@@ -19,7 +18,6 @@ struct ImportOptions {
   std::optional<double> units_per_metre;  // if unset, 1000 for PNG and 1 for others
   std::optional<Pose> to_world;           // if unset, a PCD's VIEWPOINT, or identity
   NormalOptions normals;
-  Device device;  // where normals are computed; does not affect them
 };
 
 inline constexpr double kPngUnitsPerMetre = 1000;

@@ -26,7 +26,7 @@ void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
   ImportOptions options = options_;
   if (frame.camera) options.to_world = frame.camera;
   const ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
-  if (scan.image && options.device.is_cuda())
+  if (scan.image && device_.is_cuda())
     result.depth = on_device(scan, frame.path);
   else
     result.cloud = prepared(scan, frame.path);
@@ -36,7 +36,7 @@ DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& n
   const auto& [camera, depth] = *scan.image;
   if (!frames_ || !same_image_size_and_rays(camera, camera_)) {
     frames_.emplace(DepthFrameOptions{camera.intrinsics, camera.width, camera.height, std::nullopt,
-                                      options_.normals, options_.device, points_});
+                                      options_.normals, device_, points_});
     camera_ = camera;
   }
   std::copy(depth.depth.begin(), depth.depth.end(), frames_->metres().begin());
@@ -87,13 +87,14 @@ PreparedChange FrameReader::prepare(FrameChange change) {
 }
 
 FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
-                     const ImportOptions& options, PointReading points)
+                     const ImportOptions& options, const Device& device, PointReading points)
     : recording_(recording),
       schedule_(recording, schedule),
       cloud_(std::make_unique<PreparedCloud>(Cloud{})) {
   const FrameSchedule all = schedule_;
   next_ = schedule_.next();
-  thread_ = std::thread([this, all, options, points] { prepare_all(all, options, points); });
+  thread_ = std::thread(
+      [this, all, options, device, points] { prepare_all(all, options, device, points); });
 }
 
 FrameFeed::~FrameFeed() {
@@ -106,9 +107,9 @@ FrameFeed::~FrameFeed() {
 }
 
 void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options,
-                            PointReading points) {
+                            const Device& device, PointReading points) {
   try {
-    FrameReader reader(recording_, options, points);
+    FrameReader reader(recording_, options, device, points);
     while (std::optional<FrameChange> change = schedule.next()) {
       PreparedChange result = reader.prepare(std::move(*change));
       std::unique_lock lock(mutex_);

@@ -45,12 +45,13 @@ struct PreparedChange {
 // Reads and prepares frames on the calling thread. Keeps a reference to the recording.
 class FrameReader {
  public:
-  // `options` tell how and where images become clouds; those for a device are prepared there.
-  // Camera poses come from the recording.
-  FrameReader(const Recording& recording, const ImportOptions& options,
+  // `options` tell how images become clouds, `device` where they are prepared. Camera poses come from
+  // the recording.
+  FrameReader(const Recording& recording, const ImportOptions& options, const Device& device = {},
               PointReading points = PointReading::settled)
       : recording_(recording),
         options_(options),
+        device_(device),
         points_(points),
         preparation_(options.normals, points) {}
 
@@ -65,6 +66,7 @@ class FrameReader {
 
   const Recording& recording_;
   ImportOptions options_;
+  Device device_;
   PointReading points_;
   FramePreparation preparation_;
   std::unique_ptr<PreparedCloud> spare_;
@@ -85,9 +87,10 @@ struct FrameCounts {
 
 class FrameFeed {
  public:
-  // Starts preparing. Keeps a reference to the recording.
+  // Starts preparing, as FrameReader does it. Keeps a reference to the recording.
   FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
-            const ImportOptions& options, PointReading points = PointReading::settled);
+            const ImportOptions& options, const Device& device = {},
+            PointReading points = PointReading::settled);
   ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
@@ -110,7 +113,8 @@ class FrameFeed {
   // Number of prepared changes that may wait for their step. Each holds some 20 MB.
   static constexpr std::size_t kAhead = 2;
 
-  void prepare_all(FrameSchedule schedule, const ImportOptions& options, PointReading points);
+  void prepare_all(FrameSchedule schedule, const ImportOptions& options, const Device& device,
+                   PointReading points);
   PreparedChange take();
   void count(const PreparedChange& taken);
 

@@ -96,17 +96,6 @@ std::span<float> DepthFrames::metres() {
   return {reinterpret_cast<float*>(slot.image()), slot.pixels()};
 }
 
-std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
-                                    const NormalOptions& options, const Device& device) {
-  const std::size_t pixels = std::size_t{depth.width} * depth.height;
-  // Of an image without pixels, or one that is refused, the other says what is to be said.
-  if (!device.is_cuda() || pixels == 0 || depth.depth.size() != pixels)
-    return estimate_normals(depth, intrinsics, options);
-  check_normal_options(options);
-  check_intrinsics(intrinsics);
-  return estimate_on_device(depth, intrinsics, options, device);
-}
-
 DepthFrame DepthFrames::prepare(const Pose& camera_to_world) {
   next().prepare(camera_to_world);
   return DepthFrame(std::move(next_));

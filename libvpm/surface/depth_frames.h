@@ -86,9 +86,4 @@ class DepthFrames {
   std::shared_ptr<FrameSlot> next_;
 };
 
-// estimate_normals() (normals.h) on a device: the same bits. Throws what it throws, and
-// Error(unavailable) where the device is not there.
-std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
-                                    const NormalOptions& options, const Device& device);
-
 }  // namespace vpm

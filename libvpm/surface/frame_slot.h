@@ -57,8 +57,5 @@ class FrameSlot {
 
 // On the device of the options, which is a CUDA one. Throws Error(unavailable).
 std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options);
-// As estimate_normals(), whose checks the arguments have passed; the image has pixels.
-std::vector<Vec3f> estimate_on_device(const DepthImage& depth, const Intrinsics& intrinsics,
-                                      const NormalOptions& options, const Device& device);
 
 }  // namespace vpm

@@ -7,9 +7,4 @@ std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions&) {
   throw Error(ErrorKind::unavailable, "this build has no CUDA");
 }
 
-std::vector<Vec3f> estimate_on_device(const DepthImage&, const Intrinsics&, const NormalOptions&,
-                                      const Device&) {
-  throw Error(ErrorKind::unavailable, "this build has no CUDA");
-}
-
 }  // namespace vpm

@@ -25,13 +25,13 @@ constexpr double kReuse = 3e-3;            // m
 
 struct Stream {
   Recording recording;
-  ImportOptions import;  // to the suite's device
+  ImportOptions import;
+  Device device;  // of the suite
 };
 
 Stream read_stream(const std::string& folder, const Device& device) {
-  Stream stream{read_recording(folder, {}), {}};
+  Stream stream{read_recording(folder, {}), {}, device};
   stream.import.intrinsics = stream.recording.intrinsics;
-  stream.import.device = device;
   if (!stream.import.intrinsics)
     refuse(folder + ": camera-intrinsics.txt (3x3: fx 0 cx, 0 fy cy, 0 0 1) is missing in it");
   return stream;
@@ -84,9 +84,7 @@ TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double 
 
 // The path through the stream that the first frame suggests.
 SampledPath path_through(const Stream& stream, const ToolModel& tool, double seconds) {
-  ImportOptions import = stream.import;
-  import.device = {};  // the cloud is looked at here
-  FrameReader reader(stream.recording, import);
+  FrameReader reader(stream.recording, stream.import);  // its cloud is looked at here
   return SampledPath(haptic_path(*prepare_frame(reader, 0).cloud, tool, seconds), kRate);
 }
 
@@ -103,7 +101,7 @@ Pass pass_over(const Stream& stream, const SampledPath& path, Query& query) {
   Pass pass;
   FrameFeed feed(stream.recording,
                  {kRate, path.steps(), stream.recording.frames.front().time, 0, true},
-                 stream.import);
+                 stream.import, stream.device);
   feed.wait_for_first();
   LoopClock clock(kRate, false);
   std::size_t begin = 0;  // step of the frame
@@ -260,7 +258,7 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   Query query(
       tool.model,
       {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
-  FrameReader reader(stream.recording, stream.import);
+  FrameReader reader(stream.recording, stream.import, stream.device);
   const std::string hash = soak_round(stream, reader, path, query);
   const double before = resident_memory_mb();
   std::size_t others = 0;

@@ -84,10 +84,7 @@ void say_notes(const Tool& tool, const std::string& name, const ImportArguments&
 
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
-  ImportOptions options = import_options(tool, a.import);
-  // For one image, a device takes longer to wake up than the CPU to be done: only where it is
-  // named.
-  if (tool.common().device != "auto") options.device = tool.device();
+  const ImportOptions options = import_options(tool, a.import);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);
@@ -112,6 +109,5 @@ int main(int argc, char** argv) {
   Tool tool("vpm-normals", "Points with normals of a depth image or of another program's cloud");
   Arguments arguments;
   declare(tool.app(), arguments);
-  tool.computes_on_devices();
   return tool.run(argc, argv, [&] { run(tool, arguments); });
 }

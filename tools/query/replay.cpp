@@ -83,8 +83,8 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
       rate_(rate),
       path_(read_path(tool, arguments.trajectory, rate)),
       import_(import_options(tool, arguments.import)),
+      device_(device),
       points_(points) {
-  import_.device = device;
   recording_ = read_recording(arguments.frames, recording_options(arguments, import_));
   if (!import_.intrinsics && recording_.intrinsics) {
     import_.intrinsics = recording_.intrinsics;
@@ -125,9 +125,7 @@ double Replay::start_time() const {
 
 void Replay::find_first_cloud() {
   FrameSchedule schedule(recording_, schedule_);
-  ImportOptions on_cpu = import_;
-  on_cpu.device = {};
-  FrameReader reader(recording_, on_cpu, points_);
+  FrameReader reader(recording_, import_, {}, points_);
   std::string why = "none comes before the path ends";
   // Of frames that repeat nothing new can be learnt.
   std::size_t looked_at = 0;
@@ -145,7 +143,7 @@ void Replay::find_first_cloud() {
 
 void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
                  file::Output& output) {
-  feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, points_);
+  feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
   clock_.emplace(rate_, arguments_.realtime);
   for (std::size_t k = 0; k < path_.steps(); ++k) {

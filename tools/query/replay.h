@@ -69,6 +69,7 @@ class Replay {
   Recording recording_;
   SampledPath path_;
   ImportOptions import_;
+  Device device_;
   PointReading points_;
   ScheduleOptions schedule_;
   std::unique_ptr<const PreparedCloud> first_cloud_;

@@ -111,7 +111,7 @@ class InverseDepthNormals {
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
     const GatedWindow<Frame::kRadius> window(image_.inverse_around(x, y), radius(), recipe_.edges);
     LastChoice last;
-    return normal_of_window(window.fit(Lanes<1>(), last), fx(), fy(), du_axis(x), dv_axis(y));
+    return normal_of_window(window.fit(last), fx(), fy(), du_axis(x), dv_axis(y));
   }
 
  private:
@@ -183,8 +183,8 @@ class PcaNormals {
   __device__ __forceinline__ Vec3f gated_normal(int x, int y) const {
     const GatedWindow<Frame::kRadius> window(image_.inverse_around(x, y), radius(), recipe_.edges);
     LastChoice last;
-    if (!window.fit(Lanes<1>(), last).found) return {};
-    const Moments m = window.moments(Lanes<1>(), last, image_.depth_around(x, y));
+    if (!window.fit(last).found) return {};
+    const Moments m = window.moments(last, image_.depth_around(x, y));
     const float rx = ray_x(x), ry = ray_y(y);
     return normal_of_covariance(covariance_of_moments(m, recipe_.exact_scale, rx, ry), rx, ry);
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "libvpm/core/lengths.h"
 #include "libvpm/surface/cuda/cloud_settle.h"
@@ -49,8 +48,7 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
       answer_(1),
       source_(new_source()),
       source_on_device_(&source_, 1),
-      preparation_(preparation_of(options.normals)),
-      plan_(plan_normals(options.normals)) {
+      preparation_(preparation_of(options.normals)) {
   counters_.clear();
 }
 
@@ -128,10 +126,6 @@ void CloudSlot::make(const PixelRectangle& wanted, cudaStream_t stream) const {
   settle_on_device(source_.recipe, {wanted, made_}, preparation_.overlaps, stream);
 }
 
-void CloudSlot::estimate(Vec3f* normals, cudaStream_t stream) const {
-  estimate_on_device(source_.recipe, options().normals.method, plan_, normals, stream);
-}
-
 // Images of which all is asked for are made by kernels that fill the device. What was launched in
 // this memory, the query's own kernel would not wait for.
 bool CloudSlot::is_for_query(const PixelRectangle& wanted) const {
@@ -147,19 +141,6 @@ PixelRectangle CloudSlot::whole() const {
 PixelRectangle CloudSlot::in_whole_tiles(const PixelRectangle& pixels) const {
   const DepthSurface& surface = cloud_.depth_surface();
   return widened(pixels, 0, kTileWidth, kTileHeight, surface.width, surface.height);
-}
-
-std::vector<Vec3f> CloudSlot::estimate_normals() {
-  const CurrentDevice current(options().device.first());
-  const DeviceArray<Vec3f> estimated(pixels());
-  const OtherWork other;
-  take(whole(), stream_.get());
-  estimate(estimated.get(), stream_.get());
-  check(cudaStreamSynchronize(stream_.get()));
-  std::vector<Vec3f> normals(pixels());
-  check(cudaMemcpy(normals.data(), estimated.get(), normals.size() * sizeof(Vec3f),
-                   cudaMemcpyDeviceToHost));
-  return normals;
 }
 
 CloudSource CloudSlot::new_source() {
@@ -226,18 +207,6 @@ std::size_t CloudSlot::points() const {
 }  // namespace vpm::cuda
 
 namespace vpm {
-
-std::vector<Vec3f> estimate_on_device(const DepthImage& depth, const Intrinsics& intrinsics,
-                                      const NormalOptions& options, const Device& device) {
-  const cuda::CurrentDevice current(device.first());
-  // Other cameras may lead to lengths beyond those that devices divide by (core/division.h).
-  if (!cuda::plan_normals(options).fits ||
-      !cuda::is_plain({intrinsics, depth.width, depth.height, {}}))
-    return estimate_normals(depth, intrinsics, options);
-  cuda::CloudSlot slot({intrinsics, depth.width, depth.height, std::nullopt, options, device});
-  std::memcpy(slot.image(), depth.depth.data(), slot.image_bytes());
-  return slot.estimate_normals();
-}
 
 std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options) {
   const cuda::CurrentDevice current(options.device.first());

@@ -7,7 +7,6 @@
 #include "libvpm/device/cuda/stream.h"
 #include "libvpm/surface/cuda/cloud_part.h"
 #include "libvpm/surface/cuda/device_cloud.h"
-#include "libvpm/surface/cuda/image_normals.h"
 #include "libvpm/surface/frame_slot.h"
 
 namespace vpm::cuda {
@@ -65,14 +64,9 @@ class CloudSlot : public FrameSlot {
 
   const DeviceCloud& device_cloud() const { return cloud_; }
 
-  // Of the image, in camera axes, whether the cloud can be made here or not.
-  std::vector<Vec3f> estimate_normals();
-
-  // The two steps in which whole tiles are made, for those who time them; and of what take() has
-  // brought of the whole image, the normals alone.
+  // The two steps in which whole tiles are made, for those who time them.
   void take(const PixelRectangle& wanted, cudaStream_t stream) const;
   void make(const PixelRectangle& wanted, cudaStream_t stream) const;
-  void estimate(Vec3f* normals, cudaStream_t stream) const;
   PixelRectangle whole() const;
 
  protected:
@@ -98,7 +92,6 @@ class CloudSlot : public FrameSlot {
   CloudSource source_;  // seen from the camera of the image
   DeviceArray<CloudSource> source_on_device_;
   Preparation preparation_;
-  NormalsPlan plan_;
   bool is_plain_ = false;
   std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of all making
   mutable std::mutex making_;                                                     // of what follows

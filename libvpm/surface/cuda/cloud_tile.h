@@ -196,15 +196,6 @@ __device__ __forceinline__ void wait_for_last() {
 #endif
 }
 
-// Of a kernel that waits in this way: lets the one after it in the stream take what room there is,
-// once all blocks of this one have their own. What waits there has that room, though: a query of
-// another image, beside kernels that do so, took half as long again.
-__device__ __forceinline__ void let_next_begin() {
-#if __CUDA_ARCH__ >= 900
-  cudaTriggerProgrammaticLaunchCompletion();
-#endif
-}
-
 // Whether a kernel waits in this way, so that it may be launched before what comes before it is
 // done. Machine code made from older PTX does not.
 template <class... Parameters>
@@ -228,12 +219,14 @@ bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   return true;
 }
 
-// `overlaps`: the kernel waits for the last one itself.
+// Launches a block for each of a step's tiles. `overlaps`: the kernel waits for the last one
+// itself.
 template <class... Parameters, class... Arguments>
-void launch_kernel(void (*kernel)(Parameters...), dim3 blocks, unsigned threads, std::size_t shared,
-                   bool overlaps, cudaStream_t stream, const Arguments&... arguments) {
+void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
+                       std::size_t shared, bool overlaps, cudaStream_t stream,
+                       const Arguments&... arguments) {
   cudaLaunchConfig_t launch{};
-  launch.gridDim = blocks;
+  launch.gridDim = static_cast<unsigned>(pixels.tile_count<LargeTile>());
   launch.blockDim = threads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;
@@ -243,15 +236,6 @@ void launch_kernel(void (*kernel)(Parameters...), dim3 blocks, unsigned threads,
   launch.attrs = &overlap;
   launch.numAttrs = overlaps ? 1 : 0;
   check(cudaLaunchKernelEx(&launch, kernel, arguments...));
-}
-
-// A block for each of a step's tiles.
-template <class... Parameters, class... Arguments>
-void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
-                       std::size_t shared, bool overlaps, cudaStream_t stream,
-                       const Arguments&... arguments) {
-  launch_kernel(kernel, static_cast<unsigned>(pixels.tile_count<LargeTile>()), threads, shared,
-                overlaps, stream, arguments...);
 }
 
 }  // namespace vpm::cuda

@@ -52,63 +52,23 @@ struct LastChoice {
   float gate = HUGE_VALF;
 };
 
-// Who adds up eight of a window's columns, column(0) to column(7), in the order of fold(), and then
-// knows the sum: some lanes side by side, whole warps.
-template <int Count>
-struct Lanes {
-  static constexpr int kCount = Count;
-
-  // Whether it is so of any window of the warp.
-  __device__ __forceinline__ static bool any(bool own) {
-    return kCount > 1 ? __any_sync(~0U, own) != 0 : own;
-  }
-  template <class Column>
-  __device__ __forceinline__ auto fold(const Column& column) const {
-    const int lane = static_cast<int>(threadIdx.x) % kCount;
-    if constexpr (kCount == kFoldedColumns) {
-      return total(column(lane));
-    } else {
-      // Every second of the columns.
-      const auto half = [&](int first) {
-        const auto one = column(first) + column(first + 4);
-        return one + (column(first + 2) + column(first + 6));
-      };
-      if constexpr (kCount == 2) {
-        return total(half(lane));
-      } else {
-        decltype(half(0)) both;
+// Adds up eight of a window's columns, column(0) to column(7), in the order of fold() of
+// libvpm/cloud/plane_fit.h.
+template <class Column>
+__device__ __forceinline__ auto fold(const Column& column) {
+  // Every second of the columns.
+  const auto half = [&](int first) {
+    const auto one = column(first) + column(first + 4);
+    return one + (column(first + 2) + column(first + 6));
+  };
+  decltype(half(0)) both;
 #pragma unroll 1  // half as much code to read, where few windows share it
-        for (int k = 0; k < 2; ++k) {
-          const auto one = half(k);
-          both = k == 0 ? one : both + one;
-        }
-        return both;
-      }
-    }
+  for (int k = 0; k < 2; ++k) {
+    const auto one = half(k);
+    both = k == 0 ? one : both + one;
   }
-  // Of all lanes.
-  template <class Sums>
-  __device__ __forceinline__ Sums total(Sums own) const {
-#pragma unroll
-    for (int distance = kCount / 2; distance > 0; distance /= 2) own = own + other(own, distance);
-    return own;
-  }
-
- private:
-  static_assert(kCount == 1 || kCount == 2 || kCount == kFoldedColumns);
-
-  template <class Sums>
-  __device__ static Sums other(const Sums& own, int distance) {
-    constexpr int kWords = sizeof(Sums) / sizeof(int);
-    struct Words {
-      int of[kWords];
-    };
-    Words words = __builtin_bit_cast(Words, own);
-#pragma unroll
-    for (int& word : words.of) word = __shfl_xor_sync(~0U, word, distance);
-    return __builtin_bit_cast(Sums, words);
-  }
-};
+  return both;
+}
 
 // `Radius`: 0 if it is known at run time only.
 template <int Radius>
@@ -121,41 +81,24 @@ class GatedWindow {
         middle_(image.at(0, 0)),
         unit_(reciprocal(middle_)) {}
 
-  // By whole warps, unless one lane is enough.
-  template <class Lanes>
-  __device__ __forceinline__ WindowPlane fit(const Lanes& lanes, LastChoice& last) const {
-    bool has_edge;
-    const WindowPlane first = choose_first(lanes, has_edge);
-    const bool is_gated = has_edge && first.found;
+  // Returns the plane of the window's surface: of what the steepest surface could reach, then, if
+  // something is beyond the edge gate of the centre, of what lies near that plane.
+  __device__ __forceinline__ WindowPlane fit(LastChoice& last) const {
+    bool has_edge, unused;
+    const WindowPlane first = choose<true>({}, has_edge);
     last = {};
-    if (!lanes.any(is_gated)) return first;
-    const WindowPlane second = choose_last(lanes, first);
-    if (!is_gated) return first;
+    if (!has_edge || !first.found) return first;
     last = {first, edges_.gate};
-    return second;
-  }
-  // Of what the steepest surface could reach, and whether something is beyond the edge gate of the
-  // centre.
-  template <class Lanes>
-  __device__ __forceinline__ WindowPlane choose_first(const Lanes& lanes, bool& has_edge) const {
-    return choose<true>({}, lanes, has_edge);
-  }
-  // Of what lies near a plane.
-  template <class Lanes>
-  __device__ __forceinline__ WindowPlane choose_last(const Lanes& lanes,
-                                                     const WindowPlane& near) const {
-    bool has_edge;
-    return choose<false>(near, lanes, has_edge);
+    return choose<false>(first, unused);
   }
 
   // Of the depths about the same centre.
-  template <class Lanes>
-  __device__ __forceinline__ Moments moments(const Lanes& lanes, const LastChoice& last,
+  __device__ __forceinline__ Moments moments(const LastChoice& last,
                                              const TileAround& depths) const {
     Moments m;
 #pragma unroll 1
     for (int first = -radius(); first <= radius(); first += kFoldedColumns)
-      m = m + lanes.fold([&](int k) { return moments_of_column(last, first + k, depths); });
+      m = m + fold([&](int k) { return moments_of_column(last, first + k, depths); });
     return m;
   }
 
@@ -164,14 +107,12 @@ class GatedWindow {
     return Radius > 0 ? Radius : radius_;
   }
 
-  template <bool kFirst, class Lanes>
-  __device__ __forceinline__ WindowPlane choose(const WindowPlane& near, const Lanes& lanes,
-                                                bool& has_edge) const {
+  template <bool kFirst>
+  __device__ __forceinline__ WindowPlane choose(const WindowPlane& near, bool& has_edge) const {
     KeptDifferences sums;
     KeptCounts counts;
     for (int first = -radius(); first <= radius(); first += kFoldedColumns)
-      sums = sums + lanes.fold([&](int k) { return sum_column<kFirst>(first + k, near, counts); });
-    counts = lanes.total(counts);
+      sums = sums + fold([&](int k) { return sum_column<kFirst>(first + k, near, counts); });
     has_edge = counts.edges != 0;
     const auto exact = [](int count) { return static_cast<float>(count); };
     return fit_plane<float>({exact(counts.n), exact(counts.u), exact(counts.v), exact(counts.uu),

@@ -97,10 +97,6 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
   });
   const double taking =
       time_of(stream.get(), [&](std::size_t k) { slots[k]->take(all, stream.get()); });
-  const device::DeviceArray<Vec3f> normals(sensor.depth.depth.size() * kCopies);
-  const double estimating = time_of(stream.get(), [&](std::size_t k) {
-    slots[k]->estimate(normals.get() + k * sensor.depth.depth.size(), stream.get());
-  });
   const double making =
       time_of(stream.get(), [&](std::size_t k) { slots[k]->make(all, stream.get()); });
   const double both = time_of(stream.get(), [&](std::size_t k) {
@@ -113,7 +109,6 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
           {"launch_us", launching},
           {"copy_us", copying},
           {"take_us", taking},
-          {"normals_us", estimating},
           {"make_us", making},
           {"take_and_make_us", both}};
 }
