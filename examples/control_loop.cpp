@@ -8,7 +8,6 @@
 //   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
 //   frames=none   counts or metres: every query sees a new depth image of the cloud's camera, which
 //                 lies in the frames' own memory when the time begins
-//   making=whole  of a new image, or as-asked: only what the tool can reach (FrameMaking)
 //   behind=0      1: a query looks at the image before the newest, which is made ready meanwhile
 //   method=inverse-depth   of the images' normals; or pca
 //   batch=1       so many poses are asked at once, as planners do; copies of the tool share them
@@ -185,12 +184,11 @@ Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
 class CameraStream {
  public:
   CameraStream(const CloudSensor& sensor, bool in_counts, const NormalOptions& normals,
-               const Device& device, FrameMaking making)
+               const Device& device)
       : sensor_(sensor),
         in_counts_(in_counts),
         frames_({sensor.camera.intrinsics, sensor.camera.width, sensor.camera.height,
-                 in_counts ? std::optional(kCountsPerMetre) : std::nullopt, normals, device,
-                 PointReading::settled, making}) {}
+                 in_counts ? std::optional(kCountsPerMetre) : std::nullopt, normals, device}) {}
 
   void receive() {
     const std::vector<float>& depth = sensor_.depth.depth;
@@ -325,16 +323,15 @@ Options parse(int argc, char** argv) {
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
                   {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
-                  {"points", "0"},    {"standby", "0"},       {"making", "whole"}};
+                  {"points", "0"},    {"standby", "0"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(
-          ErrorKind::usage,
-          text +
-              ": the options are device= measure= queries= level= "
-              "rotate= frames= making= behind= method= batch= points= standby= json= poses= path=");
+      throw Error(ErrorKind::usage,
+                  text +
+                      ": the options are device= measure= queries= level= "
+                      "rotate= frames= behind= method= batch= points= standby= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -387,17 +384,12 @@ void control(int argc, char** argv) {
     const std::string& frames = options.at("frames");
     std::deque<CameraStream> cameras;
     if (frames != "none") {
-      const std::string& making = options.at("making");
-      if (making != "whole" && making != "as-asked")
-        throw Error(ErrorKind::usage, "making=" + making + ": there are whole and as-asked");
       if (!cloud.sensor || (frames != "counts" && frames != "metres"))
         throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
       for (int k = 0; k < copies; ++k)
         cameras.emplace_back(*cloud.sensor, frames == "counts",
                              NormalOptions{normal_method_from_text(options.at("method"))},
-                             query_options.device,
-                             making == "whole" ? FrameMaking::whole : FrameMaking::as_asked);
-      json["making"] = making;
+                             query_options.device);
       json["frames"] = frames;
       json["behind"] = number(options, "behind", 0);
       json["method"] = options.at("method");

@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks and times depth frames on a machine with an
-# NVIDIA device: images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop, frame-stages,
-# vpm-normals and vpm-query; CLOUD has a camera. 1. vpm-normals of the cloud's image, both methods, CPU and device compared
-# byte for byte; 2. the stages on the device's clock; 3. a thousand queries at each level, each in a new image, from the
-# image in the frames' memory to the result, made as asked (launched and standing by) or whole, in ROUNDS (5) rounds, whose medians count:
-# now and then a machine or its bus is slow for a while. Exit code 1 if anything differs. scripts/cuda_check.sh calls it.
+# cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: times depth frames on a machine with an NVIDIA device:
+# images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop and frame-stages; CLOUD has a camera.
+# 1. the stages on the device's clock; 2. a thousand queries at each level, each in a new image, from the image in the frames' memory
+# to the result, or in the image before while the new one is made, in ROUNDS (5) rounds, whose medians count: now and then a machine
+# or its bus is slow for a while. scripts/cuda_check.sh calls it.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -16,11 +15,7 @@ for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
   for level in ${levels//,/ }; do
     row() { "${loop[@]}" level="$level" "${@:2}" json="$work/loop-$level-$1-$round.json" >/dev/null; }
     row none
-    for frames in counts metres; do
-      for standby in 0 2000; do row $frames-$standby frames=$frames making=as-asked standby=$standby; done
-    done
-    row pca frames=counts making=as-asked method=pca
-    for behind in 0 1; do row whole-$behind frames=counts behind=$behind; done
+    for behind in 0 1; do row $behind frames=counts behind=$behind; done
   done
 done
 
@@ -37,14 +32,13 @@ report = {
     "stages": json.load(open(f"{work}/stages.json")),
     "control_loop": sorted(loop_rounds.loops_in(work),
                            key=lambda r: [r["spheres"], "frames" in r] +
-                                         [r.get(key, "") for key in ("making", "behind", "method", "frames", "standby_us")]),
+                                         [r.get(key, "") for key in ("behind", "frames")]),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{report['device']}, {report['bus']}, commit {commit}")
 for r in report["stages"]:
     print(f"{r['method']:14} {r['image']:7} copy {r['copy_us']:5.1f}  take {r['take_us']:5.1f}  make {r['make_us']:5.1f} us")
 for r in report["control_loop"]:
-    what = f"{r['frames']}, {r['method']}, {r['making']}" + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
-    what += ", standing by" if r["standby_us"] else ""
-    print(f"{r['spheres']:8} spheres  {what:49} {loop_rounds.in_words(r)}")
+    what = r["frames"] + (", one behind" if r["behind"] else "") if "frames" in r else "prepared"
+    print(f"{r['spheres']:8} spheres  {what:18} {loop_rounds.in_words(r)}")
 PYTHON

@@ -264,27 +264,14 @@ def cuda(report):
                   for r in rotated if r["standby_us"] == 0])
 
 
-def cuda_frame_queries(report):
+def cuda_frame_rows(report):
     of = {}
     for r in report["control_loop"]:
-        kind = ("prepared" if "frames" not in r else "behind" if r["behind"] else "whole" if r["making"] == "whole"
-                else "pca" if r["method"] == "pca" else r["frames"] + (" standing" if r["standby_us"] else ""))
+        kind = "prepared" if "frames" not in r else "behind" if r["behind"] else "new"
         of.setdefault(r["spheres"], {})[kind] = median_and_p99(r)
-    return sorted(of.items())
-
-
-def cuda_new_images(report):
-    kinds = ("counts standing", "metres standing", "counts", "metres")
-    return table(["spheres", "standing by: counts, µs median / p99", "metres", "launched: counts", "metres"],
-                 [[thousands(n)] + [r[kind] for kind in kinds] for n, r in cuda_frame_queries(report)])
-
-
-def cuda_frame_rows(report):
-    kinds = ("prepared", "counts standing", "counts", "metres standing", "metres", "pca", "whole", "behind")
-    return table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts, made as asked, standing by",
-                  "launched", "of metres, standing by", "launched", "of counts, PCA", "made whole, of counts",
-                  "in the image before, while the new one is made whole"],
-                 [[thousands(n)] + [r[kind] for kind in kinds] for n, r in cuda_frame_queries(report)])
+    return table(["spheres", "query of a prepared cloud, µs median / p99", "in a new image of counts",
+                  "in the image before, while the new one is made"],
+                 [[thousands(n)] + [r[kind] for kind in ("prepared", "new", "behind")] for n, r in sorted(of.items())])
 
 
 def cuda_frames(report):
@@ -335,7 +322,7 @@ PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "a
                        "replay coherent": (replay_coherent, "replay"),
                        "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
                        "replay stream on a device": (replay_stream, "replay_cuda"),
-                       "cuda": (cuda, "cuda"), "cuda new images": (cuda_new_images, "cuda_frames"), "scaling": (scaling, "scaling")},
+                       "cuda": (cuda, "cuda"), "cuda new images": (cuda_frame_rows, "cuda_frames"), "scaling": (scaling, "scaling")},
          "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
                                     "cuda million": (cuda_frame_rows, "cuda_frames_million"),
                                      "cuda devices": (cuda_devices, "cuda_devices")},

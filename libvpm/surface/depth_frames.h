@@ -27,12 +27,6 @@
 
 namespace vpm {
 
-// How much of an image a device makes ready.
-enum class FrameMaking {
-  whole,     // all of it, begun by prepare(): well ahead of the first query, or for many tools
-  as_asked,  // what queries reach, begun by them: nothing is waited for that is not needed
-};
-
 struct DepthFrameOptions {
   Intrinsics intrinsics;                   // pixels
   std::uint32_t width = 0, height = 0;     // pixels
@@ -40,14 +34,13 @@ struct DepthFrameOptions {
   NormalOptions normals;
   Device device;  // that of the queries; others than it copy what the CPU prepares
   PointReading points = PointReading::settled;
-  FrameMaking making = FrameMaking::whole;  // of devices
 };
 
 class FrameSlot;  // frame_slot.h
 
 class DepthFrame {
  public:
-  // Pixels that have a normal. Waits for the preparation, of all of the image.
+  // Returns the number of pixels that have a normal. Waits for the preparation.
   std::size_t points() const;
 
   // The frame as the CPU prepares it, when first asked for. Throws what PreparedCloud throws.
@@ -72,10 +65,9 @@ class DepthFrames {
   std::span<std::uint16_t> counts();
   std::span<float> metres();
 
-  // The frame of that image. On a device this only begins, if the options do not leave it to the
-  // queries, which wait there for its end. What PreparedCloud would refuse (of the image, its size
-  // or the pose, which maps the camera's coordinates to the world's) is refused here or by the
-  // first query; of an image made as asked, by the first one that reaches it, and all after it.
+  // Returns the frame of that image. On a device this only begins; queries wait there for its end.
+  // What PreparedCloud would refuse (of the image, its size or the pose, which maps the camera's
+  // coordinates to the world's) is refused here or by the first query.
   DepthFrame prepare(const Pose& camera_to_world);
 
  private:

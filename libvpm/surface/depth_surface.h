@@ -73,27 +73,6 @@ struct DepthSurface {
   const float* measured = nullptr;  // inverse depth before noise was taken out (settled_image.h):
                                     // what was seen to be free stays free
 
-  // Devices make only what queries ask for of some images: these pixels. A query that would read
-  // others notes it in `beyond` instead, and its answer means nothing. Null for whole images.
-  PixelRectangle made;
-  volatile std::uint32_t* beyond = nullptr;
-  double left = -0.5, top = -0.5, right = 0, bottom = 0;  // of the places to look up, in pixels
-
-  void set_size(std::int32_t new_width, std::int32_t new_height) {
-    width = new_width;
-    height = new_height;
-    restrict_to(whole_image(width, height), nullptr);
-  }
-  // The pixels beside those of a place are read too, and neighbours kAcross further on.
-  VPM_HD void restrict_to(const PixelRectangle& part, volatile std::uint32_t* noted) {
-    made = part;
-    beyond = noted;
-    left = made.u0 > 0 ? made.u0 + kAcross : -0.5;
-    top = made.v0 > 0 ? made.v0 + kAcross : -0.5;
-    right = made.u1 < width - 1 ? made.u1 - kAcross + 0.5 : width;
-    bottom = made.v1 < height - 1 ? made.v1 - kAcross + 0.5 : height;
-  }
-
   struct Pixel {
     double inverse_depth = 0;  // 0: unknown
     std::int32_t nearest = 0;  // index of the nearest pixel
@@ -134,10 +113,7 @@ struct DepthSurface {
     const double per_depth = quotient(1, x.z);
     const double u = k.fx * (x.x * per_depth) + k.cx, v = k.fy * (x.y * per_depth) + k.cy;
     const double up = u + 0.5, vp = v + 0.5;
-    if (!(u >= left && v >= top && up < right && vp < bottom)) {
-      if (beyond != nullptr && u >= -0.5 && v >= -0.5 && up < width && vp < height) *beyond = 1;
-      return {};
-    }
+    if (!(u >= -0.5 && v >= -0.5 && up < width && vp < height)) return {};
     // Not negative: what is cut off rounds to the nearest.
     const std::int32_t un = static_cast<std::int32_t>(up), vn = static_cast<std::int32_t>(vp);
     const std::int32_t u0 = u < 0 ? 0 : static_cast<std::int32_t>(u),
@@ -296,8 +272,7 @@ struct DepthSurface {
   static VPM_HD float least_inverse_depth(const Look& look) { return look.range.low; }
   // Whether a ball in one that was looked at may be free though the plane of all pixels there says
   // no: the pixel at its centre, as measured, shows past it, and not all of the surface there is
-  // nearer than its far side. `least`: of that surface, least_inverse_depth(). Its pixel must be
-  // made.
+  // nearer than its far side. `least`: of that surface, least_inverse_depth().
   VPM_HD bool may_be_free(float least, Vec3 center, double radius) const {
     if (!((center.z + radius) * least < 1)) return false;
     if (!(center.z - radius >= kSmallestLength)) return true;
@@ -410,8 +385,7 @@ struct DepthSurface {
 #endif
   }
 
-  // Takes the range of the look's pixels from at most 3 by 3 tiles; nothing where these are not
-  // made.
+  // Takes the range of the look's pixels from at most 3 by 3 tiles.
   VPM_HD void cover(Look& look) const {
     const PixelRectangle& p = look.pixels;
     const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
@@ -423,10 +397,6 @@ struct DepthSurface {
     const std::int32_t u_end = (u1 + 1) << level, v_end = (v1 + 1) << level;
     look.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
                   (v_end < height ? v_end : height) - 1};
-    if (beyond != nullptr && !holds(made, look.tiles)) {
-      *beyond = 1;
-      return;
-    }
     look.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
     InverseDepthRange all = tiles[level][v0 * row + u0];
     const auto take = [&](std::int32_t u, std::int32_t v) {

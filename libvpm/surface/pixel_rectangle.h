@@ -1,7 +1,7 @@
 // The pixels in which a camera sees a ball. One definition for host and device.
 #pragma once
 
-#include <algorithm>
+#include <cmath>
 
 #include "libvpm/cloud/camera.h"
 
@@ -9,8 +9,6 @@ namespace vpm {
 
 struct PixelRectangle {
   std::int32_t u0 = 0, v0 = 0, u1 = -1, v1 = -1;  // inclusive; empty if u0 > u1
-
-  bool operator==(const PixelRectangle&) const = default;
 };
 
 VPM_HD constexpr PixelRectangle whole_image(std::int32_t width, std::int32_t height) {
@@ -18,35 +16,6 @@ VPM_HD constexpr PixelRectangle whole_image(std::int32_t width, std::int32_t hei
 }
 VPM_HD constexpr bool is_empty(const PixelRectangle& r) {
   return r.u0 > r.u1 || r.v0 > r.v1;
-}
-constexpr std::int64_t pixel_count(const PixelRectangle& r) {
-  return is_empty(r) ? 0 : std::int64_t{r.u1 - r.u0 + 1} * (r.v1 - r.v0 + 1);
-}
-VPM_HD constexpr bool holds(const PixelRectangle& all, const PixelRectangle& part) {
-  return part.u0 >= all.u0 && part.v0 >= all.v0 && part.u1 <= all.u1 && part.v1 <= all.v1;
-}
-
-// The least that holds both.
-constexpr PixelRectangle united(const PixelRectangle& a, const PixelRectangle& b) {
-  if (is_empty(a)) return b;
-  if (is_empty(b)) return a;
-  return {std::min(a.u0, b.u0), std::min(a.v0, b.v0), std::max(a.u1, b.u1), std::max(a.v1, b.v1)};
-}
-// With a margin, then to whole tiles of so many pixels, as far as the image goes. Nothing has none.
-VPM_HD constexpr PixelRectangle widened(const PixelRectangle& r, std::int32_t margin,
-                                        std::int32_t tile_width, std::int32_t tile_height,
-                                        std::int32_t width, std::int32_t height) {
-  if (is_empty(r)) return {};
-  const auto down = [&](std::int32_t first, std::int32_t tile) {
-    return first > margin ? (first - margin) / tile * tile : 0;
-  };
-  const auto up = [&](std::int32_t last, std::int32_t tile, std::int32_t size) {
-    const std::int32_t most = size - 1, wanted = last + margin < most ? last + margin : most;
-    const std::int32_t whole = wanted / tile * tile + tile - 1;
-    return whole < most ? whole : most;
-  };
-  return {down(r.u0, tile_width), down(r.v0, tile_height), up(r.u1, tile_width, width),
-          up(r.v1, tile_height, height)};
 }
 
 // A point off its pixel by more than this would be missed by the search over pixels; float32

@@ -180,7 +180,8 @@ void SettledImage::read_rows(const SeenImage& seen, PointReading points, int beg
 DepthSurface SettledImage::surface(const Intrinsics& k) const {
   DepthSurface surface;
   surface.k = k;
-  surface.set_size(width_, height_);
+  surface.width = width_;
+  surface.height = height_;
   surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
   surface.normals = normals_.data();
   surface.measured = measured_.data();

@@ -28,8 +28,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
-  frame.points();  // all of it
-  if (!slot.is_on_device() || !slot.is_sound(slot.require({}, nullptr))) return std::nullopt;
+  if (!slot.is_on_device() || !slot.is_sound()) return std::nullopt;
   cuda::check(cudaDeviceSynchronize());
   const cuda::PointsView& points = slot.device_cloud().points();
   const DepthSurface& surface = slot.device_cloud().depth_surface();
@@ -41,15 +40,6 @@ std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   for (int level = 0; level < surface.levels; ++level)
     memory.tiles.push_back(fetched(surface.tiles[level], tile_count(surface, level)));
   return memory;
-}
-
-bool is_whole_on_device(const DepthFrame& frame) {
-  const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
-  return slot.require({}, nullptr).is_whole;
-}
-
-bool has_part_of_queries(const DepthFrame& frame) {
-  return dynamic_cast<const cuda::CloudSlot&>(frame.slot()).has_part_of_queries();
 }
 
 FrameMemory memory_of(const PreparedCloud& cloud) {

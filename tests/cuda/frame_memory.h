@@ -16,10 +16,6 @@ struct FrameMemory {
 
 // Nothing where the frame's cloud is not made on the device.
 std::optional<FrameMemory> memory_on_device(const DepthFrame& frame);
-// Whether all of the frame is made there so far.
-bool is_whole_on_device(const DepthFrame& frame);
-// Whether queries have made some of it themselves.
-bool has_part_of_queries(const DepthFrame& frame);
 // What it should hold.
 FrameMemory memory_of(const PreparedCloud& cloud);
 

@@ -70,16 +70,13 @@ DepthImage image_of(const Depths& depths, std::uint32_t width, std::uint32_t hei
   return image;
 }
 
-DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& normals,
-                             FrameMaking making = FrameMaking::whole) {
+DepthFrameOptions options_of(const DepthImage& image, const NormalOptions& normals) {
   return {{525, 510, 0.5 * image.width - 0.7, 0.5 * image.height},
           image.width,
           image.height,
           {},
           normals,
-          kDevice,
-          PointReading::settled,
-          making};
+          kDevice};
 }
 
 PreparedCloud prepared(const DepthImage& image, const DepthFrameOptions& options,
@@ -256,164 +253,14 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   EXPECT_GT(boundary, 100U);
 }
 
-// Images of which only what poses reach is made, more as they go on, and then the rest.
-class AsAsked : public ::testing::TestWithParam<NormalMethod> {
- protected:
-  void SetUp() override {
-    if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  }
-
-  struct Seen {
-    unsigned touched = 0, whole = 0;  // poses that touched something; that had all of the image
-  };
-
-  // A frame for each few poses.
-  static Seen expect_same(const DepthImage& image, const ToolModel& tool, int window,
-                          const std::vector<Pose>& poses, std::size_t poses_per_frame,
-                          std::uint32_t standby_us, Shadows shadows = Shadows::near) {
-    const DepthFrameOptions options =
-        options_of(image, {GetParam(), window}, FrameMaking::as_asked);
-    DepthFrames frames(options);
-    const Pose camera{testing::generic_rotation(), {0.3, -3, 2}};
-    const PreparedCloud cloud = prepared(image, options, camera);
-    Query on_cpu(tool, {.counts_points = false, .shadows = shadows});
-    Query query(
-        tool,
-        {.device = kDevice, .counts_points = false, .standby_us = standby_us, .shadows = shadows});
-    Seen seen;
-    std::optional<DepthFrame> frame;
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      SCOPED_TRACE("pose " + std::to_string(k));
-      if (k % poses_per_frame == 0) frame = frame_of(frames, image, camera);
-      const Pose pose = camera * poses[k];
-      const Result expected = on_cpu.run(cloud, pose);
-      expect_equal(expected, query.run(*frame, pose));
-      seen.whole += testing::is_whole_on_device(*frame) ? 1 : 0;
-      seen.touched += expected.boundary > 0 ? 1 : 0;
-    }
-    const auto memory = testing::memory_on_device(*frame);
-    EXPECT_TRUE(memory && testing::same_bits(*memory, testing::memory_of(cloud)));
-    EXPECT_EQ(frame->points(), cloud.positions().size());
-    return seen;
-  }
-};
-INSTANTIATE_TEST_SUITE_P(Methods, AsAsked,
-                         ::testing::Values(NormalMethod::inverse_depth, NormalMethod::pca),
-                         [](const auto& method) { return test::test_name(to_text(method.param)); });
-
-// About the surface, anywhere in the image and beside it, some of them nearer to the camera.
-std::vector<Pose> poses_over(const DepthImage& image, const Intrinsics& k, int count) {
-  std::mt19937 random(7);
-  std::vector<Pose> poses;
-  for (int n = 0; n < count; ++n) {
-    const double u = uniform(random, -0.1F, 1.1F) * static_cast<float>(image.width);
-    const double v = uniform(random, -0.1F, 1.1F) * static_cast<float>(image.height);
-    const double z =
-        uniform(random, 0, 1) < 0.9F ? uniform(random, 0.7F, 1.4F) : uniform(random, -0.1F, 0.3F);
-    const Vec3 at{(u - k.cx) / k.fx * z, (v - k.cy) / k.fy * z, z};
-    const double turn = n;
-    poses.push_back({rotation_from_quaternion({0, std::sin(turn), 0.1, std::cos(turn)}), at});
-  }
-  return poses;
-}
-
-TEST_P(AsAsked, GivesTheSameWhereverItIsAsked) {
-  const ToolModel tools[] = {testing::lattice_cube(0.12, 9, 3), testing::lattice_cube(0.1, 3, 9),
-                             testing::lattice_cube(0.02, 4, 3), testing::lattice_cube(0.5, 6, 3)};
-  for (const auto& [name, depths] : kImages) {
-    SCOPED_TRACE(name);
-    const DepthImage image = image_of(depths, 451, 283);
-    const auto poses = poses_over(image, options_of(image, {}).intrinsics, 60);
-    for (const ToolModel& tool : tools) {
-      const Seen seen = expect_same(image, tool, 7, poses, 1, 0);
-      expect_same(image, tool, 9, poses, 5, 0);
-      expect_same(image, tool, 7, poses, 20, 2000);
-      expect_same(image, tool, 7, poses, 5, 0, Shadows::solid);
-      expect_same(image, tool, 7, poses, 20, 2000, Shadows::solid);
-      if (std::string(name) == "wall" && tool.reach > 0.05) {
-        EXPECT_GT(seen.touched, 10U);
-      }
-      if (tool.reach < 0.2) {  // deep behind a wall the nearest place of it may be anywhere
-        EXPECT_LT(seen.whole, poses.size() / 2);
-      }
-    }
-  }
-}
-
-// Kernels that fill the device make what is large, queries themselves what is small and between it,
-// and in the end points() all that is missing.
-TEST_P(AsAsked, ByKernelsAndByQueriesInTurn) {
-  const DepthImage image = image_of(wall(0.05F, 0.002F), 1280, 1024);
-  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
-  const PreparedCloud cloud = prepared(image, options, {});
-  const ToolModel large = testing::lattice_cube(0.32, 9, 3),
-                  small = testing::lattice_cube(0.1, 9, 3);
-  const bool by_queries = GetParam() == NormalMethod::inverse_depth;
-  for (const std::uint32_t standby_us : {0U, 2000U}) {
-    SCOPED_TRACE(standby_us);
-    const QueryOptions on_device{
-        .device = kDevice, .counts_points = false, .standby_us = standby_us};
-    DepthFrames frames(options);
-    const DepthFrame frame = frame_of(frames, image, {});
-    const auto expect_same_at = [&](const ToolModel& tool, Vec3 at) {
-      const Result expected = Query(tool, {.counts_points = false}).run(cloud, {{}, at});
-      EXPECT_GT(expected.boundary, 0U);
-      expect_equal(expected, Query(tool, on_device).run(frame, {{}, at}));
-    };
-    expect_same_at(small, {-0.36, -0.33, 0.8});
-    EXPECT_EQ(testing::has_part_of_queries(frame), by_queries);
-    expect_same_at(large, {-0.05, -0.02, 0.65});
-    EXPECT_FALSE(testing::has_part_of_queries(frame));
-    EXPECT_FALSE(testing::is_whole_on_device(frame));
-    bool has_part_of_queries = false;
-    for (double u = 850; u < 1200 && !has_part_of_queries; u += 50) {
-      const double z = 1 / (0.75 + 1e-3 * u);
-      expect_same_at(small, {(u - 640) / 525 * z, 0, z});
-      has_part_of_queries = testing::has_part_of_queries(frame);
-    }
-    EXPECT_EQ(has_part_of_queries, by_queries);
-    frame.points();
-    EXPECT_FALSE(testing::has_part_of_queries(frame));
-    const auto memory = testing::memory_on_device(frame);
-    EXPECT_TRUE(memory && testing::same_bits(*memory, testing::memory_of(cloud)));
-  }
-}
-
-// Two threads ask for different parts of one frame.
-TEST_P(AsAsked, ByManyAtOnce) {
-  const DepthImage image = image_of(wall(0.05F, 0.002F), 640, 480);
-  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
-  DepthFrames frames(options);
-  const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
-  const auto poses = poses_over(image, options.intrinsics, 40);
-  const PreparedCloud cloud = prepared(image, options, {});
-  std::vector<Result> expected;
-  Query on_cpu(tool, {.counts_points = false});
-  for (const Pose& pose : poses) expected.push_back(on_cpu.run(cloud, pose));
-  for (int round = 0; round < 10; ++round) {
-    const DepthFrame frame = frame_of(frames, image, {});
-    std::vector<std::thread> threads;
-    for (std::size_t t = 0; t < 3; ++t) {
-      threads.emplace_back([&, t] {
-        Query query(tool,
-                    {.device = kDevice, .counts_points = false, .standby_us = t == 2 ? 2000U : 0U});
-        for (std::size_t k = t; k < poses.size(); k += 3)
-          expect_equal(expected[k], query.run(frame, poses[k]));
-      });
-    }
-    for (std::thread& thread : threads) thread.join();
-    EXPECT_EQ(frame.points(), cloud.positions().size());
-  }
-}
-
 // Images come by turns in the same memory, by a kernel that stays as by one that is launched.
-TEST_P(AsAsked, EachImageAnew) {
+TEST_P(SameFrame, EachImageAnew) {
   std::vector<DepthImage> images;
   for (int k = 0; k < 3; ++k) {
     images.push_back(image_of(wall(0.02F, 0.002F), 320, 240));
     for (float& z : images.back().depth) z *= 1 + 0.02F * static_cast<float>(k);
   }
-  const DepthFrameOptions options = options_of(images[0], {GetParam()}, FrameMaking::as_asked);
+  const DepthFrameOptions options = options_of(images[0], {GetParam()});
   const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.9}};
@@ -435,9 +282,9 @@ TEST_P(AsAsked, EachImageAnew) {
 }
 
 // The memory of a frame of which all is known but the surface, which is still being made.
-TEST_P(AsAsked, InMemoryThatIsUsedAgainAtOnce) {
+TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 1024, 1024);
-  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
+  const DepthFrameOptions options = options_of(image, {GetParam()});
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0, 0, 0.8}};
   const ToolModel tool = testing::lattice_cube(0.3, 9, 3);
@@ -454,53 +301,6 @@ TEST_P(AsAsked, InMemoryThatIsUsedAgainAtOnce) {
     const DepthFrame frame = frames.prepare(cameras[1]);
     expect_equal(expected[1], query.run(frame, cameras[1] * pose));
   }
-}
-
-// What CPUs refuse is refused where it is reached, and the next frame has nothing to do with it.
-TEST_P(AsAsked, RefusedWhereItIsReached) {
-  const auto wild = [](auto, auto, auto& random) {
-    return std::ldexp(1.0F, static_cast<int>(random() % 150) - 75);
-  };
-  const DepthImage image = image_of(wild, 97, 61);
-  const DepthFrameOptions options = options_of(image, {GetParam(), 7, 0}, FrameMaking::as_asked);
-  const bool is_refused = GetParam() == NormalMethod::inverse_depth;
-  if (is_refused) {
-    EXPECT_THROW(prepared(image, options, {}), Error);
-  }
-  DepthFrames frames(options);
-  const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
-  Query query(tool, {.device = kDevice, .counts_points = false});
-  for (int round = 0; round < 3; ++round) {
-    const DepthFrame frame = frame_of(frames, image, {});
-    EXPECT_EQ(query.run(frame, {{}, {40, 0, 1}}).boundary, 0U);
-    bool refused = false;
-    try {
-      query.run(frame, {{}, {0, 0, 0.9}});
-    } catch (const Error&) {
-      refused = true;
-    }
-    EXPECT_EQ(refused, is_refused);
-  }
-}
-
-TEST_P(AsAsked, AllOfItWhereMoreIsAskedFor) {
-  const DepthImage image = image_of(wall(0.05F, 0.002F), 163, 97);
-  const DepthFrameOptions options = options_of(image, {GetParam()}, FrameMaking::as_asked);
-  DepthFrames frames(options);
-  const ToolModel tool = testing::lattice_cube(0.02, 4, 3);
-  const Pose poses[] = {{{}, {0, 0, 0.95}}, {{}, {0.02, 0.01, 0.95}}};
-  const PreparedCloud cloud = prepared(image, options, {});
-  Query on_cpu(tool, {}), counting(tool, {.device = kDevice}),
-      paper_on_cpu(tool, {.measure = Measure::paper}),
-      paper(tool, {.measure = Measure::paper, .device = kDevice}),
-      small(tool, {.device = kDevice, .counts_points = false});
-  expect_equal(on_cpu.run(cloud, poses[0]), counting.run(frame_of(frames, image, {}), poses[0]));
-  expect_equal(paper_on_cpu.run(cloud, poses[0]), paper.run(frame_of(frames, image, {}), poses[0]));
-  const DepthFrame frame = frame_of(frames, image, {});
-  Result results[2];
-  small.run(frame, poses[0]);
-  counting.run(frame, poses, results);
-  expect_equal(on_cpu.run(cloud, poses[1]), results[1]);
 }
 
 // Small enough for compute-sanitizer.
@@ -525,20 +325,6 @@ TEST(FramesOnDevice, SmallQuery) {
   const Result expected = Query(tool, {}).run(frame.cloud(), pose);
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
-
-  const DepthImage wide = image_of(wall(0.05F, 0.002F), 251, 141);
-  DepthFrames parts(options_of(wide, {}, FrameMaking::as_asked));
-  for (const std::uint32_t standby_us : {0U, 2000U}) {
-    const DepthFrame part = frame_of(parts, wide, {});
-    Query of_part(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
-    for (const double x : {0.0, 0.0, 0.03, 0.06}) {
-      const Pose aside{pose.rotation, {x, 0, 0.91}};
-      const Result there = Query(tool, {.counts_points = false}).run(part.cloud(), aside);
-      EXPECT_GT(there.boundary, 0U);
-      expect_equal(there, of_part.run(part, aside));
-      EXPECT_FALSE(testing::is_whole_on_device(part));
-    }
-  }
 }
 
 }  // namespace

@@ -270,7 +270,8 @@ struct SmallImage {
       normals.push_back(narrow(normalized_or_zero(numbers.place(0.6) - Vec3{0, 0, 1})));
     }
     surface.k = {8, 8, (width - 1) / 2.0, (height - 1) / 2.0};
-    surface.set_size(width, height);
+    surface.width = width;
+    surface.height = height;
     surface.levels = 1;
     surface.tiles[0] = pixels.data();
     surface.normals = normals.data();

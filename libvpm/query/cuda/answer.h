@@ -11,7 +11,7 @@ namespace vpm::cuda {
 
 // Where the host looks for a result, in its own memory: the words of a RawResult.
 struct Answer {
-  static constexpr unsigned kWords = 20;
+  static constexpr unsigned kWords = 18;
   static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
 
   NumberedWord words[kWords] = {};

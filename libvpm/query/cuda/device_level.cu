@@ -96,11 +96,6 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach re
   view_.center_of_mass = tool.center_of_mass;
   view_.tool_reach = reach;
   view_.spheres_reach = reach_of_spheres(tool, level);
-  LookSizes looks;
-  for (const Chunk& chunk : chunked.chunks) looks.add(chunk.ball.center, chunk.ball.radius);
-  for (const Unit& unit : chunked.units)
-    for (const UnitBall& ball : unit.balls) looks.add(ball.center, ball.radius);
-  looks_ = looks.largest();
 }
 
 }  // namespace vpm::cuda

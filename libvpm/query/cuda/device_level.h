@@ -3,7 +3,6 @@
 
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/query/cuda/views.h"
-#include "libvpm/query/image_part.h"
 
 namespace vpm::cuda {
 
@@ -15,8 +14,6 @@ class DeviceLevel {
   DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows)
       : DeviceLevel(tool, level, {tool.reach, shadows}, cluster_shares(tool, level)) {}
   const LevelView& view() const { return view_; }
-  // By queries that count no points.
-  std::span<const LooksOfSize> looks() const { return looks_; }
 
  private:
   DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
@@ -35,7 +32,6 @@ class DeviceLevel {
   DeviceArray<Edge> edges_;
   DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;
-  std::vector<LooksOfSize> looks_;
 };
 
 }  // namespace vpm::cuda

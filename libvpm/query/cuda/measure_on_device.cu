@@ -20,7 +20,7 @@ void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> pose
 Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
   if (const CloudSlot* const slot = bring(frame)) {
     const Result result = ask(pose);
-    if (slot->is_sound(part_)) return result;
+    if (slot->is_sound()) return result;
   }
   return run(frame.cloud(), pose);
 }
@@ -29,7 +29,7 @@ void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> p
                                 std::span<Result> results) {
   if (const CloudSlot* const slot = bring(frame)) {
     ask(poses, results);
-    if (slot->is_sound(part_)) return;
+    if (slot->is_sound()) return;
   }
   run(frame.cloud(), poses, results);
 }
@@ -46,53 +46,35 @@ void MeasureOnDevice::run_frame_together(std::span<DeviceMeasure* const> measure
                                          std::span<Result> results) {
   if (const CloudSlot* const slot = bring(frame)) {
     ask(measures, poses, results);
-    if (slot->is_sound(part_)) return;
+    if (slot->is_sound()) return;
   }
   run_together(measures, frame.cloud(), poses, results);
 }
 
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
-  RawResult raw = frame_ == nullptr ? answer(frame) : answer_in_frame(frame, pixels_read(frame));
-  if (raw.beyond != 0) raw = answer_in_frame(frame, all_pixels());
+  const RawResult raw = answer(frame);
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
 }
 
-RawResult MeasureOnDevice::answer_in_frame(const PoseFrame& frame, const PixelRectangle& pixels) {
-  RawResult raw;
-  const bool is_made = frame_->make_by_query(pixels, most_pixels_made(),
-                                             [&](const auto& part, const Making& making) {
-                                               part_ = part;
-                                               raw = answer(frame, &making);
-                                             });
-  if (is_made) return raw;
-  part_ = frame_->require(pixels, stream());
-  return answer(frame);
-}
-
 RawResult MeasureOnDevice::answer_standing_by(const void* launch, const PoseFrame& frame,
-                                              const Making* making, unsigned sequence) {
+                                              unsigned sequence) {
   Order order;
   order.launch = launch;
   order.to_surface = frame.to_surface;
-  order.part.wanted = part_.is_whole ? all_pixels() : part_.made;
-  if (making != nullptr) {
-    order.image = making->on_device;
-    order.camera_to_world = making->source.recipe.camera.to_world.rotation;
-    order.part = making->part;
-  }
   order.turn = sequence;
   order.waits_us = standby_us_;
   return standby_->ask(order, *answer_.host(), sequence);
 }
 
-RawResult MeasureOnDevice::answer(const PoseFrame& frame, const Making* making) {
+RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
   const unsigned sequence = sequence_ + 1;
-  if (standby_ && part_.is_there) {  // otherwise the stream comes to it
+  const bool is_there = frame_ == nullptr || frame_->require(stream());
+  if (standby_ && is_there) {  // otherwise the stream comes to it
     if (const void* const launch = standing_launch(answer_.device())) {
       end_launched();
-      const RawResult raw = answer_standing_by(launch, frame, making, sequence);
+      const RawResult raw = answer_standing_by(launch, frame, sequence);
       sequence_ = sequence;
       return raw;
     }
@@ -100,7 +82,7 @@ RawResult MeasureOnDevice::answer(const PoseFrame& frame, const Making* making) 
   const CurrentDevice current(device_);
   const OtherWork other;
   has_launched_ = true;
-  launch(frame, making, answer_.device(), sequence);
+  launch(frame, answer_.device(), sequence);
   sequence_ = sequence;
   return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
 }
@@ -116,7 +98,7 @@ void MeasureOnDevice::in_launches(std::size_t poses, const AnswerPart& answer_pa
   const CurrentDevice current(device_);
   if (!batch_) batch_ = std::make_unique<Batch>();
   const OtherWork other;
-  if (frame_ != nullptr) part_ = frame_->require(all_pixels(), stream());
+  if (frame_ != nullptr) frame_->require(stream());
   for (std::size_t begin = 0; begin < poses; begin += Batch::kPoses)
     answer_part(begin, std::min(Batch::kPoses, poses - begin));
 }
@@ -193,7 +175,6 @@ void MeasureOnDevice::bring(const PreparedCloud& cloud) {
     serial_ = cloud.serial();
   }
   frame_ = nullptr;
-  part_ = {};
   cloud_ = copy_.get();
 }
 

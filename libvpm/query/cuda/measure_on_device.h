@@ -29,11 +29,8 @@ class MeasureOnDevice : public DeviceMeasure {
   double flood_microseconds() const final { return flood_microseconds_; }
 
  protected:
-  using Making = CloudSlot::Making;
   // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
-  // `making`: not null where part() is to be made first.
-  virtual void launch(const PoseFrame& frame, const Making* making, Answer* answer,
-                      unsigned sequence) = 0;
+  virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
   // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
   // is launched.
   virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
@@ -46,12 +43,6 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) = 0;
   // No point further from the centre of mass matters.
   virtual double reach() const = 0;
-  // The pixels that one query reads of an image, as far as that is known beforehand; what more it
-  // asks for, it says (RawResult::beyond).
-  virtual PixelRectangle pixels_read(const PoseFrame& /*frame*/) const { return all_pixels(); }
-  // So many pixels of an image a query makes itself, in the launch or by the order that `making` is
-  // given to.
-  virtual std::int64_t most_pixels_made() const { return 0; }
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
@@ -65,8 +56,6 @@ class MeasureOnDevice : public DeviceMeasure {
   int device() const { return device_; }
   const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
-  // What there is of that cloud when the stream comes to the query, or the query makes first.
-  const CloudSlot::Part& part() const { return part_; }
   cudaStream_t stream() const { return stream_.get(); }
 
  private:
@@ -88,13 +77,8 @@ class MeasureOnDevice : public DeviceMeasure {
   // Null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
-  RawResult answer_in_frame(const PoseFrame& frame, const PixelRectangle& pixels);
-  RawResult answer(const PoseFrame& frame, const Making* making = nullptr);
-  RawResult answer_standing_by(const void* launch, const PoseFrame& frame, const Making* making,
-                               unsigned sequence);
-  PixelRectangle all_pixels() const {
-    return whole_image(cloud_->frame().width, cloud_->frame().height);
-  }
+  RawResult answer(const PoseFrame& frame);
+  RawResult answer_standing_by(const void* launch, const PoseFrame& frame, unsigned sequence);
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();
   void ask(std::span<const Pose> poses, std::span<Result> results);
@@ -117,7 +101,6 @@ class MeasureOnDevice : public DeviceMeasure {
   std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
   std::uint64_t serial_ = 0;
   const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
-  CloudSlot::Part part_;              // of that, what they may read
   bool has_launched_ = false;         // a query that may not have ended
   std::shared_ptr<Standby> standby_;
   std::uint32_t standby_us_ = 0;

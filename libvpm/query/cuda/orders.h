@@ -1,5 +1,4 @@
-// How a kernel that stands by is told of the next pose, and of what to make before, without a
-// launch.
+// How a kernel that stands by is told of the next pose, without a launch.
 //
 // The host writes an order into its own memory. A warp of one block looks there and passes it on to
 // the other blocks in the device's memory: of the block that was the last to be done with the order
@@ -8,26 +7,21 @@
 
 #include "libvpm/query/cuda/answer.h"
 #include "libvpm/query/cuda/views.h"
-#include "libvpm/surface/cuda/cloud_part.h"
 
 namespace vpm::cuda {
 
 struct Order {
-  const void* launch = nullptr;        // the query's arguments, on the device
-  const CloudSource* image = nullptr;  // of which the part is to be made first; there as well
-  Pose to_surface;                     // of PoseFrame
-  Rotation camera_to_world;            // of the image
-  NewPart part;                        // what there is of the image then (wanted); the rest of it
-                                       // counts where some is to be made
-  std::uint32_t turn = 0;              // of the query
-  std::uint32_t waits_us = 0;          // for the next order
-  std::uint32_t leaves = 0;            // not 0: instead of a query
-  std::uint32_t unused[6] = {};
+  const void* launch = nullptr;  // the query's arguments, on the device
+  Pose to_surface;               // of PoseFrame
+  std::uint32_t turn = 0;        // of the query
+  std::uint32_t waits_us = 0;    // for the next order
+  std::uint32_t leaves = 0;      // not 0: instead of a query
+  std::uint32_t unused[3] = {};
 };
 
-// Some for each lane of a warp.
+// A word for each lane of a warp.
 struct OrderWords {
-  static constexpr unsigned kWords = 64, kOfLane = kWords / 32;
+  static constexpr unsigned kWords = 32;
   static_assert(sizeof(Order) == kWords * sizeof(std::uint32_t));
 
   NumberedWord words[kWords] = {};
@@ -52,7 +46,7 @@ class Orders {
   // in time. One block leads: some block at first, then the last to be done with the order before.
   // What was done for that order is seen then; so is what came to the device's memory by transfers
   // and kernels that had ended when the host gave this one, since nothing older is kept nearer than
-  // there. (Images in the host's memory are read past everything near: cloud_take.h.)
+  // there.
   __device__ void receive(unsigned number, bool leads) {
     if (threadIdx.x < 32) {
       if (leads)
@@ -66,42 +60,26 @@ class Orders {
  private:
   static constexpr std::uint64_t kFirstWait = 10'000'000;  // ns; the order was given already
 
-  // Of a lane.
-  struct Words {
-    NumberedWord words[OrderWords::kOfLane];
-  };
-  __device__ static unsigned place(unsigned k) { return threadIdx.x + 32 * k; }
-
-  // This lane's words of the order, when all have come or it is too late. `look(word)`.
+  // Returns this lane's word of the order, when all have come or it is too late. `look(word)`.
   template <class Look, class IsLate>
-  __device__ static Words wait(OrderWords& order, unsigned number, const Look& look,
-                               const IsLate& is_late) {
+  __device__ static NumberedWord wait(OrderWords& order, unsigned number, const Look& look,
+                                      const IsLate& is_late) {
     constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
     for (;;) {
-      Words mine;
-      bool have_come = true;
-#pragma unroll
-      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-        mine.words[k] = look(order.words[place(k)]);
-#pragma unroll
-      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-        have_come &= number_of(mine.words[k]) == number;
-      if (__all_sync(~0U, have_come) != 0) return mine;
-      if (__any_sync(~0U, is_late()) == 0) continue;
-      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-        mine.words[k] = numbered(number, place(k) == kLeaves ? 1 : 0);
-      return mine;
+      const NumberedWord mine = look(order.words[threadIdx.x]);
+      if (__all_sync(~0U, number_of(mine) == number) != 0) return mine;
+      if (__any_sync(~0U, is_late()) != 0) return numbered(number, threadIdx.x == kLeaves ? 1 : 0);
     }
   }
   // What the block that leads has seen is seen then.
-  __device__ Words wait_for_leader(unsigned number) const {
+  __device__ NumberedWord wait_for_leader(unsigned number) const {
     using Word = ::cuda::atomic_ref<NumberedWord, ::cuda::thread_scope_device>;
     return wait(
         view_.passed_on[blockIdx.x % OrdersView::kCopies], number,
         [](NumberedWord& word) { return Word(word).load(::cuda::memory_order_acquire); },
         [] { return false; });
   }
-  __device__ Words wait_for_host(unsigned number) const {
+  __device__ NumberedWord wait_for_host(unsigned number) const {
     const std::uint64_t most =
         number == first_ ? kFirstWait : std::uint64_t{order_.waits_us} * 1000;
     fence();  // for what this block has seen to be passed on too; now, while nobody waits
@@ -110,16 +88,13 @@ class Orders {
         *view_.given, number, [](const NumberedWord& word) { return look_at(word); },
         [&] { return now() - begin > most; });
   }
-  __device__ void take(const Words& mine) {
+  __device__ void take(NumberedWord mine) {
     __syncwarp();  // who has read the order before is done
-    for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-      reinterpret_cast<std::uint32_t*>(&order_)[place(k)] = value_of(mine.words[k]);
+    reinterpret_cast<std::uint32_t*>(&order_)[threadIdx.x] = value_of(mine);
   }
-  __device__ void pass_on(unsigned number, const Words& mine) {
-    for (unsigned copy = 0; copy < OrdersView::kCopies; ++copy) {
-      for (unsigned k = 0; k < OrderWords::kOfLane; ++k)
-        put(mine.words[k], view_.passed_on[copy].words[place(k)]);
-    }
+  __device__ void pass_on(unsigned number, NumberedWord mine) {
+    for (unsigned copy = 0; copy < OrdersView::kCopies; ++copy)
+      put(mine, view_.passed_on[copy].words[threadIdx.x]);
     take(mine);
     __syncwarp();
     if (order_.leaves != 0 && threadIdx.x == 0)
@@ -131,13 +106,11 @@ class Orders {
   Order& order_;
 };
 
-// Into a block's shared memory, by one of so many groups of its threads.
+// Copies into a block's shared memory, by all its threads.
 template <class T>
-__device__ void copy_words(const T& from, T& to, unsigned group, unsigned groups) {
+__device__ void copy_words(const T& from, T& to) {
   static_assert(sizeof(T) % sizeof(std::uint64_t) == 0);
-  const unsigned threads = blockDim.x / groups, first = group * threads;
-  if (threadIdx.x < first || threadIdx.x >= first + threads) return;
-  for (unsigned k = threadIdx.x - first; k < sizeof(T) / sizeof(std::uint64_t); k += threads)
+  for (unsigned k = threadIdx.x; k < sizeof(T) / sizeof(std::uint64_t); k += blockDim.x)
     reinterpret_cast<std::uint64_t*>(&to)[k] = reinterpret_cast<const std::uint64_t*>(&from)[k];
 }
 

@@ -144,8 +144,7 @@ class PaperOnDevice : public MeasureOnDevice {
     PaperMemory memory;
   };
 
-  void launch(const PoseFrame& frame, const Making* /*making*/, Answer* answer,
-              unsigned sequence) override {
+  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
     PaperLaunch arguments{level_, cloud().points(), memory_.space()};
     PoseFrame pose = frame;
     Totals* totals = totals_.get();

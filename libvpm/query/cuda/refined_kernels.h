@@ -204,39 +204,12 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   answer_pose<Arguments::launched>(launch, frame, sequence, team, shared);
 }
 
-static_assert(kThreads == SmallTile::kPointThreads && kThreads == SmallTile::kSurfaceThreads);
-static_assert(alignof(BlockShared<DepthSurface>) <= 16);
-
-// Memory of a block that makes a part of an image, and then answers a query there.
-union PartAndQueryShared {
-  PartWork<GridTeam>::Shared part;
-  alignas(16) unsigned char query[sizeof(BlockShared<DepthSurface>)];
-
-  __device__ BlockShared<DepthSurface>& of_query() {
-    return *reinterpret_cast<BlockShared<DepthSurface>*>(query);
-  }
-};
-
-// One query in an image of which it makes a part first.
-__global__ void __launch_bounds__(kThreads, kFewBlocks)
-    one_pose_in_new_part(const __grid_constant__ RefinedLaunch<DepthSurface> launch,
-                         const __grid_constant__ CloudSource image,
-                         const __grid_constant__ NewPart part,
-                         const __grid_constant__ PoseFrame frame, unsigned sequence) {
-  __shared__ PartAndQueryShared shared;
-  GridTeam team(&launch.totals->arrived);
-  PartWork<GridTeam>(image, part, team, shared.part).run();
-  answer_pose<Arguments::launched>(launch, frame, sequence, team, shared.of_query());
-}
-
 // One query after another (orders.h), until none comes.
 __global__ void __launch_bounds__(kThreads, kFewBlocks)
     stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
   using Launch = RefinedLaunch<DepthSurface>;
-  __shared__ PartAndQueryShared shared;
+  __shared__ BlockShared<DepthSurface> shared;
   __shared__ Launch launch;
-  __shared__ alignas(CloudSource) unsigned char image_memory[sizeof(CloudSource)];
-  auto& image = *reinterpret_cast<CloudSource*>(image_memory);
   __shared__ Order order;
   __shared__ PoseFrame frame;
   Orders orders(view, first, order);
@@ -244,21 +217,11 @@ __global__ void __launch_bounds__(kThreads, kFewBlocks)
   for (unsigned number = first;; ++number) {
     orders.receive(number, leads);
     if (order.leaves != 0) return;
-    const bool makes = order.image != nullptr;
     if (threadIdx.x == 0) frame.to_surface = order.to_surface;
-    copy_words(*static_cast<const Launch*>(order.launch), launch, 0, makes ? 2 : 1);
-    if (makes) copy_words(*order.image, image, 1, 2);
+    copy_words(*static_cast<const Launch*>(order.launch), launch);
     __syncthreads();
-    if (!(order.part.wanted == whole_image(launch.surface.width, launch.surface.height))) {
-      if (threadIdx.x == 0) {
-        launch.surface.restrict_to(order.part.wanted, &launch.totals->result.beyond);
-        if (makes) image.look_from(order.camera_to_world);  // never all of an image
-      }
-      __syncthreads();
-    }
     GridTeam team(&launch.totals->arrived);
-    if (makes) PartWork<GridTeam>(image, order.part, team, shared.part).run();
-    leads = answer_pose<Arguments::shared>(launch, frame, order.turn, team, shared.of_query());
+    leads = answer_pose<Arguments::shared>(launch, frame, order.turn, team, shared);
   }
 }
 

@@ -18,12 +18,9 @@ class RefinedOnDevice : public MeasureOnDevice {
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
-        making_(kernel_of(one_pose_in_new_part, kFewBlocks)),
         standing_by_(kernel_of(stand_by_kernel, kFewBlocks)),
-        memory_(
-            TeamRoom(level_.view()), 1,
-            std::max({of_images_.blocks, of_points_.blocks, making_.blocks, standing_by_.blocks}),
-            kThreads),
+        memory_(TeamRoom(level_.view()), 1,
+                std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
         totals_(1),
         counters_(1) {
     totals_.clear();
@@ -64,12 +61,9 @@ class RefinedOnDevice : public MeasureOnDevice {
     RefinedMemory memory;
   };
 
-  void launch(const PoseFrame& frame, const Making* making, Answer* answer,
-              unsigned sequence) override {
-    if (making != nullptr)
-      launch_making(*making, frame, answer, sequence);
-    else if (cloud().frame().is_organised)
-      launch_on(surface_there(), of_images_, frame, answer, sequence);
+  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
+    if (cloud().frame().is_organised)
+      launch_on(cloud().depth_surface(), of_images_, frame, answer, sequence);
     else
       launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
   }
@@ -81,15 +75,6 @@ class RefinedOnDevice : public MeasureOnDevice {
       launch_on(cloud().disk_surface(), tools, poses, results);
   }
   double reach() const override { return level_.view().spheres_reach; }
-  PixelRectangle pixels_read(const PoseFrame& frame) const override {
-    if (counts_points_) return MeasureOnDevice::pixels_read(frame);
-    return part_read(cloud().depth_surface(), frame.to_surface.translation, reach(),
-                     level_.looks());
-  }
-  // More tiles than two for each block are sooner made by kernels that fill the device.
-  std::int64_t most_pixels_made() const override {
-    return std::int64_t{2} * making_.blocks * SmallTile::kPixels;
-  }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().notes[sequence % 2].words;
   }
@@ -117,11 +102,6 @@ class RefinedOnDevice : public MeasureOnDevice {
     return arguments_.get() + k;
   }
 
-  DepthSurface surface_there() const {
-    DepthSurface surface = cloud().depth_surface();
-    if (!part().is_whole) surface.restrict_to(part().made, &totals_.get()->result.beyond);
-    return surface;
-  }
   template <class Surface>
   RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
                                       Answer* answer) const {
@@ -130,16 +110,6 @@ class RefinedOnDevice : public MeasureOnDevice {
     if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
     return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
             sphere_blocks, totals_.get(), counters_.get(),  answer};
-  }
-  void launch_making(const Making& making, const PoseFrame& frame, Answer* answer,
-                     unsigned sequence) {
-    auto arguments = arguments_of(surface_there(), making_.blocks, answer);
-    CloudSource image = making.source;
-    NewPart part = making.part;
-    PoseFrame pose = frame;
-    void* values[] = {&arguments, &image, &part, &pose, &sequence};
-    check(cudaLaunchCooperativeKernel(making_.function, making_.blocks, kThreads, values, 0,
-                                      stream()));
   }
   template <class Surface>
   void launch_on(const Surface& surface, const PoseKernel& kernel, const PoseFrame& frame,
@@ -187,7 +157,7 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   DeviceLevel level_;
   bool counts_points_;
-  PoseKernel of_images_, of_points_, making_, standing_by_;
+  PoseKernel of_images_, of_points_, standing_by_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;

@@ -56,7 +56,6 @@ bool Standby::has_left_at(unsigned number) const {
   return *static_cast<const volatile unsigned*>(left_.host()) == number;
 }
 
-// The image that an order names is there before the order is.
 void Standby::give(const Order& order) {
   ++number_;
   std::atomic_thread_fence(std::memory_order_release);

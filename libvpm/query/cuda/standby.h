@@ -28,8 +28,7 @@ class Standby : public StandingKernel {
   Standby& operator=(const Standby&) = delete;
 
   // One query: the kernel sends its result to `answer` as number `sequence`. What the query needs
-  // must be there, but for the part of an image that the order asks for, and what was launched for
-  // it before must have ended.
+  // must be there, and what was launched for it before must have ended.
   RawResult ask(Order order, const Answer& answer, unsigned sequence);
 
   void begin_other_work() override;

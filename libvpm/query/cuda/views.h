@@ -122,8 +122,6 @@ struct RawResult {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0, points = 0;
   std::uint32_t flood_ns = 0;  // of one pose: what came after the boundary was known
-  std::uint32_t beyond = 0;    // not 0: of an image of which too little was made (DepthSurface)
-  std::uint32_t unused = 0;
 };
 
 inline Result result_of(const RawResult& raw, const ToolModel& tool,

@@ -1,4 +1,4 @@
-// Points with normals, of a tile of an image by a block: for cloud_prepare.cu and cloud_part.h.
+// Points with normals, of a tile of an image by a block: for cloud_prepare.cu.
 #pragma once
 
 #include <math_constants.h>
@@ -11,7 +11,6 @@ namespace vpm::cuda {
 template <class Normals>
 struct TileArrays {
   using Frame = typename Normals::Frame;
-  using Shape = typename Frame::Shape;
   using Column = typename Normals::Column;
   Column* columns;  // of the windows; then the positions
   double *ray_x, *ray_y;
@@ -22,32 +21,32 @@ struct TileArrays {
   Vec3f* world_normals;
   std::uint16_t* gated;  // pixels whose windows are not smooth
 
-  static constexpr int kClosedWidth = Shape::kWidth + 2, kClosedHeight = Shape::kHeight + 2;
-  static_assert(sizeof(Column) * Shape::kWidth >= sizeof(Vec3f) * Shape::kWidth);
+  static constexpr int kClosedWidth = CloudTile::kWidth + 2, kClosedHeight = CloudTile::kHeight + 2;
+  static_assert(sizeof(Column) * CloudTile::kWidth >= sizeof(Vec3f) * CloudTile::kWidth);
 
   __device__ TileArrays(const Frame& tile, SharedArrays arrays)
-      : columns(arrays.take<Column>(Shape::kHeight * tile.columns())),
-        ray_x(arrays.take<double>(Shape::kWidth)),
-        ray_y(arrays.take<double>(Shape::kHeight)),
+      : columns(arrays.take<Column>(CloudTile::kHeight * tile.columns())),
+        ray_x(arrays.take<double>(CloudTile::kWidth)),
+        ray_y(arrays.take<double>(CloudTile::kHeight)),
         inverse(arrays.take<float>(tile.rows() * tile.pitch())),
         depth(arrays.take<float>(Normals::kNeedsDepth ? tile.rows() * tile.pitch() : 0)),
         closed(arrays.take<float>(kClosedWidth * kClosedHeight)),
-        normals(arrays.take<Vec3f>(Shape::kPixels)),
-        measured(arrays.take<float>(Shape::kPixels)),
-        world_normals(arrays.take<Vec3f>(Shape::kPixels)),
-        gated(arrays.take<std::uint16_t>(Shape::kPixels)) {}
+        normals(arrays.take<Vec3f>(CloudTile::kPixels)),
+        measured(arrays.take<float>(CloudTile::kPixels)),
+        world_normals(arrays.take<Vec3f>(CloudTile::kPixels)),
+        gated(arrays.take<std::uint16_t>(CloudTile::kPixels)) {}
 
   static constexpr std::size_t bytes(int radius) {
     const int margin = Frame::margin_of(radius);
-    const int image = (Shape::kHeight + 2 * margin) * (Shape::kWidth + 2 * margin);
+    const int image = (CloudTile::kHeight + 2 * margin) * (CloudTile::kWidth + 2 * margin);
     const auto size = [](std::size_t of_one, int count) {
       return of_one * static_cast<std::size_t>(count);
     };
-    return size(sizeof(Column), Shape::kHeight * (Shape::kWidth + 2 * radius)) +
-           size(sizeof(double), Shape::kWidth + Shape::kHeight) +
+    return size(sizeof(Column), CloudTile::kHeight * (CloudTile::kWidth + 2 * radius)) +
+           size(sizeof(double), CloudTile::kWidth + CloudTile::kHeight) +
            size(sizeof(float),
                 (Normals::kNeedsDepth ? 2 : 1) * image + kClosedWidth * kClosedHeight) +
-           size(2 * sizeof(Vec3f) + sizeof(float) + sizeof(std::uint16_t), Shape::kPixels);
+           size(2 * sizeof(Vec3f) + sizeof(float) + sizeof(std::uint16_t), CloudTile::kPixels);
   }
 };
 
@@ -56,23 +55,18 @@ template <class Normals>
 class TileWork {
  public:
   using Frame = typename Normals::Frame;
-  using Shape = typename Frame::Shape;
-  static constexpr std::size_t bytes(int radius) { return TileArrays<Normals>::bytes(radius); }
-
-  __device__ __forceinline__ TileWork(const CloudRecipe& recipe, const StepPixels& pixels,
-                                      int number, void* shared)
+  __device__ __forceinline__ TileWork(const CloudRecipe& recipe, int number, void* shared)
       : recipe_(recipe),
-        tile_(recipe, pixels, number),
+        tile_(recipe, number),
         arrays_(tile_, SharedArrays(shared)),
         normals_(recipe, {tile_, arrays_.inverse, arrays_.depth, arrays_.ray_x, arrays_.ray_y}) {}
 
-  __device__ __forceinline__ bool is_done() const { return tile_.was_made(); }
   // Does not need the image.
   __device__ __forceinline__ void find_rays() const {
     const Intrinsics& k = recipe_.camera.intrinsics;
     const int i = thread();
-    if (i < Shape::kWidth) arrays_.ray_x[i] = (tile_.u0 + i - k.cx) / k.fx;
-    if (i < Shape::kHeight) arrays_.ray_y[i] = (tile_.v0 + i - k.cy) / k.fy;
+    if (i < CloudTile::kWidth) arrays_.ray_x[i] = (tile_.u0 + i - k.cx) / k.fx;
+    if (i < CloudTile::kHeight) arrays_.ray_y[i] = (tile_.v0 + i - k.cy) / k.fy;
   }
 
   // Whether pixels of the image in the tile or its margin are unknown.
@@ -81,21 +75,20 @@ class TileWork {
     const int count = tile_.rows() * tile_.pitch();
     constexpr int kAtOnce = 4;  // reads that wait together, before what they bring is stored
     bool unknown = false;
-    for (int begin = thread(); begin < count; begin += kAtOnce * Shape::kPointThreads) {
+    for (int begin = thread(); begin < count; begin += kAtOnce * CloudTile::kPointThreads) {
       float inverse[kAtOnce], depth[kAtOnce];
 #pragma unroll
       for (int i = 0; i < kAtOnce; ++i) {
-        const int k = begin + i * Shape::kPointThreads;
+        const int k = begin + i * CloudTile::kPointThreads;
         const int x = k % tile_.pitch() - tile_.margin(), y = k / tile_.pitch() - tile_.margin();
-        const bool is_known = k < count && tile_.is_known(x, y);
-        inverse[i] = is_known ? measured_or_none(inverses[tile_.pixel(x, y)])
-                              : (tile_.is_in_image(x, y) ? unmeasured() : beyond_image());
-        if constexpr (Normals::kNeedsDepth) depth[i] = is_known ? depths[tile_.pixel(x, y)] : 0.0F;
-        unknown |= is_known && !(inverse[i] > 0);
+        const bool is_there = k < count && tile_.is_in_image(x, y);
+        inverse[i] = is_there ? measured_or_none(inverses[tile_.pixel(x, y)]) : beyond_image();
+        if constexpr (Normals::kNeedsDepth) depth[i] = is_there ? depths[tile_.pixel(x, y)] : 0.0F;
+        unknown |= is_there && !(inverse[i] > 0);
       }
 #pragma unroll
       for (int i = 0; i < kAtOnce; ++i) {
-        const int k = begin + i * Shape::kPointThreads;
+        const int k = begin + i * CloudTile::kPointThreads;
         if (k >= count) break;
         arrays_.inverse[k] = inverse[i];
         if constexpr (Normals::kNeedsDepth) arrays_.depth[k] = depth[i];
@@ -116,8 +109,9 @@ class TileWork {
     const auto image = [&](int u, int v) {
       return arrays_.inverse[tile_.index(u - tile_.u0, v - tile_.v0)];
     };
-#pragma unroll Shape::kUnroll
-    for (int k = thread(); k < kClosedWidth * Arrays::kClosedHeight; k += Shape::kPointThreads) {
+#pragma unroll kUnroll
+    for (int k = thread(); k < kClosedWidth * Arrays::kClosedHeight;
+         k += CloudTile::kPointThreads) {
       const int x = k % kClosedWidth - 1, y = k / kClosedWidth - 1;
       const int u = tile_.u0 + x, v = tile_.v0 + y;
       const float value = arrays_.inverse[tile_.index(x, y)];
@@ -136,30 +130,43 @@ class TileWork {
   }
   __device__ __forceinline__ void find_gated_normals(unsigned count) const {
 #pragma unroll 1
-    for (unsigned k = threadIdx.x; k < count; k += Shape::kPointThreads) {
+    for (unsigned k = threadIdx.x; k < count; k += CloudTile::kPointThreads) {
       const int pixel = arrays_.gated[k];
-      arrays_.normals[pixel] = normals_.gated_normal(pixel % Shape::kWidth, pixel / Shape::kWidth);
+      arrays_.normals[pixel] =
+          normals_.gated_normal(pixel % CloudTile::kWidth, pixel / CloudTile::kWidth);
     }
   }
 
-  // What the surface is made of. Counts points that are no unit vectors.
-  __device__ __forceinline__ void see_pixels(unsigned& doubtful) const {
-    for_pixels(doubtful, [](int, int, int, Vec3f, Vec3f) {});
-  }
-  // The same, and the points, but in shared memory. Counts those too.
+  // Writes what the surface is made of, and puts the points into shared memory. Counts them, and
+  // those whose normals are no unit vectors.
   __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
-    const Rotation to_world = recipe_.camera.to_world.rotation;
-    for_pixels(doubtful, [&](int k, int x, int y, Vec3f normal, Vec3f in_world) {
-      Vec3f position{CUDART_NAN_F, CUDART_NAN_F, CUDART_NAN_F};
+    const Rotation to_world = recipe_.camera.to_world.rotation, to_camera = recipe_.to_camera;
+    float4* const seen = recipe_.seen;
+    float* const image = recipe_.room.measured;
+#pragma unroll kUnroll
+    for (int k = thread(); k < CloudTile::kPixels; k += CloudTile::kPointThreads) {
+      const int x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
+      const Vec3f normal = arrays_.normals[k];
       const bool is_point = !is_zero(normal);
+      Vec3f in_world, turned_back, position{CUDART_NAN_F, CUDART_NAN_F, CUDART_NAN_F};
+      if (is_point) {
+        in_world = narrow(to_world * widen(normal));
+        turned_back = narrow(to_camera * widen(in_world));
+      }
+      if (tile_.holds(x, y)) {
+        const float measured = arrays_.measured[k];
+        seen[tile_.pixel(x, y)] = {turned_back.x, turned_back.y, turned_back.z, measured};
+        image[tile_.pixel(x, y)] = measured;
+      }
+      add_up(is_point && is_doubtful(normal), doubtful);
       if (is_point) {
         const double depth = recipe_.depth[tile_.pixel(x, y)];
         position = narrow(to_world * point_on_ray(arrays_.ray_x[x], arrays_.ray_y[y], depth));
       }
       positions()[k] = position;
       arrays_.world_normals[k] = in_world;
-      add_up(is_point && tile_.is_new(x, y), points);
-    });
+      add_up(is_point, points);
+    }
   }
   __device__ __forceinline__ void write_points() const {
     write_rows(tile_, positions(), recipe_.room.positions);
@@ -169,16 +176,16 @@ class TileWork {
  private:
   template <bool kMayBeCut>
   __device__ __forceinline__ void sum_columns() const {
-#pragma unroll kMayBeCut ? 1 : Shape::kUnroll
-    for (int k = thread(); k < Shape::kHeight * tile_.columns(); k += Shape::kPointThreads)
+#pragma unroll kMayBeCut ? 1 : kUnroll
+    for (int k = thread(); k < CloudTile::kHeight * tile_.columns(); k += CloudTile::kPointThreads)
       arrays_.columns[k] = normals_.template sum_column<kMayBeCut>(
           k % tile_.columns() - tile_.radius(), k / tile_.columns());
   }
   template <bool kMayBeCut>
   __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
-#pragma unroll kMayBeCut ? 1 : Shape::kUnroll
-    for (int k = thread(); k < Shape::kPixels; k += Shape::kPointThreads) {
-      const int x = k % Shape::kWidth, y = k / Shape::kWidth;
+#pragma unroll kMayBeCut ? 1 : kUnroll
+    for (int k = thread(); k < CloudTile::kPixels; k += CloudTile::kPointThreads) {
+      const int x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
       const float inverse = arrays_.inverse[tile_.index(x, y)];
       Vec3f normal;
       if (tile_.holds(x, y) && inverse > 0 &&
@@ -192,6 +199,7 @@ class TileWork {
 
   using Arrays = TileArrays<Normals>;
   static constexpr int kClosedWidth = Arrays::kClosedWidth;
+  static constexpr int kUnroll = 6;
 
   __device__ __forceinline__ static int thread() {
     return static_cast<int>(threadIdx.x);
@@ -199,31 +207,6 @@ class TileWork {
 
   __device__ __forceinline__ static bool is_zero(Vec3f n) {
     return n.x == 0 && n.y == 0 && n.z == 0;
-  }
-
-  // Writes what is seen of each pixel of the tile, and calls also(k, x, y, normal, in_world).
-  template <class Also>
-  __device__ __forceinline__ void for_pixels(unsigned& doubtful, const Also& also) const {
-    const Rotation to_world = recipe_.camera.to_world.rotation, to_camera = recipe_.to_camera;
-    float4* const seen = recipe_.seen;
-    float* const image = recipe_.room.measured;
-#pragma unroll Shape::kUnroll
-    for (int k = thread(); k < Shape::kPixels; k += Shape::kPointThreads) {
-      const int x = k % Shape::kWidth, y = k / Shape::kWidth;
-      const Vec3f normal = arrays_.normals[k];
-      Vec3f in_world, turned_back;
-      if (!is_zero(normal)) {
-        in_world = narrow(to_world * widen(normal));
-        turned_back = narrow(to_camera * widen(in_world));
-      }
-      if (tile_.holds(x, y)) {
-        const float measured = arrays_.measured[k];
-        seen[tile_.pixel(x, y)] = {turned_back.x, turned_back.y, turned_back.z, measured};
-        image[tile_.pixel(x, y)] = measured;
-      }
-      add_up(!is_zero(normal) && is_doubtful(normal), doubtful);
-      also(k, x, y, normal, in_world);
-    }
   }
 
   __device__ __forceinline__ float closed_twice(int x, int y) const {

@@ -5,23 +5,20 @@ namespace vpm::cuda {
 namespace {
 
 template <class Normals>
-__global__ void __launch_bounds__(LargeTile::kPointThreads,
-                                  blocks_at_once(Normals::kMostBlocks, LargeTile::kPointThreads))
-    prepare_cloud(const __grid_constant__ CloudRecipe recipe,
-                  const __grid_constant__ StepPixels pixels, CloudCounters* counters,
+__global__ void __launch_bounds__(CloudTile::kPointThreads,
+                                  blocks_at_once(Normals::kMostBlocks, CloudTile::kPointThreads))
+    prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
                   CloudAnswer* answer, unsigned sequence) {
   extern __shared__ double2 shared_memory[];
   __shared__ unsigned gated, points, doubtful;
-  const TileWork<Normals> work(recipe, pixels, static_cast<int>(blockIdx.x), shared_memory);
+  const TileWork<Normals> work(recipe, static_cast<int>(blockIdx.x), shared_memory);
   if (threadIdx.x == 0) gated = points = doubtful = 0;
   work.find_rays();
   wait_for_last();
-  if (!work.is_done()) {
-    find_normals(work, gated);
-    work.place_points(points, doubtful);
-    __syncthreads();
-    work.write_points();
-  }
+  find_normals(work, gated);
+  work.place_points(points, doubtful);
+  __syncthreads();
+  work.write_points();
   if (threadIdx.x != 0) return;
   count(points, doubtful, *counters);
   __threadfence();
@@ -31,7 +28,7 @@ __global__ void __launch_bounds__(LargeTile::kPointThreads,
   counters->done = 0;
 }
 
-using Kernel = void (*)(CloudRecipe, StepPixels, CloudCounters*, CloudAnswer*, unsigned);
+using Kernel = void (*)(CloudRecipe, CloudCounters*, CloudAnswer*, unsigned);
 
 struct Choice {
   Kernel kernel;
@@ -44,8 +41,8 @@ Choice choice_of(int radius) {
 }
 template <template <class> class Normals>
 Choice choose(int radius) {
-  return radius == kUsualRadius ? choice_of<Normals<TileFrame<LargeTile, kUsualRadius>>>(radius)
-                                : choice_of<Normals<TileFrame<LargeTile, 0>>>(radius);
+  return radius == kUsualRadius ? choice_of<Normals<TileFrame<kUsualRadius>>>(radius)
+                                : choice_of<Normals<TileFrame<0>>>(radius);
 }
 
 Choice choose(NormalMethod method, int radius) {
@@ -61,12 +58,12 @@ Preparation preparation_of(const NormalOptions& options) {
   return {true, waits_for_last(choice.kernel)};
 }
 
-void prepare_on_device(const CloudRecipe& recipe, const StepPixels& pixels, NormalMethod method,
+void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream) {
   const Choice choice = choose(method, recipe.window / 2);
-  launch_over_tiles(pixels, choice.kernel, LargeTile::kPointThreads, choice.bytes,
-                    preparation.overlaps, stream, recipe, pixels, counters, answer, sequence);
+  launch_over_tiles(recipe.camera, choice.kernel, CloudTile::kPointThreads, choice.bytes,
+                    preparation.overlaps, stream, recipe, counters, answer, sequence);
 }
 
 }  // namespace vpm::cuda

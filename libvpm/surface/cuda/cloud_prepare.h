@@ -11,7 +11,7 @@ namespace vpm::cuda {
 
 // Where the host looks for what came of an image.
 struct CloudAnswer {
-  NumberedWord points = 0;    // with a normal; queries that make a part count none
+  NumberedWord points = 0;    // with a normal
   NumberedWord doubtful = 0;  // not 0: there are points that a PreparedCloud might refuse
 };
 
@@ -38,9 +38,8 @@ struct Preparation {
 };
 Preparation preparation_of(const NormalOptions& options);
 
-// After take_image() in the same stream. The answer, of all tiles made so far, comes when the last
-// normal is known.
-void prepare_on_device(const CloudRecipe& recipe, const StepPixels& pixels, NormalMethod method,
+// After take_image() in the same stream. The answer comes when the last normal is known.
+void prepare_on_device(const CloudRecipe& recipe, NormalMethod method,
                        const Preparation& preparation, CloudCounters* counters, CloudAnswer* answer,
                        unsigned sequence, cudaStream_t stream);
 

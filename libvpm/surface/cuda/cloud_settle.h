@@ -7,7 +7,6 @@
 namespace vpm::cuda {
 
 // After prepare_on_device() in the same stream. `overlaps`: as there.
-void settle_on_device(const CloudRecipe& recipe, const StepPixels& pixels, bool overlaps,
-                      cudaStream_t stream);
+void settle_on_device(const CloudRecipe& recipe, bool overlaps, cudaStream_t stream);
 
 }  // namespace vpm::cuda

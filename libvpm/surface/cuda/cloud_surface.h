@@ -1,4 +1,4 @@
-// The surface of a tile of an image, by a block: for cloud_settle.cu and cloud_part.h.
+// The surface of a tile of an image, by a block: for cloud_settle.cu.
 #pragma once
 
 #include <math_constants.h>
@@ -13,65 +13,46 @@ namespace vpm::cuda {
 inline constexpr int kMarginOfMarks = kSettledReach,
                      kSettleMargin = kMarginOfMarks + kSettledRadius;
 
-// What is to be prepared for such pixels, and to be taken for that.
-VPM_HD inline StepPixels pixels_to_prepare(const CloudRecipe& recipe, const StepPixels& settled) {
-  return with_margin(recipe, settled, kSettleMargin);
-}
-VPM_HD inline StepPixels pixels_to_take(const CloudRecipe& recipe, const StepPixels& settled) {
-  return with_margin(recipe, settled,
-                     kSettleMargin + TileFrame<LargeTile, 0>::margin_of(recipe.window / 2));
-}
-
 // Sizes of what a block keeps of a tile.
-template <class TheShape>
 struct SettleSizes {
-  using Shape = TheShape;
-  using Frame = TileFrame<Shape, kSettleMargin>;
-  static constexpr int kThreads = Shape::kSurfaceThreads;
-  static constexpr int kWidth = Shape::kWidth + 2 * kSettleMargin,
-                       kHeight = Shape::kHeight + 2 * kSettleMargin;
-  static constexpr int kMarkedWidth = Shape::kWidth + 2 * kMarginOfMarks,
-                       kMarked = kMarkedWidth * (Shape::kHeight + 2 * kMarginOfMarks);
-  static constexpr int kColumns = Shape::kWidth + 2 * kSettledRadius;
-  static constexpr int kRanges = Shape::kPixels / 4 + Shape::kPixels / 16 + Shape::kPixels / 64 + 2;
-  static constexpr int kPixelsOfThread = Shape::kPixels / kThreads,
+  using Frame = TileFrame<kSettleMargin>;
+  static constexpr int kThreads = CloudTile::kSurfaceThreads;
+  static constexpr int kWidth = CloudTile::kWidth + 2 * kSettleMargin,
+                       kHeight = CloudTile::kHeight + 2 * kSettleMargin;
+  static constexpr int kMarkedWidth = CloudTile::kWidth + 2 * kMarginOfMarks,
+                       kMarked = kMarkedWidth * (CloudTile::kHeight + 2 * kMarginOfMarks);
+  static constexpr int kColumns = CloudTile::kWidth + 2 * kSettledRadius;
+  static constexpr int kRanges =
+      CloudTile::kPixels / 4 + CloudTile::kPixels / 16 + CloudTile::kPixels / 64 + 2;
+  static constexpr int kPixelsOfThread = CloudTile::kPixels / kThreads,
                        kMarkedOfThread = kMarked / kThreads;
-  static_assert(Shape::kPixels % kThreads == 0 && kMarked % kThreads == 0);
+  static_assert(CloudTile::kPixels % kThreads == 0 && kMarked % kThreads == 0);
 };
 
-template <class Sizes>
 struct SeenTile {
-  float4 pixels[Sizes::kWidth * Sizes::kHeight];  // with the margin: normals and inverse depth
-  WindowOfDepths<float> columns[Sizes::kColumns * Sizes::Shape::kHeight];  // of the windows
+  float4 pixels[SettleSizes::kWidth *
+                SettleSizes::kHeight];  // with the margin: normals and inverse depth
+  WindowOfDepths<float> columns[SettleSizes::kColumns * CloudTile::kHeight];  // of the windows
 };
-template <class Sizes>
 struct SettledTile {
-  float surface[Sizes::Shape::kPixels];
-  InverseDepthRange ranges[Sizes::kRanges];
+  float surface[CloudTile::kPixels];
+  InverseDepthRange ranges[SettleSizes::kRanges];
 };
 // What is settled takes the place of what was seen.
-template <class Sizes>
 union SettleShared {
-  SeenTile<Sizes> seen;
-  SettledTile<Sizes> settled;
+  SeenTile seen;
+  SettledTile settled;
 };
 
 // One tile of an image, by a block.
-template <class Shape>
 class SettleWork {
-  using Sizes = SettleSizes<Shape>;
   using Window = WindowOfDepths<float>;
-  static constexpr int kThreads = Sizes::kThreads, kWidth = Sizes::kWidth, kHeight = Sizes::kHeight,
-                       kColumns = Sizes::kColumns;
+  static constexpr int kThreads = SettleSizes::kThreads, kWidth = SettleSizes::kWidth,
+                       kHeight = SettleSizes::kHeight, kColumns = SettleSizes::kColumns;
 
  public:
-  using Shared = SettleShared<Sizes>;
-
-  __device__ SettleWork(const CloudRecipe& recipe, const StepPixels& pixels, int number,
-                        Shared& shared)
-      : recipe_(recipe), tile_(recipe, pixels, number), shared_(shared) {}
-
-  __device__ bool is_done() const { return tile_.was_made(); }
+  __device__ SettleWork(const CloudRecipe& recipe, int number, SettleShared& shared)
+      : recipe_(recipe), tile_(recipe, number), shared_(shared) {}
 
   // Zeros outside of the image. (In this file few loops are unrolled: a block goes through its code
   // once or twice, and what counts is how much that is.)
@@ -99,7 +80,7 @@ class SettleWork {
 
   __device__ void sum_columns() const {
 #pragma unroll 1
-    for (int k = thread(); k < kColumns * Shape::kHeight; k += kThreads) {
+    for (int k = thread(); k < kColumns * CloudTile::kHeight; k += kThreads) {
       const float4* const middle =
           shared_.seen.pixels + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
       shared_.seen.columns[k] =
@@ -139,13 +120,13 @@ class SettleWork {
   // Meets before the pixels take the place of what was seen.
   template <class Make>
   __device__ void make_pixels(const Make& make) const {
-    constexpr int kPixels = Sizes::kPixelsOfThread;
+    constexpr int kPixels = SettleSizes::kPixelsOfThread;
     Vec3f* const normals = recipe_.room.pixel_normals;
     InverseDepthRange* const pixels = recipe_.room.tiles[0];
     float surface[kPixels];
 #pragma unroll
     for (int i = 0; i < kPixels; ++i) {
-      const int k = thread() + i * kThreads, x = k % Shape::kWidth, y = k / Shape::kWidth;
+      const int k = thread() + i * kThreads, x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
       const Pixel made = make(x, y);
       surface[i] = made.inverse;
       if (!tile_.holds(x, y)) continue;
@@ -157,23 +138,23 @@ class SettleWork {
     for (int i = 0; i < kPixels; ++i) shared_.settled.surface[thread() + i * kThreads] = surface[i];
   }
 
-  // Levels 1 to kTileLevels, and this tile's part of what lies above. Meets after each.
+  // Levels 1 to CloudTile::kLevels, and this tile's part of what lies above. Meets after each.
   __device__ void write_tiles() const {
     InverseDepthRange* fine = nullptr;
     InverseDepthRange* coarse = shared_.settled.ranges;
 #pragma unroll 1
-    for (int level = 1; level <= kTileLevels; ++level) {
-      const int count = (Shape::kWidth >> level) * (Shape::kHeight >> level);
+    for (int level = 1; level <= CloudTile::kLevels; ++level) {
+      const int count = (CloudTile::kWidth >> level) * (CloudTile::kHeight >> level);
       if (thread() < count) coarse[thread()] = write_tile(level, fine);
       fine = coarse;
       coarse += count;
       __syncthreads();
     }
     // Inverse depths are not negative, so they are in the order of their bits.
-    const int level = kTileLevels + 1 + thread();
+    const int level = CloudTile::kLevels + 1 + thread();
     if (level >= recipe_.room.levels) return;
     InverseDepthRange range = fine[0];
-    for (int k = 1; k < Shape::kWidth / Shape::kHeight; ++k) range = united(range, fine[k]);
+    for (int k = 1; k < CloudTile::kWidth / CloudTile::kHeight; ++k) range = united(range, fine[k]);
     auto* const above = reinterpret_cast<int*>(tile_at(level, tile_.u0, tile_.v0));
     atomicMin(above, __float_as_int(range.low));
     atomicMax(above + 1, __float_as_int(range.high));
@@ -184,9 +165,10 @@ class SettleWork {
   template <class Visit>
   __device__ static void for_marked(const Visit& visit) {
 #pragma unroll 2
-    for (int i = 0; i < Sizes::kMarkedOfThread; ++i) {
+    for (int i = 0; i < SettleSizes::kMarkedOfThread; ++i) {
       const int k = thread() + i * kThreads;
-      visit(i, k % Sizes::kMarkedWidth - kMarginOfMarks, k / Sizes::kMarkedWidth - kMarginOfMarks);
+      visit(i, k % SettleSizes::kMarkedWidth - kMarginOfMarks,
+            k / SettleSizes::kMarkedWidth - kMarginOfMarks);
     }
   }
   __device__ static int thread() {
@@ -212,7 +194,7 @@ class SettleWork {
   }
   // What lies outside of the image adds nothing.
   __device__ InverseDepthRange write_tile(int level, const InverseDepthRange* fine) const {
-    const int per_row = Shape::kWidth >> level, x = thread() % per_row, y = thread() / per_row;
+    const int per_row = CloudTile::kWidth >> level, x = thread() % per_row, y = thread() / per_row;
     InverseDepthRange range{CUDART_INF_F, 0};
 #pragma unroll
     for (int child = 0; child < 4; ++child) {
@@ -220,7 +202,7 @@ class SettleWork {
       if (fine != nullptr) {
         range = united(range, fine[cy * 2 * per_row + cx]);
       } else if (tile_.holds(cx, cy)) {
-        const float value = shared_.settled.surface[cy * Shape::kWidth + cx];
+        const float value = shared_.settled.surface[cy * CloudTile::kWidth + cx];
         range = united(range, {value, value});
       }
     }
@@ -232,13 +214,12 @@ class SettleWork {
   }
 
   const CloudRecipe& recipe_;
-  typename Sizes::Frame tile_;
-  Shared& shared_;
+  SettleSizes::Frame tile_;
+  SettleShared& shared_;
 };
 
-// By all threads of a block. `work`: of a tile that is to be made.
-template <class Shape>
-__device__ void settle_tile(const SettleWork<Shape>& work, PointReading points) {
+// By all threads of a block.
+__device__ inline void settle_tile(const SettleWork& work, PointReading points) {
   work.load();
   __syncthreads();
   if (points == PointReading::settled) {

@@ -7,29 +7,25 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/surface/cuda/cloud_room.h"
 #include "libvpm/surface/hole_closing.h"
-#include "libvpm/surface/pixel_rectangle.h"
 #include "libvpm/surface/point_reading.h"
 
 namespace vpm::cuda {
 
-// Pixels of which whole tiles are made ready, and levels of coarser ones that lie whole in each.
-inline constexpr int kTileWidth = 32, kTileHeight = 16, kTileLevels = 4;
+// The tile of a block, the levels of coarser ones that lie whole in it, and the threads that make
+// its points, then its surface.
+struct CloudTile {
+  static constexpr int kWidth = 32, kHeight = 16, kPixels = kWidth * kHeight, kLevels = 4;
+  static constexpr int kPointThreads = 256, kSurfaceThreads = kPixels;
+  static_assert(kHeight == 1 << kLevels && kWidth % kHeight == 0);
+  static_assert(kPixels % kPointThreads == 0, "whole warps count what they find");
 
-// The tile of a block, and the threads that make points of it, then its surface; how far the loops
-// that make points are unrolled.
-template <int Width, int Height, int PointThreads, int SurfaceThreads, int Unroll>
-struct TileShape {
-  static constexpr int kUnroll = Unroll;
-  static constexpr int kWidth = Width, kHeight = Height, kPixels = Width * Height;
-  static constexpr int kPointThreads = PointThreads, kSurfaceThreads = SurfaceThreads;
-  static_assert(kTileWidth % Width == 0 && kTileHeight % Height == 0);
-  static_assert(Height == 1 << kTileLevels && Width % Height == 0);
-  static_assert(kPixels % PointThreads == 0, "whole warps count what they find");
+  __host__ __device__ static int tiles_per_row(const Camera& camera) {
+    return (static_cast<int>(camera.width) - 1) / kWidth + 1;
+  }
+  __host__ __device__ static int tile_count(const Camera& camera) {
+    return tiles_per_row(camera) * ((static_cast<int>(camera.height) - 1) / kHeight + 1);
+  }
 };
-// Of kernels that fill a device with an image; of queries, which make a part of it, by as many
-// blocks as there are. These go through their code once: what counts is how much it is.
-using LargeTile = TileShape<kTileWidth, kTileHeight, 256, kTileWidth * kTileHeight, 6>;
-using SmallTile = TileShape<16, 16, 128, 128, 1>;
 
 // Blocks of a multiprocessor: so many, if it has threads for them.
 VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
@@ -48,8 +44,8 @@ inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
 
 // An image and how its cloud is made.
 struct CloudRecipe {
-  const float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
-  const float* inverse = nullptr;  // of that
+  float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
+  float* inverse = nullptr;  // of that
   Camera camera;
   Rotation to_camera;                // from the cloud's axes
   PixelScale<float> scale{};         // of whole windows
@@ -63,58 +59,30 @@ struct CloudRecipe {
   CloudRoom room;
 };
 
-// The pixels that a step is to make, and those of them that it has made of this image before:
-// there the same is written again, or nothing.
-struct StepPixels {
-  PixelRectangle wanted, made;
-
-  template <class Shape>
-  __host__ __device__ int tiles_per_row() const {
-    return (wanted.u1 - wanted.u0) / Shape::kWidth + 1;
-  }
-  template <class Shape>
-  __host__ __device__ int tile_count() const {
-    return tiles_per_row<Shape>() * ((wanted.v1 - wanted.v0) / Shape::kHeight + 1);
-  }
-};
-
-// Pixels of an image with so much around, as far as it goes.
-VPM_HD inline StepPixels with_margin(const CloudRecipe& recipe, const StepPixels& pixels,
-                                     int margin) {
-  const auto width = static_cast<int>(recipe.camera.width),
-             height = static_cast<int>(recipe.camera.height);
-  return {widened(pixels.wanted, margin, 1, 1, width, height),
-          widened(pixels.made, margin, 1, 1, width, height)};
-}
-
-// Where one of a step's tiles lies, and its image with a margin. `Radius`: of the windows; 0 if it
-// is known at run time only.
-template <class TheShape, int Radius>
+// Where one of an image's tiles lies, and its pixels with a margin. `Radius`: of the windows; 0 if
+// it is known at run time only.
+template <int Radius>
 class TileFrame {
  public:
-  using Shape = TheShape;
   static constexpr int kRadius = Radius;
 
   int u0, v0, width, height;  // width, height: of the image
 
-  __device__ TileFrame(const CloudRecipe& recipe, const StepPixels& pixels, int number)
-      : u0(pixels.wanted.u0 + number % pixels.tiles_per_row<Shape>() * Shape::kWidth),
-        v0(pixels.wanted.v0 + number / pixels.tiles_per_row<Shape>() * Shape::kHeight),
+  __device__ TileFrame(const CloudRecipe& recipe, int number)
+      : u0(number % CloudTile::tiles_per_row(recipe.camera) * CloudTile::kWidth),
+        v0(number / CloudTile::tiles_per_row(recipe.camera) * CloudTile::kHeight),
         width(static_cast<int>(recipe.camera.width)),
         height(static_cast<int>(recipe.camera.height)),
-        made_(pixels.made),
-        end_x_(pixels.wanted.u1 + 1 - u0),
-        end_y_(pixels.wanted.v1 + 1 - v0),
         radius_(recipe.window / 2) {}
   __host__ __device__ static constexpr int margin_of(int radius) {
     return radius > kFillPasses ? radius : kFillPasses;
   }
   __device__ int radius() const { return Radius > 0 ? Radius : radius_; }
   __device__ int margin() const { return margin_of(radius()); }
-  __device__ int pitch() const { return Shape::kWidth + 2 * margin(); }
-  __device__ int rows() const { return Shape::kHeight + 2 * margin(); }
+  __device__ int pitch() const { return CloudTile::kWidth + 2 * margin(); }
+  __device__ int rows() const { return CloudTile::kHeight + 2 * margin(); }
   // Columns of windows: the tile's, and those beside it.
-  __device__ int columns() const { return Shape::kWidth + 2 * radius(); }
+  __device__ int columns() const { return CloudTile::kWidth + 2 * radius(); }
   // Of the tile's own pixel (x, y), from -margin on.
   __device__ int index(int x, int y) const { return (y + margin()) * pitch() + x + margin(); }
   __device__ std::size_t pixel(int x, int y) const {
@@ -122,36 +90,21 @@ class TileFrame {
            static_cast<std::size_t>(u0 + x);
   }
 
-  // Of the tile's own pixels: whether it is to be made; was not before.
+  // True if the image has this pixel of the tile.
   __device__ bool holds(int x, int y) const { return x < end_x() && y < end_y(); }
-  __device__ bool is_new(int x, int y) const {
-    const int u = u0 + x, v = v0 + y;
-    return holds(x, y) && !vpm::holds(made_, {u, v, u, v});
-  }
-  __device__ bool was_made() const {
-    const int columns = end_x() < Shape::kWidth ? end_x() : Shape::kWidth;
-    const int rows = end_y() < Shape::kHeight ? end_y() : Shape::kHeight;
-    return vpm::holds(made_, {u0, v0, u0 + columns - 1, v0 + rows - 1});
-  }
   __device__ bool is_in_image(int x, int y) const {
     return u0 + x >= 0 && v0 + y >= 0 && u0 + x < width && v0 + y < height;
   }
-  // Whether it is known what the step before has made of a pixel in the margin.
-  __device__ bool is_known(int x, int y) const {
-    return is_in_image(x, y) && x < end_x() + margin() && y < end_y() + margin();
-  }
   // Whether the image's border cuts windows.
   __device__ bool may_be_cut() const {
-    return cuts_windows(u0, Shape::kWidth, width, radius()) ||
-           cuts_windows(v0, Shape::kHeight, height, radius());
+    return cuts_windows(u0, CloudTile::kWidth, width, radius()) ||
+           cuts_windows(v0, CloudTile::kHeight, height, radius());
   }
-  // Of rows and columns that have pixels to be made, the ends.
-  __device__ int end_x() const { return end_x_; }
-  __device__ int end_y() const { return end_y_; }
+  // Where the image ends, from the tile's first column and row.
+  __device__ int end_x() const { return width - u0; }
+  __device__ int end_y() const { return height - v0; }
 
  private:
-  PixelRectangle made_;
-  int end_x_, end_y_;
   int radius_;
 };
 
@@ -159,13 +112,12 @@ class TileFrame {
 // together.
 template <class Frame>
 __device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from, Vec3f* to) {
-  using Shape = typename Frame::Shape;
   const auto* const words = reinterpret_cast<const float*>(from);
   auto* const image = reinterpret_cast<float*>(to);
-  constexpr int kRow = 3 * Shape::kWidth;
+  constexpr int kRow = 3 * CloudTile::kWidth;
   const int end_x = 3 * tile.end_x(), end_y = tile.end_y();
-#pragma unroll Shape::kUnroll
-  for (int k = static_cast<int>(threadIdx.x); k < 3 * Shape::kPixels;
+#pragma unroll 6
+  for (int k = static_cast<int>(threadIdx.x); k < 3 * CloudTile::kPixels;
        k += static_cast<int>(blockDim.x)) {
     const int x = k % kRow, y = k / kRow;
     if (x < end_x && y < end_y)
@@ -219,14 +171,14 @@ bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   return true;
 }
 
-// Launches a block for each of a step's tiles. `overlaps`: the kernel waits for the last one
+// Launches a block for each of the image's tiles. `overlaps`: the kernel waits for the last one
 // itself.
 template <class... Parameters, class... Arguments>
-void launch_over_tiles(const StepPixels& pixels, void (*kernel)(Parameters...), unsigned threads,
+void launch_over_tiles(const Camera& camera, void (*kernel)(Parameters...), unsigned threads,
                        std::size_t shared, bool overlaps, cudaStream_t stream,
                        const Arguments&... arguments) {
   cudaLaunchConfig_t launch{};
-  launch.gridDim = static_cast<unsigned>(pixels.tile_count<LargeTile>());
+  launch.gridDim = static_cast<unsigned>(CloudTile::tile_count(camera));
   launch.blockDim = threads;
   launch.dynamicSmemBytes = shared;
   launch.stream = stream;

@@ -21,7 +21,8 @@ DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
 DeviceCloud::DeviceCloud(const Camera& camera) {
   DepthSurface image;
   image.k = camera.intrinsics;
-  image.set_size(static_cast<std::int32_t>(camera.width), static_cast<std::int32_t>(camera.height));
+  image.width = static_cast<std::int32_t>(camera.width);
+  image.height = static_cast<std::int32_t>(camera.height);
   image.levels = 1;
   while (image.levels < DepthSurface::kMaxLevels &&
          ((std::max(image.width, image.height) - 1) >> (image.levels - 1)) > 0)

@@ -84,7 +84,6 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
     slots.push_back(std::make_unique<device::CloudSlot>(options));
     fill(*slots.back(), sensor.depth.depth);
   }
-  const PixelRectangle all = slots[0]->whole();
   const std::size_t bytes = slots[0]->image_bytes();
   const device::DeviceArray<std::byte> copy(bytes * kCopies);
   const double copying = time_of(stream.get(), [&](std::size_t k) {
@@ -95,13 +94,11 @@ nlohmann::json stages(const CloudSensor& sensor, NormalMethod method, bool in_co
     do_nothing<<<1, 1, 0, stream.get()>>>();
     device::check(cudaGetLastError());
   });
-  const double taking =
-      time_of(stream.get(), [&](std::size_t k) { slots[k]->take(all, stream.get()); });
-  const double making =
-      time_of(stream.get(), [&](std::size_t k) { slots[k]->make(all, stream.get()); });
+  const double taking = time_of(stream.get(), [&](std::size_t k) { slots[k]->take(stream.get()); });
+  const double making = time_of(stream.get(), [&](std::size_t k) { slots[k]->make(stream.get()); });
   const double both = time_of(stream.get(), [&](std::size_t k) {
-    slots[k]->take(all, stream.get());
-    slots[k]->make(all, stream.get());
+    slots[k]->take(stream.get());
+    slots[k]->make(stream.get());
   });
   return {{"method", to_text(method)},
           {"image", in_counts ? "counts" : "metres"},
