@@ -45,8 +45,8 @@ struct PreparedChange {
 // Reads and prepares frames on the calling thread. Keeps a reference to the recording.
 class FrameReader {
  public:
-  // `options` tell how images become clouds, `device` where they are prepared. Camera poses come from
-  // the recording.
+  // `options` tell how images become clouds, `device` where they are prepared. Camera poses come
+  // from the recording.
   FrameReader(const Recording& recording, const ImportOptions& options, const Device& device = {},
               PointReading points = PointReading::settled)
       : recording_(recording),

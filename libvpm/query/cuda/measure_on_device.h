@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "libvpm/query/cuda/launch.h"
-#include "libvpm/query/cuda/standby.h"
+#include "libvpm/query/cuda/persistent/standby.h"
 #include "libvpm/query/device_measure.h"
 #include "libvpm/surface/cuda/cloud_slot.h"
 

@@ -1,5 +1,5 @@
-// The kernels of the refined measure: one pose by all blocks, launched or standing by, and many
-// poses by a block each. For refined_measure.cu.
+// The kernels of the refined measure: one pose by all blocks, and many poses by a block each. For
+// refined_measure.cu.
 #pragma once
 
 #include <type_traits>
@@ -7,7 +7,6 @@
 #include "libvpm/query/cuda/answer.h"
 #include "libvpm/query/cuda/flood.h"
 #include "libvpm/query/cuda/image_measure.h"
-#include "libvpm/query/cuda/orders.h"
 #include "libvpm/query/cuda/points.h"
 #include "libvpm/query/cuda/seen_shares.h"
 #include "libvpm/query/cuda/share_measure.h"
@@ -202,27 +201,6 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   __shared__ BlockShared<Surface> shared;
   GridTeam team(&launch.totals->arrived);
   answer_pose<Arguments::launched>(launch, frame, sequence, team, shared);
-}
-
-// One query after another (orders.h), until none comes.
-__global__ void __launch_bounds__(kThreads, kFewBlocks)
-    stand_by_kernel(const __grid_constant__ OrdersView view, unsigned first) {
-  using Launch = RefinedLaunch<DepthSurface>;
-  __shared__ BlockShared<DepthSurface> shared;
-  __shared__ Launch launch;
-  __shared__ Order order;
-  __shared__ PoseFrame frame;
-  Orders orders(view, first, order);
-  bool leads = blockIdx.x == 0;
-  for (unsigned number = first;; ++number) {
-    orders.receive(number, leads);
-    if (order.leaves != 0) return;
-    if (threadIdx.x == 0) frame.to_surface = order.to_surface;
-    copy_words(*static_cast<const Launch*>(order.launch), launch);
-    __syncthreads();
-    GridTeam team(&launch.totals->arrived);
-    leads = answer_pose<Arguments::shared>(launch, frame, order.turn, team, shared);
-  }
 }
 
 // Each block a query of its own, one after another.

@@ -2,6 +2,7 @@
 
 #include "libvpm/query/cuda/device_level.h"
 #include "libvpm/query/cuda/measure_on_device.h"
+#include "libvpm/query/cuda/persistent/standby_kernel.h"
 #include "libvpm/query/cuda/refined_kernels.h"
 #include "libvpm/query/cuda/refined_measure.h"
 #include "libvpm/query/cuda/refined_memory.h"

@@ -2,7 +2,7 @@
 #include <atomic>
 #include <cstring>
 
-#include "libvpm/query/cuda/standby.h"
+#include "libvpm/query/cuda/persistent/standby.h"
 
 namespace vpm::cuda {
 

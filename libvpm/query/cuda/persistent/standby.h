@@ -9,7 +9,7 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/other_work.h"
 #include "libvpm/query/cuda/launch.h"
-#include "libvpm/query/cuda/orders.h"
+#include "libvpm/query/cuda/persistent/orders.h"
 
 namespace vpm::cuda {
 
