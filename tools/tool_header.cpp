@@ -1,2 +1,2 @@
-// What vpm_tool_header is made of: nothing but its precompiled headers.
+// Gives vpm_tool_header a source; the target exists for its precompiled headers.
 int main() {}

@@ -10,22 +10,26 @@ namespace vpm::tools {
 
 void declare(CLI::App& app, ImportArguments& a) {
   app.add_option("--intrinsics", a.intrinsics,
-                 "fx,fy,cx,cy of the camera, pixels; an organised PCD tells its own")
+                 "Intrinsics of the camera: fx,fy,cx,cy in pixels. An organised PCD needs none")
       ->delimiter(',')
       ->expected(4)
       ->allow_extra_args(false);
-  app.add_option("--depth-scale", a.depth_scale, "Units of the file per metre (PNG: 1000, else 1)");
-  app.add_option("--method", a.method, "Normals by: inverse-depth, or pca as printed in 2017")
+  app.add_option("--depth-scale", a.depth_scale,
+                 "Units of the file per metre; 1000 for PNG and 1 for others if not given");
+  app.add_option("--method", a.method,
+                 "Estimate normals by inverse-depth, or by pca as printed in 2017")
       ->check(CLI::IsMember({"inverse-depth", "pca"}))
       ->capture_default_str();
-  app.add_option("--window", a.window, "Side of the window of a normal, pixels, odd, 3 to 31")
+  app.add_option("--window", a.window,
+                 "Side in pixels of the window that a normal is estimated from: odd, 3 to 31")
       ->check(whole_number_in(0, std::numeric_limits<int>::max()))
       ->capture_default_str();
-  app.add_option("--edge-gate", a.edge_gate,
-                 "Difference of inverse depth, relative, that is still one surface; 0: no edges")
+  app.add_option(
+         "--edge-gate", a.edge_gate,
+         "Largest relative difference of inverse depth within one surface; 0 finds no edges")
       ->capture_default_str();
   app.add_option("--camera-pose", a.camera_pose,
-                 "Camera (or the cloud's frame) in the world: tx,ty,tz,qx,qy,qz,qw");
+                 "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw");
 }
 
 ImportOptions import_options(const Tool& tool, const ImportArguments& a) {

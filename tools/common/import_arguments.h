@@ -1,4 +1,4 @@
-// How depth images become clouds, as the tools' options say it.
+// Options of the tools that read depth images.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,7 @@
 
 namespace vpm::tools {
 
+// Values of the options that say how a depth image becomes a cloud; pixels, units per metre.
 struct ImportArguments {
   std::vector<double> intrinsics;
   std::optional<double> depth_scale;
@@ -18,9 +19,11 @@ struct ImportArguments {
   double edge_gate = kEdgeGate;
 };
 
+// Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, ImportArguments& arguments);
 
-// Throws Error(usage) for what is out of range; notes what has been normalised.
+// Returns the values as libvpm takes them. Throws Error(usage) where one is out of range; notes a
+// quaternion that had to be normalised.
 ImportOptions import_options(const Tool& tool, const ImportArguments& arguments);
 
 }  // namespace vpm::tools

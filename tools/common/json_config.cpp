@@ -15,13 +15,14 @@ std::string text_of(const json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// Only options that take numbers give JSON numbers: a file may be called 1e5.
+// True if a value of `option` is written as a JSON number; a file may be called 1e5 and is not.
 bool takes_numbers(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.rfind("INT", 0) == 0 || type.rfind("UINT", 0) == 0 || type.rfind("FLOAT", 0) == 0;
 }
 
-// CLI11 reads .001 and 1. too, which are no numbers of JSON.
+// Returns `text` as a JSON number if `option` takes numbers, as a string otherwise. Converts .001
+// and 1., which CLI11 reads and JSON does not.
 json number_or_text(const CLI::Option& option, const std::string& text) {
   if (!takes_numbers(option)) return text;
   json parsed = json::parse(text, nullptr, false);
@@ -54,7 +55,7 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
     if (!option->get_configurable() || key.empty()) continue;
     if (option->count() > 0) {
       config[key] = value_of(*option);
-      // An option whose value may be left out has that value as its default, but is not given.
+      // Leaves out options whose value may be omitted: their default string is that value.
     } else if (default_also && option->get_expected_min() > 0 &&
                !option->get_default_str().empty()) {
       const json parsed = json::parse(option->get_default_str(), nullptr, false);
@@ -68,7 +69,7 @@ std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const 
   json config;
   try {
     config = json::parse(input, [](int depth, json::parse_event_t, const json&) {
-      constexpr int kDeepest = 32;  // copies of much deeper ones would take all of the stack
+      constexpr int kDeepest = 32;  // JSON values are copied recursively and could fill the stack
       if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
       return true;
     });

@@ -4,8 +4,9 @@
 
 namespace vpm::tools {
 
-// JSON configurations for CLI11: keys are the long option names without dashes (for positional
-// arguments their names), e.g. {"spheres": 1000}. formats/schemas/config.*.json describe them.
+// Reads and writes options as JSON for CLI11. Keys are the long option names without dashes, or the
+// names of positional arguments, e.g. {"spheres": 1000}. formats/schemas/config.*.json describe
+// them.
 class JsonConfig : public CLI::Config {
  public:
   std::string to_config(const CLI::App* app, bool default_also, bool write_description,
@@ -13,6 +14,7 @@ class JsonConfig : public CLI::Config {
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
 };
 
+// Returns the key that stands for `option` in a configuration.
 std::string config_key(const CLI::Option& option);
 
 }  // namespace vpm::tools

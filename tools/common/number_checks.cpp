@@ -8,7 +8,7 @@
 namespace vpm::tools {
 namespace {
 
-// As CLI11 reads it.
+// Returns `text` as a number in the way CLI11 reads it; nothing where it is none.
 template <class Number>
 std::optional<Number> number_of(const std::string& text) {
   Number value{};
@@ -16,7 +16,7 @@ std::optional<Number> number_of(const std::string& text) {
   return value;
 }
 
-// CLI11 would take the number for an octal one.
+// True for 010 and the like, which CLI11 would read as octal.
 bool has_leading_zero(const std::string& text) {
   return text.size() > 1 && text[0] == '0' && text.find_first_not_of("0123456789") == text.npos;
 }

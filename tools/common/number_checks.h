@@ -1,4 +1,5 @@
-// Checks of the numbers that options take. CLI11's own let NaN pass and write bounds in 309 digits.
+// Checks of the numbers that options take. CLI11's own checks accept NaN and print bounds in 309
+// digits.
 #pragma once
 
 #include <functional>
@@ -6,9 +7,13 @@
 
 namespace vpm::tools {
 
+// Returns an empty string if `text` passes, and otherwise the message for the user.
 using NumberCheck = std::function<std::string(const std::string& text)>;
 
-NumberCheck positive_number();  // finite
+// Accepts finite numbers greater than 0.
+NumberCheck positive_number();
+
+// Accepts numbers from `low` to `high`, both included.
 NumberCheck number_in(double low, double high);
 NumberCheck whole_number_in(long long low, long long high);
 

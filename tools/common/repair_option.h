@@ -1,4 +1,4 @@
-// The words of vpm-pack --repair, which vpm-graph finds in a packing's provenance.
+// Values of vpm-pack --repair. A packing's provenance keeps them, and vpm-graph reads them there.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,8 @@
 
 namespace vpm::tools {
 
-// "holes", "voxel", "voxel=RES", "flood" or "flood=RES"; false for another word.
+// Sets the repair that `word` names: holes, voxel, voxel=RES, flood or flood=RES. Returns false for
+// any other word.
 bool parse_repair(std::string_view word, SolidOptions& options);
 
 }  // namespace vpm::tools

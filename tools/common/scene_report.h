@@ -1,4 +1,4 @@
-// What a cloud's points resolve, as the tools say it.
+// Reports of the sizes that a cloud's points resolve.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,11 +8,12 @@
 
 namespace vpm::tools {
 
-// "scene" of reports: formats/schemas. Metres; no largest radius for a plane.
+// Returns the field "scene" of the reports (formats/schemas), lengths in metres. A plane has no
+// largest radius.
 nlohmann::json scene_report(const SceneScale& scale);
 
-// "spheres from 0.0013 m (points 0.0019 m apart, noise 0 m) to 0.028 m (curvature 3.3 1/m)", or "to
-// any size (flat)"
+// Returns for example "spheres from 0.0013 m (points 0.0019 m apart, noise 0 m) to 0.028 m
+// (curvature 3.3 1/m)"; a plane gives "to any size (flat)".
 std::string words_of(const SceneScale& scale);
 
 }  // namespace vpm::tools

@@ -22,7 +22,7 @@
 namespace vpm::tools {
 namespace {
 
-// An interrupted run leaves no temporary file, and still dies of the signal, as its caller expects.
+// Removes unfinished output, then lets the signal end the process as its caller expects.
 extern "C" void clean_up_and_die(int signal) {
   file::remove_unfinished_output();
   std::signal(signal, SIG_DFL);
@@ -30,33 +30,34 @@ extern "C" void clean_up_and_die(int signal) {
 }
 
 void set_signals() {
-  // A reader that closes the pipe early is reported as a failed write, not as a silent death.
+  // Makes a closed pipe and a file beyond its size limit failed writes, which are reported.
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that grows beyond its limit
+  std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What nohup, or a shell for a background job, has set to be ignored stays ignored.
+    // Keeps signals ignored that nohup or the shell of a background job has set so.
     if (std::signal(signal, clean_up_and_die) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }
 
-// Earlier a guess of the time that is left would jump about.
+// Seconds before the time left is shown; earlier estimates jump about.
 constexpr double kSecondsToEstimate = 2;
 
 bool is_asked(int argc, char** argv, const std::string& flag) {
   return std::find(argv, argv + argc, flag) != argv + argc;
 }
 
-// An output must not be given the number of a standard stream that is closed: notes would go into
-// it. What takes its place fails as it would.
+// Opens /dev/null in place of closed standard streams, the wrong way round so that using them
+// fails. Otherwise an output file could get the number of standard error and be mixed with notes.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) != -1 || errno != EBADF) continue;
-    // Takes the lowest number that is free, which is this one.
+    // open() takes the lowest free number, which is `stream`.
     if (::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) != stream) return;
   }
 }
 
-// "--report=$UNSET": CLI11 would take what follows for the value.
+// Refuses "--report=" with an empty value (a script's unset variable); CLI11 would take the next
+// argument for the value.
 void refuse_cut_options(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view argument = argv[k];
@@ -90,24 +91,24 @@ std::string check_device(const std::string& text) {
 Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), app_(purpose, name) {
   app_.set_version_flag("--version", name + " " VPM_VERSION);
   app_.config_formatter(std::make_shared<JsonConfig>());
-  app_.set_config("--config", "", "Options from a JSON file; the command line wins")
+  app_.set_config("--config", "", "Read options from a JSON file; the command line wins")
       ->transform([](const std::string& path) { return path == "-" ? "/dev/stdin" : path; });
   app_.allow_config_extras(false);
   app_.add_flag("--dump-config", dump_config_, "Print the options as JSON for --config, and stop")
       ->configurable(false);
   app_.add_option("--device", common_.device,
-                  "Where to compute: cpu, cuda, cuda:N, cuda:all, or auto (cuda where there is a "
-                  "device)")
+                  "Compute on cpu, cuda, cuda:N, cuda:all, or auto, which is cuda where there is a "
+                  "device")
       ->check(check_device)
       ->capture_default_str();
   app_.add_option("--threads", common_.threads,
-                  "Threads to use; 0 is one per core. Never changes a result")
+                  "Use this many threads; 0 is one per core. Never changes a result")
       ->check(whole_number_in(0, 4096))
       ->capture_default_str();
-  app_.add_flag("--quiet", common_.quiet, "No notes and no progress; warnings and errors stay");
+  app_.add_flag("--quiet", common_.quiet,
+                "Print no notes and no progress; warnings and errors are still printed");
   app_.add_flag("--verbose", common_.verbose, "Say more about what is done");
-  app_.add_flag("--force", common_.force,
-                "Overwrite outputs whatever is there now, be it an input");
+  app_.add_flag("--force", common_.force, "Overwrite outputs whatever they are now, even inputs");
 }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
@@ -118,7 +119,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return static_cast<int>(kind);
   };
   try {
-    // A configuration may be written before its inputs are known.
+    // Lets --dump-config pass without required options: inputs may not be known yet.
     if (is_asked(argc, argv, "--dump-config")) {
       for (CLI::Option* option : app_.get_options()) option->required(false);
     }
@@ -154,7 +155,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   }
 }
 
-// A variable of a script that is not set must not mean that an option is not given.
+// Refuses empty values, which come of unset variables in scripts.
 void Tool::refuse_empty_values() const {
   for (const CLI::Option* option : app_.get_options()) {
     const std::vector<std::string>& values = option->results();

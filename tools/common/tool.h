@@ -1,4 +1,4 @@
-// What all executables share: common options, JSON configurations, exit codes, messages, progress.
+// Base of all executables: common options, JSON configurations, exit codes, messages, progress.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -24,28 +24,32 @@ struct CommonOptions {
 
 class Tool {
  public:
-  // `name` is the executable's, `purpose` its first line of help.
+  // Adds the common options. `name` is the executable's name, `purpose` the first line of its help.
   Tool(const std::string& name, const std::string& purpose);
 
   CLI::App& app() { return app_; }
   const CommonOptions& common() const { return common_; }
   const std::string& name() const { return name_; }
 
-  // To be called before run() by a tool that asks for device(). Others refuse --device cuda.
+  // Accepts --device cuda. A tool that asks for device() calls it before run(); others refuse that
+  // option.
   void computes_on_devices() { on_devices_ = true; }
-  // The device of --device. Throws Error(unavailable) where it is not there.
+  // Returns the device that --device names. Throws Error(unavailable) if this machine lacks it.
   Device device() const { return device_from_text(common_.device); }
 
-  // Parses, then runs `job`; turns every error into a message on standard error and an exit code.
+  // Parses the command line and runs `job`. Turns every error into a message on standard error and
+  // returns the exit code.
   int run(int argc, char** argv, const std::function<void()>& job);
 
-  // "vpm-pack: note: ..." on standard error unless --quiet.
+  // Prints "vpm-pack: note: ..." to standard error unless --quiet is given.
   void note(const std::string& text) const;
-  void warn(const std::string& text) const;    // also with --quiet
-  void detail(const std::string& text) const;  // only with --verbose
+  // Prints "vpm-pack: warning: ..." to standard error, with --quiet too.
+  void warn(const std::string& text) const;
+  // Prints "vpm-pack: ..." to standard error with --verbose only.
+  void detail(const std::string& text) const;
 
-  // The options as parsed, for the provenance of an output: no names of files (what was in them
-  // counts, so say its hash), nothing that changes no result.
+  // Returns the options as parsed, for the provenance of an output. Leaves out file names, since
+  // provenance names inputs by their hash, and options that never change a result.
   nlohmann::json parameters() const;
 
  private:
@@ -58,28 +62,29 @@ class Tool {
   bool on_devices_ = false;
 };
 
-// An output: the option that names it, and the container that it becomes, if any.
+// An output file: the option that names it, its path, and its container kind where it has one.
 struct OutputFile {
   const char* option;
   std::string path;
   std::optional<file::Kind> kind;
 };
 
-// To be called before the work begins. Refuses two outputs in one place. Without --force a
-// container replaces only one of its kind, another output (report, table, mesh) anything but a
-// container (libvpm/file/overwrite.h), and none of them an input.
+// Throws Error(usage) if two outputs would be one file, or an output an input. Without --force a
+// container replaces only a container of its kind, and a text output (report, table, mesh) anything
+// but a container (libvpm/file/overwrite.h). Tools call it before the work begins.
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common);
 
-// Shows a line of progress and the time it may still take on standard error, if that is a terminal
-// and --quiet is not given.
+// Shows a line of progress and an estimate of the time left on standard error, if that is a
+// terminal and --quiet is not given.
 class Progress {
  public:
   Progress(std::string what, const CommonOptions& common);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  void update(double fraction);  // 0..1; thread-safe is not promised
+  // Shows `fraction` of the work as done, 0 to 1. Not thread-safe.
+  void update(double fraction);
 
  private:
   std::string what_;

@@ -8,7 +8,8 @@
 
 namespace vpm::tools {
 
-// The report of vpm-graph (formats/schemas): the finest level at the top, all of them in `levels`.
+// Returns the content of --report (formats/schemas/graph-report.json): the finest level at the top,
+// all of them in `levels`.
 nlohmann::ordered_json graph_report(const ToolModel& model,
                                     const std::vector<ShareQuality>& quality, double seconds);
 

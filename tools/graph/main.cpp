@@ -1,4 +1,4 @@
-// vpm-graph: makes the tool model that queries load from a packing.
+// vpm-graph: turns a packing into the tool model that queries load.
 
 #include <algorithm>
 #include <chrono>
@@ -27,24 +27,28 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("packing", a.packing, "Packing (.vpmp)")->required();
-  app.add_option("-o,--output", a.output, "Tool model (.vpmg)")->required();
+  app.add_option("packing", a.packing, "Packing (.vpmp); - is standard input")->required();
+  app.add_option("-o,--output", a.output, "Tool model to write (.vpmg); - is standard output")
+      ->required();
   app.add_option("--mesh", a.mesh, "Refuse the packing unless it was made of this mesh");
-  app.add_option("--epsilon", a.options.epsilon,
-                 "Largest gap of an edge in metres; a tenth of the smallest radius if not given")
+  app.add_option(
+         "--epsilon", a.options.epsilon,
+         "Join spheres whose gap is at most this, metres; a tenth of the smallest radius if "
+         "not given")
       ->check(positive_number());
   app.add_option("--levels", a.options.levels,
-                 "Sphere counts of further levels of detail, e.g. 250,1000,4000")
+                 "Make further levels of detail with these sphere counts, e.g. 250,1000,4000")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(whole_number_in(1, std::numeric_limits<std::uint32_t>::max()));
   app.add_flag("--calibrate", a.calibrate,
-               "Measure each level's error against the solid and keep it with the model, for "
+               "Measure each level's error against the solid and keep it in the model, for "
                "vpm-query --max-error");
-  app.add_option("--report", a.report, "What was made, as JSON");
+  app.add_option("--report", a.report, "Write facts about the model here (JSON)");
 }
 
-// The mesh must be read as vpm-pack read it to give the same solid.
+// Returns the options by which vpm-pack read the mesh, so that reading it again gives the same
+// solid.
 SolidOptions options_of(const nlohmann::json& provenance, const std::string& packing) {
   SolidOptions options;
   const auto number = [&](const char* key) -> std::optional<double> {
@@ -112,7 +116,7 @@ void run(const Tool& tool, Arguments& a) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-graph", "Tool model for penetration queries from a sphere packing");
+  Tool tool("vpm-graph", "Make a tool model for penetration queries from a sphere packing");
   Arguments arguments;
   declare(tool.app(), arguments);
   return tool.run(argc, argv, [&] { run(tool, arguments); });

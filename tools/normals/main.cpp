@@ -1,4 +1,4 @@
-// vpm-normals: a depth image or a cloud of another program becomes a cloud with normals (.vpmc).
+// vpm-normals: turns a depth image, or another program's cloud, into a cloud with normals (.vpmc).
 
 #include <chrono>
 
@@ -24,8 +24,8 @@ void declare(CLI::App& app, Arguments& a) {
                  "Depth image (16-bit PNG, OpenEXR) or cloud (PCD, PLY); - is standard input");
   app.add_option("-o,--output", a.output, "Cloud to write (.vpmc); - is standard output");
   declare(app, a.import);
-  app.add_option("--report", a.report, "Facts and figures (JSON)");
-  app.add_option("--export", a.export_path, "Also write the points with normals, .ply or .pcd");
+  app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
+  app.add_option("--export", a.export_path, "Write the points with normals here too: .ply or .pcd");
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
@@ -106,7 +106,8 @@ void run(const Tool& tool, const Arguments& a) {
 
 int main(int argc, char** argv) {
   using namespace vpm::tools;
-  Tool tool("vpm-normals", "Points with normals of a depth image or of another program's cloud");
+  Tool tool("vpm-normals",
+            "Make a cloud with normals from a depth image or another program's cloud");
   Arguments arguments;
   declare(tool.app(), arguments);
   return tool.run(argc, argv, [&] { run(tool, arguments); });

@@ -30,7 +30,7 @@
 namespace vpm::tools {
 namespace {
 
-constexpr long long kMostSpheres = 0xFFFFFFFE;  // of a packing file
+constexpr long long kMostSpheres = 0xFFFFFFFE;  // a packing file counts them in 32 bits
 
 struct Arguments {
   std::string mesh, repair, output, report, export_path, link, for_scene;
@@ -47,42 +47,45 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")
       ->check(whole_number_in(1, kMostSpheres))
       ->capture_default_str();
-  app.add_option("--coverage", a.coverage, "Stop at this share of the solid's volume, 0 to 1")
+  app.add_option("--coverage", a.coverage, "Stop at this fraction of the solid's volume, 0 to 1")
       ->capture_default_str();
   app.add_option(
          "--inertia-error", a.inertia_error,
-         "Stop where the inertia tensor (of equal mass, about the solid's centre of mass) is "
-         "this near to the solid's, e.g. 0.01")
+         "Stop when the inertia tensor (at equal mass, about the solid's centre of mass) differs "
+         "from the solid's by at most this fraction, e.g. 0.01")
       ->check(positive_number());
-  app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, m")->capture_default_str();
-  app.add_option("--max-radius", a.max_radius, "Place no larger sphere, m");
+  app.add_option("--min-radius", a.min_radius, "Place no smaller sphere, metres")
+      ->capture_default_str();
+  app.add_option("--max-radius", a.max_radius, "Place no larger sphere, metres");
   app.add_flag("--grow", a.grow,
-               "Let all spheres grow together afterwards: more coverage with as many spheres");
+               "Let all spheres grow and move together afterwards, which raises the coverage");
   app.add_option("--for-scene", a.for_scene,
-                 "Cloud (.vpmc): no spheres that its points cannot resolve, and none so large that "
-                 "the surface bends within");
+                 "Cloud (.vpmc): place no spheres smaller than its points resolve, and none larger "
+                 "than its curvature allows");
   app.add_flag("--validate", a.validate,
-               "Count voxels (OpenVDB) as a second opinion on coverage, protrusion and overlap");
-  app.add_option("--report", a.report, "Facts and figures (JSON)");
+               "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
+  app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
   app.add_option("--export", a.export_path,
-                 "Also write the spheres: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
+                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
                  "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
-                 "Name of the link in .yml, .urdf and .srdf; otherwise that of the mesh");
+                 "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
   app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
       ->capture_default_str();
   app.add_option("--weld", a.weld,
-                 "Join vertices nearer than this share of the mesh's diagonal (STL: 1e-9)");
+                 "Join vertices nearer than this fraction of the mesh's diagonal (STL: 1e-9)");
   app.add_option("--repair", a.repair,
-                 "holes (when none of these words follows): fill planar and small holes. "
-                 "voxel[=RES]: a new surface about what the mesh encloses by its winding number, "
-                 "from RES voxels (128) along the longest side. flood[=RES]: about what cannot be "
-                 "reached from outside through holes up to --max-hole")
+                 "Repair an open mesh. holes, which is meant if no value follows, fills planar and "
+                 "small holes. voxel[=RES] makes a new surface around the places that the mesh "
+                 "encloses by its winding number, from RES voxels (128) along the longest side. "
+                 "flood[=RES] makes one around the places that cannot be reached from outside "
+                 "through holes up to --max-hole")
       ->expected(0, 1)
       ->default_str("holes");
-  app.add_option("--max-hole", a.max_hole,
-                 "Refuse wider holes with --repair voxel or flood, m (flood: 1/16 of the longest "
-                 "side)")
+  app.add_option(
+         "--max-hole", a.max_hole,
+         "Refuse meshes with wider holes, metres; with --repair voxel or flood, where flood "
+         "takes 1/16 of the longest side if it is not given")
       ->check(positive_number());
 }
 
@@ -93,8 +96,8 @@ SolidOptions solid_options(const Arguments& a) {
                                     "' is none of holes, voxel, voxel=RES, flood and flood=RES");
 }
 
-// The value of --repair may be left out, and a mesh may follow: only the words that it knows, and
-// what looks like one, are taken for its value.
+// Returns the arguments with a bare --repair replaced by `holes`, since CLI11 would take a mesh
+// that follows for its value.
 std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) {
   std::vector<char*> arguments(argv, argv + argc);
   for (std::size_t k = 1; k < arguments.size(); ++k) {
@@ -127,15 +130,15 @@ void check(const Arguments& a, const CommonOptions& common) {
               common);
 }
 
-// What a robot description calls the part: without --link the mesh's name without folder and
-// extension.
+// Returns the name that a robot description gives the part: --link, or the mesh's file name without
+// folder and extension.
 std::string link_name(const Arguments& a) {
   if (!a.link.empty()) return a.link;
   const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
   return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
-// Narrows the radii to what the scene asks for.
+// Narrows the radii in `a` to those that the scene resolves, and returns its scale.
 SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   const PreparedCloud cloud(read_cloud(a.for_scene));
   const double size = reach(solid, mass_properties(solid).center_of_mass);
@@ -157,10 +160,10 @@ std::string why_none_fits(const Arguments& a, StopReason stop) {
            std::to_string(a.min_radius) + " m; are both in metres?";
   if (stop == StopReason::min_radius) return "give a smaller --min-radius";
   if (a.max_radius)
-    return "those below 1/131072 of its longest side are not looked for; give a larger "
+    return "spheres below 1/131072 of the solid's longest side are not searched for; give a larger "
            "--max-radius";
-  return "it is nowhere wider than 1/131072 of its longest side, and spheres so small are "
-         "not looked for; pack it in parts";
+  return "the solid is nowhere wider than 1/131072 of its longest side, the smallest sphere that "
+         "is searched for; pack it in parts";
 }
 
 PackResult pack_checked(const Tool& tool, const Arguments& a, const CheckedSolid& checked) {
@@ -196,43 +199,44 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   const auto fewer = [&](const char* why) {
     tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
   };
-  if (result.stop == StopReason::min_radius) fewer("no other of --min-radius fits");
+  if (result.stop == StopReason::min_radius)
+    fewer("no further sphere of at least --min-radius fits");
   if (result.stop == StopReason::numerical_floor)
-    fewer("what is left is too narrow for the numbers");
+    fewer("the gaps that are left are narrower than 1/131072 of the longest side");
   if (result.partly_searched)
     tool.note(
-        "beside the solid the spheres are so small that only a part of its room was searched, "
-        "spread over it");
+        "the spheres are so small beside the solid that only samples of its inside were searched");
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 
 void say_validation(const Tool& tool, const Validation& v) {
   const std::string counts = std::to_string(v.protruding_voxels) + " voxels of spheres outside, " +
                              std::to_string(v.overlapping_voxels) + " of two spheres";
-  // What the two ways to tell inside from outside do not agree on is no fault of the packing.
+  // Disputed voxels are those where the two tests of the inside disagree; they prove no fault.
   if (v.protruding_voxels > v.disputed_voxels || v.overlapping_voxels > 0)
-    tool.warn("the count of voxels speaks against the packing: " + counts +
-              "; look at the mesh, which may cross itself");
+    tool.warn("the count of voxels contradicts the packing: " + counts +
+              "; check the mesh, which may intersect itself");
   else
     tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
 }
 
 void refuse_uncertified(const Arguments& a, double coverage, const Certificate& certificate) {
   if (coverage > 1 + kCertificateTolerance)
-    refuse(a.mesh + ": the spheres hold " + std::to_string(coverage) +
-           " times the volume of the mesh, which crosses itself in ways that leave open what is "
-           "inside; nothing is written. Give --repair voxel");
+    refuse(
+        a.mesh + ": the spheres hold " + std::to_string(coverage) +
+        " times the volume of the mesh, which intersects itself so that its inside is ambiguous; "
+        "nothing is written. Give --repair voxel");
   if (certificate.holds) return;
   refuse(a.mesh + ": the packing does not hold its certificate (protrusion " +
          std::to_string(certificate.max_protrusion) + " m, overlap " +
          std::to_string(certificate.max_overlap) +
-         " m); nothing is written. This is a fault of the program: please report it with the mesh");
+         " m); nothing is written. This is a bug of vpm-pack: please report it with the mesh");
 }
 
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
   nlohmann::json parameters = tool.parameters();
-  for (const char* const name : {"validate", "link"}) parameters.erase(name);  // change nothing
+  for (const char* const name : {"validate", "link"}) parameters.erase(name);  // no effect on it
   Packing packing;
   packing.spheres = std::move(spheres);
   packing.provenance = {{"tool", tool.name()},

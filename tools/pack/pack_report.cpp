@@ -67,7 +67,8 @@ json as_json(const Validation& validation) {
           {"detection_limit", validation.detection_limit}};
 }
 
-// In the words of cuRobo's sphere fits. What protrudes is not certified, and not reported.
+// Returns quality figures under the names that cuRobo's sphere fits use. Protrusion is 0: packings
+// that protrude are refused before.
 json quality(const CheckedSolid& checked, const PackResult& result) {
   const std::optional<Solid>& outer = checked.enclosure.surface;
   const SurfaceGap gap = surface_gap(outer ? *outer : checked.solid, result.spheres);

@@ -10,11 +10,13 @@
 
 namespace vpm::tools {
 
+// Returns the reason as the report writes it, e.g. "numerical_floor".
 const char* name_of(StopReason reason);
 
-double volume_of(const std::vector<Sphere>& spheres);  // m^3
+// Returns the sum of the spheres' volumes, m^3.
+double volume_of(const std::vector<Sphere>& spheres);
 
-// What --report says; formats/schemas describe it. Metres, m^3.
+// Returns the content of --report (formats/schemas/pack-report.json); metres, m^3.
 nlohmann::json pack_report(const CheckedSolid& checked, const PackResult& result,
                            const Certificate& certificate,
                            const std::optional<Validation>& validation, double seconds);

@@ -10,7 +10,7 @@ $ wc -l < cube.csv
 $ python3 -c 'import json; r = json.load(open("report.json")); print(r["spheres"], r["certified"], r["stop_reason"], r["mesh"]["format"], r["mesh"]["triangles"], round(r["volume_mesh"], 12))'
 9 True spheres OFF 12 1.0
 
-# Pipes, and the same bytes from the same input, with any number of threads.
+# The tool pipes, and the same input gives the same bytes with any number of threads.
 $ vpm-pack - -o - --spheres 9 --threads 1 < cube.off | cmp - cube.vpmp
 $ vpm-pack cube.off -o - --spheres 9 --threads 2 --validate | cmp - cube.vpmp
 2> vpm-pack: note: voxels: 0.604167 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
@@ -25,14 +25,14 @@ $ vpm-pack cube.off --spheres 1 --validate --report - | python3 -c 'import json,
 0 0 True
 2> vpm-pack: note: voxels: 0.523591 of the volume covered, 0 voxels of spheres outside, 0 of two spheres
 
-# Fewer spheres than asked, with the reason.
+# Fewer spheres than asked for are delivered with the reason.
 $ vpm-pack cube.off --spheres 1000 --min-radius 0.3 --export one.csv
-2> vpm-pack: note: delivered 1 of 1000 spheres: no other of --min-radius fits
+2> vpm-pack: note: delivered 1 of 1000 spheres: no further sphere of at least --min-radius fits
 $ vpm-pack cube.off --min-radius 0.6 --export none.csv
 2> vpm-pack: error: cube.off: no sphere fits: give a smaller --min-radius
 [1]
 
-# Meshes that are mended, and meshes that are not.
+# Some meshes are mended, others are refused.
 $ sed 's/^4 3 2 1 0$/4 0 1 2 3/' cube.off > turned.off && vpm-pack turned.off --spheres 1 --export one.csv
 2> vpm-pack: note: turned.off: 4 edges had neighbours of opposite orientation; 2 triangles were turned to face outward
 $ sed -e '2s/6/5/' -e '$d' cube.off > open.off && vpm-pack open.off -o open.vpmp
@@ -48,7 +48,7 @@ $ vpm-pack missing.off -o missing.vpmp
 2> vpm-pack: error: * missing.off* (glob)
 [1]
 
-# Wrong usage.
+# Wrong usage is refused.
 $ vpm-pack
 2> vpm-pack: error: no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe
 [2]

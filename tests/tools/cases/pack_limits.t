@@ -19,20 +19,20 @@ $ vpm-pack box.off --inertia-error 0 -o none.vpmp
 2> vpm-pack: error: --inertia-error: *(see vpm-pack --help) (glob)
 [2]
 
-# Thin solids: packed, or the reason why not.
+# Thin solids are packed, or refused with the reason.
 $ sed 's/^\(.*\) 1$/\1 0.0001/' cube.off > sheet.off && vpm-pack sheet.off --spheres 20 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["spheres"], round(r["r_max"], 9), r["partly_searched"])'
 20 5e-05 True
-2> vpm-pack: note: beside the solid the spheres are so small that only a part of its room was searched, spread over it
+2> vpm-pack: note: the spheres are so small beside the solid that only samples of its inside were searched
 $ sed 's/^\(.*\) 1$/\1 0.000001/' cube.off > foil.off && vpm-pack foil.off -o foil.vpmp
-2> vpm-pack: error: foil.off: no sphere fits: it is nowhere wider than 1/131072 of its longest side, and spheres so small are not looked for; pack it in parts
+2> vpm-pack: error: foil.off: no sphere fits: the solid is nowhere wider than 1/131072 of its longest side, the smallest sphere that is searched for; pack it in parts
 [1]
 
-# A packing that fails its certificate: no output of any kind.
+# A packing that fails its certificate leaves no output of any kind.
 $ vpm-pack-broken cube.off -o broken.vpmp --export broken.csv --report broken.json
 2> vpm-pack: error: cube.off: the packing does not hold its certificate (* nothing is written. * (glob)
 [1]
 
-# Interrupted: no output, and nothing half written.
+# An interrupted run leaves no output and no half-written file.
 $ timeout --signal=INT 1 vpm-pack cube.off -o half.vpmp --spheres 10000000; test $? -ge 124 && echo interrupted
 interrupted
 $ ls -A
