@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Checks a page against the tools.
+
+    page_test.py --bin DIR[:DIR...] PAGE [TOOL]
+
+The page's blocks marked ```sh are run by bash in a new folder that holds the files of make-example, and must succeed. A result that
+the page shows ('{"pose": ...}', "…" stands for any text) must be a line of the file results.jsonl that they leave. For the page of a
+TOOL, every long option of `TOOL --help` must stand in its section "Options" and the reverse, and it must have the sections of a man
+page in their order. Exit status: 0 if all holds, 1 otherwise.
+"""
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+SECTIONS = ["Synopsis", "Description", "Options", "Which options go together", "Examples", "Exit status", "See also"]
+LONGEST_SECONDS = 300
+
+
+def sections_of(page):
+    """Maps each heading of the second level to its text, in the page's order."""
+    parts = re.split(r"^## (.+)$", page, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2]))
+
+
+def options_of_help(tool, environment):
+    text = subprocess.run([tool, "--help"], env=environment, capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^ +(?:-\w,)?(--[a-z][a-z-]*)", text, flags=re.MULTILINE))
+
+
+def options_of_page(section):
+    """Returns the options that list items introduce: "- `-o`, `--output FILE`: ..."."""
+    heads = re.findall(r"^- (`-.*?`):", section, flags=re.MULTILINE)
+    return {option for head in heads for option in re.findall(r"`(--[a-z][a-z-]*)", head)}
+
+
+def example_faults(page, environment):
+    """Yields what goes wrong when the page's examples are run."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["make-example", folder], env=environment, check=True)
+        for block in re.findall(r"^```sh\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL):
+            done = subprocess.run(["bash", "-eo", "pipefail", "-c", block], cwd=folder, env=environment,
+                                  stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LONGEST_SECONDS)
+            if done.returncode != 0:
+                yield f"an example fails with exit status {done.returncode}:\n{block}{done.stderr}"
+        for shown in re.findall(r'^\{"pose":.*$', page, flags=re.MULTILINE):
+            pattern = ".*".join(map(re.escape, shown.split("…")))
+            results = (pathlib.Path(folder) / "results.jsonl").read_text().splitlines()
+            if not any(re.fullmatch(pattern, line) for line in results):
+                yield f"no result of the examples is like {shown}"
+
+
+def option_faults(tool, page, environment):
+    """Yields how the page of a tool differs from its --help."""
+    if not page.startswith(f"# {tool}\n"):
+        yield f"the page does not begin with '# {tool}'"
+    sections = sections_of(page)
+    if [name for name in sections if name in SECTIONS] != SECTIONS:
+        yield f"the page's sections are {', '.join(sections)}; needed are {', '.join(SECTIONS)} in this order"
+        return
+    of_help, of_page = options_of_help(tool, environment), options_of_page(sections["Options"])
+    for option in sorted(of_help - of_page):
+        yield f"{option} stands in --help but not in the page's options"
+    for option in sorted(of_page - of_help):
+        yield f"{option} stands in the page's options but not in --help"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", required=True, help="folders of the tools")
+    parser.add_argument("page", type=pathlib.Path)
+    parser.add_argument("tool", nargs="?")
+    options = parser.parse_args()
+    environment = dict(os.environ, LC_ALL="C", PATH=options.bin + ":" + os.environ["PATH"])
+    page = options.page.read_text()
+    found = list(example_faults(page, environment))
+    if options.tool:
+        found += option_faults(options.tool, page, environment)
+    print("\n".join(f"{options.page}: {fault}" for fault in found))
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
