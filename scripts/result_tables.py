@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Writes the tables of README.md and of the pages in libvpm/query from tests/results/*.json, between <!-- NAME --> and
+"""Writes the tables of README.md and tests/results/README.md from tests/results/*.json, between <!-- NAME --> and
 <!-- end NAME -->.
 
-usage: result_tables.py [--check]    (--check: exit 1 where a page is not what the results say)
+usage: result_tables.py [--check]    (--check: change nothing, exit 1 if a table is out of date)
 """
 import json
 import pathlib
@@ -313,33 +313,67 @@ def scaling(report):
         f" {thousands(total('poses'))} poses, its own algorithm the volume, counts and states in {thousands(total('same_poses'))}.")
 
 
-PAGES = {"README.md": {"accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
-                       "bounds solid": (bounds, "accuracy_solid"),
-                       "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
-                       "timing": (timing, "timing"),
-                       "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
-                       "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
-                       "replay coherent": (replay_coherent, "replay"),
-                       "replay frames": (replay_frames, "replay"), "replay stream": (replay_stream, "replay"),
-                       "replay stream on a device": (replay_stream, "replay_cuda"),
-                       "cuda": (cuda, "cuda"), "cuda new images": (cuda_frame_rows, "cuda_frames"), "scaling": (scaling, "scaling")},
-         "libvpm/query/README.md": {"cuda": (cuda, "cuda"), "cuda frames": (cuda_frames, "cuda_frames"),
-                                    "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-                                     "cuda devices": (cuda_devices, "cuda_devices")},
-         "libvpm/query/scene-scale.md": {"for-scene": (for_scene, "tradeoff")}}
+def reached(accuracy, timing, replay, packing, cuda):
+    """Returns the table of the top page: a handful of numbers, each from the results named."""
+    rows = []
+    group = lambda **wanted: next(s for s in accuracy["settings"]["summary"]
+                                  if s["group"] == "all" and s["cloud"] == "camera" and s["spheres"] == 1000
+                                  and all(s[key] == value for key, value in wanted.items()))
+    volume = lambda s: f"{percent(s['volume_mean'], 2)} %, at worst {percent(s['volume_worst'], 2)} %"
+    rows.append(["error of the volume, of the tool's volume", volume(group(measure="refined", noise="none"))])
+    rows.append(["with the noise of a Kinect", volume(group(measure="refined", noise="kinect"))])
+    rows.append(["by the measure as printed in 2017", volume(group(measure="paper", noise="none"))])
+    noisy = group(measure="refined", noise="kinect")
+    rows.append(["error of the force's direction, with that noise",
+                 f"{noisy['direction_mean_degrees']:.1f}°, at worst {noisy['direction_worst_degrees']:.1f}°"])
+    query = lambda n: next(r for r in replay["results"] if r["part"] == "query" and r["what"] == "refined"
+                           and r["spheres"] == n and r["threads"] == 1)
+    on_device = lambda n: next(r for r in cuda["control_loop"] if r["measure"] == "refined" and r["spheres"] == n
+                               and r["standby_us"] == 0 and r["copies"] > 1)
+    for n in (1000, 100000):
+        rows.append([f"a query with {thousands(n)} spheres, one core", f"{query(n)['median_us']:.0f} µs"])
+        rows.append([f"the same on {cuda['device'].split(',')[0]}", f"{on_device(n)['median_us']:.0f} µs"])
+    frame = next(r for r in timing["results"] if r["stage"] == "frame, all at once" and r["threads"] == 1)
+    rows.append(["from a depth image of 640×480 pixels to a scene ready for queries, one core",
+                 f"{frame['median_ms']:.1f} ms"])
+    packed = next(r for r in packing["results"] if r["part"] == "coverage" and r["shape"] == "bunny"
+                  and r["method"] == "vpm-pack" and r["spheres"] == 10000)
+    rows.append(["coverage of the bunny by 10 000 spheres, two cores",
+                 f"{percent(packed['coverage'], 0)} % in {packed['seconds']:.1f} s"])
+    return table(["with 1000 spheres and a camera at 1 m, unless told otherwise", "median or mean"], rows)
+
+
+# Maps each page to its tables: the function that makes it, and the suites whose results it takes.
+PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "packing", "cuda")},
+         "tests/results/README.md": {
+             "accuracy": (accuracy, "accuracy"), "bounds": (bounds, "accuracy"),
+             "bounds solid": (bounds, "accuracy_solid"),
+             "tradeoff": (tradeoff, "tradeoff"), "tradeoff on a device": (tradeoff_on_device, "tradeoff_cuda"),
+             "for-scene": (for_scene, "tradeoff"), "timing": (timing, "timing"),
+             "packing": (packing, "packing"), "packing growth": (packing_growth, "packing"),
+             "packing cost": (packing_cost, "packing"), "replay": (replay, "replay"),
+             "replay coherent": (replay_coherent, "replay"), "replay frames": (replay_frames, "replay"),
+             "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
+             "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
+             "cuda frames": (cuda_frames, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
+             "scaling": (scaling, "scaling")}}
+
+
+def commits(suites, reports):
+    return "Commits: " + ", ".join(f"{suite} {report['commit'][:7]}" for suite, report in zip(suites, reports)) + "."
 
 
 def filled(page, text):
-    for name, (make, suite) in PAGES[page].items():
+    """Returns the page's text with every table renewed."""
+    for name, (make, *suites) in PAGES[page].items():
         begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
-        report = results(suite)
-        if report is None and begin not in text:
-            continue  # neither measured nor written of yet
-        if report is None or begin not in text:
-            sys.exit(f"result_tables.py: no tests/results/{suite}.json, or no {begin} in {page}")
+        reports = [results(suite) for suite in suites]
+        if None in reports or begin not in text:
+            sys.exit(f"result_tables.py: {page} lacks {begin}, or tests/results one of {', '.join(suites)}")
         before, rest = text.split(begin)
         after = rest.split(end)[1]
-        text = f"{before}{begin}\n{make(report)}\n\n{source(report)}\n{end}{after}"
+        told = source(reports[0]) if len(suites) == 1 else commits(suites, reports)
+        text = f"{before}{begin}\n{make(*reports)}\n\n{told}\n{end}{after}"
     return text
 
 
@@ -351,7 +385,7 @@ def main():
         if "--check" not in sys.argv:
             path.write_text(wanted)
         elif text != wanted:
-            sys.exit(f"{page} is not what tests/results says; run scripts/result_tables.py")
+            sys.exit(f"{page}: its tables differ from tests/results; run scripts/result_tables.py")
 
 
 if __name__ == "__main__":
