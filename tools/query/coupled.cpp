@@ -25,8 +25,8 @@ double number_from(std::string_view value, const std::string& text) {
   return number;
 }
 
-// The stiffest contact that the tool can make: the force of the measure grows by stiffness times
-// the cross-section for each metre, which a ball of the tool's reach bounds.
+// Returns the stiffest contact that the tool can make, N/m. The force grows by stiffness times the
+// cross-section for each metre, and a ball of the tool's radius bounds that section.
 double stiffest_contact(const ToolModel& tool, double stiffness) {
   return stiffness * kPi * tool.reach * tool.reach;
 }

@@ -7,8 +7,8 @@
 
 namespace vpm::tools {
 
-// Calls ask(poses) for so many poses at once, from the first on all of the reader, if there is one;
-// the last may be fewer.
+// Calls ask(poses) with batches of poses: the first pose, then all poses of the reader, if there is
+// one. The last batch may be smaller.
 template <class Ask>
 void in_batches(std::optional<Pose> next, std::optional<PoseReader>& reader, std::size_t at_once,
                 const Ask& ask) {

@@ -11,29 +11,29 @@
 
 namespace vpm::tools {
 
-// Where a line belongs in a replay.
+// Place of a line in a replay.
 struct StepOfReplay {
   double time = 0;    // s since the start of the path
-  std::string frame;  // name of the file; "": none yet
+  std::string frame;  // name of the file; "" before the first frame
 };
 
-// One line of JSON. Names of files need not be UTF-8.
+// Returns one line of JSON. File names that are not UTF-8 are escaped.
 std::string to_line(const nlohmann::ordered_json& line);
 
-// One line of results: formats/schemas/query-result.json. Nothing in it depends on the device or
-// the clock, unless a deadline chose the level. `level_reason`: how the level was chosen; "" leaves
-// it out. `tool`: its place among several.
+// Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the
+// device or the clock, unless a deadline chose the level. `level_reason` is the option that chose
+// the level, or "" to leave the field out; `tool` is the tool's index among several.
 std::string result_line(std::size_t pose_index, const Result& result, const Level& level,
                         Measure measure, const std::string& level_reason,
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool = std::nullopt);
 
-// Timings of a run: formats/schemas/query-stats.json. With a deadline also the part of the queries
-// that kept it.
+// Returns the timings of a run (formats/schemas/query-stats.json), with a deadline also the
+// fraction of the queries that kept it.
 nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_seconds,
                            std::optional<double> deadline_us);
 
-// Says that rotations of `what` have been normalised, if that is worth a note.
+// Notes that rotations of `what` have been normalised, if the deviation is beyond rounding.
 void note_deviation(const Tool& tool, const std::string& what, double deviation);
 
 }  // namespace vpm::tools

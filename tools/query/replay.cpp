@@ -12,7 +12,7 @@
 namespace vpm::tools {
 namespace {
 
-// Warnings of frames; what more there are the report counts.
+// Number of warnings about frames; the report counts the others.
 constexpr std::size_t kMostWarnings = 5;
 
 std::string name_of(const std::string& path) {
@@ -127,7 +127,7 @@ void Replay::find_first_cloud() {
   FrameSchedule schedule(recording_, schedule_);
   FrameReader reader(recording_, import_, {}, points_);
   std::string why = "none comes before the path ends";
-  // Of frames that repeat nothing new can be learnt.
+  // Frames that repeat are read once, since they tell nothing new.
   std::size_t looked_at = 0;
   while (looked_at < recording_.frames.size()) {
     std::optional<FrameChange> change = schedule.next();
@@ -147,7 +147,8 @@ void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Mea
   feed_->wait_for_first();
   clock_.emplace(rate_, arguments_.realtime);
   for (std::size_t k = 0; k < path_.steps(); ++k) {
-    // A loop that runs ahead of the clock waits for frames that would be there in time.
+    // A loop that runs ahead of the clock waits for frames that a real stream would have brought in
+    // time.
     const PreparedChange* change = arguments_.realtime ? nullptr : feed_->advance_to(k);
     clock_->begin_step();
     if (arguments_.realtime) change = feed_->advance_to(k);

@@ -1,4 +1,4 @@
-// vpm-query --frames: a recorded stream of frames against a path of the tool, in step.
+// vpm-query --frames: queries a recorded stream of frames along a path of the tool, step by step.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ namespace vpm::tools {
 
 struct ReplayArguments {
   std::string frames, trajectory, camera_poses;
-  std::optional<double> rate;  // steps per second; kRate where not given
-  double frame_rate = 30;      // of numbered frames
+  std::optional<double> rate;  // steps per second; kRate if not given
+  double frame_rate = 30;      // for numbered frames
   double frame_latency = 0;    // s
   bool align_starts = false, repeat_frames = false, realtime = false;
   ImportArguments import;
@@ -27,32 +27,32 @@ struct ReplayArguments {
 };
 
 void declare(CLI::App& app, ReplayArguments& arguments);
-// Whether none of what has a default was given another value.
+// True if every argument that has a default still has it.
 bool is_default(const ReplayArguments& arguments);
 
 class Replay {
  public:
-  // Reads the recording and the path, which outlive nothing else. Throws what they throw, and
-  // Error(refused) where they share no time or no frame can be used.
-  // Depth images are prepared on the device of the queries, frames without a camera read as
-  // `points` says.
+  // Reads the recording and the path. Depth images are prepared on the device of the queries;
+  // frames without a camera are read as `points` says. Throws what the readers throw, and
+  // Error(refused) if recording and path share no time or no frame can be used.
   Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
          PointReading points);
 
   const SampledPath& path() const { return path_; }
-  // The first frame that can be used: what levels are chosen by.
+  // Returns the first frame that can be used, by which levels are chosen.
   const PreparedCloud& first_cloud() const { return *first_cloud_; }
 
-  // Step by step, a line of results each; what happens to frames is said as it happens.
+  // Queries step by step and writes a line of results for each; notes and warnings about frames
+  // come as they happen.
   void run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
            file::Output& output);
 
-  // After run().
+  // Return values that are complete after run().
   const Pose& last_pose() const { return last_pose_; }
   const PreparedCloud& last_cloud() const { return feed_->cloud(); }
   const std::vector<double>& query_seconds() const { return query_seconds_; }
-  double prepare_seconds() const;  // median of the frames
-  // "replay" of --stats. `deadline`: s.
+  double prepare_seconds() const;  // median over the frames
+  // Returns the field "replay" of --stats. `deadline` is in seconds.
   nlohmann::json report(double deadline) const;
 
  private:

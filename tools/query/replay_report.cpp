@@ -12,7 +12,7 @@ nlohmann::json quantiles(const Durations& d) {
           {"max", kMicro * d.quantile(1)}};
 }
 
-// Steps up to 1, 2, 5, 10, ... us, as far as there are any.
+// Returns the number of steps up to 1, 2, 5, 10, ... microseconds, until all are counted.
 nlohmann::json histogram(const Durations& latency) {
   nlohmann::json bins = nlohmann::json::array();
   std::size_t left = latency.size();

@@ -7,11 +7,11 @@
 
 namespace vpm::tools {
 
-// "replay" of formats/schemas/query-stats.json, but for what the loop knows. `wall`: s that the
-// loop took; `deadline`: s.
+// Returns the parts of the field "replay" (formats/schemas/query-stats.json) that the clock knows.
+// `wall` is the time that the loop took and `deadline` that of a step, both in seconds.
 nlohmann::json replay_report(const LoopClock& clock, double rate, double wall, double deadline);
 
-// Its "frames".
+// Returns the field "frames" of that report.
 nlohmann::json frames_report(const Recording& recording, const FrameCounts& counts);
 
 }  // namespace vpm::tools

@@ -29,7 +29,7 @@ void SeveralTools::ask(std::span<const Pose> poses, file::Output& output) {
     for (std::uint32_t t = 0; t < tools; ++t) questions.push_back({t, pose});
   std::vector<Result> results(questions.size());
   const auto begin = std::chrono::steady_clock::now();
-  if (poses.size() == 1) {  // each is sooner answered by the whole device
+  if (poses.size() == 1) {  // the whole device answers each sooner
     for (std::size_t t = 0; t < tools; ++t) results[t] = together_[t]->run(cloud_, poses.front());
   } else {
     Query::run_together(together_, cloud_, questions, results);

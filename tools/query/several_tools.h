@@ -12,21 +12,22 @@
 
 namespace vpm::tools {
 
-// Every pose is asked of every tool, each at its level of the request; a line for each, pose by
-// pose and in the order of the tools.
+// Asks every pose of every tool, each at the level that the request chooses, and writes a line for
+// each, pose by pose in the order of the tools.
 class SeveralTools {
  public:
-  // No deadline. The models outlive this.
+  // Takes no deadline. The models must outlive this.
   SeveralTools(std::span<const ToolModel> models, const QueryOptions& options,
                const LevelRequest& request, const PreparedCloud& cloud, const Pose& first_pose);
 
-  // From the first pose on all of the reader, if there is one; so many at once.
+  // Queries the first pose and then all poses of the reader, if there is one, `at_once` poses at a
+  // time.
   void run(std::optional<Pose> next, std::optional<PoseReader>& reader, std::size_t at_once,
            file::Output& output);
 
   const LevelQuery& query(std::size_t tool) const { return queries_[tool]; }
-  const std::vector<double>& seconds() const { return seconds_; }  // of each answer, on average
-  std::vector<std::uint32_t> levels() const;                       // spheres, of each tool
+  const std::vector<double>& seconds() const { return seconds_; }  // mean of each answer
+  std::vector<std::uint32_t> levels() const;  // number of spheres for each tool
 
  private:
   void ask(std::span<const Pose> poses, file::Output& output);
@@ -35,7 +36,7 @@ class SeveralTools {
   Measure measure_;
   std::deque<LevelQuery> queries_;
   std::vector<Query*> together_;
-  std::size_t asked_ = 0;  // poses
+  std::size_t asked_ = 0;  // poses so far
   std::vector<double> seconds_;
 };
 
