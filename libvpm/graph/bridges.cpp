@@ -96,7 +96,7 @@ std::vector<SpherePair> shortest_bridges(const SphereBvh& bvh, const SphereGraph
         nearest[i] = shortest_to_other(bvh, component, label, static_cast<std::uint32_t>(i));
       }
     });
-    std::vector<Edge> shortest(count);  // by component
+    std::vector<Edge> shortest(count);  // indexed by component
     for (std::size_t i = 0; i < count; ++i) {
       shortest[component[i]] = std::min(shortest[component[i]], nearest[i]);
     }

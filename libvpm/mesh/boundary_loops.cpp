@@ -113,7 +113,7 @@ class Walk {
 
   const Topology& topology_;
   const std::vector<Triangle>& triangles_;
-  std::vector<char> seen_;  // by triangle and side
+  std::vector<char> seen_;  // three per triangle, one for each side
 };
 
 }  // namespace

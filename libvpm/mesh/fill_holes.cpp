@@ -54,7 +54,7 @@ class EdgeSet {
 std::vector<Triangle> least_area(const std::vector<Vec3>& rim,
                                  const std::vector<std::uint32_t>& vertices, const EdgeSet& taken) {
   const std::size_t n = rim.size();
-  std::vector<double> cost(n * n, HUGE_VAL);  // of the part from corner i to corner j
+  std::vector<double> cost(n * n, HUGE_VAL);  // cost of the part from corner i to j
   std::vector<std::uint32_t> apex(n * n, 0);
   for (std::size_t i = 0; i + 1 < n; ++i) cost[i * n + i + 1] = 0;
   for (std::size_t length = 2; length < n; ++length) {

@@ -17,7 +17,7 @@ enum class MeshFormat { obj, off, ply, stl, om };
 // finite.
 struct RawMesh {
   MeshFormat format = MeshFormat::obj;
-  std::string name;  // of the file, for messages
+  std::string name;  // file name, for messages
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> corners;
   std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`

@@ -43,7 +43,7 @@ void add_corner(RawMesh& mesh, Vec3 p) {
 
 void parse_ascii(std::string_view text, RawMesh& mesh) {
   TextLines lines(text, mesh.name, 0);
-  std::size_t corners = 0;  // of the facet
+  std::size_t corners = 0;  // number read of the facet
   bool open = false, ended = false;
   while (lines.next_line()) {
     const std::string_view keyword = lines.word();

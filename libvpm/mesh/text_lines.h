@@ -38,7 +38,7 @@ class TextLines {
   char comment_;
   std::size_t at_ = 0;
   std::size_t line_number_ = 0;
-  std::string_view rest_;  // of the line
+  std::string_view rest_;  // rest of the line
 };
 
 }  // namespace vpm

@@ -21,7 +21,7 @@ struct Solid {
 
 struct MassProperties {
   double volume = 0;    // m^3
-  Vec3 center_of_mass;  // of a homogeneous solid, m
+  Vec3 center_of_mass;  // centroid of the solid, m
 };
 
 // Returns the exact integrals by the divergence theorem. Works about the centre of the bounding

@@ -92,7 +92,7 @@ struct ToolModel {
   double reach = 0;        // largest distance of the solid from center_of_mass, m
   std::string solid_hash;  // content_hash of the solid
   std::vector<Sphere> spheres;          // largest first
-  std::vector<Level> levels;            // by ascending sphere_count; at least one
+  std::vector<Level> levels;            // at least one, ascending by sphere_count
   std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
   nlohmann::json provenance;
 

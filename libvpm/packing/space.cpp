@@ -220,7 +220,7 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
                   std::vector<Cell>& parts) const {
   const auto level = static_cast<std::uint8_t>(cell.level + 1);
   const auto offset = static_cast<float>(edge(level + 1));
-  // Also the distance of the parts' centres from the cell's.
+  // Half a part's diagonal, which is the distance of its centre from the cell's.
   const float half = half_diagonal(level);
   for (int octant = 0; octant < 8; ++octant) {
     Cell part{};

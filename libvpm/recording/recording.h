@@ -2,10 +2,10 @@
 //
 // Tries three layouts in this order:
 //   list         a text file of "time file" lines (TUM RGB-D: depth.txt; associations.txt with four
-//                columns, of which those of the depth image are used), given itself or in the folder
+//                columns, of which the depth image's are used), given itself or in the folder
 //   named times  files called after their time in seconds: 1305031102.160407.png
-//   numbered     files with a number in their name: frame-000460.depth.png (7-Scenes). Times are the
-//                numbers divided by the frame rate, from 0 for the first
+//   numbered     files with a number in their name: frame-000460.depth.png (7-Scenes). Their times
+//                are the numbers divided by the frame rate, from 0 for the first
 // In a folder, frames are images (.png, .exr) and clouds (.pcd, .ply); if some names contain
 // "depth", only those.
 #pragma once
@@ -28,15 +28,15 @@ struct RecordedFrame {
 };
 
 struct Recording {
-  std::vector<RecordedFrame> frames;  // by ascending time
+  std::vector<RecordedFrame> frames;  // ascending by time
   // True if times are of a clock that a path may share; false for numbered frames.
   bool has_clock = true;
   // Number of gaps between numbers, or of listed files that do not exist.
   std::size_t missing = 0;
   std::string camera_source;  // source of the camera poses, for notes; may be empty
-  // From camera-intrinsics.txt (3x3) in the folder.
+  // Read from camera-intrinsics.txt (3x3) in the folder.
   std::optional<Intrinsics> intrinsics;
-  double largest_deviation = 0;  // of camera rotations before normalisation
+  double largest_deviation = 0;  // largest of the camera rotations, before normalisation
 };
 
 struct RecordingOptions {
