@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device, and
-# times it. BUNDLE is what scripts/bundle.sh makes of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench and vpm-query; LEVELS
-# are like 1000,17000. The README's tool is bunny.off of `vpm-pack --spheres 100000` and `vpm-graph --levels 1000,17000`, its cloud
-# what `vpm-normals --intrinsics 525,525,319.5,239.5 --depth-scale 5000` makes of the image of `make-example FOLDER tilted-wall`.
-# 1. every test of tests/cuda; 2. small queries under compute-sanitizer's four tools, of the baseline under memcheck; 3. CPU and device results of one path
-# compared byte for byte, of both measures, one by one, in batches and standing by, and the results of vpm-bench's suites; 4. ten thousand queries at each level, with
-# the data of eight tools and clouds by turns, launched and standing by, in ROUNDS (5) rounds, whose medians count; 5. a hundred thousand poses in batches, of one tool and of eight;
-# 6. scripts/cuda_frames_check.sh, which writes OUT_frames.json. Exit code 1 if anything differs.
+# cuda_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: checks a bundle on a machine with an NVIDIA device,
+# and times it. Exit code 1 if anything differs.
+#
+# BUNDLE is made by scripts/bundle.sh of control-loop, cuda_baseline_tests, cuda_tests, frame-stages, vpm-bench and
+# vpm-query. LEVELS are like 1000,17000. The published results use bunny.off by `vpm-pack --spheres 100000` and
+# `vpm-graph --levels 1000,17000`, and the image of `make-example FOLDER tilted-wall` by `vpm-normals --intrinsics
+# 525,525,319.5,239.5 --depth-scale 5000`.
+#
+# Steps: (1) runs every test of tests/cuda; (2) runs small queries under compute-sanitizer's four tools, and the
+# baseline under memcheck; (3) compares the results of CPU and device byte for byte along one path, for both measures,
+# one by one, in batches and standing by, and compares the results of vpm-bench's suites; (4) times ten thousand queries
+# at each level, with eight tools and clouds taking turns, launched and standing by, in ROUNDS (5) rounds, and reports
+# medians; (5) times a hundred thousand poses in batches, of one tool and of eight; (6) calls
+# scripts/cuda_frames_check.sh, which writes OUT_frames.json.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)
@@ -42,7 +48,7 @@ for measure in refined paper; do
   done
 done
 
-suite_answers() {  # SUITE DEVICE: what a suite found, without what it took and what only the CPU does
+suite_answers() {  # SUITE DEVICE: writes a suite's results without times and without parts that only the CPU runs
   "$bundle/bin/vpm-bench" "$1" --quick --quiet --device "$2" --out "$work/$1-$2" >/dev/null
   python3 - "$work/$1-$2/$1.json" >"$work/$1-$2.txt" <<'PYTHON'
 import json, re, sys

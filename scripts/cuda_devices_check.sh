@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# cuda_devices_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: compares one device (cuda:0) with all devices of a
-# machine (cuda:all) on batches. BUNDLE is what scripts/bundle.sh makes of control-loop, vpm-query and cuda_tests; LEVELS are
-# like 1000,17000. 1. the tests of tests/cuda that need several devices; 2. results compared byte for byte; 3. poses per second,
-# by turns, three times each. Exit code 1 if anything differs, or if all devices together are slower than 0.9 of their number.
+# cuda_devices_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: compares one device (cuda:0) with all
+# devices of a machine (cuda:all) on batches. BUNDLE is made by scripts/bundle.sh of control-loop, vpm-query and
+# cuda_tests; LEVELS are like 1000,17000. Steps: (1) runs the tests of tests/cuda that need several devices; (2)
+# compares results byte for byte; (3) times poses per second, in turns, three times each. Exit code 1 if anything
+# differs, or if all devices together are slower than 0.9 times their number.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: times depth frames on a machine with an NVIDIA device:
-# images that become clouds there. BUNDLE is what scripts/bundle.sh makes of control-loop and frame-stages; CLOUD has a camera.
-# 1. the stages on the device's clock; 2. a thousand queries at each level, each in a new image, from the image in the frames' memory
-# to the result, or in the image before while the new one is made, in ROUNDS (5) rounds, whose medians count: now and then a machine
-# or its bus is slow for a while. scripts/cuda_check.sh calls it.
+# cuda_frames_check.sh BUNDLE OUT.json TOOL.vpmg CLOUD.vpmc LEVELS COMMIT: times depth images that are prepared on an
+# NVIDIA device. BUNDLE is made by scripts/bundle.sh of control-loop and frame-stages; CLOUD has a camera. Steps: (1)
+# times the stages on the device's clock; (2) times a thousand queries at each level, each in a new image, from the
+# image in the frames' memory to the result, or in the image before while the new one is made. Reports medians of ROUNDS
+# (5) rounds, since a machine or its bus may be slow for a while. scripts/cuda_check.sh calls it.
 set -euo pipefail
 bundle=$1 out=$2 tool=$3 cloud=$4 levels=$5 commit=$6
 work=$(mktemp -d)

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# cuda_report.sh OUT DATA [BUNDLE COMMIT]: all that the README tells of an NVIDIA device, measured on this machine in one call: builds,
-# packs DATA/meshes/bunny.off with a hundred thousand and a million spheres, makes the cloud, checks and times, and replays the stream
-# that is recorded in DATA. OUT gets cuda.json, cuda_frames.json, cuda_frames_million.json, scaling.json, tradeoff.json, replay.json
-# and, where there are several devices, cuda_devices.json. Of a machine that cannot build, BUNDLE is what scripts/bundle.sh made of the programs below elsewhere, of COMMIT.
-# A quarter of an hour on an H100, without the build. Exit code 1 if anything differs from the CPU.
+# cuda_report.sh OUT DATA [BUNDLE COMMIT]: measures all results on NVIDIA devices in one call. Builds, packs
+# DATA/meshes/bunny.off with a hundred thousand and a million spheres, makes the cloud, checks and times, and replays
+# the stream recorded in DATA. Writes cuda.json, cuda_frames.json, cuda_frames_million.json, scaling.json,
+# tradeoff.json, replay.json and, with several devices, cuda_devices.json to OUT. On a machine that cannot build, BUNDLE
+# is made elsewhere by scripts/bundle.sh of the programs named below, at COMMIT. Takes a quarter of an hour on an H100,
+# without the build. Exit code 1 if anything differs from the CPU.
 set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 if [[ $# -ne 2 && $# -ne 4 ]]; then

@@ -1,4 +1,4 @@
-"""What control-loop measured in several rounds, as one: scripts/cuda_check.sh and cuda_frames_check.sh."""
+"""Merges several rounds of control-loop into one, for scripts/cuda_check.sh and cuda_frames_check.sh."""
 import collections
 import glob
 import json
@@ -6,7 +6,7 @@ import statistics
 
 
 def of_rounds(reports):
-    """Medians of the rounds' figures, and p99 of each round."""
+    """Returns medians of the rounds' figures, and p99 of each round."""
     merged = dict(reports[0], rounds=len(reports), p99_us_of_rounds=sorted(r["p99_us"] for r in reports),
                   host_slowed=sum(r["host_slowed"] for r in reports),
                   min_us=min(r["min_us"] for r in reports), max_us=max(r["max_us"] for r in reports))
@@ -17,7 +17,7 @@ def of_rounds(reports):
 
 
 def loops_in(folder):
-    """Of FOLDER/loop-WHAT-ROUND.json, for each WHAT."""
+    """Merges FOLDER/loop-WHAT-ROUND.json over the rounds, for each WHAT."""
     reports = collections.defaultdict(list)
     for path in sorted(glob.glob(f"{folder}/loop-*.json")):
         with open(path) as file:
@@ -26,7 +26,7 @@ def loops_in(folder):
 
 
 def in_words(loop):
-    """Its times, for a line of a table."""
+    """Returns the loop's times as text for a line of a table."""
     rounds = loop["p99_us_of_rounds"]
     return (f"median {loop['median_us']:7.1f} us  p99 {loop['p99_us']:7.1f} ({rounds[0]:.1f} to {rounds[-1]:.1f}) us,"
             f" {loop['p99_steady_us']:.1f} while the host keeps its pace")
