@@ -43,7 +43,7 @@ for compiler in ${COMPILERS:-g++ clang++}; do
     continue
   fi
   for flags in "${flag_sets[@]}"; do
-    [[ $compiler == aarch64-* && $flags == *native* ]] && flags=-O3  # what the building machine is does not matter
+    [[ $compiler == aarch64-* && $flags == *native* ]] && flags=-O3  # the building machine's processor does not matter here
     replay "$compiler" "$flags"
   done
 done

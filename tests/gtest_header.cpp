@@ -1,1 +1,1 @@
-// What vpm_gtest_header is made of: nothing but its precompiled header.
+// Gives vpm_gtest_header a source; the target exists for its precompiled header.

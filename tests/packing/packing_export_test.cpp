@@ -44,7 +44,8 @@ TEST(PackingExport, YmlListsTheSpheresOfALink) {
             "    - \"center\": [0.1, -0.666666667, 3e-07]\n      \"radius\": 0.5\n");
 }
 
-// Spheres whose numbers come in the order x, y, z, r, as often as `pattern` is found.
+// Returns the spheres that `pattern` finds in the text, each with its numbers in the order x, y, z,
+// r.
 std::vector<Sphere> found_by(const std::regex& pattern, const std::string& text) {
   std::vector<Sphere> spheres;
   for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) {

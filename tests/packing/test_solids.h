@@ -14,7 +14,7 @@ namespace vpm::test {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double uniform(double low, double high) {  // the same on every standard library
+  double uniform(double low, double high) {  // gives the same with every standard library
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
   Vec3 in_box(Vec3 low, Vec3 high) {
@@ -44,7 +44,7 @@ inline Solid reversed(Solid solid) {
   return solid;
 }
 
-// Both meshes in one: a union, a cavity or two components, as they lie.
+// Returns both meshes in one: a union, a cavity or two components, depending on where they lie.
 inline Solid joined(Solid a, const Solid& b) {
   const auto offset = static_cast<std::uint32_t>(a.vertices.size());
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
@@ -55,9 +55,9 @@ inline Solid joined(Solid a, const Solid& b) {
 
 inline constexpr int kFamilies = 8;
 
-// family 0: self-intersecting union, 1: plate, 2: needle, 3: cavity, 4: torus, 5: two components,
-// 6: nested shells (a ball in the cavity of a box), 7: genus 2 (two tori that meet) or a torus
-// knot.
+// Returns a solid of the family: 0 self-intersecting union, 1 plate, 2 needle, 3 cavity, 4 torus, 5
+// two components, 6 nested shells (a ball in the cavity of a box), 7 genus 2 (two tori that meet)
+// or a torus knot.
 inline Solid random_solid(int family, std::uint64_t seed) {
   Random random(seed * kFamilies + static_cast<std::uint64_t>(family));
   const auto length = [&] { return random.uniform(0.3, 1); };

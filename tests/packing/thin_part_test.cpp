@@ -1,4 +1,4 @@
-// Plates, needles and shells: what bounds their room holds, and packing them ends soon.
+// Plates, needles and shells: bounds of the room beside them hold, and packing them ends soon.
 #include "libvpm/packing/thin_part.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(ThinPart, NoPointOfTheCubeHasMoreRoom) {
       const Vec3 center = near + half_edge * random.in_box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
       const double bound = thin_part(distance, center, half_edge).bound;
       if (!std::isfinite(bound)) continue;
-      for (int i = 0; i < 100; ++i) {  // about the surface: the rest is outside
+      for (int i = 0; i < 100; ++i) {  // near the surface; all else is outside
         const Vec3 in_cube = center + half_edge * random.in_box({-1, -1, -1}, {1, 1, 1});
         const Vec3 x =
             distance.closest(in_cube, 2).point + 2 * bound * random.in_box({-1, -1, -1}, {1, 1, 1});
@@ -61,7 +61,7 @@ TEST(ThinPart, IsExactOnAPlate) {
 struct Thin {
   const char* name;
   Solid solid;
-  double radius;  // of the largest sphere
+  double radius;  // expected radius of the largest sphere
 };
 
 // Without bounds of thin parts these took minutes, hours and years.
@@ -87,7 +87,7 @@ TEST(ThinSolids, BelowTheNumericalFloorNothingIsLookedFor) {
   }
 }
 
-// Of a hollow box's room only a part is kept; wider in corners, but what fits is delivered.
+// Only a part of the hollow box's room is kept, but as many spheres as asked for are delivered.
 TEST(ThinSolids, AsManyAsAskedAreDelivered) {
   const Solid solid = turned(joined(make_box(1, 1, 1), reversed(make_box(0.998, 0.998, 0.998))));
   const PackResult result = pack(solid, {.spheres = 100});

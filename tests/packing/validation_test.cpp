@@ -23,7 +23,7 @@ using synthetic::make_box;
 using synthetic::make_cube;
 using synthetic::make_icosphere;
 
-constexpr int kVoxels = 64;  // enough to test what is promised for any number
+constexpr int kVoxels = 64;  // enough to test promises that hold for any number
 
 void expect_clean(const Validation& v) {
   EXPECT_EQ(v.protruding_voxels, 0U);
@@ -55,7 +55,7 @@ TEST(Validation, SeesProtrusions) {
   const Validation v = validate_packing(make_cube(2), {{{0.5, 0, 0}, 0.5 + out}}, kVoxels);
   ASSERT_GT(out, v.detection_limit);
   EXPECT_GT(v.protruding_voxels, 0U);
-  // Measured up to the band of 3 voxels.
+  // Protrusion is measured up to the band of 3 voxels.
   EXPECT_GT(v.max_protrusion, std::min(out, 3 * v.voxel) - v.detection_limit);
   EXPECT_LE(v.max_protrusion, out);
 }
@@ -94,7 +94,7 @@ TEST(Validation, AgreesWithTheCertificateWithinItsBound) {
     EXPECT_NEAR(sound.coverage, filled / volume_mesh, sound.coverage_error);
     expect_clean(sound);
 
-    // What is deeper than the limit that is stated is seen by both.
+    // Both methods see protrusions beyond the stated limit.
     spheres[0].radius += 2 * sound.detection_limit;
     const Certificate broken = certify(solid, spheres);
     const Validation seen = validate_packing(solid, spheres, 2 * kVoxels);
@@ -106,7 +106,7 @@ TEST(Validation, AgreesWithTheCertificateWithinItsBound) {
   }
 }
 
-// OpenVDB fills a slit that is narrower than three voxels; the bound knows.
+// OpenVDB fills a slit that is narrower than three voxels; the stated bound includes that.
 TEST(Validation, TheBoundHoldsWithNarrowGaps) {
   const double slit = 1.5 * 2.1 / kVoxels;
   const Solid halves = test::joined(test::moved(make_box(1, 2, 2), {}, {-0.5 - slit / 2, 0, 0}),

@@ -20,7 +20,7 @@ ImportOptions camera() {
   return options;
 }
 
-// Walls at 1 m, 1.01 m, ...; a frame every 10 ms; some are empty, broken or lost.
+// Sets up walls at 1 m, 1.01 m, ...; a frame every 10 ms; some are empty, broken or lost.
 class AFeed : public test::InTemporaryFolder {
  protected:
   void SetUp() override {
@@ -34,7 +34,7 @@ class AFeed : public test::InTemporaryFolder {
       recording_.frames.push_back({0.01 * static_cast<double>(k), name, {}, k == kLost});
     }
   }
-  // Depth of the wall that a cloud shows.
+  // Returns the depth of the wall that a cloud shows.
   static double wall(const PreparedCloud& cloud) {
     return cloud.positions().empty() ? 0 : widen(cloud.positions().front()).z;
   }
@@ -92,7 +92,7 @@ TEST_F(AFeed, MayBeLeftAtAnyStep) {
 }
 
 TEST_F(AFeed, SaysWhatIsWrongWithTheCall) {
-  FrameFeed feed(recording_, {1000, 10, 0, 0, false}, ImportOptions{});  // no intrinsics
+  FrameFeed feed(recording_, {1000, 10, 0, 0, false}, ImportOptions{});  // without intrinsics
   EXPECT_THROW(feed.advance_to(0), Error);
 }
 

@@ -23,7 +23,7 @@ std::vector<FrameChange> changes_of(const Recording& recording, const ScheduleOp
   return all_of(FrameSchedule(recording, options));
 }
 
-// The frame that a step sees, by definition: the last one that has come.
+// Returns the frame that a step sees by definition: the last one that has come.
 std::size_t seen_by(std::size_t step, const Recording& recording, const ScheduleOptions& options) {
   const double now = options.start + static_cast<double>(step) / options.rate;
   std::size_t seen = recording.frames.size();
@@ -79,13 +79,13 @@ TEST(FrameSchedule, RepeatsBackAndForth) {
   EXPECT_EQ(frames, (std::vector<std::size_t>{0, 1, 2, 1, 0, 1, 2}));
   const Recording one = frames_at({0});
   EXPECT_THROW(FrameSchedule(one, {10, 10, 0, 0, true}), Error);
-  const Recording short_one = frames_at({0, 1e-9});  // a million of them would come at each step
+  const Recording short_one = frames_at({0, 1e-9});  // a million frames would come at each step
   EXPECT_THROW(FrameSchedule(short_one, {1000, 10, 0, 0, true}), Error);
 }
 
 TEST(FrameSchedule, RoundsThatAreOverBeforeItBeginsAreLeftOut) {
   const Recording recording = frames_at({0, 0.25, 0.5});
-  for (const double start : {7.0, 1024.0, 1e6}) {  // whole rounds, of a second
+  for (const double start : {7.0, 1024.0, 1e6}) {  // whole rounds of a second
     const std::vector<FrameChange> late = changes_of(recording, {8, 32, start, 0, true});
     ASSERT_FALSE(late.empty());
     EXPECT_LT(late[0].frames.size(), 20U);
@@ -104,7 +104,7 @@ TEST(FrameSchedule, AFrameAfterALongGapIsLate) {
   for (const FrameChange& change : changes_of(recording, {1000, 1000, 0, 0, false}))
     late.push_back(change.is_late);
   EXPECT_EQ(late, (std::vector<bool>{false, false, false, true, false}));
-  recording.has_clock = false;  // then a gap is a missing number
+  recording.has_clock = false;  // a gap is then a missing number
   for (const FrameChange& change : changes_of(recording, {1000, 1000, 0, 0, false}))
     EXPECT_FALSE(change.is_late);
 }

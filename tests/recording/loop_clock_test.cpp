@@ -15,7 +15,7 @@ TEST(Durations, QuantilesAreValuesThatOccurred) {
   EXPECT_EQ(d.quantile(0.999), 999);
   EXPECT_EQ(d.quantile(1), 1000);
   EXPECT_EQ(d.mean(), 500.5);
-  EXPECT_EQ(d.longer_than(990), 10u);  // what takes just as long as the deadline keeps it
+  EXPECT_EQ(d.longer_than(990), 10u);  // a step that takes exactly the deadline keeps it
 }
 
 TEST(LoopClock, WaitsForEachStepAndCountsFromWhenItWasDue) {

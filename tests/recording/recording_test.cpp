@@ -59,7 +59,7 @@ TEST_F(ARecording, ThatCannotBeReadIsSaid) {
   EXPECT_NE(refusal([&] { read(); }).find("depth.txt"), std::string::npos);
 }
 
-// One pose that is given for all frames counts before those beside them.
+// A single pose given for all frames wins over poses beside the frames.
 TEST_F(ARecording, TakesThePoseThatIsGivenForTheCamera) {
   write("3.png");
   write("3.pose.txt", kIdentity);
@@ -107,7 +107,7 @@ TEST_F(ARecording, OfTimesInNamesHasAPoseForEach) {
     write(std::string(name) + ".png");
     write(std::string(name) + ".pose.txt", pose);
   }
-  write("12.pose.txt", kIdentity);  // of another frame
+  write("12.pose.txt", kIdentity);  // belongs to another frame
   Recording r = read();
   for (std::size_t k = 0; k < 3; ++k) {
     ASSERT_TRUE(r.frames[k].camera) << k;
@@ -126,7 +126,7 @@ TEST_F(ARecording, TakesTheCamerasPathAtTheFramesTimes) {
   EXPECT_EQ(r.frames[2].camera->translation, (Vec3{2, 0, 0}));  // near enough to the last
   EXPECT_TRUE(r.frames[3].is_lost);
   write("mine.txt", "7 0 0 0 0 0 1\n");
-  EXPECT_THROW(read({30, path("mine.txt"), {}}), Error);  // one pose, four frames
+  EXPECT_THROW(read({30, path("mine.txt"), {}}), Error);  // one pose for four frames
   write("mine.txt", "7 0 0 0 0 0 1\n7 0 0 0 0 0 1\n8 0 0 0 0 0 1\n9 0 0 0 0 0 1\n");
   EXPECT_EQ(read({30, path("mine.txt"), {}}).frames[2].camera->translation, (Vec3{8, 0, 0}));
 }

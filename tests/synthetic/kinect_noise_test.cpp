@@ -23,7 +23,7 @@ TEST(NormalNumbers, HaveTheMomentsAndTailsOfTheNormalDistribution) {
     fourth += x * x * x * x;
     beyond_two += std::abs(x) > 2;
   }
-  // Five standard errors of each estimate.
+  // Allows five standard errors of each estimate.
   EXPECT_NEAR(mean / kCount, 0, 5 / std::sqrt(kCount));
   EXPECT_NEAR(square / kCount, 1, 5 * std::sqrt(2.0 / kCount));
   EXPECT_NEAR(fourth / kCount, 3, 5 * std::sqrt(96.0 / kCount));

@@ -12,7 +12,7 @@
 namespace vpm::synthetic {
 namespace {
 
-// Every directed edge has exactly one partner in the other direction.
+// True if every directed edge has exactly one partner in the other direction.
 bool is_closed_and_oriented(const Solid& solid) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const Triangle& t : solid.triangles) {
@@ -28,7 +28,7 @@ bool is_closed_and_oriented(const Solid& solid) {
 struct Shape {
   const char* name;
   Solid solid;
-  double volume, tolerance;  // relative
+  double volume, tolerance;  // relative to the volume
 };
 
 double trefoil_length(double ring, double coil) {

@@ -45,7 +45,7 @@ TEST_P(SceneTest, NearestPointLiesOnTheSurface) {
   }
 }
 
-// Sensor noise asks for the gradient at places on the surface, within rounding.
+// Sensor noise reads the gradient at places on the surface, within rounding.
 TEST_P(SceneTest, GradientOnTheSurfaceIsThatJustBeforeIt) {
   const Scene scene = make_scene(GetParam());
   RayCaster rays(*scene.surface, scene.camera);
@@ -58,7 +58,7 @@ TEST_P(SceneTest, GradientOnTheSurfaceIsThatJustBeforeIt) {
     ++seen;
     alike += norm(scene.surface->gradient(on) - scene.surface->gradient(before)) < 1e-5;
   }
-  EXPECT_GE(alike, seen - 2);  // corners
+  EXPECT_GE(alike, seen - 2);  // all but corners
 }
 
 TEST_P(SceneTest, CrossingsAreWhereTheSignChanges) {

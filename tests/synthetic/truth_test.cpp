@@ -11,11 +11,11 @@
 namespace vpm::synthetic {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // of the solid's volume: what the benchmarks rely on
+constexpr double kTolerance = 1e-5;  // fraction of the solid's volume that the benchmarks rely on
 
 const Rotation kTurned = rotation_from_quaternion({0.18, -0.37, 0.29, std::sqrt(1 - 0.2534)});
 
-// Counts small cubes of a box of edge lengths `size`: nothing in common with the cubature.
+// Counts small cubes of a box with edge lengths `size`; shares nothing with the cubature.
 Penetration count_voxels(Vec3 size, const Pose& pose, const Surface& surface, int steps) {
   Penetration sum;
   const double voxel = size.x * size.y * size.z / (double(steps) * steps * steps);
@@ -56,7 +56,7 @@ TEST_P(TruthTest, AgreesWithCountedVoxels) {
   }
 }
 
-// The reported bound holds against a far finer computation.
+// Compares the reported bound with a far finer computation.
 TEST_P(TruthTest, KeepsItsErrorBound) {
   const SurfacePtr surface = make_scene(GetParam()).surface;
   for (const Solid& shape : {make_octahedron(0.2), make_torus(0.07, 0.03, 48, 24)}) {
@@ -116,7 +116,7 @@ TEST(Truth, ClearOfTheSurfaceIsZero) {
   expect_near(truth, {}, 1e-15, 1);
 }
 
-// Turning and moving the tool works against force and torque: the energy is the integral of the
+// Turning and moving the tool works against force and torque. The energy is the integral of the
 // depth, here by counting.
 TEST(Truth, ForceAndTorqueAreTheSlopeOfTheEnergy) {
   const Vec3 size{0.2, 0.16, 0.12};

@@ -1,4 +1,4 @@
-// Linked into a copy of vpm-pack in place of the packer: finds spheres that overlap.
+// Replaces the packer in a copy of vpm-pack by one that finds overlapping spheres.
 #include "libvpm/packing/packer.h"
 
 namespace vpm {

@@ -1,7 +1,6 @@
-// frame-stages CLOUD.vpmc [JSON]: how long a device takes for the stages of a depth frame, by its
-// own clock: to launch nothing and to copy the image (the floors of what follows), to take it, to
-// make its cloud, and to estimate its normals alone. Eight copies of everything take turns, so that
-// no cache is flattered.
+// frame-stages CLOUD.vpmc [JSON]: times the stages of a depth frame on the device's clock:
+// launching nothing and copying the image, which are the floors of the other times; taking the
+// image; making its cloud. Eight copies of everything take turns, so that caches do not help.
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -18,7 +17,7 @@ namespace device = vpm::cuda;
 
 constexpr int kCopies = 8, kLaunches = 40, kRounds = 50, kWarmUp = 10;
 
-// Launches in a row as one graph: what the host takes to launch them is not counted.
+// Launches in a row as one graph, so that the host's time for launching is not counted.
 class Graph {
  public:
   template <class Launch>
@@ -39,7 +38,7 @@ class Graph {
   cudaGraphExec_t executable_ = nullptr;
 };
 
-// Microseconds of one of many launches in a row, the median of rounds.
+// Returns the microseconds of one of many launches in a row, the median over rounds.
 template <class Launch>
 double time_of(cudaStream_t stream, const Launch& launch) {
   const Graph graph(stream, launch);

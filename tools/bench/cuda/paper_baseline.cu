@@ -16,13 +16,13 @@ using cuda::DeviceArray;
 using cuda::Event;
 
 constexpr unsigned kThreads = 256;
-constexpr std::uint32_t kPendingLaunches = 2048;  // what the device has room for anyway
+constexpr std::uint32_t kPendingLaunches = 2048;  // fits what the device has room for
 
 unsigned blocks_for(std::size_t threads) {
   return static_cast<unsigned>(std::max<std::size_t>(1, (threads + kThreads - 1) / kThreads));
 }
 
-// Levels of nodes; children follow their parent.
+// Returns the number of levels of nodes; children follow their parent.
 int depth_of(const Hierarchy& tree) {
   std::vector<int> depth(tree.nodes.size(), 1);
   int deepest = 1;
@@ -37,7 +37,7 @@ int depth_of(const Hierarchy& tree) {
 
 class PaperOnDevice : public PaperBaseline {
  public:
-  // The device must be the current one.
+  // Copies everything to the current device, which must be the one of the query.
   PaperOnDevice(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
                 Traversals traversals, int device)
       : device_(device),
@@ -67,7 +67,7 @@ class PaperOnDevice : public PaperBaseline {
              contacts_.get(),       states_.get(),
              sphere_normals_.get(), below_.get(),
              totals_.get()};
-    // Each takes memory of the device; there can be a launch for every sphere.
+    // Makes room for a launch for every sphere; each takes memory of the device.
     if (traversals == Traversals::launched)
       check(cudaDeviceSetLimit(cudaLimitDevRuntimePendingLaunchCount,
                                std::max(kPendingLaunches, level.sphere_count)));

@@ -1,4 +1,4 @@
-// The kernels of PaperBaseline. Kaluschke, Weller, Zachmann 2017; steps as numbered in
+// Kernels of PaperBaseline, after Kaluschke, Weller, Zachmann 2017; steps as numbered in
 // libvpm/query/README.md.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace vpm::bench {
 
-// What kernels see of a tool, a cloud and a run's memory.
+// Views that kernels take of a tool, a cloud and a run's memory.
 struct PaperView {
   static constexpr int kMaxDepth = 64;  // levels of the tree
   static constexpr std::uint32_t kNone = 0xffffffffU;
@@ -31,7 +31,7 @@ struct PaperView {
   PaperContact* contacts;
   std::uint32_t* states;  // SphereState
   Vec3* sphere_normals;
-  std::uint32_t* below;  // the next sphere of the stack that a claimed sphere lies on
+  std::uint32_t* below;  // next sphere on the stack that holds a claimed sphere
   cuda::RawResult* totals;
 };
 
@@ -40,7 +40,7 @@ template <class Visit>
 __device__ void walk_tree(const PaperView& view, Vec3 x, const Visit& visit) {
   std::uint32_t next[PaperView::kMaxDepth], ends[PaperView::kMaxDepth];
   int size = 0;
-  std::uint32_t at = 0, end = 1;  // siblings that have not been looked at
+  std::uint32_t at = 0, end = 1;  // siblings still to be visited
   while (true) {
     if (at == end) {
       if (size == 0) return;
@@ -61,7 +61,7 @@ __device__ void walk_tree(const PaperView& view, Vec3 x, const Visit& visit) {
   }
 }
 
-// Steps 1 and 2: a thread for each point.
+// Does steps 1 and 2, with a thread for each point.
 __global__ void gather_points(PaperView view, Pose to_tool, Rotation world_to_tool) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
   if (k >= view.point_count) return;
@@ -76,7 +76,7 @@ __global__ void gather_points(PaperView view, Pose to_tool, Rotation world_to_to
   if (inside) atomicAdd(&view.totals->points, 1U);
 }
 
-// Step 3: a thread for each sphere.
+// Does step 3, with a thread for each sphere.
 __global__ void find_boundary(PaperView view) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= view.sphere_count) return;
@@ -92,15 +92,15 @@ __global__ void find_boundary(PaperView view) {
   atomicAdd(&view.totals->boundary, 1U);
 }
 
-// Of one thread. Spheres that it has reached and not yet passed are a stack: a list through
-// `below`, which has room for all threads since a sphere is claimed once.
+// Traversal of one thread. Spheres that it has reached and not yet passed are a stack: a list
+// through `below`, which has room for all threads since a sphere is claimed once.
 struct Traversal {
   const PaperView& view;
   std::uint32_t top = PaperView::kNone;
-  ToolSum sum{};  // of all that it claimed
+  ToolSum sum{};  // sum of all spheres that it claimed
   std::uint32_t claimed = 0;
 
-  // Counts the sphere, if nobody has.
+  // Counts the sphere unless another thread has counted it.
   __device__ void claim(std::uint32_t j, Vec3 normal) {
     constexpr auto kOutside = static_cast<std::uint32_t>(SphereState::outside);
     constexpr auto kInside = static_cast<std::uint32_t>(SphereState::inside);
@@ -118,7 +118,7 @@ struct Traversal {
   }
 };
 
-// From the neighbours first, first + step, ... of a boundary sphere.
+// Floods from the neighbours first, first + step, ... of a boundary sphere.
 __device__ void flood_from(const PaperView& view, std::uint32_t i, std::uint32_t first,
                            std::uint32_t step) {
   Traversal traversal{view};
@@ -138,24 +138,25 @@ __device__ void flood_from(const PaperView& view, std::uint32_t i, std::uint32_t
   atomicAdd(&view.totals->inside, traversal.claimed);
 }
 
-// A boundary sphere stays one, and no other becomes one: to read while others claim is safe.
+// True for a boundary sphere. It stays one, and no other becomes one, so reading while others claim
+// is safe.
 __device__ bool is_boundary(const PaperView& view, std::uint32_t i) {
   return i < view.sphere_count && view.contacts[i].points != 0;
 }
 
-// Steps 4 and 5: a traversal for each boundary sphere.
+// Does steps 4 and 5, with a traversal for each boundary sphere.
 __global__ void flood(PaperView view) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (is_boundary(view, i)) flood_from(view, i, 0, 1);
 }
 
-// The traversal of one boundary sphere, by a thread for each of its neighbours.
+// Traverses from one boundary sphere, with a thread for each of its neighbours.
 __global__ void flood_of_sphere(PaperView view, std::uint32_t i) {
   flood_from(view, i, threadIdx.x, blockDim.x);
 }
 
-// Steps 4 and 5 with dynamic parallelism: the thread of a boundary sphere launches its traversal,
-// if there is one.
+// Does steps 4 and 5 with dynamic parallelism: the thread of a boundary sphere launches its
+// traversal, if there is one.
 __global__ void flood_by_launches(PaperView view) {
   constexpr std::uint32_t kMostThreads = 256;
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -167,7 +168,7 @@ __global__ void flood_by_launches(PaperView view) {
     enters = lets_in(view.spheres[i], normal, view.spheres[view.neighbors[k]]);
   if (!enters) return;
   flood_of_sphere<<<1, min(end - begin, kMostThreads), 0, cudaStreamFireAndForget>>>(view, i);
-  // More launches wait than the device has room for.
+  // Floods in this thread if more launches wait than the device has room for.
   if (cudaGetLastError() != cudaSuccess) flood_from(view, i, 0, 1);
 }
 
