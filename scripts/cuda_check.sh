@@ -53,7 +53,7 @@ suite_answers() {  # SUITE DEVICE: writes a suite's results without times and wi
   python3 - "$work/$1-$2/$1.json" >"$work/$1-$2.txt" <<'PYTHON'
 import json, re, sys
 took = re.compile(r"seconds|_us$|_ms$|_mb$|^ratio$|^change$|^real_time_factor$|^deadline_misses$")
-of_time_or_cpu = {"threads", "deadline", "frame", "coherent", "stream reusing"}
+of_time_or_cpu = {"threads", "deadline", "frame", "coherent"}
 def answers(value):
     if isinstance(value, dict):
         return {key: answers(item) for key, item in value.items() if not took.search(key)}

@@ -152,29 +152,14 @@ def replay(report):
 
 
 def replay_coherent(report):
-    of = {(r["path"], r["spheres"], r["reuse_mm"]): r for r in report["results"] if r["part"] == "coherent"}
-    levels = sorted({spheres for _, spheres, _ in of})
-    reuses = sorted({reuse for _, _, reuse in of})
-    percent = lambda part: f"{100 * part:.3f}"
-    rows = []
-    for reuse in reuses:
-        worst = lambda key: max(of["in contact", n, reuse][key] for n in levels)
-        same = all(of["in contact", n, reuse]["same_bits"] for n in levels)
-        rows.append([f"{reuse:g} mm" if reuse else "none"]
-                    + [f"{of['in contact', n, reuse]['ratio']:.2f}" for n in levels]
-                    + (["the same bits", "", ""] if same else
-                       [percent(worst(key)) for key in ("volume_difference", "force_difference", "torque_difference")]))
+    of = {(r["path"], r["spheres"]): r for r in report["results"] if r["part"] == "coherent"}
+    levels = sorted({spheres for _, spheres in of})
+    paths = sorted({path for path, _ in of}, reverse=True)
+    rows = [[path] + [f"{of[path, n]['ratio']:.2f}" for n in levels]
+            + ["the same" if all(of[path, n]["same_bits"] for n in levels) else "others"] for path in paths]
     step = next(iter(of.values()))["step_mm"]
-    free = ", ".join(f"{of['free', n, 0.0]['ratio']:.2f}" for n in levels)
-    text = table([f"poses {step:g} mm apart, `--reuse`"] + [f"{thousands(n)} spheres" for n in levels]
-                 + ["volume: largest difference, % of the tool's", "force", "torque, of its reach"], rows)
-    streams = [r for r in report["results"] if r["part"] == "stream reusing"]
-    text += f"\n\nOf the time of the same poses alone; in free space without reuse {free}."
-    for r in streams:
-        text += (f"\n\n{report['settings']['recording']}, {thousands(r['spheres'])} spheres, `--reuse` {r['reuse_mm']:g} mm:"
-                 f" {r['mean_us']:.0f} µs in the mean, {r['ratio']:.2f} of the time without; volume on average within"
-                 f" {100 * r['mean_volume_difference']:.2f} % of the tool's, at most {100 * r['volume_difference']:.1f} %.")
-    return text
+    return (table([f"poses {step:g} mm apart"] + [f"{thousands(n)} spheres" for n in levels] + ["bits"], rows)
+            + "\n\nRatios to the time of the same poses alone.")
 
 
 def replay_frames(report):

@@ -59,7 +59,6 @@ class CellMeasure {
   VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
     result.point = point;
-    samples.begin_share();
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, result);
     samples.flush(*this, result);
     if (result.is_far && result.plane.count > 0) {
@@ -67,7 +66,6 @@ class CellMeasure {
       add_far([&](Vec3 x, Vec3 foot) { return own.vouches_for(x, foot, tool_reach_.length); },
               result.sum);
     }
-    samples.end_share(cell_.center, result.sum);
     return result;
   }
 
@@ -154,9 +152,8 @@ class CellMeasure {
     if (look.point != kNoPoint) result.point = look.point;
     if (look.side != Side::mixed) {
       add_piece(piece_of(cell_.masses[b], block), result);
-      samples.add_whole_block(cell_.masses[b], result.sum);
     } else if (look.is_flat) {
-      add_block(b, {look.tangent, to_surface_}, samples, result);
+      add_block(b, {look.tangent, to_surface_}, Samples::crossed, result);
     } else {
       const auto& near = surface_.around_ball(look.center, block.radius, look.point);
       samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
@@ -304,20 +301,19 @@ class CellMeasure {
     mean.add(plane.seen.normal,
              relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
   }
-  // Adds one block of a share that lies where the surface is one plane.
-  template <class Samples>
-  VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, Samples& samples,
+  // Adds one block of a share that lies where the surface is one plane. `crossed`: crossed_in_turn,
+  // or what returns the same sooner.
+  template <class Crossed>
+  VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, const Crossed& crossed,
                         CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const double distance = plane.distance(widen(block.center));
     if (distance >= block.radius) return;
     if (distance <= -block.radius) {
       add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
-      samples.add_whole_block(cell_.masses[b], result.sum);
       return;
     }
-    const CrossedSums sums =
-        samples.crossed(plane, cell_.samples + block.begin, block.end - block.begin);
+    const CrossedSums sums = crossed(plane, cell_.samples + block.begin, block.end - block.begin);
     add_crossed(widen(block.center), plane, sums, result);
   }
   VPM_HD const Surface& surface() const { return surface_; }
@@ -337,21 +333,8 @@ class CellMeasure {
   Vec3 center_;  // in the surface's frame
 };
 
-// What is told beside of what samples and blocks add, to those that note how a share's part behind
-// the surface changes (SlopeNotes). Others do not.
-struct WithoutNotes {
-  VPM_HD void begin_share() const {}
-  // After a block that counts whole, or not at all: the sum of the share so far.
-  VPM_HD void add_whole_block(const BlockMass&, const ToolSum&) const {}
-  // A sample of which this weight is pushed along a normal, tool axes: one that is cut at this
-  // signed distance, or wholly behind the surface.
-  VPM_HD void add_cut(const CellSample&, double, double, Vec3) const {}
-  VPM_HD void add_behind(const SharePiece&, Vec3) const {}
-  VPM_HD void end_share(Vec3, const ToolSum&) const {}
-};
-
 // The samples of a block that the surface may cut, one after another.
-struct SamplesInTurn : WithoutNotes {
+struct SamplesInTurn {
   template <class Measure, class Near>
   VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
                   const Near& near, CellResult& result) const {

@@ -14,12 +14,6 @@ namespace {
 template <class Surface>
 using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, ShareFlood<Surface>>;
 
-std::vector<double> cluster_weights(const SpatialLevel& level) {
-  std::vector<double> weights(level.roots().size());
-  for (std::uint32_t i = 0; i < level.size(); ++i) weights[level.root(i)] += level.mass(i).weight;
-  return weights;
-}
-
 }  // namespace
 
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
@@ -30,8 +24,6 @@ RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
       level_(tool, level),
       shares_(level_) {
   if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
-  if (options.coherent && options.reuse > 0)
-    contacts_.emplace(cluster_weights(level_), level_.groups().size(), reach_, options.reuse);
 }
 
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
@@ -55,10 +47,8 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
                             Result& result) {
   const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
   const PointsOfSphere points(cloud, pose);
-  ContactMemory* const contacts = this->contacts<Surface>();
-  if (contacts != nullptr) contacts->turn(cloud.serial(), to_surface);
   ShareClassifier classifier(tool_, reach_, level_, surface, to_surface,
-                             counts_points_ ? &points : nullptr, contacts, shares_);
+                             counts_points_ ? &points : nullptr, shares_);
   ParallelRegion region;
   result.points = classifier.run(region);
   CutShares cut(tool_, level_, to_surface, shares_);
@@ -69,94 +59,47 @@ void RefinedMeasure::run_on(const Surface& surface, const Pose& to_world,
   result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
   result.inside = add_up(surface, to_surface, inside, region, sum);
   if (!memory_) return;
-  const bool counts_any = result.boundary + result.inside > 0;
-  if (counts_any || contacts != nullptr)
+  if (result.boundary + result.inside > 0)
     remember(surface, to_surface, to_world, inside);
   else
     memory_->turn();  // in free space there is nothing to look for
-}
-
-template <class Known, class Rows>
-void RefinedMeasure::for_clusters(std::uint32_t begin, std::uint32_t end,
-                                  const ContactMemory* contacts, const Known& known,
-                                  const Rows& rows) const {
-  const auto first_row = [&](std::uint32_t root) {
-    return root < level_.roots().size() ? level_.cluster(root).begin : level_.size();
-  };
-  std::uint32_t row = first_row(begin);
-  for (std::uint32_t root = begin; contacts != nullptr && root < end; ++root) {
-    if (contacts->use_of(root) == ContactMemory::Use::none) continue;
-    rows(row, first_row(root));
-    known(root);
-    row = first_row(root + 1);
-  }
-  rows(row, first_row(end));
 }
 
 template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
                                      const Inside& inside, ParallelRegion& region, ToolSum& sum) {
   constexpr std::size_t kGrain = 8;
-  ContactMemory* const contacts = this->contacts<Surface>();
+  const auto first_row = [&](std::size_t root) {
+    return root < level_.roots().size() ? level_.cluster(static_cast<std::uint32_t>(root)).begin
+                                        : level_.size();
+  };
   std::atomic<std::uint32_t> all{0};
   region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     ToolSum of_all;
-    std::uint32_t count = 0;
-    for_clusters(
-        static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), contacts,
-        [&](std::uint32_t root) {
-          if (contacts->is_begun(root)) {
-            const Contact& contact = end_contact(surface, to_surface, inside, root);
-            of_all.add(contact.sum);
-            count += contact.inside;
-          } else {
-            contacts->add(root, of_all);
-            count += contacts->inside(root);
-          }
-        },
-        [&](std::uint32_t first, std::uint32_t last) {
-          count += add_up(surface, to_surface, inside, first, last, of_all,
-                          [](std::uint32_t, const ToolSum&) {});
-        });
+    const std::uint32_t count =
+        add_up(surface, to_surface, inside, first_row(begin), first_row(end), of_all);
     sum.add_atomically(of_all);
     if (count > 0) all.fetch_add(count, std::memory_order_relaxed);
   });
   return all;
 }
 
-template <class Surface, class Inside, class Taken>
+template <class Surface, class Inside>
 std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surface,
                                      const Inside& inside, std::uint32_t begin, std::uint32_t end,
-                                     ToolSum& sum, const Taken& taken) {
+                                     ToolSum& sum) {
   std::uint32_t last_cut = kNoRow, count = 0;
   for_rows_in(Cell::cut, shares_.cells, begin, end,
               [&](std::uint32_t i) { sum.add(shares_.results[i].sum); });
   for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
     const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
     sum.add(part);
-    taken(i, part);
     if (part.volume.value != 0)
       ++count;
     else
       shares_.cells[i] = Cell::free;  // hidden, not inside
   });
   return count;
-}
-
-// Of a cluster that was read at this pose: what is behind the surface, to be used again.
-template <class Surface, class Inside>
-const Contact& RefinedMeasure::end_contact(const Surface& surface, const Pose& to_surface,
-                                           const Inside& inside, std::uint32_t root) {
-  Contact& contact = contacts_->begun(root);
-  const ShareCluster& rows = level_.cluster(root);
-  const auto note = [&](std::uint32_t i, const ToolSum& part) {
-    Vec3 force = part.force_terms();  // without what has been noted of it
-    if (shares_.cells[i] == Cell::partial) force -= shares_.results[i].sum.force_terms();
-    contact.slopes.add_pushed(force, reach_.inverse * level_.mass(i).centroid);
-  };
-  contact.inside = add_up(surface, to_surface, inside, rows.begin, rows.end, contact.sum, note);
-  contacts_->end(root);
-  return contact;
 }
 
 template <class Surface, class Inside>
@@ -207,22 +150,11 @@ void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, co
       memory_->remember(i);
     }
   };
-  const auto keep_rows = [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = next_busy(shares_.cells, begin, end); i < end;) {
-      const std::uint32_t root = level_.root(i);
-      keep_cluster(root);
-      i = next_busy(shares_.cells, level_.cluster(root).end, end);
-    }
-  };
-  for_clusters(
-      0, static_cast<std::uint32_t>(level_.roots().size()), contacts<Surface>(),
-      [&](std::uint32_t root) {
-        if (contacts_->is_empty(root)) return;
-        if (contacts_->use_of(root) == ContactMemory::Use::anew ||
-            !memory_->keep(root, level_.cluster(root)))
-          keep_cluster(root);
-      },
-      keep_rows);
+  for (std::uint32_t i = next_busy(shares_.cells, 0, level_.size()); i < level_.size();) {
+    const std::uint32_t root = level_.root(i);
+    keep_cluster(root);
+    i = next_busy(shares_.cells, level_.cluster(root).end, level_.size());
+  }
   memory_->turn();
 }
 

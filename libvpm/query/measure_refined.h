@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
-#include "libvpm/query/contact_memory.h"
 #include "libvpm/query/pose_memory.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
@@ -30,7 +29,6 @@ class RefinedMeasure {
   // Of a coherent sequence: the next pose is seen alone.
   void forget() {
     if (memory_) memory_->forget();
-    if (contacts_) contacts_->forget();
   }
 
  private:
@@ -42,26 +40,13 @@ class RefinedMeasure {
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
                        ParallelRegion& region, ToolSum& sum);
-  // Of these rows. Calls taken(row, part) for those that are not cut.
-  template <class Surface, class Inside, class Taken>
-  std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       std::uint32_t begin, std::uint32_t end, ToolSum& sum, const Taken& taken);
+  // Adds those of rows [begin, end).
   template <class Surface, class Inside>
-  const Contact& end_contact(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                             std::uint32_t root);
+  std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
+                       std::uint32_t begin, std::uint32_t end, ToolSum& sum);
   template <class Surface, class Inside>
   ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                  std::uint32_t row, std::uint32_t& last_cut) const;
-  // Null where every pose is read anew.
-  template <class Surface>
-  ContactMemory* contacts() {
-    return Surface::kTellsInside && contacts_ ? &*contacts_ : nullptr;
-  }
-  // Of clusters [begin, end): calls known(cluster) for those that are known as a whole, and
-  // rows(begin, end) for the shares of the others.
-  template <class Known, class Rows>
-  void for_clusters(std::uint32_t begin, std::uint32_t end, const ContactMemory* contacts,
-                    const Known& known, const Rows& rows) const;
   template <class Surface, class Inside>
   void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                 Inside& inside);
@@ -72,7 +57,6 @@ class RefinedMeasure {
   SpatialLevel level_;
   ShareStates shares_;
   std::optional<PoseMemory> memory_;
-  std::optional<ContactMemory> contacts_;  // of images
 };
 
 }  // namespace vpm

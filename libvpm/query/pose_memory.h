@@ -46,14 +46,6 @@ class PoseMemory {
     next_.known[index] = true;
     next_.remembered.push_back({index, cluster.begin, cluster.end});
   }
-  // The same of a cluster as the last time; whether it was known then.
-  bool keep(std::uint32_t index, const ShareCluster& cluster) {
-    if (!last_.known[index]) return false;
-    remember(index, cluster, last_.feet[index]);
-    std::copy(last_.inside.begin() + cluster.begin, last_.inside.begin() + cluster.end,
-              next_.inside.begin() + cluster.begin);
-    return true;
-  }
   bool is_known(std::uint32_t cluster) const { return next_.known[cluster] != 0; }
   // Of a cluster that is known.
   void remember(std::uint32_t share) { next_.inside[share] = true; }

@@ -85,15 +85,6 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
                 "coherent poses are a matter of the refined measure on the CPU; leave the other "
                 "measure or device out");
   }
-  if (!(options.reuse >= 0 && options.reuse <= QueryOptions::kMostReuse * tool.reach)) {
-    throw Error(ErrorKind::usage,
-                "what was read of the surface can be used again until the tool has moved by a "
-                "tenth of its reach at most: " +
-                    std::to_string(1e3 * QueryOptions::kMostReuse * tool.reach) + " mm");
-  }
-  if (options.reuse > 0 && !options.coherent) {
-    throw Error(ErrorKind::usage, "only coherent poses can use again what was read of the surface");
-  }
   if (options.shadows == Shadows::solid && options.measure == Measure::paper) {
     throw Error(ErrorKind::usage,
                 "solid shadows are a matter of the refined measure; leave the other measure out");

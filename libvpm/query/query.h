@@ -29,9 +29,8 @@ class Query {
  public:
   // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
   // model has no such level, coherence is asked of another measure or device, or solid shadows of
-  // another measure, reuse of poses that are not coherent or too far apart, the stiffness is not
-  // positive or so large that forces overflow, or a device is to stand by for too long. The model
-  // must be one that validate() of tool_model.h accepts.
+  // another measure, the stiffness is not positive or so large that forces overflow, or a device is
+  // to stand by for too long. The model must be one that validate() of tool_model.h accepts.
   Query(const ToolModel& tool, const QueryOptions& options);
 
   // `pose` maps tool to world coordinates; a rotation that is rounded is taken for the nearest one

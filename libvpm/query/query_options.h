@@ -19,11 +19,6 @@ struct QueryOptions {
   Device device = {};     // device_from_text(); the tool's level is copied there
   bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
                           // surface stays inside until it comes out; refined measure, on the CPU
-  // Of coherent poses, in images: how far any place of the tool may move, m, while what was read of
-  // the surface is used again, to first order. README.md, "Coherent poses", has what that saves and
-  // what it costs. 0: each pose is read anew. At most kMostReuse of the tool's reach.
-  double reuse = 0;
-  static constexpr double kMostReuse = 0.1;
   bool counts_points = true;  // false: no Result::points. The refined measure does without them:
                               // README.md has what that saves
   // Of a device, with the refined measure, in images, without counted points: how long it stays

@@ -1,15 +1,13 @@
 // The first step of the refined measure: how the surface meets each share. Groups of clusters are
 // looked at before clusters, clusters before shares: what holds for a ball holds for the balls in
-// it. Where poses follow each other, what is known of a cluster is not read again.
+// it.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cell_samples.h"
-#include "libvpm/query/contact_memory.h"
 #include "libvpm/query/patch.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/share_states.h"
@@ -20,18 +18,16 @@ template <class Surface>
 class ShareClassifier {
  public:
   // `points`: those of the cloud, to be counted in the spheres that the surface may pass; null
-  // where nobody asks for their number. `memory`: of what was read at poses before, and what will
-  // be of this one; null where every pose is read anew.
+  // where nobody asks for their number.
   ShareClassifier(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
                   const Surface& surface, const Pose& to_surface, const PointsOfSphere* points,
-                  ContactMemory* memory, ShareStates& states)
+                  ShareStates& states)
       : tool_(tool),
         reach_(reach),
         level_(level),
         surface_(surface),
         to_surface_(to_surface),
         points_(points),
-        memory_(memory),
         states_(states) {}
 
   // Returns the number of points in spheres.
@@ -50,30 +46,23 @@ class ShareClassifier {
   using Look = typename Surface::Look;
 
   std::uint32_t classify_group(std::uint32_t index) {
-    if (memory_ != nullptr && memory_->knows_free_group(index)) return 0;
     const ShareGroup& group = level_.groups()[index];
     const Vec3 center = to_surface_ * group.ball.center;
-    const double reach = group.ball.reach + reused_way();
-    const bool tells = unknown_roots(group) > 1 && surface_.tells_of_parts(center, reach);
+    const bool tells =
+        group.end - group.begin > 1 && surface_.tells_of_parts(center, group.ball.reach);
     Look look;
-    if (tells) look = surface_.look_at_ball(center, reach);
+    if (tells) look = surface_.look_at_ball(center, group.ball.reach);
     if (tells && look.side == Side::free) {
       states_.set(group.ball, Cell::free, Passage::closed);
-      forget(group);
-      if (memory_ != nullptr) memory_->remember_free_group(index);
       return 0;
     }
     std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const ShareCluster& part = level_.cluster(root);
-      if (uses_again(root)) {
-        found += count_points(part);
-      } else if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach)) {
+      if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach))
         states_.set(part, Cell::free, Passage::closed);
-        forget(root);
-      } else {
+      else
         found += classify(root);
-      }
     }
     return found;
   }
@@ -81,14 +70,6 @@ class ShareClassifier {
   std::uint32_t classify(std::uint32_t root) {
     const ShareCluster& whole = level_.cluster(root);
     const Vec3 center = to_surface_ * whole.center;
-    const Side stays = side_on_the_way(center, whole.reach);
-    if (stays == Side::free) {
-      states_.set(whole, Cell::free, Passage::closed);
-      memory_->remember_free(root);
-      return 0;
-    }
-    forget(root);
-    if (stays == Side::behind) memory_->begin(root);
     const Look look = surface_.look_at_ball(center, whole.reach);
     const bool may_be_patch = is_patch(whole.reach, reach_.length);
     if (look.side == Side::mixed) {
@@ -96,7 +77,7 @@ class ShareClassifier {
       const bool is_crossed =
           may_be_patch && sees_patch(surface_, look, center, whole.reach, ReadTogether{}, plane);
       if (is_crossed) states_.planes[root] = {plane, to_surface_};
-      return classify_mixed(root, look, is_crossed);
+      return is_crossed ? classify_crossed(root, look) : classify_nodes(root);
     }
     if (look.side == Side::uncut && may_be_patch) {
       states_.set(whole, Cell::open, Passage::middle);
@@ -121,85 +102,9 @@ class ShareClassifier {
                       : Passage::unknown);
   }
 
-  // Of a cluster through which the surface passes, as one plane or not.
-  std::uint32_t classify_mixed(std::uint32_t root, const Look& look, bool is_crossed) {
-    if constexpr (Surface::kTellsInside) {
-      if (memory_ != nullptr) {
-        Contact& contact = memory_->begin(root);
-        const std::uint32_t found =
-            is_crossed ? classify_crossed(root, look, SlopeNotes(reach_, contact.slopes))
-                       : classify_nodes(root, SamplesWithSlopes(reach_, contact.slopes));
-        const ShareCluster& cluster = level_.cluster(root);
-        if (next_busy(states_.cells, cluster.begin, cluster.end) == cluster.end)
-          contact.clearance = is_crossed ? clearance(root) : clearance_of_blocks(root);
-        return found;
-      }
-    }
-    return is_crossed ? classify_crossed(root, look, CrossedTogether{})
-                      : classify_nodes(root, SamplesOnHost<Surface>{});
-  }
-
-  // What is known of clusters from poses before, and remembered for those that follow.
-  std::uint32_t unknown_roots(const ShareGroup& group) const {
-    std::uint32_t count = group.end - group.begin;
-    if (memory_ == nullptr) return count;
-    for (std::uint32_t root = group.begin; root < group.end; ++root) count -= memory_->knows(root);
-    return count;
-  }
-  // How far the tool may move while this is of use.
-  double reused_way() const { return memory_ != nullptr ? memory_->limit() : 0; }
-  // On which side a ball stays on that way.
-  Side side_on_the_way(Vec3 center, double radius) const {
-    return memory_ != nullptr ? surface_.look_at_ball(center, radius + reused_way()).side
-                              : Side::mixed;
-  }
-  bool uses_again(std::uint32_t root) { return memory_ != nullptr && memory_->use(root); }
-  void forget(std::uint32_t root) {
-    if (memory_ != nullptr) memory_->forget(root);
-  }
-  void forget(const ShareGroup& group) {
-    for (std::uint32_t root = group.begin; root < group.end; ++root) forget(root);
-  }
-  // Of shares, none of which is behind the surface: of blocks that it does not reach on that way.
-  Clearance clearance_of_blocks(std::uint32_t root) const {
-    const ShareCluster& cluster = level_.cluster(root);
-    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-      const CellView share = level_.cell(i);
-      const CellMeasure measure = this->measure(share);
-      for (std::uint32_t b = share.begin; b < share.end; ++b) {
-        CellBlock wider = share.blocks[b];
-        wider.radius += static_cast<float>(reused_way());
-        const auto look = measure.look_at(wider);
-        if (look.side == Side::free) continue;
-        if (!look.is_flat || look.tangent.distance(look.center) < wider.radius) return {};
-      }
-    }
-    return {HUGE_VAL, {}, {}, 0};
-  }
-  // Of shares that a plane does not reach.
-  Clearance clearance(std::uint32_t root) const {
-    const ShareCluster& cluster = level_.cluster(root);
-    const CrossingPlane& plane = states_.planes[root];
-    double least = HUGE_VAL;
-    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-      const CellView share = level_.cell(i);
-      if (plane.distance(share.center) - share.reach >= least) continue;
-      for (std::uint32_t b = share.begin; b < share.end; ++b) {
-        const CellBlock& block = share.blocks[b];
-        if (plane.distance(widen(block.center)) - block.radius >= least) continue;
-        for (std::uint32_t k = block.begin; k < block.end; ++k) {
-          const CellSample& sample = share.samples[k];
-          least = std::min(least, plane.distance(widen(sample.center)) - sample.radius);
-        }
-      }
-    }
-    return {reach_.inverse * least, plane.normal, reach_.inverse * cluster.center,
-            reach_.inverse * cluster.reach};
-  }
-
-  // Of a cluster that is no patch.
-  template <class Samples>
-  std::uint32_t classify_nodes(std::uint32_t root, Samples&& samples) {
+  // Classifies the shares of a cluster that the surface crosses otherwise than as one plane.
+  std::uint32_t classify_nodes(std::uint32_t root) {
+    SamplesOnHost<Surface> samples;
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
     const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
     std::uint32_t found = 0, node = first;
@@ -220,8 +125,7 @@ class ShareClassifier {
     return found;
   }
 
-  template <class Samples>
-  std::uint32_t classify_share(std::uint32_t i, Samples& samples) {
+  std::uint32_t classify_share(std::uint32_t i, SamplesOnHost<Surface>& samples) {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
     const Look look = surface_.look_at_ball(center, view.reach);
@@ -241,9 +145,8 @@ class ShareClassifier {
   }
 
   // Of a patch through which the surface passes as one plane. Where that is further from a node
-  // than it reaches, it is so from each share in it. `crossed`: CrossedTogether or SlopeNotes.
-  template <class Crossed>
-  std::uint32_t classify_crossed(std::uint32_t root, const Look& look, Crossed crossed) {
+  // than it reaches, it is so from each share in it.
+  std::uint32_t classify_crossed(std::uint32_t root, const Look& look) {
     constexpr double kRounding = 1e-9;  // of the tool's reach: far above that of a distance
     const CrossingPlane& plane = states_.planes[root];
     const std::vector<ShareTreeNode>& nodes = level_.nodes();
@@ -262,8 +165,7 @@ class ShareClassifier {
         node = next;
       } else {
         if (next == node + 1) {
-          for (std::uint32_t i = part.begin; i < part.end; ++i)
-            classify_crossed(i, plane, look, crossed);
+          for (std::uint32_t i = part.begin; i < part.end; ++i) classify_crossed(i, plane, look);
         }
         ++node;
       }
@@ -272,9 +174,7 @@ class ShareClassifier {
   }
 
   // What a share's own pixels show to be free is free, whatever the mean of all says.
-  template <class Crossed>
-  void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look,
-                        Crossed& crossed) {
+  void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look) {
     const CellView view = level_.cell(i);
     const double distance = plane.distance(view.center);
     const Vec3 center = to_surface_ * view.center;
@@ -288,9 +188,8 @@ class ShareClassifier {
       CellResult& result = states_.results[i];
       result = {};
       const CellMeasure measure = this->measure(view);
-      crossed.begin_share();
       for (std::uint32_t b = view.begin; b < view.end; ++b)
-        measure.add_block(b, plane, crossed, result);
+        measure.add_block(b, plane, SamplesOnHost<Surface>::crossed, result);
       take_result(i, Passage::patch);
     }
   }
@@ -306,12 +205,6 @@ class ShareClassifier {
       states_.set(i, Cell::free, Passage::closed);
   }
 
-  // Points in the spheres of a cluster that was not looked at.
-  std::uint32_t count_points(const ShareCluster& cluster) const {
-    if (points_ == nullptr) return 0;
-    const Look look = surface_.look_at_ball(to_surface_ * cluster.center, cluster.reach);
-    return look.side == Side::mixed ? count_points(cluster, look) : 0;
-  }
   // Points in the spheres of a patch that was looked at.
   std::uint32_t count_points(const ShareCluster& patch, const Look& look) const {
     if (points_ == nullptr) return 0;
@@ -337,7 +230,6 @@ class ShareClassifier {
   const Surface& surface_;
   const Pose& to_surface_;
   const PointsOfSphere* points_;
-  ContactMemory* memory_;
   ShareStates& states_;
 };
 

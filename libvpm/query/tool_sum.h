@@ -9,12 +9,6 @@
 
 namespace vpm {
 
-// By how much a sum changes, in its terms.
-struct SumChange {
-  double part = 0;
-  Vec3 force, torque;
-};
-
 // Terms are relative to the tool: volumes in parts of its volume, arms in parts of its reach. The
 // parts of a tool do not overlap, so every sum lies in [-1, 1], far from the limit of 8 of 60
 // fractional bits.
@@ -48,19 +42,12 @@ struct ToolSum {
     }
   }
 
-  void add(const SumChange& change) {
-    volume.add(change.part);
-    force[0].add(change.force.x), force[1].add(change.force.y), force[2].add(change.force.z);
-    torque[0].add(change.torque.x), torque[1].add(change.torque.y);
-    torque[2].add(change.torque.z);
-  }
-
-  VPM_HD Vec3 force_terms() const { return {force[0].real(), force[1].real(), force[2].real()}; }
   // In world axes; `rotation` takes the axes of the terms there.
   VPM_HD void write(const ToolModel& tool, const Rotation& rotation, Result& result) const {
     result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // of shares that sum to 1
     result.volume = tool.volume * result.volume_fraction;
-    result.wrench.force = tool.volume * (rotation * force_terms());
+    result.wrench.force =
+        tool.volume * (rotation * Vec3{force[0].real(), force[1].real(), force[2].real()});
     result.wrench.torque =
         tool.volume *
         (tool.reach * (rotation * Vec3{torque[0].real(), torque[1].real(), torque[2].real()}));

@@ -13,12 +13,6 @@ template <class Real>
   return away * away * (2 + distance) / 4;
 }
 
-// By how much that grows where the distance shrinks, per radius.
-template <class Real>
-[[gnu::always_inline]] VPM_HD constexpr Real slope_of_cut_ball(const Real& distance) {
-  return 3 * (1 - distance) * (1 + distance) / 4;
-}
-
 // Fraction of a ball on the inner side of a plane at signed distance `distance` (in radii;
 // negative: the centre is inside). Exact, monotone, 0 and 1 outside of [-1, 1].
 VPM_HD constexpr double ball_fraction_inside(double distance) {

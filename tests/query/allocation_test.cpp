@@ -15,7 +15,6 @@ struct Case {
   const char* name;
   Measure measure;
   bool camera, coherent;
-  double reuse = 0;
 };
 
 class Allocation : public ::testing::TestWithParam<Case> {
@@ -29,8 +28,7 @@ TEST_P(Allocation, NoneAfterTheFirstQuery) {
   const Cloud seen = testing::see(synthetic::make_scene("inverted-ball"));
   const PreparedCloud cloud(tested.camera ? seen : without_camera(seen));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
-  Query query(tool,
-              {.measure = tested.measure, .coherent = tested.coherent, .reuse = tested.reuse});
+  Query query(tool, {.measure = tested.measure, .coherent = tested.coherent});
   const auto pose = [](int k) {  // moves from free space into contact
     return Pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.015 * k}};
   };
@@ -46,7 +44,6 @@ INSTANTIATE_TEST_SUITE_P(Measures, Allocation,
                          ::testing::Values(Case{"RefinedCamera", Measure::refined, true, false},
                                            Case{"RefinedPoints", Measure::refined, false, false},
                                            Case{"Coherent", Measure::refined, true, true},
-                                           Case{"Reuse", Measure::refined, true, true, 0.005},
                                            Case{"PaperCamera", Measure::paper, true, false}),
                          [](const ::testing::TestParamInfo<Case>& tested) {
                            return tested.param.name;

@@ -41,7 +41,7 @@ void time_frames(bool quick, Report& report);
 // A recording against a path of the tool of 5 s and more, at 1 kHz: latencies, the volume's profile
 // and the time of each frame for each level. `folder`: of the recording; it must tell its camera.
 // The path goes along the surface that the first frame shows in its middle, in and out of it. On
-// the CPU its poses are coherent ones, and a second pass reuses what was read.
+// the CPU its poses are coherent ones.
 void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOptions& options,
                 Report& report);
 

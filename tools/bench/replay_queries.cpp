@@ -188,31 +188,6 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
                               {"peer_voxels", kPeerVoxels}};
 }
 
-// How far results are from others: of the tool's volume, torques of its reach too.
-class Difference {
- public:
-  explicit Difference(const ToolModel& tool) : tool_(tool) {}
-
-  void add(const Result& a, const Result& b) {
-    const double by = std::abs(a.volume - b.volume) / tool_.volume;
-    volume_ = std::max(volume_, by);
-    sum_ += by;
-    ++count_;
-    force_ = std::max(force_, norm(a.wrench.force - b.wrench.force) / tool_.volume);
-    torque_ =
-        std::max(torque_, norm(a.wrench.torque - b.wrench.torque) / (tool_.volume * tool_.reach));
-  }
-  double mean() const { return sum_ / count_; }
-  double volume() const { return volume_; }
-  double force() const { return force_; }
-  double torque() const { return torque_; }
-
- private:
-  const ToolModel& tool_;
-  double volume_ = 0, force_ = 0, torque_ = 0, sum_ = 0;
-  int count_ = 0;
-};
-
 struct CoherentPath {
   std::string name;
   std::vector<Pose> poses;
@@ -220,21 +195,18 @@ struct CoherentPath {
 
 // Every pose by a query that knows the last ones, and by one that knows none.
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
-                    std::uint32_t level, double reuse, int rounds, Report& report) {
+                    std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
   Query stateless(tool.model, {.level = level, .counts_points = false}),
-      coherent(tool.model,
-               {.level = level, .coherent = true, .reuse = reuse, .counts_points = false});
+      coherent(tool.model, {.level = level, .coherent = true, .counts_points = false});
   Result alone, following;
   bool same = true;
-  Difference difference(tool.model);
   const auto pose = [&](int k) {
     return path.poses[static_cast<std::size_t>(k) % path.poses.size()];
   };
   const auto [a, b] = timed_in_turn(
       rounds * poses, poses / 4,
       [&](int k) {
-        if (k > 0) difference.add(following, alone);
         same = same && alone == following;
         alone = stateless.run(cloud, pose(k));
       },
@@ -244,24 +216,17 @@ void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const Co
                             {"path", path.name},
                             {"spheres", level},
                             {"step_mm", 1e3 * kCoherentStep},
-                            {"reuse_mm", 1e3 * reuse},
                             {"stateless_us", 1e6 * a.mean()},
                             {"stateless_p99_us", 1e6 * a.quantile(0.99)},
                             {"coherent_us", 1e6 * b.mean()},
                             {"coherent_p99_us", 1e6 * b.quantile(0.99)},
                             {"ratio", ratio},
                             {"same_bits", same},
-                            {"mean_volume_difference", difference.mean()},
-                            {"volume_difference", difference.volume()},
-                            {"force_difference", difference.force()},
-                            {"torque_difference", difference.torque()},
                             {"runs", a.size()}});
   char line[200];
-  std::snprintf(line, sizeof line,
-                "coherent, %-12s %7u spheres, reuse %.0f mm: %.1f us, stateless %.1f us: %.2f; "
-                "%s bits, volume within %.4f %% of the tool's\n",
-                path.name.c_str(), level, 1e3 * reuse, 1e6 * b.mean(), 1e6 * a.mean(), ratio,
-                same ? "same" : "other", 100 * difference.volume());
+  std::snprintf(
+      line, sizeof line, "coherent, %-12s %7u spheres: %.1f us, stateless %.1f us: %.2f; %s bits\n",
+      path.name.c_str(), level, 1e6 * b.mean(), 1e6 * a.mean(), ratio, same ? "same" : "other");
   report.summary += line;
 }
 
@@ -276,11 +241,8 @@ void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
       free{"free", circle(before, kRadius, poses)};
   set_thread_count(1);
   for (const std::uint32_t level : tool.levels) {
-    time_coherence(tool, cloud, free, level, 0, rounds, report);
-    for (const double reuse : {0.0, 1e-3, 2e-3, 3e-3, 5e-3}) {
-      if (reuse <= QueryOptions::kMostReuse * tool.model.reach)
-        time_coherence(tool, cloud, contact, level, reuse, rounds, report);
-    }
+    time_coherence(tool, cloud, free, level, rounds, report);
+    time_coherence(tool, cloud, contact, level, rounds, report);
   }
   set_thread_count(0);
 }

@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kRate = 1000;             // steps per second
 constexpr std::size_t kProfileEvery = 10;  // steps between two points of a volume profile
-constexpr double kReuse = 3e-3;            // m
 
 struct Stream {
   Recording recording;
@@ -164,37 +163,6 @@ void add_pass(const Pass& pass, std::uint32_t level, Report& report) {
   report.summary += line;
 }
 
-// A pass that uses again what was read of the surface, beside one that does not.
-void add_reusing_pass(const Pass& pass, const Pass& anew, std::uint32_t level, double reuse,
-                      Report& report) {
-  double largest = 0, sum = 0;
-  for (std::size_t k = 0; k < pass.profile.size(); ++k) {
-    const double by = std::abs(pass.profile[k] - anew.profile[k]);
-    largest = std::max(largest, by);
-    sum += by;
-  }
-  const Durations latency(pass.latencies), latency_anew(anew.latencies);
-  const double ratio = latency.mean() / latency_anew.mean();
-  report.results.push_back(
-      {{"part", "stream reusing"},
-       {"spheres", level},
-       {"reuse_mm", 1e3 * reuse},
-       {"mean_us", 1e6 * latency.mean()},
-       {"mean_us_anew", 1e6 * latency_anew.mean()},
-       {"ratio", ratio},
-       {"p99_us", 1e6 * latency.quantile(0.99)},
-       {"deadline_misses", latency.longer_than(1 / kRate)},
-       {"volume_difference", largest},
-       {"mean_volume_difference", sum / static_cast<double>(pass.profile.size())}});
-  char line[200];
-  std::snprintf(line, sizeof line,
-                "stream, reuse %.0f mm     %7u spheres: %.1f us mean, %.2f of the time; volume "
-                "within %.2f %% of the tool's, mean %.3f %%\n",
-                1e3 * reuse, level, 1e6 * latency.mean(), ratio, 100 * largest,
-                100 * sum / static_cast<double>(pass.profile.size()));
-  report.summary += line;
-}
-
 // One hash over the bits of many results.
 class ResultHash {
  public:
@@ -231,20 +199,15 @@ std::string soak_round(const Stream& stream, FrameReader& reader, const SampledP
 void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,
                 Report& report) {
   const Stream stream = read_stream(folder, suite.device);
-  const bool coherent = !suite.device.is_cuda();
   const SampledPath path = path_through(stream, tool.model, suite.quick ? 1 : 5);
   set_thread_count(1);  // for the loop; frames are prepared beside it
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
-    QueryOptions options{
-        .level = level, .device = suite.device, .coherent = coherent, .counts_points = false};
-    Query query(tool.model, options);
-    const Pass anew = pass_over(stream, path, query);
-    add_pass(anew, level, report);
-    if (!coherent) continue;
-    options.reuse = kReuse;
-    Query reusing(tool.model, options);
-    add_reusing_pass(pass_over(stream, path, reusing), anew, level, kReuse, report);
+    Query query(tool.model, {.level = level,
+                             .device = suite.device,
+                             .coherent = !suite.device.is_cuda(),
+                             .counts_points = false});
+    add_pass(pass_over(stream, path, query), level, report);
   }
   set_thread_count(0);
 }

@@ -34,7 +34,7 @@ struct Arguments {
   std::string max_error;
   std::optional<double> deadline_us;
   bool for_scene = false, coherent = false, no_points = false, raw_points = false;
-  double reuse = 0;
+  std::string reuse;  // gone
   std::optional<double> stiffness;
   std::string coupling;
   std::size_t batch = 1;
@@ -76,12 +76,7 @@ void declare(CLI::App& app, Arguments& a) {
       "--coherent", a.coherent,
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
-  app.add_option("--reuse", a.reuse,
-                 "m: with --coherent, in depth images, how far the tool may move while what was "
-                 "read of the surface is used again, to first order: quicker, nearly the same "
-                 "results; 0 reads anew at every pose")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  app.add_option("--reuse", a.reuse)->group("");
   app.add_flag(
       "--no-points", a.no_points,
       "Do not count the cloud's points in spheres: quicker with many spheres; lines then have "
@@ -133,8 +128,8 @@ void check(const Arguments& a, const CommonOptions& common) {
         "(--stiffness in N/m^3)");
   if (a.coherent && (a.batch > 1 || a.deadline_us))
     wrong("--coherent goes pose by pose at one level; leave --batch and --deadline-us out");
-  if (a.reuse > 0 && !a.coherent)
-    wrong("--reuse is for poses that are one motion: give --coherent too");
+  if (!a.reuse.empty())
+    wrong("--reuse is gone: leave it out; a coarser --level trades accuracy for speed");
   if (a.batch > 1 && (a.deadline_us || !a.coupling.empty() || replays))
     wrong("--batch answers many poses at once; leave --deadline-us, --coupling and --frames out");
   if (a.standby_us > 0 && (!a.no_points || a.batch > 1 || a.measure == "paper" || a.coherent))
@@ -372,7 +367,6 @@ void run(const Tool& tool, const Arguments& a) {
   options.stiffness = a.stiffness.value_or(1);
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
-  options.reuse = a.reuse;
   options.counts_points = !a.no_points;
   options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);

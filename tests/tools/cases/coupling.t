@@ -36,11 +36,9 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --mea
 2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
 [2]
 
-# Steps longer than the reuse length reuse nothing.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent > anew.jsonl
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001 | cmp - anew.jsonl
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --reuse 0.001
-2> vpm-query: error: --reuse is for poses that are one motion: give --coherent too
+# --reuse is refused with what to do instead.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001
+2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
 [2]
 
 # Parameters that cannot stand the scene's stiffness are warned about, with a cure.
