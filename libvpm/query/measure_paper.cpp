@@ -6,8 +6,7 @@
 
 namespace vpm {
 
-PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level, PointLocation location)
-    : tool_(tool), level_(level), location_(location) {
+PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level) : tool_(tool), level_(level) {
   contacts_.resize(level.sphere_count);
   normals_.resize(level.sphere_count);
   depth_.resize(level.sphere_count);
@@ -36,7 +35,7 @@ std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose)
     const Vec3 n = to_tool * widen(cloud.normals()[point]);
     PaperContact::of_point(s, x, n).add_to(contacts_[i], add_atomically);
   };
-  return for_points_inside(cloud, tool_, level_, location_, pose, ranges_, add);
+  return for_points_inside(cloud, tool_, level_, pose, ranges_, add);
 }
 
 // Step 3: a sphere with a point in it is boundary; its normal is the mean of its points'.

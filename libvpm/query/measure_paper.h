@@ -15,7 +15,7 @@ namespace vpm {
 
 class PaperMeasure {
  public:
-  PaperMeasure(const ToolModel& tool, const Level& level, PointLocation location);
+  PaperMeasure(const ToolModel& tool, const Level& level);
 
   // `states` receives one entry per sphere. Allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
@@ -32,7 +32,6 @@ class PaperMeasure {
 
   const ToolModel& tool_;
   const Level& level_;
-  PointLocation location_;
   std::vector<PaperContact> contacts_;
   std::vector<Vec3> normals_;  // n_s of boundary, n_j of inside spheres, tool axes
   std::vector<std::uint32_t> front_, next_front_;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
-#include "libvpm/query/query_options.h"
 #include "libvpm/query/sphere_location.h"
 #include "libvpm/surface/prepared_cloud.h"
 
@@ -19,8 +18,8 @@ using PointRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 // number of distinct points inside. `ranges` is scratch.
 template <class Visit>
 std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& tool,
-                                const Level& level, PointLocation location, const Pose& pose,
-                                PointRanges& ranges, const Visit& visit) {
+                                const Level& level, const Pose& pose, PointRanges& ranges,
+                                const Visit& visit) {
   const Pose to_tool = relative_to(pose, {{}, cloud.origin()});
   const Vec3 center = pose.rotation * tool.center_of_mass + (pose.translation - cloud.origin());
   ranges.clear();
@@ -42,11 +41,7 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
           inside = true;
           visit(sphere, k, x);
         };
-        if (location == PointLocation::grid) {
-          for_spheres_at(grid, tool.spheres.data(), x, take);
-        } else {
-          for_spheres_at(level.hierarchy, tool.spheres.data(), x, take);
-        }
+        for_spheres_at(grid, tool.spheres.data(), x, take);
         found += inside;
       }
     }

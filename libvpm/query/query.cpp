@@ -92,7 +92,7 @@ Query::Query(const ToolModel& tool, const QueryOptions& options)
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);
   } else if (options.measure == Measure::paper) {
-    paper_ = std::make_unique<PaperMeasure>(tool, level_, options.location);
+    paper_ = std::make_unique<PaperMeasure>(tool, level_);
   } else {
     refined_ = std::make_unique<RefinedMeasure>(tool, level_, options);
   }

@@ -9,13 +9,9 @@
 
 namespace vpm {
 
-// How a point finds its sphere; the results are the same bits.
-enum class PointLocation { grid, hierarchy };
-
 struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
-  PointLocation location = PointLocation::grid;
   Device device = {};     // device_from_text(); the tool's level is copied there
   bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
                           // surface stays inside until it comes out; refined measure, on the CPU

@@ -1,5 +1,4 @@
-// Which spheres of a packing hold a point strictly inside: by the grid (fast) or by the hierarchy
-// (the paper's Algorithm 1). Both visit the same spheres.
+// Finds the spheres of a packing that hold a point strictly inside, by the grid of the tool model.
 #pragma once
 
 #include <cmath>
@@ -25,7 +24,7 @@ inline GridView view_of(const PointLocationGrid& grid) {
   return {grid.low, grid.cell, grid.nx, grid.ny, grid.nz, grid.begin.data(), grid.spheres.data()};
 }
 
-// Tool coordinates. `visit(index)` for every sphere that holds x.
+// Calls visit(index) for every sphere that holds x, a place in tool coordinates.
 template <class Visit>
 VPM_HD void for_spheres_at(const GridView& grid, const Sphere* spheres, Vec3 x,
                            const Visit& visit) {
@@ -37,20 +36,6 @@ VPM_HD void for_spheres_at(const GridView& grid, const Sphere* spheres, Vec3 x,
       static_cast<std::size_t>(at.x);
   for (std::uint32_t k = grid.begin[cell]; k < grid.begin[cell + 1]; ++k) {
     if (strictly_inside(spheres[grid.spheres[k]], x)) visit(grid.spheres[k]);
-  }
-}
-
-template <class Visit>
-void for_spheres_at(const Hierarchy& tree, const Sphere* spheres, Vec3 x, const Visit& visit,
-                    std::uint32_t node_index = 0) {
-  const HierarchyNode& node = tree.nodes[node_index];
-  if (!strictly_inside(node.bound, x)) return;
-  for (std::uint32_t k = node.begin; k < node.end; ++k) {
-    if (node.children_are_leaves == 0) {
-      for_spheres_at(tree, spheres, x, visit, k);
-    } else if (strictly_inside(spheres[tree.leaves[k]], x)) {
-      visit(tree.leaves[k]);
-    }
   }
 }
 

@@ -103,18 +103,5 @@ TEST(PaperMeasure, TorqueDoesTheWorkOfTurning) {
   EXPECT_GT(dot(at_rest.wrench.torque, cross(arm, at_rest.wrench.force)), 0);
 }
 
-TEST(PaperMeasure, GridAndHierarchyGiveTheSameBits) {
-  const ToolModel tool = lattice_cube(0.2, 9, 1);
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("inverted-ball")));
-  QueryOptions grid, tree;
-  grid.measure = tree.measure = Measure::paper;
-  tree.location = PointLocation::hierarchy;
-  Query by_grid(tool, grid), by_tree(tool, tree);
-  for (int k = 0; k < 12; ++k) {
-    const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.02 * k}};
-    testing::expect_equal(by_grid.run(cloud, pose), by_tree.run(cloud, pose));
-  }
-}
-
 }  // namespace
 }  // namespace vpm

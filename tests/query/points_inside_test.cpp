@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "libvpm/cloud/cloud.h"
+#include "tests/query/lattice_model.h"
 
 namespace vpm {
 namespace {
@@ -41,6 +43,41 @@ TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
   }
   EXPECT_GT(inside, 1000);
   EXPECT_LT(inside, 19000);
+}
+
+// Calls visit(index) for every sphere that holds x, by the paper's Algorithm 1.
+template <class Visit>
+void for_spheres_in_tree(const Hierarchy& tree, const std::vector<Sphere>& spheres, Vec3 x,
+                         const Visit& visit, std::uint32_t node_index = 0) {
+  const HierarchyNode& node = tree.nodes[node_index];
+  if (!strictly_inside(node.bound, x)) return;
+  for (std::uint32_t k = node.begin; k < node.end; ++k) {
+    if (node.children_are_leaves == 0)
+      for_spheres_in_tree(tree, spheres, x, visit, k);
+    else if (strictly_inside(spheres[tree.leaves[k]], x))
+      visit(tree.leaves[k]);
+  }
+}
+
+TEST(PointLocation, GridAndHierarchyFindTheSameSpheres) {
+  const ToolModel tool = testing::lattice_cube(0.2, 9, 1);
+  const Level& level = tool.levels[0];
+  const GridView grid = view_of(level.grid);
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> coordinate(-0.12, 0.12);  // beyond the cube too
+  int held = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3 x{coordinate(random), coordinate(random), coordinate(random)};
+    std::vector<std::uint32_t> by_grid, by_tree;
+    for_spheres_at(grid, tool.spheres.data(), x,
+                   [&](std::uint32_t sphere) { by_grid.push_back(sphere); });
+    for_spheres_in_tree(level.hierarchy, tool.spheres, x,
+                        [&](std::uint32_t sphere) { by_tree.push_back(sphere); });
+    std::sort(by_tree.begin(), by_tree.end());
+    ASSERT_EQ(by_grid, by_tree) << k;
+    held += !by_grid.empty();
+  }
+  EXPECT_GT(held, 5000);
 }
 
 }  // namespace

@@ -174,12 +174,8 @@ class Timing {
     const Pose deep{pose.rotation,
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
-                                Measure measure = Measure::refined,
-                                PointLocation location = PointLocation::grid) {
-      QueryOptions options;
-      options.measure = measure;
-      options.location = location;
-      Query query(model, options);
+                                Measure measure = Measure::refined) {
+      Query query(model, {.measure = measure});
       time(stage, spheres, runs_.fast, [&] { query.run(seen, at); });
     };
     time_query("query refined", cloud, pose);
@@ -207,7 +203,6 @@ class Timing {
                  [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
     }
     time_query("query paper", cloud, pose, Measure::paper);
-    time_query("query paper (hierarchy)", cloud, pose, Measure::paper, PointLocation::hierarchy);
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
