@@ -37,13 +37,13 @@ same=()
 for measure in refined paper; do
   for level in ${levels//,/ }; do
     ask=("${query[@]}" --measure "$measure" --level "$level" --poses "$work/poses.jsonl")
-    "${ask[@]}" --device cpu -o "$work/cpu.jsonl"
-    "${ask[@]}" --device cuda -o "$work/one.jsonl"
-    "${ask[@]}" --device cuda --batch 128 -o "$work/many.jsonl"
+    "${ask[@]}" --count-points --device cpu -o "$work/cpu.jsonl"
+    "${ask[@]}" --count-points --device cuda -o "$work/one.jsonl"
+    "${ask[@]}" --count-points --device cuda --batch 128 -o "$work/many.jsonl"
     same+=("$measure:$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
     [[ $measure == refined ]] || continue
-    "${ask[@]}" --no-points --device cpu -o "$work/cpu.jsonl" --force
-    "${ask[@]}" --no-points --device cuda --standby-us 2000 -o "$work/one.jsonl" --force
+    "${ask[@]}" --device cpu -o "$work/cpu.jsonl" --force
+    "${ask[@]}" --device cuda --standby-us 2000 -o "$work/one.jsonl" --force
     same+=("standby:$level=$(verdict cmp "$work/cpu.jsonl" "$work/one.jsonl")")
   done
 done

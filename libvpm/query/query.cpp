@@ -201,7 +201,7 @@ std::span<const SphereState> Query::states() const {
 }
 
 void Query::finish(Result& result) const {
-  if (!options_.counts_points) result.points.reset();
+  if (!options_.counts_points && options_.measure == Measure::refined) result.points.reset();
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
 }

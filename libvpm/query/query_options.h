@@ -12,11 +12,11 @@ namespace vpm {
 struct QueryOptions {
   Measure measure = Measure::refined;
   std::uint32_t level = 0;  // number of spheres; 0: the finest level of the model
-  Device device = {};     // device_from_text(); the tool's level is copied there
-  bool coherent = false;  // poses are those of a motion: a tool that passes wholly behind the
-                          // surface stays inside until it comes out; refined measure, on the CPU
-  bool counts_points = true;  // false: no Result::points. The refined measure does without them:
-                              // README.md has what that saves
+  Device device = {};       // device_from_text(); the tool's level is copied there
+  bool coherent = false;    // poses are those of a motion: a tool that passes wholly behind the
+                            // surface stays inside until it comes out; refined measure, on the CPU
+  bool counts_points = false;  // true: the refined measure counts Result::points, which takes up to
+                               // 2.5 times as long; the measure as printed counts them anyway
   // Of a device, with the refined measure, in images, without counted points: how long it stays
   // ready for the next pose, which then needs no launch, and does nothing else of this process
   // meanwhile; README.md, "Standing by". Microseconds, at most kLongestStandby.

@@ -113,7 +113,8 @@ TEST_F(Standby, MakesWayForWhatIsLaunched) {
   QueryOptions counting_options = standing_by(), paper_options = standing_by();
   counting_options.counts_points = true;
   paper_options.measure = Measure::paper;
-  Query counting(tool_, counting_options), paper(tool_, paper_options), counting_on_cpu(tool_, {}),
+  Query counting(tool_, counting_options), paper(tool_, paper_options),
+      counting_on_cpu(tool_, {.counts_points = true}),
       paper_on_cpu(tool_, {.measure = Measure::paper, .counts_points = false});
   const PreparedCloud points(without_camera(seen_));
   std::vector<Pose> poses(200);
@@ -163,9 +164,9 @@ TEST_F(Standby, HindersNobodyElse) {
     while (!ends) query.run(cloud_, pose_of(3));
   });
   // Would wait for as long as the loop goes on.
-  const Result expected = Query(tool_, {}).run(cloud_, pose_of(5));
+  const Result expected = Query(tool_, {.counts_points = true}).run(cloud_, pose_of(5));
   for (int k = 0; k < 20; ++k) {
-    Query counting(tool_, {.device = kDevice});
+    Query counting(tool_, {.device = kDevice, .counts_points = true});
     expect_equal(expected, counting.run(cloud_, pose_of(5)));
     const PreparedCloud another(seen_);
     expect_equal(expected, counting.run(another, pose_of(5)));

@@ -33,6 +33,7 @@ Cloud points(std::vector<Vec3f> positions, std::vector<Vec3f> normals, float rad
 Result ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose = {}) {
   QueryOptions options;
   options.measure = measure;
+  options.counts_points = true;
   return Query(tool, options).run(PreparedCloud(cloud), pose);
 }
 

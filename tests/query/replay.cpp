@@ -101,6 +101,7 @@ void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure
   QueryOptions options;
   options.measure = measure;
   options.device = device;
+  options.counts_points = true;
   Query query(tool, options);
   for (int k = 0; k < kPosesPerPath; ++k) {
     bytes.add(query.run(cloud, pose(numbers, at)));

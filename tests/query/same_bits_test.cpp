@@ -37,6 +37,7 @@ class SameBits : public ::testing::TestWithParam<Variant> {
                             Vec3 shift = {}) const {
     QueryOptions options;
     options.measure = GetParam().measure;
+    options.counts_points = true;
     Query query(tool, options);
     const PreparedCloud prepared(cloud);
     std::vector<Result> results(12);
@@ -69,6 +70,7 @@ TEST_P(SameBits, ForARoundedRotationAndTheNearestOne) {
   const PreparedCloud prepared(cloud());
   QueryOptions options;
   options.measure = GetParam().measure;
+  options.counts_points = true;
   Query query(tool, options);
   for (int k = 0; k < 12; ++k) {
     const Pose rounded = in_floats({generic_rotation(), {0.01, -0.02, 0.84 + 0.015 * k}});
@@ -118,7 +120,7 @@ struct Step {
   std::vector<SphereState> states;
 };
 std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) {
-  Query query(tool, {.coherent = true});
+  Query query(tool, {.coherent = true, .counts_points = true});
   std::vector<Step> steps(12);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Pose pose{generic_rotation(), {0.01, -0.02, 0.84 + 0.03 * static_cast<double>(k)}};

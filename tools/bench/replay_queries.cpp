@@ -144,8 +144,8 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
   for (int threads = 1; threads <= (suite.device.is_cuda() ? 1 : 2); ++threads) {
     set_thread_count(threads);
     for (const std::uint32_t level : tool.levels) {
-      Query query(tool.model, {.level = level, .device = suite.device, .counts_points = false}),
-          counting(tool.model, {.level = level, .device = suite.device});
+      Query query(tool.model, {.level = level, .device = suite.device}),
+          counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
       Result result;
       const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
       const Durations of_warm = timed(calls, warm_up, warm);
@@ -160,8 +160,7 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
       });
       add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
     }
-    Query query(tool.model,
-                {.level = tool.levels.front(), .device = suite.device, .counts_points = false});
+    Query query(tool.model, {.level = tool.levels.front(), .device = suite.device});
     Result result;
     const Durations of_sparse = timed(few, 1, [&](int k) {
       result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
@@ -197,8 +196,8 @@ struct CoherentPath {
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
-  Query stateless(tool.model, {.level = level, .counts_points = false}),
-      coherent(tool.model, {.level = level, .coherent = true, .counts_points = false});
+  Query stateless(tool.model, {.level = level}),
+      coherent(tool.model, {.level = level, .coherent = true});
   Result alone, following;
   bool same = true;
   const auto pose = [&](int k) {
@@ -253,7 +252,7 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
     const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
-    const QueryOptions options{.level = level, .device = suite.device, .counts_points = false};
+    const QueryOptions options{.level = level, .device = suite.device};
     Query of_once(tool.model, options), of_twice(tool.model, options);  // a device holds one cloud
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(

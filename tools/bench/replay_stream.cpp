@@ -203,10 +203,8 @@ void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOp
   set_thread_count(1);  // for the loop; frames are prepared beside it
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
-    Query query(tool.model, {.level = level,
-                             .device = suite.device,
-                             .coherent = !suite.device.is_cuda(),
-                             .counts_points = false});
+    Query query(tool.model,
+                {.level = level, .device = suite.device, .coherent = !suite.device.is_cuda()});
     add_pass(pass_over(stream, path, query), level, report);
   }
   set_thread_count(0);
@@ -218,9 +216,10 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
-  Query query(
-      tool.model,
-      {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
+  Query query(tool.model, {.level = tool.soak_level,
+                           .device = suite.device,
+                           .coherent = !suite.device.is_cuda(),
+                           .counts_points = true});
   FrameReader reader(stream.recording, stream.import, stream.device);
   const std::string hash = soak_round(stream, reader, path, query);
   const double before = resident_memory_mb();

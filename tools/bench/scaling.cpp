@@ -198,8 +198,7 @@ class Scaling {
     nlohmann::json row = {
         {"part", "spheres"}, {"spheres", level.sphere_count}, {"poses", path.size()}};
     const auto ours = [&](Measure measure) {
-      return make_device_measure(tool, level,
-                                 {.measure = measure, .device = device_, .counts_points = false});
+      return make_device_measure(tool, level, {.measure = measure, .device = device_});
     };
     const auto refined = ours(Measure::refined), paper = ours(Measure::paper);
     Printed printed;

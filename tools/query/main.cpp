@@ -33,8 +33,9 @@ struct Arguments {
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
-  bool for_scene = false, coherent = false, no_points = false, raw_points = false;
-  std::string reuse;  // gone
+  bool for_scene = false, coherent = false, count_points = false, raw_points = false;
+  bool no_points = false;  // has no effect
+  std::string reuse;       // gone
   std::optional<double> stiffness;
   std::string coupling;
   std::size_t batch = 1;
@@ -77,10 +78,11 @@ void declare(CLI::App& app, Arguments& a) {
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
   app.add_option("--reuse", a.reuse)->group("");
-  app.add_flag(
-      "--no-points", a.no_points,
-      "Do not count the cloud's points in spheres: quicker with many spheres; lines then have "
-      "no field points");
+  app.add_flag("--count-points", a.count_points,
+               "Count the cloud's points in spheres into the field points: slower with many "
+               "spheres. --measure paper counts them anyway");
+  app.add_flag("--no-points", a.no_points,
+               "Has no effect: points are counted only with --count-points or --measure paper");
   app.add_flag("--raw-points", a.raw_points,
                "Take points as they were measured: a cloud is ready sooner, without a camera in a "
                "tenth of the time, but noise errs more, and without a camera edges and thin plates "
@@ -96,7 +98,7 @@ void declare(CLI::App& app, Arguments& a) {
       ->capture_default_str();
   app.add_option("--standby-us", a.standby_us,
                  "Microseconds that a device stays ready for the next pose, and does nothing else; "
-                 "with --no-points, in depth images. Changes no result")
+                 "in depth images. Changes no result")
       ->check(whole_number_in(0, QueryOptions::kLongestStandby))
       ->capture_default_str();
   declare(app, a.replay);
@@ -132,10 +134,10 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong("--reuse is gone: leave it out; a coarser --level trades accuracy for speed");
   if (a.batch > 1 && (a.deadline_us || !a.coupling.empty() || replays))
     wrong("--batch answers many poses at once; leave --deadline-us, --coupling and --frames out");
-  if (a.standby_us > 0 && (!a.no_points || a.batch > 1 || a.measure == "paper" || a.coherent))
+  if (a.standby_us > 0 && (a.count_points || a.batch > 1 || a.measure == "paper" || a.coherent))
     wrong(
-        "--standby-us waits for single poses of the refined measure; give --no-points too, and "
-        "leave --batch, --measure paper and --coherent out");
+        "--standby-us waits for single poses of the refined measure; leave --count-points, "
+        "--batch, --measure paper and --coherent out");
   if (a.tools.size() > 1 && (replays || a.deadline_us || !a.coupling.empty() || a.coherent ||
                              a.standby_us > 0 || !a.spheres_out.empty()))
     wrong(
@@ -367,7 +369,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.stiffness = a.stiffness.value_or(1);
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
-  options.counts_points = !a.no_points;
+  options.counts_points = a.count_points;
   options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);
   a.replay.frames.empty() ? run_poses(tool, a, models, options)

@@ -122,13 +122,13 @@ $ echo '1e300 0 0 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --pose
 [1]
 
 # A device stands by for single poses without counted points; otherwise the option is refused or has no effect.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
-2> vpm-query: error: --standby-us waits for single poses of the refined measure; give --no-points too, and leave --batch, --measure paper and --coherent out
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100 --count-points
+2> vpm-query: error: --standby-us waits for single poses of the refined measure; leave --count-points, --batch, --measure paper and --coherent out
 [2]
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 1000001 --no-points
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 1000001
 2> vpm-query: error: --standby-us: 1000001 is not a whole number from 0 to 1000000 (see vpm-query --help)
 [2]
-$ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --no-points --standby-us $s | md5sum; done | uniq | wc -l
+$ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us $s | md5sum; done | uniq | wc -l
 1
 
 # Help that cannot be written is an error.
