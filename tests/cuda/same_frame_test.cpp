@@ -13,6 +13,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/query/query.h"
 #include "libvpm/synthetic/kinect_noise.h"
+#include "tests/cuda/effort.h"
 #include "tests/cuda/frame_memory.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
@@ -235,7 +236,7 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   Query first(tool, options), second(tool, options);
   std::uint32_t boundary = 0;
   DepthFrame frame = frame_of(frames, images[0], camera.to_world);
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < testing::effort(12); ++k) {
     const DepthFrame next = frame_of(frames, images[(k + 1) % 4], camera.to_world);
     const PreparedCloud cloud(make_cloud(images[k % 4], camera, {}));
     const Result expected = on_cpu.run(cloud, pose_of(k));
@@ -250,7 +251,7 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
     EXPECT_EQ(frame.points(), cloud.positions().size());
     frame = next;
   }
-  EXPECT_GT(boundary, 100U);
+  EXPECT_GE(boundary, testing::expected_of(100));
 }
 
 // Images come by turns in the same memory, by a kernel that stays as by one that is launched.
@@ -272,7 +273,7 @@ TEST_P(SameFrame, EachImageAnew) {
   for (const std::uint32_t standby_us : {0U, 2000U}) {
     Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
     DepthFrames frames(options);
-    for (int k = 0; k < 120; ++k) {
+    for (int k = 0; k < testing::effort(120); ++k) {
       SCOPED_TRACE(k);
       const DepthFrame frame = frame_of(frames, images[k % 3], cameras[k % 2]);
       expect_equal(expected[k % 6], query.run(frame, cameras[k % 2] * pose));

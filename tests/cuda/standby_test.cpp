@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "libvpm/query/query.h"
+#include "tests/cuda/effort.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
@@ -50,7 +51,7 @@ class Standby : public ::testing::Test {
 TEST_F(Standby, GivesTheSameWithStates) {
   Query query(tool_, standing_by());
   std::uint32_t touched = 0;
-  for (int k = 0; k < 300; ++k) {
+  for (int k = 0; k < testing::effort(300); ++k) {
     SCOPED_TRACE(k);
     const Result expected = on_cpu_.run(cloud_, pose_of(k));
     expect_equal(expected, query.run(cloud_, pose_of(k)));
@@ -59,7 +60,7 @@ TEST_F(Standby, GivesTheSameWithStates) {
     EXPECT_TRUE(std::equal(states.begin(), states.end(), states_there.begin()));
     touched += expected.boundary + expected.inside;
   }
-  EXPECT_GT(touched, 1000U);
+  EXPECT_GE(touched, testing::expected_of(1000));
 }
 
 TEST_F(Standby, TakesToolsAndCloudsByTurns) {
@@ -73,7 +74,7 @@ TEST_F(Standby, TakesToolsAndCloudsByTurns) {
   std::deque<Query> holders;
   for (const PreparedCloud& cloud : clouds)
     holders.emplace_back(tool_, standing_by()).run(cloud, pose_of(0));
-  for (int k = 0; k < 120; ++k) {
+  for (int k = 0; k < testing::effort(120); ++k) {
     SCOPED_TRACE(k);
     const PreparedCloud& cloud = clouds[k * k % clouds.size()];
     expect_equal(on_cpu_.run(cloud, pose_of(k)), small_query.run(cloud, pose_of(k)));
@@ -84,7 +85,7 @@ TEST_F(Standby, TakesToolsAndCloudsByTurns) {
 
 TEST_F(Standby, LeavesWhenNoPoseComesAndIsBackForTheNext) {
   Query query(tool_, standing_by());
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < testing::effort(12); ++k) {
     SCOPED_TRACE(k);
     if (k % 4 == 3) std::this_thread::sleep_for(kLonger);
     expect_equal(on_cpu_.run(cloud_, pose_of(k)), query.run(cloud_, pose_of(k)));
@@ -94,11 +95,11 @@ TEST_F(Standby, LeavesWhenNoPoseComesAndIsBackForTheNext) {
 // It waits for as long as the next pose takes, and so leaves just when that comes.
 TEST_F(Standby, LosesNoPoseThatComesAsItLeaves) {
   using std::chrono::nanoseconds, std::chrono::steady_clock;
-  constexpr int kPoses = 40;
+  constexpr int kPoses = testing::effort(40);
   std::vector<Result> expected(kPoses);
   for (int k = 0; k < kPoses; ++k) expected[k] = on_cpu_.run(cloud_, pose_of(k));
   Query query(tool_, standing_by(30));
-  for (int k = 0; k < 6000; ++k) {
+  for (int k = 0; k < testing::effort(6000); ++k) {
     SCOPED_TRACE(k);
     const Result result = query.run(cloud_, pose_of(k % kPoses));
     const auto next = steady_clock::now() + nanoseconds(20000 + 7 * (k % 3000));
@@ -120,7 +121,7 @@ TEST_F(Standby, MakesWayForWhatIsLaunched) {
   std::vector<Pose> poses(200);
   for (std::size_t k = 0; k < poses.size(); ++k) poses[k] = pose_of(static_cast<int>(k));
   std::vector<Result> batch(poses.size());
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < testing::effort(40); ++k) {
     SCOPED_TRACE(k);
     const Pose pose = pose_of(k);
     expect_equal(on_cpu_.run(cloud_, pose), query.run(cloud_, pose));
@@ -147,7 +148,7 @@ TEST_F(Standby, MakesWayForNewFrames) {
     const DepthFrame frame = frames.prepare(camera.to_world);
     if (last)  // while the new one is prepared
       expect_equal(on_cpu_.run(last->cloud(), pose_of(f)), query.run(*last, pose_of(f)));
-    for (int k = 0; k < 10; ++k) {
+    for (int k = 0; k < testing::effort(10); ++k) {
       SCOPED_TRACE(10 * f + k);
       expect_equal(on_cpu_.run(frame.cloud(), pose_of(k)), query.run(frame, pose_of(k)));
       if (last && k % 2 == 0)  // as of two cameras
@@ -165,7 +166,7 @@ TEST_F(Standby, HindersNobodyElse) {
   });
   // Would wait for as long as the loop goes on.
   const Result expected = Query(tool_, {.counts_points = true}).run(cloud_, pose_of(5));
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < testing::effort(20); ++k) {
     Query counting(tool_, {.device = kDevice, .counts_points = true});
     expect_equal(expected, counting.run(cloud_, pose_of(5)));
     const PreparedCloud another(seen_);
@@ -176,7 +177,7 @@ TEST_F(Standby, HindersNobodyElse) {
 }
 
 TEST_F(Standby, ServesSeveralThreads) {
-  constexpr int kPoses = 60;
+  constexpr int kPoses = testing::effort(60);
   std::vector<Result> expected(kPoses);
   for (int k = 0; k < kPoses; ++k) expected[k] = on_cpu_.run(cloud_, pose_of(k));
   std::vector<std::thread> threads;
@@ -195,7 +196,7 @@ TEST_F(Standby, ServesSeveralThreads) {
 TEST_F(Standby, SmallQuery) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
   Query query(tool, standing_by()), on_cpu(tool, {.counts_points = false});
-  for (int k = 0; k < 6; ++k)
+  for (int k = 0; k < testing::effort(6); ++k)
     expect_equal(on_cpu.run(cloud_, pose_of(4 * k)), query.run(cloud_, pose_of(4 * k)));
 }
 

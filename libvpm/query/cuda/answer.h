@@ -19,9 +19,13 @@ struct Answer {
 
 // Nanoseconds of the device's clock, which all blocks share.
 __device__ inline std::uint64_t now() {
+#ifdef __CUDACC__
   std::uint64_t time;
   asm volatile("mov.u64 %0, %%globaltimer;" : "=l"(time));
   return time;
+#else
+  return emulator::nanoseconds();
+#endif
 }
 
 // This thread's word of a result; of the first ones of a block.

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "libvpm/device/cuda/launch.h"
 #include "libvpm/device/cuda/stream.h"
 #include "libvpm/query/cuda/answer.h"
 

@@ -145,12 +145,9 @@ class PaperOnDevice : public MeasureOnDevice {
   };
 
   void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
-    PaperLaunch arguments{level_, cloud().points(), memory_.space()};
-    PoseFrame pose = frame;
-    Totals* totals = totals_.get();
-    PaperCounters* counters = counters_.get();
-    void* values[] = {&arguments, &pose, &totals, &counters, &answer, &sequence};
-    check(cudaLaunchCooperativeKernel(one_pose, blocks_, kPaperThreads, values, 0, stream()));
+    const PaperLaunch arguments{level_, cloud().points(), memory_.space()};
+    launch_kernel(one_pose, {blocks_, kPaperThreads}, LaunchKind::cooperative, stream(), arguments,
+                  frame, totals_.get(), counters_.get(), answer, sequence);
   }
   // A launch for each tool.
   void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
@@ -166,9 +163,9 @@ class PaperOnDevice : public MeasureOnDevice {
       }
       const Teams& teams = *of_tool.teams_;
       const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.memory.space()};
-      many_poses<<<std::min(teams.count, count), kPaperThreads, 0, stream()>>>(
-          arguments, cloud().frame(), poses + begin, count, results + begin);
-      check(cudaGetLastError());
+      launch_kernel(many_poses, {std::min(teams.count, count), kPaperThreads},
+                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
+                    count, results + begin);
       begin = part.end;
     }
   }

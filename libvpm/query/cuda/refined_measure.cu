@@ -19,7 +19,8 @@ class RefinedOnDevice : public MeasureOnDevice {
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
-        standing_by_(kernel_of(stand_by_kernel, kFewBlocks)),
+        standing_by_{stand_by_kernel, blocks_that_fit(stand_by_kernel, kThreads, kFewBlocks),
+                     kThreads},
         memory_(TeamRoom(level_.view()), 1,
                 std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
         totals_(1),
@@ -27,30 +28,33 @@ class RefinedOnDevice : public MeasureOnDevice {
     totals_.clear();
     counters_.clear();
     if (options.standby_us > 0 && !counts_points_)  // orders say nothing of points
-      stand_by(standby({standing_by_.function, standing_by_.blocks, kThreads}), options.standby_us);
+      stand_by(standby(standing_by_), options.standby_us);
   }
 
  private:
   // How one pose is answered.
+  template <class Surface>
   struct PoseKernel {
-    const void* function = nullptr;
+    using Function = void (*)(RefinedLaunch<Surface>, PoseFrame, unsigned);
+    Function function = nullptr;
     unsigned blocks = 0;
     bool meets = true;  // its blocks do, so all of them must be there at once
   };
-  template <class Kernel>
-  static PoseKernel kernel_of(Kernel* kernel, unsigned blocks, bool meets = true) {
-    return {reinterpret_cast<const void*>(kernel), blocks_that_fit(kernel, kThreads, blocks),
-            meets};
+  template <class Surface>
+  static PoseKernel<Surface> kernel_of(typename PoseKernel<Surface>::Function function,
+                                       unsigned blocks, bool meets = true) {
+    return {function, blocks_that_fit(function, kThreads, blocks), meets};
   }
-  static PoseKernel kernel_of_images(const LevelView& level) {
+  static PoseKernel<DepthSurface> kernel_of_images(const LevelView& level) {
     return level.count <= kSpheresOfFewBlocks
-               ? kernel_of(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
-               : kernel_of(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
+               ? kernel_of<DepthSurface>(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
+               : kernel_of<DepthSurface>(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
   }
   // Points alone are flooded, for which small levels have a kernel of their own.
-  static PoseKernel kernel_of_points(const LevelView& level) {
-    return is_small(level) ? kernel_of(one_pose_small, kManyBlocks, false)
-                           : kernel_of(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
+  static PoseKernel<DiskSurface> kernel_of_points(const LevelView& level) {
+    return is_small(level)
+               ? kernel_of<DiskSurface>(one_pose_small, kManyBlocks, false)
+               : kernel_of<DiskSurface>(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
   }
 
   // Teams that share the work of a batch.
@@ -106,22 +110,19 @@ class RefinedOnDevice : public MeasureOnDevice {
   template <class Surface>
   RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
                                       Answer* answer) const {
-    // Few points lie in reach: they take less than a large level's spheres.
+    // Few points lie in reach: they take less than a large level's spheres. One block counts them at
+    // least, however small the device is.
     unsigned sphere_blocks = blocks;
-    if (counts_points_) sphere_blocks -= sphere_blocks / (is_small(level_.view()) ? 2 : 8);
+    if (counts_points_) sphere_blocks -= std::max(1U, blocks / (is_small(level_.view()) ? 2 : 8));
     return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
             sphere_blocks, totals_.get(), counters_.get(),  answer};
   }
   template <class Surface>
-  void launch_on(const Surface& surface, const PoseKernel& kernel, const PoseFrame& frame,
+  void launch_on(const Surface& surface, const PoseKernel<Surface>& kernel, const PoseFrame& frame,
                  Answer* answer, unsigned sequence) {
-    RefinedLaunch<Surface> arguments = arguments_of(surface, kernel.blocks, answer);
-    PoseFrame pose = frame;
-    void* values[] = {&arguments, &pose, &sequence};
-    check(kernel.meets
-              ? cudaLaunchCooperativeKernel(kernel.function, kernel.blocks, kThreads, values, 0,
-                                            stream())
-              : cudaLaunchKernel(kernel.function, kernel.blocks, kThreads, values, 0, stream()));
+    launch_kernel(kernel.function, {kernel.blocks, kThreads},
+                  kernel.meets ? LaunchKind::cooperative : LaunchKind::independent, stream(),
+                  arguments_of(surface, kernel.blocks, answer), frame, sequence);
   }
 
   static const LevelView& level_of(const ToolPart& part) {
@@ -148,9 +149,9 @@ class RefinedOnDevice : public MeasureOnDevice {
         arguments.ends[t] = tools[t].end - begin;
       }
       const unsigned end = tools[count - 1].end;
-      many_poses<Surface><<<std::min(teams_->count, end - begin), kBatchThreads, 0, stream()>>>(
-          arguments, cloud().frame(), poses + begin, end - begin, results + begin);
-      check(cudaGetLastError());
+      launch_kernel(many_poses<Surface>, {std::min(teams_->count, end - begin), kBatchThreads},
+                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
+                    end - begin, results + begin);
       tools = tools.subspan(count);
       begin = end;
     }
@@ -158,7 +159,9 @@ class RefinedOnDevice : public MeasureOnDevice {
 
   DeviceLevel level_;
   bool counts_points_;
-  PoseKernel of_images_, of_points_, standing_by_;
+  PoseKernel<DepthSurface> of_images_;
+  PoseKernel<DiskSurface> of_points_;
+  StandbyKernel standing_by_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;

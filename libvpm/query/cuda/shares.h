@@ -12,16 +12,16 @@ namespace vpm::cuda {
 // The bits of a share's word. Where a camera tells what is inside, only kCut, kCountsPoints and
 // kCounted are set, and of what is noted of shares only points and planes; the rest serves the
 // flood.
-enum ShareBit : std::uint32_t {
-  kCut = 1,      // the surface passes through a piece
-  kPartial = 2,  // pieces are inside, as far as the sum says
-  kWhole = 4,    // behind the surface
-  kHidden = 8,   // by a surface that may be another one: the nearest cut share's plane decides
-  kSummed = 16,  // of a cut share: its sum is noted
-  kCountsPoints = 32,  // the surface may pass the sphere
-  kReached = 64,       // by the flood; only where one block floods alone
-  kCounted = 128,      // in the result: as boundary, if it is cut, or as inside
-};
+inline constexpr std::uint32_t kCut = 1;      // the surface passes through a piece
+inline constexpr std::uint32_t kPartial = 2;  // pieces are inside, as far as the sum says
+inline constexpr std::uint32_t kWhole = 4;    // behind the surface
+inline constexpr std::uint32_t kHidden =
+    8;  // by a surface that may be another one: the nearest cut share's plane decides
+inline constexpr std::uint32_t kSummed = 16;        // of a cut share: its sum is noted
+inline constexpr std::uint32_t kCountsPoints = 32;  // the surface may pass the sphere
+inline constexpr std::uint32_t kReached = 64;  // by the flood; only where one block floods alone
+inline constexpr std::uint32_t kCounted =
+    128;  // in the result: as boundary, if it is cut, or as inside
 
 __device__ inline bool may_be_inside(std::uint32_t word) {
   return (word & kCut) == 0 && (word & (kPartial | kWhole)) != 0;

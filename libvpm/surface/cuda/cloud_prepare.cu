@@ -9,9 +9,8 @@ __global__ void __launch_bounds__(CloudTile::kPointThreads,
                                   blocks_at_once(Normals::kMostBlocks, CloudTile::kPointThreads))
     prepare_cloud(const __grid_constant__ CloudRecipe recipe, CloudCounters* counters,
                   CloudAnswer* answer, unsigned sequence) {
-  extern __shared__ double2 shared_memory[];
   __shared__ unsigned gated, points, doubtful;
-  const TileWork<Normals> work(recipe, static_cast<int>(blockIdx.x), shared_memory);
+  const TileWork<Normals> work(recipe, static_cast<int>(blockIdx.x), dynamic_shared_memory());
   if (threadIdx.x == 0) gated = points = doubtful = 0;
   work.find_rays();
   wait_for_last();

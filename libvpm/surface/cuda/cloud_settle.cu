@@ -8,7 +8,7 @@ constexpr int kThreads = CloudTile::kSurfaceThreads, kBlocks = 2;
 
 __global__ void __launch_bounds__(kThreads, kBlocks)
     settle_cloud(const __grid_constant__ CloudRecipe recipe) {
-  __shared__ alignas(SettleShared) unsigned char memory[sizeof(SettleShared)];
+  alignas(SettleShared) __shared__ unsigned char memory[sizeof(SettleShared)];
   const SettleWork work(recipe, static_cast<int>(blockIdx.x),
                         *reinterpret_cast<SettleShared*>(memory));
   wait_for_last();

@@ -57,8 +57,8 @@ void take_image(const DepthSource& source, const CloudRecipe& recipe, CloudCount
                 cudaStream_t stream) {
   const unsigned pixels = recipe.camera.width * recipe.camera.height;
   const unsigned groups = (pixels - 1) / kPixelsAtOnce + 1;
-  take<<<(groups - 1) / kThreads + 1, kThreads, 0, stream>>>(source, recipe, groups, counters);
-  check(cudaGetLastError());
+  launch_kernel(take, {(groups - 1) / kThreads + 1, kThreads}, LaunchKind::independent, stream,
+                source, recipe, groups, counters);
 }
 
 }  // namespace vpm::cuda

@@ -5,6 +5,7 @@
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/device/cuda/device_array.h"
+#include "libvpm/device/cuda/launch.h"
 #include "libvpm/surface/cuda/cloud_room.h"
 #include "libvpm/surface/hole_closing.h"
 #include "libvpm/surface/point_reading.h"
@@ -177,17 +178,9 @@ template <class... Parameters, class... Arguments>
 void launch_over_tiles(const Camera& camera, void (*kernel)(Parameters...), unsigned threads,
                        std::size_t shared, bool overlaps, cudaStream_t stream,
                        const Arguments&... arguments) {
-  cudaLaunchConfig_t launch{};
-  launch.gridDim = static_cast<unsigned>(CloudTile::tile_count(camera));
-  launch.blockDim = threads;
-  launch.dynamicSmemBytes = shared;
-  launch.stream = stream;
-  cudaLaunchAttribute overlap;
-  overlap.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  overlap.val.programmaticStreamSerializationAllowed = 1;
-  launch.attrs = &overlap;
-  launch.numAttrs = overlaps ? 1 : 0;
-  check(cudaLaunchKernelEx(&launch, kernel, arguments...));
+  const auto tiles = static_cast<unsigned>(CloudTile::tile_count(camera));
+  launch_kernel(kernel, {tiles, threads, shared},
+                overlaps ? LaunchKind::overlapping : LaunchKind::independent, stream, arguments...);
 }
 
 }  // namespace vpm::cuda

@@ -83,12 +83,11 @@ void Standby::launch(const Order& order) {
   const CurrentDevice current(device_);
   is_there_ = false;
   ++number_;
-  OrdersView view{given_.device(), passed_on_.get(), left_.device()};
-  unsigned first = number_ + 1;
+  const OrdersView view{given_.device(), passed_on_.get(), left_.device()};
+  const unsigned first = number_ + 1;
   give(order);
-  void* values[] = {&view, &first};
-  check(cudaLaunchCooperativeKernel(kernel_.kernel, kernel_.blocks, kernel_.threads, values, 0,
-                                    stream_.get()));
+  launch_kernel(kernel_.kernel, {kernel_.blocks, kernel_.threads}, LaunchKind::cooperative,
+                stream_.get(), view, first);
   is_there_ = true;
 }
 

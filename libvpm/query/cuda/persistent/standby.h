@@ -15,7 +15,7 @@ namespace vpm::cuda {
 
 // A kernel(OrdersView, unsigned first), which is launched as a cooperative one.
 struct StandbyKernel {
-  const void* kernel = nullptr;
+  void (*kernel)(OrdersView, unsigned) = nullptr;
   unsigned blocks = 0, threads = 0;
 };
 

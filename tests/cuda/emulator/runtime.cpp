@@ -1,0 +1,227 @@
+// Memory, streams and events of the emulated device. A stream is a thread of the host that does
+// what is enqueued, in order.
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "cuda_runtime.h"
+
+namespace emulator {
+
+class Stream {
+ public:
+  Stream() : thread_([this] { work(); }) {}
+  ~Stream() {
+    enqueue(nullptr);
+    thread_.join();
+  }
+  // Null: the stream ends when it comes there.
+  void enqueue(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back(std::move(work));
+    changed_.notify_all();
+  }
+  void synchronize() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return queue_.empty(); });
+  }
+  bool is_idle() {
+    const std::lock_guard lock(mutex_);
+    return queue_.empty();
+  }
+
+ private:
+  void work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      changed_.wait(lock, [&] { return !queue_.empty(); });
+      const std::function<void()> next = queue_.front();
+      if (!next) return;
+      lock.unlock();
+      next();
+      lock.lock();
+      queue_.pop_front();
+      changed_.notify_all();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> queue_;
+  std::thread thread_;
+};
+
+struct Streams {
+  std::mutex mutex;
+  std::set<Stream*> all;
+};
+Streams& streams() {
+  static Streams all;
+  return all;
+}
+
+struct Event {
+  std::mutex mutex;
+  std::condition_variable changed;
+  unsigned recorded = 0, happened = 0;
+  std::chrono::steady_clock::time_point time;
+
+  bool has_happened() {
+    const std::lock_guard lock(mutex);
+    return happened == recorded;
+  }
+  void wait_for(unsigned record) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return happened >= record; });
+  }
+};
+
+void enqueue(Stream* stream, std::function<void()> work) {
+  if (stream == nullptr)
+    work();
+  else
+    stream->enqueue(std::move(work));
+}
+
+// Memory begins with a pattern, so that a read of what nobody has written shows.
+cudaError_t allocate(void** place, std::size_t bytes) {
+  *place = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
+  if (*place == nullptr) return cudaErrorMemoryAllocation;
+  std::memset(*place, 0xA5, bytes);
+  return cudaSuccess;
+}
+
+}  // namespace emulator
+
+cudaError_t cudaFree(void* memory) {
+  std::free(memory);
+  return cudaSuccess;
+}
+cudaError_t cudaFreeHost(void* memory) {
+  return cudaFree(memory);
+}
+cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind) {
+  std::memcpy(to, from, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind,
+                            cudaStream_t stream) {
+  emulator::enqueue(stream, [=] { std::memcpy(to, from, bytes); });
+  return cudaSuccess;
+}
+cudaError_t cudaMemset(void* place, int value, std::size_t bytes) {
+  std::memset(place, value, bytes);
+  return cudaSuccess;
+}
+cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
+  *free = *total = std::size_t{1} << 28;
+  return cudaSuccess;
+}
+
+cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
+  *stream = new emulator::Stream;
+  emulator::Streams& streams = emulator::streams();
+  const std::lock_guard lock(streams.mutex);
+  streams.all.insert(*stream);
+  return cudaSuccess;
+}
+cudaError_t cudaStreamDestroy(cudaStream_t stream) {
+  {
+    emulator::Streams& streams = emulator::streams();
+    const std::lock_guard lock(streams.mutex);
+    streams.all.erase(stream);
+  }
+  delete stream;
+  return cudaSuccess;
+}
+cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
+  if (stream != nullptr) stream->synchronize();
+  return cudaSuccess;
+}
+cudaError_t cudaStreamQuery(cudaStream_t stream) {
+  if (stream == nullptr || stream->is_idle()) return cudaSuccess;
+  std::this_thread::yield();
+  return cudaErrorNotReady;
+}
+cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event) {
+  const unsigned record = event->recorded;
+  emulator::enqueue(stream, [=] { event->wait_for(record); });
+  return cudaSuccess;
+}
+cudaError_t cudaDeviceSynchronize() {
+  emulator::Streams& streams = emulator::streams();
+  const std::lock_guard lock(streams.mutex);
+  for (emulator::Stream* stream : streams.all) stream->synchronize();
+  return cudaSuccess;
+}
+cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
+  *event = new emulator::Event;
+  return cudaSuccess;
+}
+cudaError_t cudaEventDestroy(cudaEvent_t event) {
+  event->wait_for(event->recorded);
+  delete event;
+  return cudaSuccess;
+}
+cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
+  unsigned record = 0;
+  {
+    const std::lock_guard lock(event->mutex);
+    record = ++event->recorded;
+  }
+  emulator::enqueue(stream, [=] {
+    const std::lock_guard lock(event->mutex);
+    event->happened = record;
+    event->time = std::chrono::steady_clock::now();
+    event->changed.notify_all();
+  });
+  return cudaSuccess;
+}
+cudaError_t cudaEventQuery(cudaEvent_t event) {
+  return event->has_happened() ? cudaSuccess : cudaErrorNotReady;
+}
+cudaError_t cudaEventSynchronize(cudaEvent_t event) {
+  event->wait_for(event->recorded);
+  return cudaSuccess;
+}
+cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t begin, cudaEvent_t end) {
+  *milliseconds = std::chrono::duration<float, std::milli>(end->time - begin->time).count();
+  return cudaSuccess;
+}
+
+cudaError_t cudaGetDevice(int* device) {
+  *device = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaSetDevice(int) {
+  return cudaSuccess;
+}
+cudaError_t cudaGetDeviceCount(int* count) {
+  *count = 1;
+  return cudaSuccess;
+}
+cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
+  std::snprintf(properties->name, sizeof properties->name, "emulated device");
+  return cudaSuccess;
+}
+cudaError_t cudaDriverGetVersion(int* version) {
+  *version = 0;
+  return cudaSuccess;
+}
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
+  *value = attribute == cudaDevAttrMultiProcessorCount            ? 2
+           : attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? 1 << 17
+                                                                  : 0;
+  return cudaSuccess;
+}
+cudaError_t cudaGetLastError() {
+  return cudaSuccess;
+}
+const char* cudaGetErrorString(cudaError_t error) {
+  return error == cudaSuccess ? "no error" : "out of memory, or not ready";
+}
