@@ -13,6 +13,12 @@
 
 namespace vpm {
 
+// Returns a / b of vectors of numbers, on the host.
+template <class Vector>
+[[gnu::always_inline]] inline Vector quotient(const Vector& a, const Vector& b) {
+  return a / b;
+}
+
 // Returns a / b, correctly rounded, for |b| and |a / b| in [2^-900, 2^900], or a = 0.
 [[gnu::always_inline]] VPM_HD inline double quotient(double a, double b) {
 #ifdef __CUDA_ARCH__

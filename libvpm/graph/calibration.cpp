@@ -8,7 +8,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/query/patch.h"
+#include "libvpm/query/share_clusters.h"
 #include "libvpm/surface/ball_fraction.h"
 #include "libvpm/surface/depth_surface.h"
 
@@ -122,7 +122,7 @@ double fraction_inside(const ToolModel& model, const Level& level, const ShareCl
                        const Cut& cut) {
   double sum = 0;
   for (const ShareCluster& cluster : clusters.clusters) {
-    const bool patch = is_patch(cluster.reach, model.reach);
+    const bool patch = may_be_planar(cluster.reach, model.reach);
     const Cut of_patch = cut.plane_at(cluster.center, cluster.reach);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
       const std::uint32_t i = clusters.shares[k];

@@ -5,9 +5,9 @@
 // pass, each sample gives the fraction of a ball of its size. One definition for host and device.
 #pragma once
 
+#include "libvpm/measure/classify.h"
 #include "libvpm/query/contact_plane.h"
 #include "libvpm/query/crossing_plane.h"
-#include "libvpm/query/shadows.h"
 #include "libvpm/query/share_piece.h"
 #include "libvpm/query/tool_sum.h"
 
@@ -20,24 +20,18 @@ struct CellResult {
   std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
 };
 
-// The tool's reach, and its inverse, which scales arms.
-struct ToolReach {
-  double length = 0, inverse = 0;  // m, 1/m
-  double shadow = 0;               // m: so far behind what a camera has seen nothing is far
-
-  ToolReach() = default;
-  ToolReach(double reach, Shadows shadows)
-      : length(reach), inverse(1 / reach), shadow(shadows == Shadows::solid ? HUGE_VAL : reach) {}
-};
-
 // Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
-VPM_HD inline void add_whole(ToolReach tool, const BlockMass& mass, Vec3 normal, ToolSum& sum) {
+VPM_HD inline void add_whole(const ToolReach& tool, const BlockMass& mass, Vec3 normal,
+                             ToolSum& sum) {
   sum.add(mass.weight, normal, tool.inverse * mass.centroid);
 }
-
-// A block sees one plane where that is right to its radius, and to this part of the tool's reach:
-// blocks of few large shares are wider than what they may overlook.
-inline constexpr double kFlatness = 0.1;
+// Adds what a plane leaves of a block: nothing before it, all of its mass behind it, the clipped
+// moments of one that is cut. Along the plane's normal, in the tool's axes.
+VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass, const CrossedSums& clipped,
+                                Vec3 normal, const ToolReach& tool, ToolSum& sum) {
+  if (side == PlaneSide::behind) add_whole(tool, mass, normal, sum);
+  if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
+}
 
 template <class Surface>
 class CellMeasure {
@@ -83,8 +77,8 @@ class CellMeasure {
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
       const BlockLook look = look_at(block);
-      if (look.side == Side::free || look.is_flat) continue;
-      if (look.side != Side::mixed) {
+      if (look.found == BlockClass::free || look.found == BlockClass::cut) continue;
+      if (look.found == BlockClass::uncut) {
         add_if_far(piece_of(cell_.masses[b], block));
         continue;
       }
@@ -107,17 +101,10 @@ class CellMeasure {
       add(piece, look, sum);
   }
 
-  // How well one plane must fit to serve a whole block, m.
-  VPM_HD double flat_tolerance(double block_radius) const {
-    const double most = kFlatness * tool_reach_.length;
-    return block_radius < most ? block_radius : most;
-  }
-
   // How the surface meets one block of the cell.
   struct BlockLook {
-    Side side = Side::free;
-    bool is_flat = false;  // of mixed blocks: the surface crosses it as one plane
-    TangentPlane tangent;
+    BlockClass found = BlockClass::free;
+    TangentPlane plane;  // of a block that is cut
     Vec3 center;
     std::uint32_t point = kNoPoint;  // where to begin to read the surface
   };
@@ -125,22 +112,11 @@ class CellMeasure {
     BlockLook result;
     result.center = to_surface_ * widen(block.center);
     const auto look = surface_.look_at_ball(result.center, block.radius);
-    result.side = look.side;
     result.point = look.point;
-    result.is_flat =
-        look.side == Side::mixed &&
-        surface_.is_flat(look, result.center, flat_tolerance(block.radius), result.tangent) &&
-        is_of_one_wall(result.center, block.radius, result.tangent, look.point);
+    result.found = class_of_block(
+        surface_, look, result.center, block.radius, tool_reach_,
+        [&] { return surface_.read(result.center); }, result.plane);
     return result;
-  }
-  // Whether a block where the surface is one plane is pushed along its normal: that may be a part
-  // of another surface than the one which cuts the cell, or another wall may be nearer.
-  VPM_HD bool is_of_one_wall(Vec3 center, double radius, const TangentPlane& tangent,
-                             std::uint32_t point) const {
-    OtherWall other;
-    return !is_far(tangent.distance(center)) &&
-           !(is_divisible(radius) &&
-             surface_.find_other_wall(center, tangent, point, radius, kOneDirection, other));
   }
 
   // Adds what one block contributes to run().
@@ -148,21 +124,16 @@ class CellMeasure {
   VPM_HD void add_block(std::uint32_t b, Samples& samples, CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
     const BlockLook look = look_at(block);
-    if (look.side == Side::free) return;
+    if (look.found == BlockClass::free) return;
     if (look.point != kNoPoint) result.point = look.point;
-    if (look.side != Side::mixed) {
+    if (look.found == BlockClass::uncut) {
       add_piece(piece_of(cell_.masses[b], block), result);
-    } else if (look.is_flat) {
-      add_block(b, {look.tangent, to_surface_}, Samples::crossed, result);
+    } else if (look.found == BlockClass::cut) {
+      add_block(b, {look.plane, to_surface_}, Samples::crossed, result);
     } else {
       const auto& near = surface_.around_ball(look.center, block.radius, look.point);
       samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
     }
-  }
-
-  // Whether a place is so far behind the surface that it is inside only if something else says so.
-  VPM_HD bool is_far(double signed_distance) const {
-    return signed_distance < -(Surface::kTellsInside ? tool_reach_.shadow : tool_reach_.length);
   }
 
   // One piece as the surface shows it.
@@ -184,13 +155,14 @@ class CellMeasure {
   // The same of a piece at x of the surface's frame, where that was read.
   VPM_HD PieceLook look_of(const SharePiece& piece, Vec3 x, const Reading& reading) const {
     PieceLook look{x, reading};
-    look.is_inside = reading.known && reading.distance < piece.radius;
+    look.is_inside =
+        reading.known && side_of_plane(reading.distance, piece.radius) != PlaneSide::before;
     if (!look.is_inside) return look;
-    look.is_far = is_far(reading.distance);
+    look.is_far = is_far_behind<Surface>(reading.distance, tool_reach_);
     return look;
   }
   VPM_HD static bool is_cut(const SharePiece& piece, const PieceLook& look) {
-    return look.reading.distance > -piece.radius;
+    return side_of_plane(look.reading.distance, piece.radius) == PlaneSide::cut;
   }
   // Adds a piece that is inside.
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, ToolSum& sum) const {
@@ -199,10 +171,16 @@ class CellMeasure {
   template <class Near>
   VPM_HD void add(const SharePiece& piece, const PieceLook& look, const Near& near,
                   ToolSum& sum) const {
-    if (is_cut(piece, look))
-      add_behind(part_behind(piece, look), look, look.reading.normal, near, sum);
-    else
-      add_behind(piece, look, closest_normal(look), near, sum);
+    add(piece, look, is_cut(piece, look) ? Vec3{} : closest_normal(look), near, sum);
+  }
+  // Adds a piece that is inside, whose way out, where it is not cut, is known: a cut one is pushed
+  // along the normal that was read.
+  template <class Near>
+  VPM_HD void add(const SharePiece& piece, const PieceLook& look, Vec3 way_out, const Near& near,
+                  ToolSum& sum) const {
+    const bool cut = is_cut(piece, look);
+    add_behind(cut ? part_behind(piece, look) : piece, look, cut ? look.reading.normal : way_out,
+               near, sum);
   }
   // What of a cut piece is behind the surface, at its middle still.
   VPM_HD SharePiece part_behind(SharePiece piece, const PieceLook& look) const {
@@ -214,7 +192,7 @@ class CellMeasure {
   VPM_HD void add_behind(const SharePiece& piece, const PieceLook& look, Vec3 normal,
                          const Near& near, ToolSum& sum) const {
     OtherWall other;
-    if (is_divisible(piece.extent) &&
+    if (is_divisible(piece.extent, tool_reach_) &&
         near.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point, piece.extent,
                              kTwoWalls, other))
       add_divided(piece, look.x, normal, other, sum);
@@ -229,9 +207,6 @@ class CellMeasure {
   // go their own ways.
   VPM_HD static bool shares_direction(const SharePiece& sample, const PieceLook& look) {
     return Surface::kSearchesFoot && look.is_inside && !look.is_far && !is_cut(sample, look);
-  }
-  VPM_HD bool is_divisible(double extent) const {
-    return extent >= kLeastDivided * tool_reach_.length;
   }
   // Adds a piece at x that is shared out between two walls; its middle is nearer to the one with
   // this normal.
@@ -291,30 +266,23 @@ class CellMeasure {
     add_pushed(piece, shared.normal, result.sum);
   }
 
-  // Adds a block around a centre that a plane crosses.
-  VPM_HD void add_crossed(Vec3 center, const CrossingPlane& plane, const CrossedSums& sums,
-                          CellResult& result) const {
-    if (sums.is_cut) add_to_plane(center, plane, result.plane);
-    result.sum.add_moment(sums.weight, arm(sums.moment), plane.normal);
-  }
   VPM_HD void add_to_plane(Vec3 center, const CrossingPlane& plane, ContactPlane& mean) const {
     mean.add(plane.seen.normal,
              relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
   }
-  // Adds one block of a share that lies where the surface is one plane. `crossed`: crossed_in_turn,
+  // Adds one block of a cell that lies where the surface is one plane. `crossed`: crossed_in_turn,
   // or what returns the same sooner.
   template <class Crossed>
   VPM_HD void add_block(std::uint32_t b, const CrossingPlane& plane, const Crossed& crossed,
                         CellResult& result) const {
     const CellBlock& block = cell_.blocks[b];
-    const double distance = plane.distance(widen(block.center));
-    if (distance >= block.radius) return;
-    if (distance <= -block.radius) {
-      add_whole(tool_reach_, cell_.masses[b], plane.normal, result.sum);
-      return;
-    }
-    const CrossedSums sums = crossed(plane, cell_.samples + block.begin, block.end - block.begin);
-    add_crossed(widen(block.center), plane, sums, result);
+    const Vec3 center = widen(block.center);
+    const PlaneSide side = side_of_plane(plane.distance(center), block.radius);
+    CrossedSums sums;
+    if (side == PlaneSide::cut)
+      sums = crossed(plane, cell_.samples + block.begin, block.end - block.begin);
+    if (sums.is_cut) add_to_plane(center, plane, result.plane);
+    add_by_plane(side, cell_.masses[b], sums, plane.normal, tool_reach_, result.sum);
   }
   VPM_HD const Surface& surface() const { return surface_; }
   VPM_HD const Pose& to_surface() const { return to_surface_; }

@@ -35,11 +35,11 @@ CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample>
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const Double4 weight{a.weight, b.weight, c.weight, d.weight};
     const Double4 distance = dot(plane.normal, center) + plane.height;
-    const Mask4 reached = ~(distance >= radius), is_cut = reached & ~(distance <= -radius);
-    if (!any(reached)) continue;
+    if (!any(distance < radius)) continue;
+    Mask4 is_cut{};
+    Double4 inside =
+        weight_behind(BallShape<Double4>{radius}, plane.normal, distance, weight, is_cut);
     any_cut |= is_cut;
-    const Double4 fraction = fraction_of_cut_ball<Double4>(distance / radius);
-    Double4 inside = reached ? (is_cut ? weight * fraction : weight) : Double4{};
     for (std::size_t k = count - first; k < kFour; ++k) inside[k] = 0;
     FourRows& row = rows[first / kFour % std::size(rows)];
     row = row + FourRows{inside, inside * center};

@@ -49,7 +49,8 @@ struct CutShare {
   double reach = 0;
 
   VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
-  VPM_HD double height(Vec3 x) const { return plane.height(relative(x)); }  // in reaches
+  // True if a place lies behind the plane, so that the flood may go there.
+  VPM_HD bool is_behind(Vec3 x) const { return plane.height(relative(x)) < 0; }
   VPM_HD bool vouches_for(Vec3 x, Vec3 hiding, double near) const {
     return plane.vouches_for(relative(x), relative(hiding), near / reach);
   }

@@ -3,8 +3,8 @@
 
 #include "libvpm/core/division.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/measure/piece_shape.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/surface/ball_fraction.h"
 #include "libvpm/surface/surface.h"
 
 namespace vpm {
@@ -36,21 +36,29 @@ struct CrossedSums {
 // vectors, or threads, can add a row each.
 inline constexpr std::uint32_t kSumRows = 16;
 
-// The weight of a sample that lies behind a plane. Without branches: what is asked of many samples
-// at once waits for the slowest division only (of which what is not cut needs none).
-VPM_HD inline double weight_behind(const CellSample& sample, const CrossingPlane& plane,
-                                   bool& is_cut) {
-  const double distance = plane.distance(widen(sample.center)), radius = sample.radius;
-  const bool reached = !(distance >= radius), cut = reached && !(distance <= -radius);
-  const double fraction = fraction_of_cut_ball(quotient(distance, radius));
-  is_cut |= cut;
-  return reached ? (cut ? sample.weight * fraction : sample.weight) : 0;
+// Returns the weight of a piece that lies behind a plane with this normal, at these signed
+// distances from the piece's middle, and in `is_cut` whether the plane cuts it. Without branches:
+// pieces wait together for the slowest division, of which one that is not cut needs none. Real:
+// double, or a vector of such; Shape: piece_shape.h.
+template <class Shape, class Real, class Mask>
+[[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
+                                                        const Real& distance, const Real& weight,
+                                                        Mask& is_cut) {
+  const Real reach = shape.reach_toward(normal);
+  const Mask reached = distance < reach;
+  is_cut = reached & (distance > -reach);
+  const Real part = weight * shape.fraction_behind(distance, normal);
+  return reached ? (is_cut ? part : weight) : Real{};
 }
 // Adds what of a sample lies behind a plane to its row. Zeros too: a row that begins with 0 is
 // never -0, whoever adds it.
 VPM_HD inline void add_to_row(const CellSample& sample, const CrossingPlane& plane,
                               CrossedSums& row, bool& is_cut) {
-  const double inside = weight_behind(sample, plane, is_cut);
+  bool cut = false;
+  const double inside =
+      weight_behind(BallShape<double>{sample.radius}, plane.normal,
+                    plane.distance(widen(sample.center)), double{sample.weight}, cut);
+  is_cut |= cut;
   row.weight += inside;
   row.moment += inside * widen(sample.center);
 }

@@ -8,7 +8,6 @@
 
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cell_samples.h"
-#include "libvpm/query/patch.h"
 #include "libvpm/query/points_inside.h"
 #include "libvpm/query/share_states.h"
 
@@ -71,35 +70,22 @@ class ShareClassifier {
     const ShareCluster& whole = level_.cluster(root);
     const Vec3 center = to_surface_ * whole.center;
     const Look look = surface_.look_at_ball(center, whole.reach);
-    const bool may_be_patch = is_patch(whole.reach, reach_.length);
-    if (look.side == Side::mixed) {
+    const ClusterClass found = class_of_cluster(surface_, look, center, whole.reach, reach_.length);
+    if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
-      const bool is_crossed =
-          may_be_patch && sees_patch(surface_, look, center, whole.reach, ReadTogether{}, plane);
-      if (is_crossed) states_.planes[root] = {plane, to_surface_};
-      return is_crossed ? classify_crossed(root, look) : classify_nodes(root);
+      if (!finds_cluster_plane(surface_, look, center, whole.reach, reach_.length, ReadTogether{},
+                               plane))
+        return classify_nodes(root);
+      states_.planes[root] = {plane, to_surface_};
+      return classify_crossed(root, look);
     }
-    if (look.side == Side::uncut && may_be_patch) {
-      states_.set(whole, Cell::open, Passage::middle);
-      return 0;
-    }
-    decide(look, whole, center);
-    if (may_be_patch && states_.passages[whole.begin] == Passage::near)
-      push_patch(surface_, to_surface_, whole, root, surface_.read(center), states_);
-    return 0;
-  }
-
-  // Of a cluster through which the surface does not pass.
-  void decide(const Look& look, const ShareCluster& whole, Vec3 center) {
-    if (look.side == Side::free)
-      states_.set(whole, Cell::free, Passage::closed);
-    else if (look.side == Side::uncut)
-      states_.set(whole, Cell::open, Passage::unknown);
+    if (found == ClusterClass::no_surface && may_be_planar(whole.reach, reach_.length))
+      states_.set(whole, Cell::open, Passage::middle);  // decided if the flood comes
+    else if (found == ClusterClass::uniform)
+      push_cluster(surface_, to_surface_, whole, root, surface_.read(center), states_);
     else
-      states_.set(whole, Cell::whole,
-                  surface_.largest_gap(look, center, whole.reach) < reach_.length
-                      ? Passage::near
-                      : Passage::unknown);
+      states_.set(whole, found);
+    return 0;
   }
 
   // Classifies the shares of a cluster that the surface crosses otherwise than as one plane.
@@ -112,8 +98,10 @@ class ShareClassifier {
       const auto& [part, next] = nodes[node];
       const Vec3 center = to_surface_ * part.center;
       const Look look = surface_.look_at_ball(center, part.reach);
-      if (look.side != Side::mixed) {
-        decide(look, part, center);
+      if (const ClusterClass side =
+              class_of_ball(surface_, look, center, part.reach, reach_.length);
+          side != ClusterClass::ambiguous) {
+        states_.set(part, side);
         node = next;
         continue;
       }
@@ -154,12 +142,12 @@ class ShareClassifier {
     std::uint32_t node = first;
     while (node < last) {
       const auto& [part, next] = nodes[node];
-      const double distance = plane.distance(part.center),
-                   away = part.reach + kRounding * reach_.length;
-      if (distance >= away) {
+      const PlaneSide side =
+          side_of_plane(plane.distance(part.center), part.reach + kRounding * reach_.length);
+      if (side == PlaneSide::before) {
         states_.set(part, Cell::free, Passage::closed);
         node = next;
-      } else if (distance <= -away &&
+      } else if (side == PlaneSide::behind &&
                  !surface_.may_hold_free(look, to_surface_ * part.center, part.reach)) {
         states_.set(part, Cell::pushed, Passage::patch);
         node = next;
@@ -176,13 +164,14 @@ class ShareClassifier {
   // What a share's own pixels show to be free is free, whatever the mean of all says.
   void classify_crossed(std::uint32_t i, const CrossingPlane& plane, const Look& look) {
     const CellView view = level_.cell(i);
-    const double distance = plane.distance(view.center);
     const Vec3 center = to_surface_ * view.center;
-    if (distance >= view.reach ||
-        (surface_.may_be_free(Surface::least_inverse_depth(look), center, view.reach) &&
-         surface_.side_of_ball(center, view.reach) == Side::free)) {
+    const PlaneSide side = side_in_cut_cluster(plane.distance(view.center), view.reach, [&] {
+      return surface_.may_be_free(Surface::least_inverse_depth(look), center, view.reach) &&
+             surface_.side_of_ball(center, view.reach) == Side::free;
+    });
+    if (side == PlaneSide::before) {
       states_.set(i, Cell::free, Passage::closed);
-    } else if (distance <= -view.reach) {
+    } else if (side == PlaneSide::behind) {
       states_.set(i, Cell::pushed, Passage::patch);
     } else {
       CellResult& result = states_.results[i];

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "libvpm/measure/classify.h"
 #include "libvpm/query/share_piece.h"
 
 namespace vpm {
@@ -21,17 +22,6 @@ struct ShareClusters {
 };
 
 std::vector<BlockMass> block_masses(const Level& level);
-
-// A share up to this part of the tool's reach that lies wholly behind the surface is counted by its
-// centroid. README.md has what that costs.
-inline constexpr double kCompactReach = 0.125;
-
-VPM_HD constexpr bool is_compact(double reach, double tool_reach) {
-  return reach <= kCompactReach * tool_reach;
-}
-
-// Clusters of several shares are no larger than this part of the tool's reach.
-inline constexpr double kPatchReach = 0.1;
 
 ShareClusters cluster_shares(const ToolModel& tool, const Level& level);
 

@@ -10,7 +10,6 @@
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/query/cut_shares.h"
 #include "libvpm/query/passage.h"
-#include "libvpm/query/patch.h"
 #include "libvpm/query/pose_memory.h"
 
 namespace vpm {
@@ -202,16 +201,11 @@ class ShareFlood {
     const ShareCluster& patch = level_.cluster(root);
     const Vec3 at = to_surface_ * patch.center;
     const Reading middle = surface_.read(at);
-    const OpenPatch open = open_patch(surface_, middle, at, patch.reach, reach_.length);
-    if (open == OpenPatch::free) {
-      states_.set(patch, Cell::free, Passage::closed);
-    } else if (open == OpenPatch::behind) {
-      states_.set(patch, Cell::whole, Passage::unknown);
-    } else if (open == OpenPatch::near) {
-      states_.set(patch, Cell::whole, Passage::near);
-    } else {
-      push_patch(surface_, to_surface_, patch, root, middle, states_);
-    }
+    const ClusterClass found = class_by_middle(surface_, middle, at, patch.reach, reach_.length);
+    if (found == ClusterClass::uniform)
+      push_cluster(surface_, to_surface_, patch, root, middle, states_);
+    else
+      states_.set(patch, found);
   }
 
   Passage find_passage(FloodPart& part, std::uint32_t j) {
@@ -223,12 +217,12 @@ class ShareFlood {
     }
     states_.squared_gaps[j] = squared_gap(reading);
     if (!is_hidden_share(states_.squared_gaps[j], reach_.length)) return Passage::open;
-    return cut_.nearest_to(j, part.last_cut).height(at) < 0 ? Passage::open : Passage::closed;
+    return cut_.nearest_to(j, part.last_cut).is_behind(at) ? Passage::open : Passage::closed;
   }
 
   bool enters(std::uint32_t cut, std::uint32_t row) {
     return lies_near_sheet(squared_gap_of(row), level_.reach(cut), level_.reach(row)) ||
-           cut_.at(cut).height(center(row)) < 0;
+           cut_.at(cut).is_behind(center(row));
   }
   double squared_gap_of(std::uint32_t row) {
     if (states_.passages[row] == Passage::patch) {

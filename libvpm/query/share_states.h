@@ -103,6 +103,20 @@ struct ShareStates {
     std::fill(passages.begin() + cluster.begin, passages.begin() + cluster.end, passage);
   }
 
+  // Notes the class of a cluster, or of a part of one, that is neither cut nor uniform.
+  void set(const ShareCluster& cluster, ClusterClass found) {
+    switch (found) {
+      case ClusterClass::no_surface:
+        return set(cluster, Cell::open, Passage::unknown);
+      case ClusterClass::behind:
+        return set(cluster, Cell::whole, Passage::unknown);
+      case ClusterClass::behind_near:
+        return set(cluster, Cell::whole, Passage::near);
+      default:
+        return set(cluster, Cell::free, Passage::closed);
+    }
+  }
+
   // Whether a row counts, when it is decided what is taken.
   bool counts(std::uint32_t row) const {
     return cells[row] == Cell::cut || (passages[row] == Passage::taken && cells[row] != Cell::free);
@@ -123,14 +137,14 @@ struct ShareStates {
   std::size_t part_count = 1;
 };
 
-// Of a patch wholly behind the surface, near it: all its shares are pushed along one normal.
-// `middle`: the reading at its centre.
+// Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
+// sample at its centre.
 template <class Surface>
-void push_patch(const Surface& surface, const Pose& to_surface, const ShareCluster& patch,
-                std::uint32_t root, const Reading& middle, ShareStates& states) {
-  states.set(patch, Cell::pushed, Passage::near);
+void push_cluster(const Surface& surface, const Pose& to_surface, const ShareCluster& cluster,
+                  std::uint32_t root, const Reading& middle, ShareStates& states) {
+  states.set(cluster, Cell::pushed, Passage::near);
   states.planes[root].normal =
-      transpose(to_surface.rotation) * surface.closest_normal(to_surface * patch.center, middle);
+      transpose(to_surface.rotation) * surface.closest_normal(to_surface * cluster.center, middle);
 }
 
 }  // namespace vpm

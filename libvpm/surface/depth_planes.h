@@ -5,8 +5,10 @@
 
 namespace vpm {
 
-VPM_HD inline bool DepthSurface::is_flat(const Look& look, const Reading& reading, double tolerance,
-                                         TangentPlane& plane) const {
+template <class Read>
+VPM_HD bool DepthSurface::is_flat(const Look& look, const Read& read, double tolerance,
+                                  TangentPlane& plane) const {
+  const Reading reading = read();
   if (!reading.known) return false;
   const CornerNormals corners = corner_normals(look);  // soon, though they may not be needed
   plane = {reading.normal, reading.foot};

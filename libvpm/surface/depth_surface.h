@@ -292,17 +292,15 @@ struct DepthSurface {
     return (center.z - radius) * look.range.low * kRounding < 1;
   }
 
-  // Whether the surface in a ball that was looked at is one plane, as far as the range of its
-  // pixels tells: the plane at its centre must predict their least and greatest depth to
-  // `tolerance`, m.
-  VPM_HD bool is_flat(const Look& look, Vec3 center, double tolerance, TangentPlane& plane) const {
-    return may_be_flat(look) && is_flat(look, read(center), tolerance, plane);
-  }
+  // True if the surface in a ball that was looked at may be one plane.
   VPM_HD bool may_be_flat(const Look& look) const {
     return !look.leaves_image && look.range.low > 0;
   }
-  // The same of a look that may be flat, with the reading at the ball's centre.
-  VPM_HD bool is_flat(const Look& look, const Reading& reading, double tolerance,
+  // True if the surface in such a ball is one plane, as far as the range of its pixels tells: the
+  // plane at the ball's centre, where read() samples the surface, predicts their least and greatest
+  // depth to `tolerance`, m.
+  template <class Read>
+  VPM_HD bool is_flat(const Look& look, const Read& read, double tolerance,
                       TangentPlane& plane) const;
   // Whether the plane predicts the range of the ball's pixels.
   VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const;

@@ -140,11 +140,8 @@ struct DiskSurface {
   VPM_HD bool may_be_flat(const Look& look) const {
     return look.point != kNoPoint;
   }
-  VPM_HD bool is_flat(const Look& look, Vec3, double tolerance, TangentPlane& plane) const {
-    return mean_plane(look, tolerance, plane);
-  }
-  VPM_HD bool is_flat(const Look& look, const Reading&, double tolerance,
-                      TangentPlane& plane) const {
+  template <class Read>
+  VPM_HD bool is_flat(const Look& look, const Read&, double tolerance, TangentPlane& plane) const {
     return mean_plane(look, tolerance, plane);
   }
   // Points do not tell what is free.

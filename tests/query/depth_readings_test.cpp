@@ -199,7 +199,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
       expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto block_look = measure.look_at(block);
-      if (block_look.side != Side::mixed || block_look.is_flat) continue;
+      if (block_look.found != BlockClass::ambiguous) continue;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const SharePiece piece = piece_of(level.samples[s]);
         const auto look = measure.look_at(piece);
@@ -235,7 +235,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
                    level.block_begin[i + 1], tool.spheres[i].center, level.share_reach[i]});
       const CellBlock& block = level.blocks[level.block_begin[i]];
       const auto block_look = measure.look_at(block);
-      if (block_look.side != Side::mixed || block_look.is_flat) continue;
+      if (block_look.found != BlockClass::ambiguous) continue;
       CellResult of_each;
       bool any_far = false;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
@@ -339,7 +339,11 @@ TEST(CrossedSamples, AddUpTogetherAsInTurn) {
     Vec3 moment;
     bool is_cut = false;
     for (const CellSample& sample : samples) {
-      const double inside = weight_behind(sample, plane, is_cut);
+      bool cuts = false;
+      const double inside =
+          weight_behind(BallShape<double>{sample.radius}, plane.normal,
+                        plane.distance(widen(sample.center)), double{sample.weight}, cuts);
+      is_cut |= cuts;
       weight += inside;
       moment += inside * widen(sample.center);
     }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <random>
 
-#include "libvpm/query/patch.h"
+#include "libvpm/measure/classify.h"
 #include "libvpm/query/query.h"
 #include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
@@ -60,7 +60,8 @@ Cloud noisy_wall(double height, double slope) {
 bool sees_plane(const Cloud& cloud, Vec3 center, TangentPlane& plane) {
   const PreparedCloud prepared(cloud);
   const DiskSurface disks = prepared.disk_surface();
-  return sees_patch(disks, disks.look_at_ball(center, kReach), center, kReach, ReadInTurn{}, plane);
+  return finds_cluster_plane(disks, disks.look_at_ball(center, kReach), center, kReach, HUGE_VAL,
+                             ReadInTurn{}, plane);
 }
 
 TEST(PatchOfPoints, NoiseIsAveraged) {

@@ -1,10 +1,9 @@
 // The surface across a patch, seen as one plane.
-#include "libvpm/query/patch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "libvpm/measure/classify.h"
 #include "libvpm/query/query.h"
 #include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
@@ -20,8 +19,8 @@ constexpr double kReach = 0.015;  // radius of the patches
 // the patch is not seen as one plane.
 bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
   const DepthSurface surface = cloud.depth_surface();
-  return sees_patch(surface, surface.look_at_ball(center, kReach), center, kReach, ReadInTurn{},
-                    plane);
+  return finds_cluster_plane(surface, surface.look_at_ball(center, kReach), center, kReach,
+                             HUGE_VAL, ReadInTurn{}, plane);
 }
 
 // Returns the mean height of the plane over the surface, at places of a box in the patch's ball.

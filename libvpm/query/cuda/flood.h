@@ -252,7 +252,7 @@ __device__ bool Flood<Team>::enters(std::uint32_t cut, std::uint32_t i) const {
 
 template <class Team>
 __device__ bool Flood<Team>::lies_behind(std::uint32_t cut, std::uint32_t i) const {
-  return cut_.at(cut).height(center(i)) < 0;
+  return cut_.at(cut).is_behind(center(i));
 }
 
 // Of the shares that another surface may hide, those before the nearest cut share's plane are

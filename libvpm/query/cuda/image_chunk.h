@@ -11,7 +11,6 @@
 
 #include "libvpm/query/cuda/image_sums.h"
 #include "libvpm/query/cuda/pose_work.h"
-#include "libvpm/query/patch.h"
 #include "libvpm/surface/depth_surface.h"
 
 namespace vpm::cuda {
@@ -19,11 +18,11 @@ namespace vpm::cuda {
 // What the lanes of a warp tell each other of the chunk at which they work.
 struct alignas(16) ImageShared {
   struct OfUnit {
-    Side share = Side::free, block = Side::free;
+    Side share = Side::free;
+    BlockClass block = BlockClass::free;
     bool asks_pixels = false;  // whether the share is free
     bool may_be_free = false;
-    bool is_flat = false;  // the block: the surface passes through it as this plane
-    CrossingPlane plane;
+    CrossingPlane plane;    // of a block that is cut
     PixelRectangle pixels;  // of the share
     double farthest = 0;
   };
@@ -91,9 +90,6 @@ class ImageChunk {
   __device__ Measure measure_of_share() const {
     const UnitBall& share = unit_.balls[kOfShare];
     return work_.measure_of({.center = share.center, .reach = share.radius});
-  }
-  __device__ bool is_patch() const {
-    return vpm::is_patch(cluster_.radius, work_.level.tool_reach.length);
   }
   // Whether something is so of any lane of the unit.
   __device__ bool any(bool value) const {
@@ -166,7 +162,6 @@ __device__ void ImageChunk<Found>::look() {
     shared_.look = look_;
     shared_.middle = middle_;
   }
-  if (lane_ == kOfBlock) seen_.block = look_.side;
   if (lane_ == kOfShare) {
     seen_.share = look_.side;
     seen_.farthest = middle_.z + radius_;
@@ -178,20 +173,23 @@ __device__ void ImageChunk<Found>::look() {
 
 template <class Found>
 __device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify() {
-  if (shared_.look.side == Side::mixed)
-    return sees_plane() ? classify_crossed() : classify_alone(Side::mixed);
-  const bool is_pushed =
-      is_patch() && work_.surface.largest_gap(shared_.look, shared_.middle, cluster_.radius) <
-                        work_.level.tool_reach.length;
-  if (!is_pushed) return classify_alone(Side::behind);
-  return is(Unit::is_head) ? Counts::pushed : Counts::not_at_all;
+  switch (class_of_cluster(work_.surface, shared_.look, shared_.middle, cluster_.radius,
+                           work_.level.tool_reach.length)) {
+    case ClusterClass::ambiguous:
+      return sees_plane() ? classify_crossed() : classify_alone(Side::mixed);
+    case ClusterClass::uniform:
+      return is(Unit::is_head) ? Counts::pushed : Counts::not_at_all;
+    default:
+      return classify_alone(Side::behind);
+  }
 }
 
 // Whether the surface passes through the cluster as one plane. It is read in the middles of the
 // cluster and of the blocks, and then at four places about that of the cluster.
 template <class Found>
 __device__ bool ImageChunk<Found>::sees_plane() {
-  const bool may_be = is_patch() && work_.surface.may_be_flat(shared_.look);
+  const bool may_be = may_be_planar(cluster_.radius, work_.level.tool_reach.length) &&
+                      work_.surface.may_be_flat(shared_.look);
   Vec3 place = middle_;
   bool reads = is_of_cluster() ? may_be : lane_ == kOfBlock && is(Unit::has_block);
   Reading reading;
@@ -214,7 +212,7 @@ __device__ bool ImageChunk<Found>::sees_plane() {
     if (!mean.take(around)) return false;
   const TangentPlane tangent = mean.plane();
   if (!work_.surface.shows(shared_.look, tangent, cluster_.radius) ||
-      !is_plane_of_patch(work_.surface, shared_.look, shared_.middle, cluster_.radius, tangent))
+      !is_plane_of_cluster(work_.surface, shared_.look, shared_.middle, cluster_.radius, tangent))
     return false;
   plane_ = {tangent, work_.to_surface};
   return true;
@@ -224,14 +222,14 @@ __device__ bool ImageChunk<Found>::sees_plane() {
 template <class Found>
 __device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify_crossed() {
   const UnitBall& share = unit_.balls[kOfShare];
-  const double distance = plane_.distance(share.center);
+  const PlaneSide side = side_of_plane(plane_.distance(share.center), share.radius);
   if (counts_points_ && lane_ == kOfSphere && is(Unit::is_head) && look_.side == Side::mixed)
     sums_.note_points(unit_);
-  const bool is_reached = distance < share.radius;
+  const bool is_reached = side != PlaneSide::before;
   const bool may_be_free = is_reached && (seen_.share == Side::free || seen_.asks_pixels);
   if (__any_sync(~0U, may_be_free) != 0 && is_free_in_patch(may_be_free)) return Counts::not_at_all;
   if (!is_reached) return Counts::not_at_all;
-  if (distance <= -share.radius) return is(Unit::is_head) ? Counts::pushed : Counts::not_at_all;
+  if (side == PlaneSide::behind) return is(Unit::is_head) ? Counts::pushed : Counts::not_at_all;
   return is(Unit::has_block) ? Counts::by_plane : Counts::not_at_all;
 }
 
@@ -255,17 +253,23 @@ __device__ typename ImageChunk<Found>::Counts ImageChunk<Found>::classify_alone(
     if (counts_points_ && lane_ == kOfSphere && is(Unit::is_head) && side == Side::mixed &&
         look_.side == Side::mixed)
       sums_.note_points(unit_);
-    const bool is_block_mixed =
-        side == Side::mixed && is(Unit::has_block) && seen_.block == Side::mixed;
-    if (lane_ == kOfBlock && is_block_mixed) see_block();
+    const bool asks_block = side == Side::mixed && is(Unit::has_block);
+    if (lane_ == kOfBlock && asks_block) see_block();
     __syncwarp();
-    if (is_block_mixed) {
-      if (!seen_.is_flat) return Counts::by_samples;
+    if (asks_block) {
       plane_ = seen_.plane;
-      return Counts::by_plane;
+      switch (seen_.block) {
+        case BlockClass::free:
+          return Counts::not_at_all;
+        case BlockClass::uncut:
+          return Counts::whole_block;
+        case BlockClass::cut:
+          return Counts::by_plane;
+        case BlockClass::ambiguous:
+          return Counts::by_samples;
+      }
     }
-    if (side == Side::mixed && seen_.block == Side::free) return Counts::not_at_all;
-    if (side == Side::mixed) return is(Unit::has_block) ? Counts::whole_block : Counts::not_at_all;
+    if (side == Side::mixed) return Counts::not_at_all;
   }
   if (side == Side::free) return Counts::not_at_all;
   if (is(Unit::is_compact)) return is(Unit::is_head) ? Counts::whole_share : Counts::not_at_all;
@@ -286,13 +290,11 @@ __device__ Side ImageChunk<Found>::side_of_share(bool asks) {
 // By its lane, whether the surface passes through the block as one plane.
 template <class Found>
 __device__ void ImageChunk<Found>::see_block() {
-  const Measure measure = measure_of_share();
   TangentPlane tangent;
-  seen_.is_flat =
-      work_.surface.may_be_flat(look_) &&
-      work_.surface.is_flat(look_, reading_, measure.flat_tolerance(radius_), tangent) &&
-      measure.is_of_one_wall(middle_, radius_, tangent, look_.point);
-  seen_.plane = {tangent, work_.to_surface};
+  seen_.block = class_of_block(
+      work_.surface, look_, middle_, radius_, work_.level.tool_reach, [&] { return reading_; },
+      tangent);
+  if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
 }
 
 // The piece that this lane measures in this turn, if there is one, and where it lies: a sample, or
@@ -348,7 +350,7 @@ template <class Found>
 __device__ Vec3 ImageChunk<Found>::measure_piece(const SharePiece& piece, Vec3 x, bool exists,
                                                  bool is_sample, Found& found) {
   const Measure measure = measure_of_share();
-  const unsigned lane = threadIdx.x % 32, begin = lane / kNeighborSamples * kNeighborSamples;
+  const unsigned lane = threadIdx.x % 32;
   unsigned leader = lane;
   bool is_inside = false, searches = false, wants = exists;
   Vec3 place = x;
@@ -367,8 +369,8 @@ __device__ Vec3 ImageChunk<Found>::measure_piece(const SharePiece& piece, Vec3 x
       look = measure.look_of(piece, x, reading);
       is_inside = exists && look.is_inside;
       const bool shares = is_inside && is_sample && Measure::shares_direction(piece, look);
-      const unsigned sharing = __ballot_sync(~0U, shares) >> begin;
-      if (shares) leader = begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1;
+      const unsigned sharing = __ballot_sync(~0U, shares);
+      if (shares) leader = direction_leader(lane, sharing);
       searches = wants = is_inside && !Measure::is_cut(piece, look) && leader == lane;
       if (wants) search = DepthSurface::FootSearch(work_.surface, x, reading, beside);
     } else if (wants) {
@@ -402,25 +404,20 @@ __device__ void ImageChunk<Found>::add_piece(const Measure& measure, const Share
 template <class Found>
 __device__ void ImageChunk<Found>::measure_by_plane(Counts counts, Found& found) {
   const UnitBall& block = unit_.balls[kOfBlock];
-  const double distance = plane_.distance(block.center);
-  const bool is_reached = counts == Counts::by_plane && distance < block.radius;
-  const bool is_crossed = is_reached && distance > -block.radius;
+  const PlaneSide side = counts == Counts::pushed ? PlaneSide::behind
+                         : counts != Counts::by_plane
+                             ? PlaneSide::before
+                             : side_of_plane(plane_.distance(block.center), block.radius);
+  const bool is_crossed = side == PlaneSide::cut;
   CrossedSums sums;
   if (__any_sync(~0U, is_crossed) != 0) sums = crossed_sums(is_crossed ? end_ - begin_ : 0);
-  if (lane_ != 0 || !(is_reached || counts == Counts::pushed)) return;
+  if (lane_ != 0 || side == PlaneSide::before) return;
   if constexpr (kFindsPlanes) {
     if (sums.is_cut) measure_of_share().add_to_plane(block.center, plane_, found);
   } else {
-    const ToolReach& reach = work_.level.tool_reach;
-    double weight = sums.weight;
-    Vec3 moment = reach.inverse * sums.moment;
-    if (!is_crossed) {
-      const BlockMass& mass = is_reached ? unit_.block_mass : unit_.share_mass;
-      weight = mass.weight;
-      moment = weight * (reach.inverse * mass.centroid);
-    }
     found.is_cut |= sums.is_cut;
-    found.sum.add_moment(weight, moment, plane_.normal);
+    add_by_plane(side, counts == Counts::pushed ? unit_.share_mass : unit_.block_mass, sums,
+                 plane_.normal, work_.level.tool_reach, found.sum);
   }
 }
 

@@ -36,10 +36,8 @@ struct PoseWork {
   __device__ void add_inside(const CellMeasure<Surface>& measure, const SharePiece& piece,
                              const typename CellMeasure<Surface>::PieceLook& look, Vec3 normal,
                              std::uint32_t share, ToolSum& total) const {
-    const bool cut = CellMeasure<Surface>::is_cut(piece, look);
     ToolSum sum;
-    measure.add_behind(cut ? measure.part_behind(piece, look) : piece, look,
-                       cut ? look.reading.normal : normal, surface, sum);
+    measure.add(piece, look, normal, surface, sum);
     if (!look.is_far) {
       total.add(sum);
       return;

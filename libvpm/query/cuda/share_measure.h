@@ -10,7 +10,6 @@
 #include <climits>
 
 #include "libvpm/query/cuda/task_measure.h"
-#include "libvpm/query/patch.h"
 
 namespace vpm::cuda {
 
@@ -102,15 +101,15 @@ class ShareMeasure {
     const auto look = work_.surface.look_at_ball(at, chunk.ball.radius);
     if (look.side == Side::free) return;
     CrossingPlane plane;
-    const Seen seen = what_is_seen(chunk.ball, look, at, lanes, plane);
-    if (!lanes.leads() || seen == Seen::free) return;
-    if (seen == Seen::pushed) {
+    const ClusterClass seen = classify_cluster(chunk.ball, look, at, lanes, plane);
+    if (!lanes.leads() || seen == ClusterClass::free) return;
+    if (seen == ClusterClass::uniform) {
       shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
       return;
     }
     shared_.first_units[slot] = chunk.begin;
     const unsigned count = chunk.end - chunk.begin;
-    const bool crossed = seen == Seen::crossed;
+    const bool crossed = seen == ClusterClass::cut;
     if (crossed) {  // one by one: nvcc copies a whole that ends in padding byte by byte
       CrossedPatch& patch = patch_of(slot);
       patch.plane = plane;
@@ -125,33 +124,19 @@ class ShareMeasure {
     return work_.space.patches[work_.part.part * blockDim.x + slot];
   }
   template <class Look>
-  __device__ Seen what_is_seen(const UnitBall& ball, const Look& look, Vec3 at, const Tile& lanes,
-                               CrossingPlane& plane) {
-    const bool patch = is_patch(ball.radius, work_.level.tool_reach.length);
-    if (look.side == Side::uncut) {
-      if (!patch) return Seen::uncut;
-      switch (open_patch(work_.surface, work_.surface.read(at), at, ball.radius,
-                         work_.level.tool_reach.length)) {
-        case OpenPatch::free:
-          return Seen::free;
-        case OpenPatch::behind:
-          return Seen::behind;
-        case OpenPatch::near:
-          return Seen::behind_near;
-        case OpenPatch::pushed:
-          return Seen::pushed;
-      }
-    }
-    if (look.side == Side::mixed) {
-      TangentPlane tangent;
-      if (!patch || !sees_patch(work_.surface, look, at, ball.radius, ReadByLanes{lanes}, tangent))
-        return Seen::mixed;
-      plane = {tangent, work_.to_surface};
-      return Seen::crossed;
-    }
-    if (!(work_.surface.largest_gap(look, at, ball.radius) < work_.level.tool_reach.length))
-      return Seen::behind;
-    return patch ? Seen::pushed : Seen::behind_near;
+  __device__ ClusterClass classify_cluster(const UnitBall& ball, const Look& look, Vec3 at,
+                                           const Tile& lanes, CrossingPlane& plane) {
+    const double tool = work_.level.tool_reach.length;
+    const ClusterClass found = class_of_cluster(work_.surface, look, at, ball.radius, tool);
+    if (found == ClusterClass::no_surface && may_be_planar(ball.radius, tool))
+      return class_by_middle(work_.surface, work_.surface.read(at), at, ball.radius, tool);
+    TangentPlane tangent;
+    if (found != ClusterClass::ambiguous ||
+        !finds_cluster_plane(work_.surface, look, at, ball.radius, tool, ReadByLanes{lanes},
+                             tangent))
+      return found;
+    plane = {tangent, work_.to_surface};
+    return ClusterClass::cut;
   }
   // A thread for each unit; those of a patch find its normal together. It takes long, so the last
   // warps begin with it while the first ones deal with crossed patches.
@@ -224,7 +209,7 @@ class ShareMeasure {
   __device__ bool is_free(const Tile& lanes, Vec3 center, double radius) const;
   __device__ void note_pushed(const Unit& unit, Vec3 normal);
   __device__ void note_share(const Unit& unit, std::uint32_t word, double gap);
-  __device__ void list_block(const Unit& unit, Side side);
+  __device__ void list_block(const Unit& unit, BlockClass found);
 
   const PoseWork<Surface>& work_;
   bool counts_points_;
@@ -266,9 +251,9 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   bool hidden = false, whole = side == Side::behind;
   if (kFloods) {
     gap = squared_gap(reading);
-    hidden = lanes.from(
-        seen.seen() != Seen::behind_near && is_hidden_share(gap, work_.level.tool_reach.length),
-        Unit::of_share);
+    hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
+                            is_hidden_share(gap, work_.level.tool_reach.length),
+                        Unit::of_share);
     const bool behind = lanes.from(reading.known && reading.distance < 0, Unit::of_share);
     whole |= side == Side::uncut && behind;
   }
@@ -285,16 +270,13 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   if (lanes.lane != Unit::of_block) return;
   if (side == Side::mixed && (flags & Unit::has_block) != 0) {
     TangentPlane tangent;
-    const Measure measure = tasks_.measure_of(
-        {.center = unit.balls[Unit::of_share].center, .reach = unit.balls[Unit::of_share].radius});
-    const bool is_flat =
-        reads_block &&
-        work_.surface.is_flat(look, reading, measure.flat_tolerance(ball.radius), tangent) &&
-        measure.is_of_one_wall(at, ball.radius, tangent, look.point);
-    if (is_flat)
+    const BlockClass found = class_of_block(
+        work_.surface, look, at, ball.radius, work_.level.tool_reach, [&] { return reading; },
+        tangent);
+    if (found == BlockClass::cut)
       tasks_.add_crossed(unit, {tangent, work_.to_surface});
     else
-      list_block(unit, look.side);
+      list_block(unit, found);
   } else if (whole && (flags & Unit::is_compact) != 0) {
     if (head) tasks_.add(TaskLists::pieces, {unit.share, Task::whole_share, unit.share, 1});
   } else if (whole && (flags & Unit::has_block) != 0) {
@@ -346,14 +328,14 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
   const bool head = (unit.flags & Unit::is_head) != 0;
   const double distance = plane.distance(share.center);
   const Vec3 at = work_.to_surface * share.center;
-  const bool free = !(distance < share.radius) ||
-                    (work_.surface.may_be_free(patch.least_inverse_depth, at, share.radius) &&
-                     is_free(lanes, at, share.radius));
+  const PlaneSide side = side_in_cut_cluster(distance, share.radius, [&] {
+    return work_.surface.may_be_free(patch.least_inverse_depth, at, share.radius) &&
+           is_free(lanes, at, share.radius);
+  });
   if (!lanes.leads()) return;
-  const bool behind = !free && distance <= -share.radius;
   if (head) {
     std::uint32_t word = 0;
-    if (behind) {
+    if (side == PlaneSide::behind) {
       tasks_.note_behind(unit, plane.normal);
       if (kFloods) word = kPartial;
     }
@@ -365,7 +347,8 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
     }
     note_share(unit, word, distance * distance);
   }
-  if ((unit.flags & Unit::has_block) != 0 && !free && !behind) tasks_.add_crossed(unit, plane);
+  if ((unit.flags & Unit::has_block) != 0 && side == PlaneSide::cut)
+    tasks_.add_crossed(unit, plane);
 }
 
 // A share of a patch behind the surface.
@@ -379,9 +362,9 @@ __device__ void ShareMeasure<Surface>::note_pushed(const Unit& unit, Vec3 normal
 
 // Lists a block of a mixed share.
 template <class Surface>
-__device__ void ShareMeasure<Surface>::list_block(const Unit& unit, Side side) {
-  if (side == Side::free) return;
-  if (side != Side::mixed) {
+__device__ void ShareMeasure<Surface>::list_block(const Unit& unit, BlockClass found) {
+  if (found == BlockClass::free) return;
+  if (found == BlockClass::uncut) {
     tasks_.add(TaskLists::pieces, {unit.share, Task::block, unit.block, 1});
     return;
   }

@@ -2,8 +2,8 @@
 // clusters to be looked at, and pieces to be measured, as tasks for warps.
 #pragma once
 
+#include "libvpm/measure/classify.h"
 #include "libvpm/query/cuda/shares.h"
-#include "libvpm/surface/surface.h"
 
 namespace vpm::cuda {
 
@@ -39,29 +39,20 @@ struct TaskLists {
   }
 };
 
-// What the surface shows of a cluster.
-enum class Seen : std::uint32_t {
-  free,
-  mixed,
-  uncut,
-  behind,
-  behind_near,  // no place of it is further behind the surface than the tool's reach
-  crossed,      // a patch: the surface passes through it as one plane
-  pushed,       // a patch, behind near the surface: in one direction
-};
-
 // A unit of such a cluster: the chunk by the slot of those who have looked at it.
 struct SeenUnit {
   std::uint16_t bits;
 
-  __device__ static SeenUnit of(unsigned slot, unsigned unit, Seen seen) {
+  __device__ static SeenUnit of(unsigned slot, unsigned unit, ClusterClass seen) {
     return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | slot << 3 | unit)};
   }
-  __device__ Seen seen() const { return static_cast<Seen>(bits >> 11); }
+  __device__ ClusterClass seen() const { return static_cast<ClusterClass>(bits >> 11); }
   __device__ unsigned slot() const { return bits >> 3 & 255U; }
   __device__ unsigned unit() const { return bits & 7U; }
   __device__ Side side() const {
-    return seen() == Seen::mixed ? Side::mixed : seen() == Seen::uncut ? Side::uncut : Side::behind;
+    return seen() == ClusterClass::ambiguous    ? Side::mixed
+           : seen() == ClusterClass::no_surface ? Side::uncut
+                                                : Side::behind;
   }
 };
 inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;

@@ -87,9 +87,9 @@ class TaskMeasure {
 template <class Surface>
 __device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const CrossingPlane& plane) {
   const UnitBall& ball = unit.balls[Unit::of_block];
-  const double distance = plane.distance(ball.center);
+  const PlaneSide side = side_of_plane(plane.distance(ball.center), ball.radius);
   const Task task{unit.share, Task::samples, unit.begin, unit.end - unit.begin};
-  if (distance > -ball.radius && distance < ball.radius) {
+  if (side == PlaneSide::cut) {
     const unsigned list =
         task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
     // Member by member: the whole would be stored byte by byte.
@@ -99,7 +99,7 @@ __device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const Crossi
     return;
   }
   CellResult result;
-  if (distance <= -ball.radius)
+  if (side == PlaneSide::behind)
     add_whole(work_.level.tool_reach, work_.level.block_masses[unit.block], plane.normal,
               result.sum);
   note_task(task, result);
@@ -191,9 +191,8 @@ __device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure&
 // The first lane of those that share a direction with this one; itself where it has its own.
 template <class Surface>
 __device__ unsigned TaskMeasure<Surface>::first_neighbor(const Tile& tile, bool shares) {
-  const unsigned begin = tile.lane / kNeighborSamples * kNeighborSamples;
-  const unsigned sharing = tile.which(shares) >> begin;
-  return shares ? begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing))) - 1 : tile.lane;
+  const unsigned sharing = tile.which(shares);
+  return shares ? direction_leader(tile.lane, sharing) : tile.lane;
 }
 
 // A row of samples by each thread; what the block needs is read before the first wait, a sample
@@ -217,8 +216,11 @@ __device__ CellResult TaskMeasure<Surface>::measure_flat(const Tile& tile, const
   __syncwarp(tile.mask);
   add_up(tile, row);
   CellResult result;
-  if (tile.leads())
-    measure_of({.center = share, .reach = reach}).add_crossed(center, plane, row, result);
+  if (tile.leads()) {
+    if (row.is_cut)
+      measure_of({.center = share, .reach = reach}).add_to_plane(center, plane, result.plane);
+    add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_reach, result.sum);
+  }
   return result;
 }
 

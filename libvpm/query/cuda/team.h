@@ -127,6 +127,13 @@ struct Tile {
   }
 };
 
+// Returns the first of the neighbouring samples that share a direction with this lane's, of which
+// `sharing` has a bit for each lane.
+__device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
+  const unsigned begin = lane / kNeighborSamples * kNeighborSamples;
+  return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
+}
+
 // The terms of a ToolSum or ContactPlane as they lie in memory.
 inline constexpr int kTerms = 7;
 template <class Sum>

@@ -1,0 +1,178 @@
+// Classifies parts of the tool by how the surface meets them: clusters of cells, cells, blocks of
+// samples. Every decision of the refined measure about a ball or a plane stands here once; backends
+// choose only which thread asks, and in which order.
+#pragma once
+
+#include "libvpm/query/contact_plane.h"
+#include "libvpm/query/shadows.h"
+#include "libvpm/surface/surface.h"
+
+namespace vpm {
+
+// Lengths of the tool that the rules compare with, m.
+struct ToolReach {
+  double length = 0;   // radius about the centre of mass that encloses the tool
+  double inverse = 0;  // 1 / length, 1/m: scales arms
+  double shadow = 0;   // places further behind a seen surface need the support of a plane
+
+  ToolReach() = default;
+  ToolReach(double reach, Shadows shadows)
+      : length(reach), inverse(1 / reach), shadow(shadows == Shadows::solid ? HUGE_VAL : reach) {}
+};
+
+// A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
+// centroid.
+inline constexpr double kCompactReach = 0.125;
+// Clusters up to this part of the tool's radius may be planar; wider ones, of one large cell, are
+// classified by their blocks.
+inline constexpr double kPatchReach = 0.1;
+// A block sees one plane where that is right to its radius, and to this part of the tool's radius:
+// blocks of few large cells are wider than the error they may make.
+inline constexpr double kFlatness = 0.1;
+
+// True if a cell of this bounding radius may be counted by its centroid, where nothing cuts it.
+VPM_HD constexpr bool is_compact(double cell_radius, double tool_radius) {
+  return cell_radius <= kCompactReach * tool_radius;
+}
+// True if a cluster of this bounding radius is small enough to be decided as a whole.
+VPM_HD constexpr bool may_be_planar(double cluster_radius, double tool_radius) {
+  return cluster_radius <= kPatchReach * tool_radius;
+}
+
+// The side of a plane on which a body lies.
+enum class PlaneSide : std::uint8_t { before, cut, behind };
+// Returns the side of a body whose middle is at this signed distance and that reaches so far toward
+// the plane. A body that only touches the plane is not cut.
+VPM_HD constexpr PlaneSide side_of_plane(double distance, double reach) {
+  return distance >= reach    ? PlaneSide::before
+         : distance <= -reach ? PlaneSide::behind
+                              : PlaneSide::cut;
+}
+
+// How the surface meets a cluster of cells, or a part of one.
+enum class ClusterClass : std::uint8_t {
+  free,         // outside of the solid: counts for nothing
+  ambiguous,    // the surface may pass through it: its parts decide
+  no_surface,   // the surface does not pass; a surface sample tells whether it is behind one
+  behind,       // behind the surface, maybe further than the tool's radius
+  behind_near,  // behind it, no place further than the tool's radius
+  cut,          // planar: the surface passes through it as one plane
+  uniform,      // planar and behind_near: all of it is pushed along one normal
+};
+
+// Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
+// plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
+template <class Surface>
+VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface::Look& look,
+                                  Vec3 center, double radius, double tool_radius) {
+  switch (look.side) {
+    case Side::free:
+      return ClusterClass::free;
+    case Side::mixed:
+      return ClusterClass::ambiguous;
+    case Side::uncut:
+      return ClusterClass::no_surface;
+    case Side::behind:
+      break;
+  }
+  return surface.largest_gap(look, center, radius) < tool_radius ? ClusterClass::behind_near
+                                                                 : ClusterClass::behind;
+}
+
+// Returns the class of a whole cluster: class_of_ball(), but uniform where it is small enough.
+template <class Surface>
+VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surface::Look& look,
+                                     Vec3 center, double radius, double tool_radius) {
+  const ClusterClass found = class_of_ball(surface, look, center, radius, tool_radius);
+  return found == ClusterClass::behind_near && may_be_planar(radius, tool_radius)
+             ? ClusterClass::uniform
+             : found;
+}
+
+// Returns the class of a planar cluster without a surface in it, by the surface sample at its
+// middle.
+template <class Surface>
+VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middle, Vec3 center,
+                                    double radius, double tool_radius) {
+  if (!(middle.known && middle.distance < 0)) return ClusterClass::free;
+  if (!(norm(middle.foot - center) + radius < tool_radius)) return ClusterClass::behind;
+  const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
+  OtherWall other;
+  return surface.find_other_wall(center, wall, middle.point, radius, kOneDirection, other)
+             ? ClusterClass::behind_near
+             : ClusterClass::uniform;
+}
+
+// True if a plane as which the surface passes through a cluster is the cluster's: it passes no
+// further away than kSheetReach of its radii, and no second surface is near.
+template <class Surface>
+VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::Look& look,
+                                Vec3 center, double radius, const TangentPlane& plane) {
+  const double near = kSheetReach * radius;
+  OtherWall other;
+  return squared_norm(plane.foot - center) <= near * near &&
+         !surface.find_other_wall(center, plane, look.point, radius, kOneDirection, other);
+}
+
+// True if the surface passes through an ambiguous cluster as one plane, which is returned in
+// `plane`. `read_all` is ReadInTurn, or reads the same places side by side.
+template <class Surface, class ReadAll>
+VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::Look& look,
+                                Vec3 center, double radius, double tool_radius,
+                                const ReadAll& read_all, TangentPlane& plane) {
+  return may_be_planar(radius, tool_radius) &&
+         surface.mean_plane(look, center, radius, radius, read_all, plane) &&
+         is_plane_of_cluster(surface, look, center, radius, plane);
+}
+
+// Returns the side of a cell in a cluster that is cut by a plane. What the cell's own pixels show
+// to be free is free, whatever the mean of all pixels says; `is_seen_free` is asked only of cells
+// that the plane does not already free.
+template <class IsSeenFree>
+VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
+                                     const IsSeenFree& is_seen_free) {
+  const PlaneSide side = side_of_plane(distance, cell_radius);
+  return side != PlaneSide::before && is_seen_free() ? PlaneSide::before : side;
+}
+
+// True if a place at this signed distance is so far behind the surface that it is inside only if a
+// plane supports it.
+template <class Surface>
+VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
+  return signed_distance < -(Surface::kTellsInside ? tool.shadow : tool.length);
+}
+// True if a body of this radius is shared out between two walls: smaller ones are pushed to one.
+VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
+  return radius >= kLeastDivided * tool.length;
+}
+
+// How the surface meets a block of samples of an ambiguous cell.
+enum class BlockClass : std::uint8_t {
+  free,       // counts for nothing
+  uncut,      // is measured as one piece
+  cut,        // the surface passes through it as one plane
+  ambiguous,  // is measured sample by sample
+};
+
+// Returns the class of a block about `center` whose ball was looked at, and the plane of one that
+// is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
+// be.
+template <class Surface, class Read>
+VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::Look& look,
+                                 Vec3 center, double radius, const ToolReach& tool,
+                                 const Read& read, TangentPlane& plane) {
+  if (look.side == Side::free) return BlockClass::free;
+  if (look.side != Side::mixed) return BlockClass::uncut;
+  if (!surface.may_be_flat(look)) return BlockClass::ambiguous;
+  const double most = kFlatness * tool.length, tolerance = radius < most ? radius : most;
+  if (!surface.is_flat(look, read, tolerance, plane) ||
+      is_far_behind<Surface>(plane.distance(center), tool))
+    return BlockClass::ambiguous;
+  OtherWall other;
+  return is_divisible(radius, tool) &&
+                 surface.find_other_wall(center, plane, look.point, radius, kOneDirection, other)
+             ? BlockClass::ambiguous
+             : BlockClass::cut;
+}
+
+}  // namespace vpm
