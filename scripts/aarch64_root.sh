@@ -14,7 +14,7 @@ apt-get download "${packages[@]/%/:arm64}" "${headers[@]}"
 for package in *.deb; do dpkg -x "$package" "$root"; done
 if [[ ! -L $root/lib ]]; then
   cp -a "$root/lib/." "$root/usr/lib/"
-  rm -r "$root/lib"
+  rm -r "${root:?}/lib"
   ln -s usr/lib "$root/lib"
 fi
 

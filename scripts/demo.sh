@@ -5,8 +5,8 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-install_missing
-build
+install_packages "${packages[@]}"
+build_demo
 
 cd "$repository"
 out=demo-output

@@ -13,8 +13,8 @@ set -euo pipefail
 data=$(realpath "${1:-$repository/../shared/data}")
 out=${2:-$repository/demo-output/real}
 
-install_missing
-build
+install_packages "${packages[@]}"
+build_demo
 mkdir -p "$out"
 
 say "Tools: vpm-pack, then vpm-graph"

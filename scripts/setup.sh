@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# Sourced by the other scripts: installs what is missing and builds the release preset into
-# build/release. Needs no root where everything is installed.
+# Sourced by the other scripts: installs what is missing and builds in build/release. Needs no root where everything is
+# installed.
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck disable=SC2034  # used by the scripts that source this one
@@ -11,9 +11,10 @@ python=/usr/bin/python3
 packages=(
   g++ cmake ninja-build
   libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
-  libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev libgtest-dev
-  python3 python3-numpy python3-matplotlib python3-jsonschema
+  libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
+  python3 python3-numpy python3-matplotlib
 )
+test_packages=(libgtest-dev python3-jsonschema)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -21,13 +22,14 @@ is_installed() {
   [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-install_missing() {
+# Installs those of the packages given that are missing.
+install_packages() {
   local missing=() package as_root=()
   if ! command -v dpkg-query >/dev/null; then
-    echo "This is not Debian: install these packages' counterparts yourself: ${packages[*]}" >&2
+    echo "This is not Debian: install these packages' counterparts yourself: $*" >&2
     return 0
   fi
-  for package in "${packages[@]}"; do
+  for package in "$@"; do
     is_installed "$package" || missing+=("$package")
   done
   if [ ${#missing[@]} -eq 0 ]; then
@@ -48,19 +50,43 @@ install_missing() {
     apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Where there is nvcc: machine code for this machine's device only, or, without one, what any driver makes machine code of
-# when it is first needed. Code for all that CMakeLists.txt names takes nvcc five times as long, or ten.
+# Installs all that is missing for programs and tests.
+install_missing() {
+  install_packages "${packages[@]}" "${test_packages[@]}"
+}
+
+# Prints CMake's options for device code where there is nvcc: machine code for this machine's device only, or, without a device,
+# PTX, which a driver compiles when it is first needed. All architectures of CMakeLists.txt take nvcc five to ten times as long.
 cuda_options() {
   command -v nvcc >/dev/null || return 0
   if nvidia-smi >/dev/null 2>&1; then echo -DCMAKE_CUDA_ARCHITECTURES=native; else echo -DCMAKE_CUDA_ARCHITECTURES=75-virtual; fi
 }
 
-build() {
-  local options
-  mapfile -t options < <(cuda_options)
+# Configures build/release with the options given.
+configure() {
+  local options=(-DPython3_EXECUTABLE="$python" "$@")
   if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+  (cd "$repository" && cmake --preset release "${options[@]}")
+}
+
+# Builds the targets given in build/release, or all.
+build_targets() {
+  (cd "$repository" && cmake --build --preset release --parallel "$(nproc)" ${1:+--target "$@"})
+}
+
+# Builds everything: programs, benchmarks and tests, with device code where there is nvcc.
+build() {
+  local cuda
+  mapfile -t cuda < <(cuda_options)
   say "Building into build/release (the first time takes some minutes)"
-  (cd "$repository" &&
-    cmake --preset release -DPython3_EXECUTABLE="$python" "${options[@]}" &&
-    cmake --build --preset release --parallel "$(nproc)")
+  configure -DVPM_CUDA=AUTO "${cuda[@]}"
+  build_targets
+}
+
+# Builds the four tools and the program that makes the demo's example. A new build folder is configured for these alone; one
+# that has tests or device code keeps them.
+build_demo() {
+  say "Building into build/release (the first time takes some minutes)"
+  if [ ! -e "$repository/build/release/build.ninja" ]; then configure -DVPM_BENCH=OFF -DVPM_TESTS=OFF -DVPM_CUDA=OFF; fi
+  build_targets demo_programs
 }
