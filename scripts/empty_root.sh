@@ -1,0 +1,115 @@
+#!/usr/bin/env bash
+# empty_root.sh [--device-code] [COMMAND ...]: runs commands in an empty Debian 12, to show that this repository needs
+# nothing that happens to be installed here. By default the two commands of the README.
+#
+# Makes a root with debootstrap, copies the last commit into it and ../shared beside it where that exists, and runs each
+# COMMAND (a line of shell) in the copy. --device-code then lends the root this machine's CUDA, where it has one, and builds
+# the device code. Needs root, git, debootstrap and the right to mount.
+#
+# Exit status: 77 where such a root cannot be made here, 1 where a command fails, 0 otherwise. The root is removed in any
+# case. Mounts are made in a namespace of their own and so end with its processes, also when these are killed.
+set -euo pipefail
+
+cannot() {
+  echo "empty_root.sh: an empty Debian cannot be set up here: $*" >&2
+  exit 77
+}
+
+# Fills the root with an empty Debian and the copy. Runs in the namespaces.
+fill() {
+  local root=$1 repository=$2
+  echo "== Setting up an empty Debian 12 in $root"
+  if ! timeout 900 debootstrap --variant=minbase bookworm "$root" >"$root.log" 2>&1; then
+    tail -n 20 "$root.log" >&2
+    cannot "debootstrap failed; the end of what it said stands above"
+  fi
+  mount -t proc proc "$root/proc" || cannot "$root/proc cannot be mounted"
+  echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/no-sync"  # faster, and the root does not outlive this script
+  echo 'Acquire::Retries "3";' >"$root/etc/apt/apt.conf.d/retries"
+  mkdir -p "$root/src/vpm"
+  git -c safe.directory='*' -C "$repository" archive HEAD | tar -x -C "$root/src/vpm" || cannot "git has no commit of $repository"
+  if [[ -d $repository/../shared ]]; then
+    mkdir "$root/src/shared"
+    cp -a "$repository/../shared/." "$root/src/shared/"
+  fi
+}
+
+# Runs a command in the copy, with the environment of a machine that has just been set up.
+run() {
+  local root=$1 command=$2 network=() name
+  for name in http_proxy https_proxy no_proxy; do
+    if [[ -n ${!name:-} ]]; then network+=("$name=${!name}"); fi
+  done
+  echo
+  echo "== $command"
+  local start=$SECONDS
+  env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "${network[@]}" \
+    chroot "$root" sh -c "cd /src/vpm || exit; $command" || {
+    echo "empty_root.sh: in an empty Debian this fails: $command" >&2
+    exit 1
+  }
+  echo "== $command: good, $((SECONDS - start)) s"
+}
+
+# Builds the device code and its tests, with the CUDA of this machine.
+build_device_code() {
+  local root=$1 nvcc cuda
+  nvcc=$(command -v nvcc || echo /usr/local/cuda/bin/nvcc)
+  cuda=$(dirname "$(dirname "$(readlink -f "$nvcc")")")
+  if [[ ! -x $cuda/bin/nvcc ]]; then
+    echo "== There is no nvcc here: the device code is not built"
+    return
+  fi
+  mkdir -p "$root/usr/local/cuda"
+  mount --bind "$cuda" "$root/usr/local/cuda"
+  mount -o remount,bind,ro "$root/usr/local/cuda"
+  run "$root" "cmake --preset release -DVPM_CUDA=ON -DCMAKE_CUDA_COMPILER=/usr/local/cuda/bin/nvcc \
+-DCMAKE_CUDA_ARCHITECTURES=75-virtual && cmake --build --preset release --target device_code"
+}
+
+if [[ ${1:-} == --inside ]]; then  # this script, called by itself
+  root=$2 device_code=$3 repository=$4
+  shift 4
+  fill "$root" "$repository"
+  for command in "$@"; do run "$root" "$command"; done
+  if [[ $device_code == yes ]]; then build_device_code "$root"; fi
+  exit
+fi
+
+device_code=no
+if [[ ${1:-} == --device-code ]]; then
+  device_code=yes
+  shift
+fi
+if [[ $# -eq 0 ]]; then set -- scripts/demo.sh scripts/test.sh; fi
+[[ $(id -u) -eq 0 ]] || cannot "that takes root"
+for tool in debootstrap git unshare; do
+  command -v $tool >/dev/null || cannot "$tool is not installed"
+done
+namespaces=(unshare --mount --pid --fork --kill-child)
+"${namespaces[@]}" true 2>/dev/null || cannot "mount namespaces are not allowed"
+
+# Ends what still runs and removes the root. Processes that were killed may need a moment to end.
+# shellcheck disable=SC2317  # the trap calls it
+clean_up() {
+  local attempt
+  if [[ -n $child ]]; then kill -KILL "$child" || true; fi
+  for attempt in 1 2 3 4 5; do
+    if rm -rf --one-file-system "$root" "$root.log" 2>/dev/null; then return; fi
+    sleep "$attempt"
+  done
+  echo "empty_root.sh: cannot remove $root" >&2
+}
+root=$(mktemp -d "${TMPDIR:-/tmp}/vpm-empty-root.XXXXXX")
+child=
+trap clean_up EXIT
+trap 'exit 129' HUP
+trap 'exit 130' INT
+trap 'exit 143' TERM
+repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+"${namespaces[@]}" "${BASH_SOURCE[0]}" --inside "$root" $device_code "$repository" "$@" &  # signals interrupt wait, not a command
+child=$!
+status=0
+wait "$child" || status=$?
+child=
+exit $status
