@@ -5,7 +5,7 @@
 
 #include "libvpm/query/contact_plane.h"
 #include "libvpm/query/shadows.h"
-#include "libvpm/surface/surface.h"
+#include "libvpm/surface/body.h"
 
 namespace vpm {
 
@@ -62,7 +62,7 @@ enum class ClusterClass : std::uint8_t {
 
 // Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
 // plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
-template <class Surface>
+template <Body Surface>
 VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface::Look& look,
                                   Vec3 center, double radius, double tool_radius) {
   switch (look.side) {
@@ -75,12 +75,12 @@ VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface
     case Side::behind:
       break;
   }
-  return surface.largest_gap(look, center, radius) < tool_radius ? ClusterClass::behind_near
-                                                                 : ClusterClass::behind;
+  return gap_bound(surface, look, center, radius) < tool_radius ? ClusterClass::behind_near
+                                                                : ClusterClass::behind;
 }
 
 // Returns the class of a whole cluster: class_of_ball(), but uniform where it is small enough.
-template <class Surface>
+template <Body Surface>
 VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surface::Look& look,
                                      Vec3 center, double radius, double tool_radius) {
   const ClusterClass found = class_of_ball(surface, look, center, radius, tool_radius);
@@ -91,32 +91,32 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surf
 
 // Returns the class of a planar cluster without a surface in it, by the surface sample at its
 // middle.
-template <class Surface>
+template <Body Surface>
 VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middle, Vec3 center,
                                     double radius, double tool_radius) {
   if (!(middle.known && middle.distance < 0)) return ClusterClass::free;
   if (!(norm(middle.foot - center) + radius < tool_radius)) return ClusterClass::behind;
   const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
   OtherWall other;
-  return surface.find_other_wall(center, wall, middle.point, radius, kOneDirection, other)
+  return finds_other_wall(surface, center, wall, middle.point, radius, kOneDirection, other)
              ? ClusterClass::behind_near
              : ClusterClass::uniform;
 }
 
 // True if a plane as which the surface passes through a cluster is the cluster's: it passes no
 // further away than kSheetReach of its radii, and no second surface is near.
-template <class Surface>
+template <Body Surface>
 VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::Look& look,
                                 Vec3 center, double radius, const TangentPlane& plane) {
   const double near = kSheetReach * radius;
   OtherWall other;
   return squared_norm(plane.foot - center) <= near * near &&
-         !surface.find_other_wall(center, plane, look.point, radius, kOneDirection, other);
+         !finds_other_wall(surface, center, plane, look.point, radius, kOneDirection, other);
 }
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
 // `plane`. `read_all` is ReadInTurn, or reads the same places side by side.
-template <class Surface, class ReadAll>
+template <Body Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::Look& look,
                                 Vec3 center, double radius, double tool_radius,
                                 const ReadAll& read_all, TangentPlane& plane) {
@@ -157,7 +157,7 @@ enum class BlockClass : std::uint8_t {
 // Returns the class of a block about `center` whose ball was looked at, and the plane of one that
 // is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
 // be.
-template <class Surface, class Read>
+template <Body Surface, class Read>
 VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::Look& look,
                                  Vec3 center, double radius, const ToolReach& tool,
                                  const Read& read, TangentPlane& plane) {
@@ -170,7 +170,7 @@ VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface:
     return BlockClass::ambiguous;
   OtherWall other;
   return is_divisible(radius, tool) &&
-                 surface.find_other_wall(center, plane, look.point, radius, kOneDirection, other)
+                 finds_other_wall(surface, center, plane, look.point, radius, kOneDirection, other)
              ? BlockClass::ambiguous
              : BlockClass::cut;
 }

@@ -33,7 +33,7 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass, const Cro
   if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
 }
 
-template <class Surface>
+template <Body Surface>
 class CellMeasure {
  public:
   // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
@@ -193,8 +193,8 @@ class CellMeasure {
                          const Near& near, ToolSum& sum) const {
     OtherWall other;
     if (is_divisible(piece.extent, tool_reach_) &&
-        near.find_other_wall(look.x, {normal, look.reading.foot}, look.reading.point, piece.extent,
-                             kTwoWalls, other))
+        finds_other_wall(near, look.x, {normal, look.reading.foot}, look.reading.point,
+                         piece.extent, kTwoWalls, other))
       add_divided(piece, look.x, normal, other, sum);
     else
       add_pushed(piece, normal, sum);

@@ -14,11 +14,18 @@ namespace vpm {
 // SamplesInTurn::crossed.
 CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
 
-// Reads the surface of a camera at four places by vectors, others one after the other.
+// A surface that vectors read at several places.
+template <class Surface>
+concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
+                                 Reading (&readings)[4]) {
+  read_four(surface, places, readings);
+};
+
+// Reads a surface at four places by vectors where it can be, others one after the other.
 struct ReadTogether {
   template <class Surface, class Take>
   bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
-    if constexpr (std::is_same_v<Surface, DepthSurface>) {
+    if constexpr (ReadsTogether<Surface>) {
       Reading readings[4];
       read_four(surface, places, readings);
       return std::all_of(std::begin(readings), std::end(readings), take);
@@ -28,8 +35,8 @@ struct ReadTogether {
   }
 };
 
-// Disks are searched for one place after another.
-struct SamplesAmongDisks : SamplesInTurn {
+// Adds samples whose surface is searched for one place after another.
+struct SamplesOneByOne : SamplesInTurn {
   static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
                              std::uint32_t count) {
     return crossed_sums(plane, {samples, count});
@@ -102,7 +109,6 @@ class SamplesTogether {
 };
 
 template <class Surface>
-using SamplesOnHost =
-    std::conditional_t<std::is_same_v<Surface, DepthSurface>, SamplesTogether, SamplesAmongDisks>;
+using SamplesOnHost = std::conditional_t<ReadsTogether<Surface>, SamplesTogether, SamplesOneByOne>;
 
 }  // namespace vpm

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libvpm/core/parallel_region.h"
+#include "libvpm/query/points_inside.h"
 #include "libvpm/query/pose_memory.h"
 #include "libvpm/query/query_options.h"
 #include "libvpm/query/result.h"
@@ -23,6 +24,13 @@ class RefinedMeasure {
   // With one thread, allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
+  // Returns the answer for one body of the scene. `to_world` maps its frame to the world's;
+  // `points` counts the points in spheres, null where nobody asks. Defined in
+  // measure_refined_run.h.
+  template <Body Surface>
+  Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
+                const PointsOfSphere* points);
+
   // Of the last run, one per sphere.
   void read_states(std::vector<SphereState>& states) const;
 
@@ -32,9 +40,6 @@ class RefinedMeasure {
   }
 
  private:
-  template <class Surface>
-  void run_on(const Surface& surface, const Pose& to_world, const PreparedCloud& cloud,
-              const Pose& pose, ToolSum& sum, Result& result);
   // Cut shares, and those that `inside` has taken; returns how many of these count. Those that do
   // not become free: they were hidden, not inside.
   template <class Surface, class Inside>

@@ -67,7 +67,8 @@ class PointsOfSphere {
     });
     return found;
   }
-  std::uint32_t count(const Sphere& sphere, const DiskSurface::Look&) const {
+  template <class Look>
+  std::uint32_t count(const Sphere& sphere, const Look&) const {
     const Near near = near_to(sphere);
     std::uint32_t found = 0;
     cloud_.for_ranges_in_ball(

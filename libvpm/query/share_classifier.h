@@ -48,7 +48,7 @@ class ShareClassifier {
     const ShareGroup& group = level_.groups()[index];
     const Vec3 center = to_surface_ * group.ball.center;
     const bool tells =
-        group.end - group.begin > 1 && surface_.tells_of_parts(center, group.ball.reach);
+        group.end - group.begin > 1 && tells_of_parts(surface_, center, group.ball.reach);
     Look look;
     if (tells) look = surface_.look_at_ball(center, group.ball.reach);
     if (tells && look.side == Side::free) {
@@ -58,7 +58,7 @@ class ShareClassifier {
     std::uint32_t found = 0;
     for (std::uint32_t root = group.begin; root < group.end; ++root) {
       const ShareCluster& part = level_.cluster(root);
-      if (tells && surface_.is_free_part(look, to_surface_ * part.center, part.reach))
+      if (tells && is_free_part(surface_, look, to_surface_ * part.center, part.reach))
         states_.set(part, Cell::free, Passage::closed);
       else
         found += classify(root);
@@ -117,7 +117,7 @@ class ShareClassifier {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
     const Look look = surface_.look_at_ball(center, view.reach);
-    const Side side = surface_.side_of(look, center, view.reach);
+    const Side side = side_of(surface_, look, center, view.reach);
     if (side == Side::free) {
       states_.set(i, Cell::free, Passage::closed);
     } else if (side == Side::behind) {
@@ -148,7 +148,7 @@ class ShareClassifier {
         states_.set(part, Cell::free, Passage::closed);
         node = next;
       } else if (side == PlaneSide::behind &&
-                 !surface_.may_hold_free(look, to_surface_ * part.center, part.reach)) {
+                 !may_hold_free(surface_, look, to_surface_ * part.center, part.reach)) {
         states_.set(part, Cell::pushed, Passage::patch);
         node = next;
       } else {
@@ -166,8 +166,9 @@ class ShareClassifier {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
     const PlaneSide side = side_in_cut_cluster(plane.distance(view.center), view.reach, [&] {
-      return surface_.may_be_free(Surface::least_inverse_depth(look), center, view.reach) &&
-             surface_.side_of_ball(center, view.reach) == Side::free;
+      return may_be_free(surface_, least_inverse_depth<Surface>(look), center, view.reach) &&
+             side_of(surface_, surface_.look_at_ball(center, view.reach), center, view.reach) ==
+                 Side::free;
     });
     if (side == PlaneSide::before) {
       states_.set(i, Cell::free, Passage::closed);
@@ -200,7 +201,7 @@ class ShareClassifier {
     std::uint32_t found = 0;
     for (std::uint32_t i = patch.begin; i < patch.end; ++i) {
       const Vec3 center = to_surface_ * level_.cell(i).center;
-      if (surface_.may_touch(look, center, level_.radius(i))) found += count_points(i, center);
+      if (may_touch(surface_, look, center, level_.radius(i))) found += count_points(i, center);
     }
     return found;
   }

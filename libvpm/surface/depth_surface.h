@@ -11,8 +11,8 @@
 #include "libvpm/core/division.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/surface/ball_fraction.h"
+#include "libvpm/surface/body.h"
 #include "libvpm/surface/pixel_rectangle.h"
-#include "libvpm/surface/surface.h"
 
 namespace vpm {
 
@@ -158,12 +158,6 @@ struct DepthSurface {
 
   // The surface for places in a ball: this one, which needs no search.
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
-
-  // A camera sees few obstacles from two sides, and what is behind it is pushed towards it.
-  static VPM_HD bool find_other_wall(Vec3, const TangentPlane&, std::uint32_t, double, double,
-                                     OtherWall&) {
-    return false;
-  }
 
   // Normals of the pixels kAcross to either side of one, where there are such.
   struct Neighbors {

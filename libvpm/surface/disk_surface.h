@@ -6,11 +6,10 @@
 #pragma once
 
 #include "libvpm/surface/ball_fraction.h"
+#include "libvpm/surface/body.h"
 #include "libvpm/surface/normal_cones.h"
-#include "libvpm/surface/pixel_rectangle.h"
 #include "libvpm/surface/point_list.h"
 #include "libvpm/surface/point_tree.h"
-#include "libvpm/surface/surface.h"
 
 namespace vpm {
 
@@ -122,46 +121,12 @@ struct DiskSurface {
     const std::uint32_t point = feet.nearest_touching(center, radius, radii);
     return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
   }
-  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
-    return look_at_ball(center, radius).side;
-  }
-  VPM_HD Side side_of(const Look& look, Vec3, double) const {
-    return look.side;
-  }
-  static VPM_HD PixelRectangle pixels_of(const Look&) {
-    return {};
-  }
-  VPM_HD bool may_be_seen_past(const Look&, double) const {
-    return false;
-  }
-  VPM_HD bool is_seen_past(const PixelRectangle&, double, std::uint32_t, std::uint32_t) const {
-    return false;
-  }
   VPM_HD bool may_be_flat(const Look& look) const {
     return look.point != kNoPoint;
   }
   template <class Read>
   VPM_HD bool is_flat(const Look& look, const Read&, double tolerance, TangentPlane& plane) const {
     return mean_plane(look, tolerance, plane);
-  }
-  // Points do not tell what is free.
-  static VPM_HD float least_inverse_depth(const Look&) {
-    return 0;
-  }
-  VPM_HD bool may_be_free(float, Vec3, double) const {
-    return false;
-  }
-  VPM_HD bool may_hold_free(const Look&, Vec3, double) const {
-    return false;
-  }
-  VPM_HD bool tells_of_parts(Vec3, double) const {
-    return false;
-  }
-  VPM_HD bool is_free_part(const Look&, Vec3, double) const {
-    return false;
-  }
-  VPM_HD bool may_touch(const Look&, Vec3, double) const {
-    return true;
   }
   template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3, double, double tolerance, const ReadAll&,
@@ -187,9 +152,6 @@ struct DiskSurface {
     plane = {normalized_or_zero(normal_sum), 1.0 / found * place_sum};
     return shows(plane, middle, look.center, look.radius * look.radius + height * height,
                  kOffPlane * tolerance);
-  }
-  VPM_HD double largest_gap(const Look&, Vec3, double) const {
-    return HUGE_VAL;
   }
 
  private:

@@ -113,7 +113,7 @@ class ShareMeasure {
     if (crossed) {  // one by one: nvcc copies a whole that ends in padding byte by byte
       CrossedPatch& patch = patch_of(slot);
       patch.plane = plane;
-      patch.least_inverse_depth = Surface::least_inverse_depth(look);
+      patch.least_inverse_depth = least_inverse_depth<Surface>(look);
     }
     const unsigned begin =
         crossed ? MeasureShared::kSeen - count - atomicAdd(&shared_.crossed_count, count)
@@ -284,17 +284,20 @@ __device__ void ShareMeasure<Surface>::classify(SeenUnit seen, bool active) {
   }
 }
 
-// Whether the share's lane has looked at a ball that is free, its pixels read by all lanes. (Of a
-// surface without pixels, what the look says stands.)
+// True for the share's lane if its ball, whose pixels all lanes read, was seen to be free.
 template <class Surface>
 template <class Look>
 __device__ bool ShareMeasure<Surface>::is_share_seen_past(const Tile& lanes, const Look& look,
                                                           double depth) const {
-  constexpr unsigned kShare = Unit::of_share;
-  if (!lanes.from(work_.surface.may_be_seen_past(look, depth), kShare)) return false;
-  const PixelRectangle pixels = lanes.from(Surface::pixels_of(look), kShare);
-  const double farthest = lanes.from(depth, kShare);
-  return is_seen_past(lanes, pixels, farthest) && lanes.lane == kShare;
+  if constexpr (SeesFreeSpace<Surface>) {
+    constexpr unsigned kShare = Unit::of_share;
+    if (!lanes.from(work_.surface.may_be_seen_past(look, depth), kShare)) return false;
+    const PixelRectangle pixels = lanes.from(Surface::pixels_of(look), kShare);
+    const double farthest = lanes.from(depth, kShare);
+    return is_seen_past(lanes, pixels, farthest) && lanes.lane == kShare;
+  } else {
+    return false;
+  }
 }
 
 template <class Surface>
@@ -314,8 +317,11 @@ __device__ bool ShareMeasure<Surface>::is_free(const Tile& lanes, Vec3 center,
                                                double radius) const {
   const auto look = work_.surface.look_at_ball(center, radius);
   const double farthest = center.z + radius;
-  if (!work_.surface.may_be_seen_past(look, farthest)) return look.side == Side::free;
-  return is_seen_past(lanes, Surface::pixels_of(look), farthest);
+  if constexpr (SeesFreeSpace<Surface>) {
+    if (work_.surface.may_be_seen_past(look, farthest))
+      return is_seen_past(lanes, Surface::pixels_of(look), farthest);
+  }
+  return look.side == Side::free;
 }
 
 // One unit of a patch that a plane crosses, by all lanes of a tile.
@@ -329,7 +335,7 @@ __device__ void ShareMeasure<Surface>::classify_crossed(SeenUnit seen, const Til
   const double distance = plane.distance(share.center);
   const Vec3 at = work_.to_surface * share.center;
   const PlaneSide side = side_in_cut_cluster(distance, share.radius, [&] {
-    return work_.surface.may_be_free(patch.least_inverse_depth, at, share.radius) &&
+    return may_be_free(work_.surface, patch.least_inverse_depth, at, share.radius) &&
            is_free(lanes, at, share.radius);
   });
   if (!lanes.leads()) return;
