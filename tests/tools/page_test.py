@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 SECTIONS = ["Synopsis", "Description", "Options", "Which options go together", "Examples", "Exit status", "See also"]
-LONGEST_SECONDS = 300
+LONGEST_SECONDS = 600
 
 
 def sections_of(page):
