@@ -4,8 +4,8 @@
 
 #include "libvpm/query/query.h"
 #include "tools/bench/errors.h"
-#include "tools/bench/projective_count.h"
 #include "tools/bench/recorded_images.h"
+#include "tools/bench/sight.h"
 #include "tools/bench/silhouettes.h"
 
 namespace vpm::bench {

@@ -11,16 +11,16 @@
 
 namespace vpm::bench {
 
-// The count takes the shadow of an object for its inside, as Shadows::solid does. Of Shadows::near
-// it is compared without the places in a shadow, too: those further behind the surface than the
-// tool's reach may count or not.
-inline constexpr double kShallow = 0.1;  // of the tool: poses of which it says more are left out
-inline constexpr double kFrameBound = 0.05;  // of the tool
+// Largest fraction of the tool inside, by the count, of the poses that are compared. The count
+// takes shadows as solid, as Shadows::solid does. Shadows::near is also compared without the places
+// in shadows, which lie further behind the surface than the tool's reach and may count or not.
+inline constexpr double kShallow = 0.1;
+inline constexpr double kFrameBound = 0.05;  // of the tool's volume
 
 struct FrameResult {
   std::string frame;
   int poses = 0;
-  // |volume - count|, and how many poses have more than kFrameBound.
+  // Statistics of |volume - count|, with the number of poses above kFrameBound.
   struct Difference {
     MeanAndWorst all;
     int beyond = 0;
@@ -30,12 +30,12 @@ struct FrameResult {
     }
   };
   Difference solid, near, paper;  // Measure::refined with both kinds of shadows, Measure::paper
-  Difference without_shadows;     // of near, where the places in shadows may count or not
+  Difference without_shadows;     // of near, where places in shadows may count or not
   int counted_in_free_space = 0;  // spheres of solid and near, over all poses
 };
 
-// The recordings of `folder` (depth/ with the names below) that are there and that this build can
-// read; `poses` random shallow poses on each. Throws what import_cloud throws for damaged ones.
+// Compares `poses` random shallow poses in each recording that lies in `folder`/depth and that this
+// build can read. Throws what import_cloud throws for a damaged one.
 std::vector<FrameResult> run_real_frames(const std::string& folder, const PackedSolid& tool,
                                          std::uint32_t level, int poses, const Device& device);
 

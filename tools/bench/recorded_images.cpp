@@ -6,7 +6,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
-#include "tools/bench/random_rotation.h"
+#include "tools/bench/random_poses.h"
 
 namespace vpm::bench {
 namespace {
@@ -62,7 +62,7 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach) {
   synthetic::NormalNumbers numbers(kPoseSeed, k);
   const Rotation rotation = random_rotation(numbers);
-  constexpr std::uint64_t kStride = 7919;  // a prime: all over the image
+  constexpr std::uint64_t kStride = 7919;  // a prime, which visits all of the image
   const std::size_t at = k * kStride % cloud.size();
   const double off = reach * (0.7 + 0.2 * numbers.next());
   return {rotation, cloud.origin + widen(cloud.positions[at]) + off * widen(cloud.normals[at])};

@@ -1,4 +1,4 @@
-// Recorded depth images of rooms, and places of a tool before what they show.
+// Recorded depth images of rooms, and random poses of a tool in front of their surface.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@ struct RecordedImage {
   Cloud cloud;
 };
 
-// Throws Error(usage) where `folder`/depth holds none of those that are known by name; for the
-// start of a suite, since what is found out later costs minutes.
+// Throws Error(usage) if `folder`/depth holds none of the images known by name. Suites call it at
+// their start, before minutes have passed.
 void require_recorded_images(const std::string& folder);
 
-// Those that are there and can be read by this build. Throws what import_cloud throws for damaged
-// ones.
+// Reads the images that are there and that this build can read. Throws what import_cloud throws for
+// a damaged one.
 std::vector<RecordedImage> recorded_images(const std::string& folder);
 
-// The k-th: on the near side of a random point, about a tool's reach off.
+// Returns the k-th random pose: near a random point, on its free side, about a tool's reach off.
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach);
 
 }  // namespace vpm::bench

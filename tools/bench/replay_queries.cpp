@@ -1,4 +1,5 @@
-// The parts of `vpm-bench replay` on one frame of a scene that is always at hand.
+// The parts of `vpm-bench replay` that need no recording: they query one frame of a synthetic
+// scene.
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
   return synthetic::render_with_kinect_noise(*scene.surface, scene.camera, kNoiseSeed);
 }
 
-// Where kInside of the tool is inside, by bisection along the optical axis.
+// Returns the pose along the optical axis at which kInside of the tool is inside, by bisection.
 Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
   Query query(tool, {});
   double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
@@ -41,7 +42,7 @@ Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
   return {turned(), {0, 0, deep}};
 }
 
-// Around the pose by this radius: no two queries are the same.
+// Returns poses on a circle of this radius around `middle`, no two of them the same.
 std::vector<Pose> circle(const Pose& middle, double radius, int poses) {
   std::vector<Pose> path(static_cast<std::size_t>(poses), middle);
   for (std::size_t k = 0; k < path.size(); ++k) {
@@ -74,7 +75,8 @@ double seconds_of(const std::function<void(int)>& body, int call) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Every second call is of the other: whatever the machine does meanwhile happens to both.
+// Times two functions in alternating calls, so that whatever the machine does meanwhile affects
+// both.
 std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
                                               const std::function<void(int)>& first,
                                               const std::function<void(int)>& second) {
@@ -88,7 +90,8 @@ std::pair<Durations, Durations> timed_in_turn(int calls, int warm_up,
   return {Durations(std::move(a)), Durations(std::move(b))};
 }
 
-// A wall by a camera of this width; what it sees on the left is always the same.
+// Returns a wall seen by a camera of this width; the left part of the image is the same for all
+// widths.
 Cloud wide_view(std::uint32_t width, bool keeps_camera) {
   synthetic::Scene scene = synthetic::make_scene("wall");
   scene.camera.width = width;
@@ -97,8 +100,8 @@ Cloud wide_view(std::uint32_t width, bool keeps_camera) {
   return keeps_camera ? cloud : without_camera(cloud);
 }
 
-// A wall 80 degrees off the optical axis by every eighth pixel: points far apart with disks larger
-// than the tool.
+// Returns a wall 80 degrees off the optical axis, seen by every eighth pixel: points far apart,
+// with disks larger than the tool.
 Cloud sparse_grazing_view() {
   constexpr double kTilt = 80 * kPi / 180;
   constexpr std::uint32_t kStep = 8;
@@ -108,7 +111,7 @@ Cloud sparse_grazing_view() {
   for (std::uint32_t v = 0; v < camera.height; v += kStep) {
     for (std::uint32_t u = 0; u < camera.width; u += kStep) {
       const Vec3 ray = unproject(camera.intrinsics, u, v, 1);
-      const double z = normal.z / dot(normal, ray);  // through (0, 0, 1)
+      const double z = normal.z / dot(normal, ray);  // on the plane through (0, 0, 1)
       if (!(z > 0 && z < 5)) continue;
       cloud.positions.push_back(narrow(z * ray));
       cloud.normals.push_back(narrow(normal));
@@ -192,7 +195,7 @@ struct CoherentPath {
   std::vector<Pose> poses;
 };
 
-// Every pose by a query that knows the last ones, and by one that knows none.
+// Queries every pose by a query that remembers the poses before, and by one that does not.
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
@@ -253,7 +256,8 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
     const QueryOptions options{.level = level, .device = suite.device};
-    Query of_once(tool.model, options), of_twice(tool.model, options);  // a device holds one cloud
+    // Keeps a query for each cloud, since a device holds one cloud per query.
+    Query of_once(tool.model, options), of_twice(tool.model, options);
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
         suite.quick ? 64 : 1280, 8, [&](int k) { of_once.run(once, pose(k)); },
