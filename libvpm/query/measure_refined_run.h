@@ -103,7 +103,7 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
   return sum;
 }
 
-// What is cut and inside now.
+// Remembers what is cut and inside now, for the pose that follows.
 template <class Surface, class Inside>
 void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                               Inside& inside) {

@@ -1,9 +1,9 @@
-// What the measure asks of a body of the scene, whatever it is: a depth image, points, a solid.
+// Defines what the measure asks of a body of the scene: a depth image, points, a solid.
 //
 // Body is the concept; SeesFreeSpace, BoundsGap and HasOtherWalls are what some bodies know
-// besides. The functions below ask for these and answer for bodies that do not know: they never
-// change an answer for the wrong, they only save work or leave a refinement out. All members are
-// const and may be called by many threads at once. Places are in the body's own frame, m.
+// besides. The functions below ask for these and answer for bodies that do not have them; such an
+// answer costs work or leaves a refinement out, and is never wrong. All members are const and may
+// be called by many threads at once. Places are in the body's own frame, m.
 #pragma once
 
 #include <concepts>

@@ -218,7 +218,7 @@ class SettleWork {
   SettleShared& shared_;
 };
 
-// By all threads of a block.
+// Is called by all threads of a block.
 __device__ inline void settle_tile(const SettleWork& work, PointReading points) {
   work.load();
   __syncthreads();

@@ -46,7 +46,7 @@ class Stack {
   void* memory_;
 };
 
-// What a thread waits for.
+// Names what a thread waits for.
 enum class Wait : std::uint8_t { none, exchange, vote, block };
 
 struct Fiber {
