@@ -12,13 +12,9 @@
 namespace vpm {
 namespace {
 
+using testing::below;
 using testing::Both;
 using testing::HalfSpace;
-
-HalfSpace below(Vec3 normal, double height) {
-  const Vec3 unit = normalized_or_zero(normal);
-  return {{unit, height * unit}};
-}
 
 template <class Body>
 void expect_same(const Body& body) {

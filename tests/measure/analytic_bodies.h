@@ -43,6 +43,12 @@ struct HalfSpace {
   VPM_HD const HalfSpace& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };
 
+// Returns the half-space below the plane that faces along `normal`, `height` m from the origin.
+inline HalfSpace below(Vec3 normal, double height) {
+  const Vec3 unit = normalized_or_zero(normal);
+  return {{unit, height * unit}};
+}
+
 // Asks two bodies at one place, as several cameras will be: what one of them shows to be free is
 // free, so the greater distance counts.
 template <class One, class Other>

@@ -12,6 +12,7 @@
 namespace vpm {
 namespace {
 
+using testing::below;
 using testing::Both;
 using testing::HalfSpace;
 
@@ -31,11 +32,6 @@ double part_behind(const ToolModel& tool, const Pose& pose, const Distance& dist
     part += sample.weight * ball_fraction_inside(distance(at) / sample.radius);
   }
   return part;
-}
-
-HalfSpace below(Vec3 normal, double height) {
-  const Vec3 unit = normalized_or_zero(normal);
-  return {{unit, height * unit}};
 }
 
 TEST(AnyBody, AHalfSpaceHoldsWhatOfTheToolIsBelowIt) {
