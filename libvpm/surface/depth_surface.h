@@ -16,14 +16,14 @@ struct DepthSurface : DepthSampler {
   // A ray that has passed the surface is inside, as far as anybody knows: what is behind it, no
   // further than the tool's reach, counts, and no flood needs to come.
   static constexpr bool kTellsInside = true;
-  // Readings around the middle of a ball are taken at this part of its radius: where a paraboloid
-  // is as high as in the mean over a box in the ball.
+  // Readings about the middle of a ball lie at this part of its radius: a paraboloid is as high
+  // there as in the mean over a box in the ball.
   static constexpr double kRim = 0.5;
 
   VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
     return read_and(x, [](std::int32_t, std::int32_t) {});
   }
-  // The surface for places in a ball: this one, which needs no search.
+  // Returns the surface for places in a ball: this one, since projection needs no search.
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
   // Returns the gradient of the distance to the surface at a place x behind it: towards the nearest
@@ -31,8 +31,8 @@ struct DepthSurface : DepthSampler {
   VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
     return search_normal(*this, x, reading);
   }
-  // What the pixels of a ball tell: its side, and the range of inverse depth over the tiles that
-  // cover them.
+
+  // The pixels of a ball: its side, and the range of inverse depth over the tiles that cover them.
   struct Look {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // projection needs no place to begin
@@ -45,8 +45,8 @@ struct DepthSurface : DepthSampler {
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return side_of(look_at_ball(center, radius), center, radius);
   }
-  // The same of a ball that was looked at. Tiles show what lies beside it too: where they do not
-  // decide, its pixels tell whether it is free.
+  // Returns the side of a ball that was looked at. Tiles hold pixels beside the ball too: where
+  // they do not decide, its own pixels tell if it is free.
   VPM_HD Side side_of(const Look& look, Vec3 center, double radius) const {
     const double farthest = center.z + radius;
     return may_be_seen_past(look, farthest) && is_seen_past(look.pixels, farthest, 0, 1)
@@ -54,20 +54,20 @@ struct DepthSurface : DepthSampler {
                : look.side;
   }
   static VPM_HD PixelRectangle pixels_of(const Look& look) { return look.pixels; }
-  // Whether the pixels of a ball, as measured, may all show no surface nearer than `depth`. The
-  // middle mostly says no.
+  // True if the pixels of a ball may all have measured no surface nearer than `depth`, m. The
+  // pixel in the middle mostly says no.
   VPM_HD bool may_be_seen_past(const Look& look, double depth) const {
     const PixelRectangle& p = look.pixels;
     return look.side == Side::mixed &&
            std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) <= kMostPixels &&
            depth * look.middle < 1;
   }
-  // Whether they do not; of their rows only the `first`, and every `step` after it.
+  // True if every measured pixel of `p` in rows first, first + step, ... lies beyond `depth`, m.
   VPM_HD bool is_seen_past(const PixelRectangle& p, double depth, std::uint32_t first,
                            std::uint32_t step) const {
     for (std::int32_t v = p.v0 + static_cast<std::int32_t>(first); v <= p.v1;
          v += static_cast<std::int32_t>(step)) {
-      bool past = true;  // of a row at a time: reads that do not wait for each other
+      bool past = true;  // a row at a time: loads that do not wait for each other
       for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * measured_at(u, v) < 1;
       if (!past) return false;
     }
@@ -88,7 +88,7 @@ struct DepthSurface : DepthSampler {
     const double v = k.fy * y + k.cy, spread_v = k.fy * (per_nearest * (1 + std::fabs(y)));
     const double u_low = u - spread_u, u_high = u + spread_u;
     const double v_low = v - spread_v, v_high = v + spread_v;
-    // Nor what overflows.
+    // Written so that numbers that overflowed are free too.
     if (!(u_high >= -0.5 && v_high >= -0.5 && u_low < width - 0.5 && v_low < height - 0.5)) {
       look.side = Side::free;
       return look;
@@ -109,24 +109,25 @@ struct DepthSurface : DepthSampler {
     return look;
   }
 
-  // Whether a look at a ball tells of the balls in it: their pixels are among its own where it is
-  // not so near that the bound of its projection is loose.
+  // True if a look at a ball tells of the balls in it: their pixels are among its own, unless it is
+  // so near that the bound of its projection is loose.
   VPM_HD bool tells_of_parts(Vec3 center, double radius) const { return center.z > 2 * radius; }
-  // Whether such a look shows a ball in the one that was looked at to be free.
+  // True if such a look shows that a ball in the one that was looked at is free.
   VPM_HD bool is_free_part(const Look& look, Vec3 center, double radius) const {
     return (center.z + radius) * look.range.high < 1;
   }
 
-  // Whether the surface in a ball that was looked at may touch a ball in it, as far as that tells.
+  // True if the surface in a ball that was looked at may touch a ball in it, as far as the look
+  // tells.
   VPM_HD bool may_touch(const Look& look, Vec3 center, double radius) const {
     return !(is_free_part(look, center, radius) || (center.z - radius) * look.range.low > 1);
   }
 
-  // The least inverse depth in a ball that was looked at.
+  // Returns the least inverse depth in a ball that was looked at, 1/m.
   static VPM_HD float least_inverse_depth(const Look& look) { return look.range.low; }
-  // Whether a ball in one that was looked at may be free though the plane of all pixels there says
-  // no: the pixel at its centre, as measured, shows past it, and not all of the surface there is
-  // nearer than its far side. `least`: of that surface, least_inverse_depth().
+  // True if a ball in one that was looked at may be free though the plane of all pixels there says
+  // no: the measured pixel at its centre lies beyond it, and not all of the surface there is nearer
+  // than its far side. `least` is the least_inverse_depth() of that surface.
   VPM_HD bool may_be_free(float least, Vec3 center, double radius) const {
     if (!((center.z + radius) * least < 1)) return false;
     if (!(center.z - radius >= kSmallestLength)) return true;
@@ -139,8 +140,8 @@ struct DepthSurface : DepthSampler {
            1;
   }
 
-  // False where may_be_free says so of every ball in this one, which lies in one that was looked
-  // at.
+  // False only if may_be_free is false for every ball in this one, which lies in one that was
+  // looked at.
   VPM_HD bool may_hold_free(const Look& look, Vec3 center, double radius) const {
     constexpr double kRounding = 1 - 1e-9;
     return (center.z - radius) * look.range.low * kRounding < 1;
@@ -164,7 +165,7 @@ struct DepthSurface : DepthSampler {
     plane.normal = mean_normal(look, corners, reading.normal);
     return true;
   }
-  // Whether the plane predicts the range of the ball's pixels.
+  // True if the plane predicts the range of the ball's pixels, to `tolerance`, m.
   VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
     if (spans_few_pixels(look)) return look.range.high - look.range.low <= kJump * look.range.high;
     const double per_height = quotient(1, dot(plane.normal, plane.foot));
@@ -180,9 +181,9 @@ struct DepthSurface : DepthSampler {
            std::fabs(middle + spread - look.range.high) <= allowed;
   }
 
-  // The mean plane of the surface across a ball that was looked at, from readings at its middle and
-  // at four places around it; false where they do not belong to one smooth surface, or the range of
-  // the ball's pixels does not agree with the plane.
+  // Finds the mean plane of the surface across a ball that was looked at, from readings at its
+  // middle and at four places around it. Returns false if they do not belong to one smooth surface,
+  // or the range of the ball's pixels does not agree with the plane.
   template <class ReadAll>
   VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
                          const ReadAll& read_all, TangentPlane& plane) const {
@@ -198,7 +199,7 @@ struct DepthSurface : DepthSampler {
     plane = mean.plane();
     return shows(look, plane, tolerance);
   }
-  // Those four places; `middle` was read at the ball's centre, and is known.
+  // The four places around the middle; `middle` was read at the ball's centre, and is known.
   struct PlacesAround {
     static constexpr int kCount = 4;
     Vec3 below, side, other;
@@ -215,24 +216,25 @@ struct DepthSurface : DepthSampler {
       return place % 2 == 0 ? below + aside : below - aside;
     }
   };
-  // The mean of what is read there and in the middle, as far as it belongs to one smooth surface.
+  // The mean of the five readings, if they belong to one smooth surface.
   struct PlaneMean {
     Vec3 middle_normal, direction, feet;
 
     VPM_HD explicit PlaneMean(const Reading& middle)
         : middle_normal(middle.normal), direction(middle.normal), feet(middle.foot) {}
-    // Takes one more; false where it does not belong.
+    // Adds a reading; false if it does not belong to that surface.
     VPM_HD bool take(const Reading& reading) {
       if (!reading.known || dot(reading.normal, middle_normal) < kSmoothCosine) return false;
       direction += reading.normal;
       feet += reading.foot;
       return true;
     }
-    // When all is taken.
+    // Returns the plane of five readings.
     VPM_HD TangentPlane plane() const { return {normalized_or_zero(direction), 0.2 * feet}; }
   };
 
-  // Bound of the distance from any place in a ball that was looked at to the foot of its reading.
+  // Returns a bound of the distance, m, from any place in a ball that was looked at to the foot of
+  // its reading.
   VPM_HD double largest_gap(const Look& look, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;
     if (!(nearest >= kSmallestLength && look.range.high > 0)) return HUGE_VAL;
@@ -265,8 +267,8 @@ struct DepthSurface : DepthSampler {
     return {{normals[above + p.u0 + u], normals[above + p.u1 - u], normals[below + p.u0 + u],
              normals[below + p.u1 - u]}};
   }
-  // The mean of these and of the normal at the middle, where they belong to one smooth surface:
-  // noise is averaged, and curvature cancels.
+  // Returns the mean of these and of the normal at the middle, of those that belong to one smooth
+  // surface: noise is averaged, and curvature cancels.
   VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const {
     if (spans_few_pixels(look)) return middle;
     Vec3 sum = middle;
@@ -277,7 +279,7 @@ struct DepthSurface : DepthSampler {
     return normalized_or_zero(sum);
   }
 
-  // The greatest power of two that is not above a number; 0 for 0.
+  // Returns the exponent of the greatest power of two that is not above a number; 0 for 0.
   static VPM_HD int exponent_of(std::uint32_t number) {
 #ifdef __CUDA_ARCH__
     return 31 - __clz(static_cast<int>(number | 1));
@@ -304,7 +306,7 @@ struct DepthSurface : DepthSampler {
       const InverseDepthRange tile = tiles[level][v * row + u];
       all = united(all, tile);
     };
-    // Always nine, some of them twice: loads that do not wait for each other, and no branch.
+    // Takes nine always, some of them twice: loads that do not wait for each other, no branch.
     for (std::int32_t i = 0; i < 9; ++i)
       take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
     look.range = all;

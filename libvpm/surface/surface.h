@@ -1,4 +1,4 @@
-// What a query asks of the scanned surface. Two kinds of cloud answer: DepthSurface (a camera's
+// The scanned surface as a query asks it. Two kinds of cloud answer: DepthSurface (a camera's
 // image, by projection) and DiskSurface (points without a camera, by the nearest disk). README.md
 // has the reasons.
 #pragma once
@@ -33,8 +33,8 @@ struct ReadingOf {
 };
 using Reading = ReadingOf<double>;
 
-// Reads a surface at several places, one after the other, as long as `take` says to go on. Whether
-// it has taken all.
+// Reads a surface at several places, one after the other, as long as `take` says to go on. Returns
+// true if it has taken all.
 struct ReadInTurn {
   template <class Surface, int kPlaces, class Take>
   VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
