@@ -1,4 +1,4 @@
-// Errors of both measures against the truth, and whether the refined one keeps its bounds.
+// Measures errors of both measures against the truth, and checks the bounds of the refined one.
 
 #include <algorithm>
 #include <cstdio>
@@ -6,7 +6,6 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "tools/bench/random_poses.h"
-#include "tools/bench/real_frames.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/silhouettes.h"
 #include "tools/bench/suite.h"
@@ -15,8 +14,8 @@
 namespace vpm::bench {
 namespace {
 
-// What is promised of --measure refined; README.md. Volumes in parts of the tool's, angles in
-// degrees, torques in parts of volume times reach.
+// Bounds that --measure refined must keep. Volumes are fractions of the tool's, angles degrees,
+// torques fractions of volume times reach.
 struct Bounds {
   const char *noise, *spheres;
   double mean, worst, jump;
@@ -28,10 +27,10 @@ constexpr Bounds kBounds[] = {{"none", "1000", 0.0015, 0.01, 0.002},
 constexpr double kDirectionBound = 1, kTorqueBound = 0.01;
 
 constexpr int kRandomPoses = 10000;
-// Spheres of the tools among random poses: few, so that points can be fifty times closer than the
-// smallest is large.
+// Spheres of the tools in random poses: so few that points can be fifty times closer than the
+// smallest sphere is large.
 constexpr std::uint32_t kFew = 20;
-constexpr double kSpacings[] = {1, 0.2, 0.02};  // of the smallest sphere's radius
+constexpr double kSpacings[] = {1, 0.2, 0.02};  // in radii of the smallest sphere
 
 const std::vector<std::string> kShapes{"cube", "tetrahedron", "octahedron", "torus",
                                        "twisted-torus"};
@@ -70,7 +69,7 @@ class Accuracy {
       step();
     }
     std::vector<CloudKind> kinds{CloudKind::camera};
-    if (!is_solid()) kinds.push_back(CloudKind::points);  // which know no shadows
+    if (!is_solid()) kinds.push_back(CloudKind::points);  // points without a camera have no shadows
     for (const SweepCase& c : all) {
       sweeps_.run(c, {{1000, 10000}, kinds, 51});
       step();
@@ -261,7 +260,7 @@ class Accuracy {
     for (const char* cloud : {"camera", "points"}) {
       for (const Bounds& b : kBounds) {
         const auto found = sweeps_.groups().find({"all", cloud, b.noise, "refined", b.spheres});
-        if (found == sweeps_.groups().end()) continue;  // points, with solid shadows
+        if (found == sweeps_.groups().end()) continue;  // points are left out with solid shadows
         const GroupErrors& e = found->second;
         const std::string which =
             std::string(", ") + cloud + ", noise " + b.noise + ", " + b.spheres + " spheres";

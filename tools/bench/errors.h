@@ -1,4 +1,5 @@
-// Errors of a measure along a path, relative to the tool, where the truth can be known.
+// Errors of a measure along a path, relative to the tool, counted only where the truth can be
+// known.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,21 +12,22 @@
 
 namespace vpm::bench {
 
-// A force direction means something from this part of the tool's volume on.
+// Smallest penetration, as a fraction of the tool's volume, at which force directions are compared.
 inline constexpr double kForceMatters = 0.01;
-// Force and torque are compared where less than this part of what is inside has a depth that no
-// camera can know.
+// Largest fraction of the inside volume whose depth no camera can know; force and torque are
+// compared below it.
 inline constexpr double kDepthKnown = 0.01;
 
-// Volumes in parts of the tool's, torques in parts of volume times reach, angles in degrees. `jump`
-// is how much the volume moves between neighbouring poses beyond what the truth, and what is not
-// known, moves.
+// Errors over one path. Volumes are fractions of the tool's, torques fractions of volume times
+// reach, angles degrees. `jump` is how much the volume moves between neighbouring poses beyond what
+// the truth and the unknown part move.
 struct Errors {
   MeanAndWorst volume, jump, force, direction, torque;
 };
 
-// How far a volume is from what it may be: between the truth less what of it cannot be known to be
-// inside, and the truth plus what cannot be known to be free. Parts of the tool's volume.
+// Returns how far `volume` lies outside of its bounds, as a fraction of the tool's volume. The
+// lower bound is the truth without what cannot be known to be inside, the upper one the truth with
+// what cannot be known to be free.
 double volume_error(double volume, double truth, const Unseen& unseen);
 
 Errors compare(const std::vector<Result>& measured,
@@ -34,9 +36,9 @@ Errors compare(const std::vector<Result>& measured,
 
 nlohmann::json to_json(const Errors& errors);
 
-// Over the cases of a group: mean of means, worst of worsts.
+// Errors over the cases of a group: the mean of their means and the worst of their worsts.
 struct GroupErrors {
-  MeanAndWorst volume, jump, direction, torque;  // of each case: mean
+  MeanAndWorst volume, jump, direction, torque;  // with the mean of each case
   MeanAndWorst volume_worst, direction_worst, torque_worst;
   void add(const Errors& errors);
 };

@@ -1,5 +1,5 @@
-// Every case right, or refused with a message: never a number that is none, a crash or a zero that
-// means nothing.
+// Runs every extreme case. A case fails by a result that is not finite, a crash, or a zero without
+// meaning.
 #include "tools/bench/extremes.h"
 
 #include <chrono>
@@ -18,7 +18,7 @@ struct Outcome {
   std::string said = "right";  // right, refused or wrong
   bool holds = false;
   Deviation deviation{std::numeric_limits<double>::quiet_NaN(), 0, 0};
-  std::string message;  // of a refusal
+  std::string message;  // text of the refusal
   double seconds = 0;
 };
 

@@ -1,5 +1,5 @@
-// Cases at the edge of what is possible, each with the only right answer: a number near a known
-// truth, or a refusal in words.
+// Cases at the edge of what is possible. Each has one right answer: a number near a known truth, or
+// a refusal with a message.
 #pragma once
 
 #include <functional>
@@ -14,40 +14,44 @@
 
 namespace vpm::bench {
 
-// A measured quantity, mostly a part of the tool's volume, and how far it may be from the truth.
+// Difference of a measured quantity, mostly a fraction of the tool's volume, from the truth, and
+// its bound.
 struct Deviation {
   double value = 0, truth = 0, bound = 0;
 };
 
 struct ExtremeCase {
   std::string group, name;
-  bool refused = false;            // whether a message is the right answer
-  std::function<Deviation()> run;  // what it says does not matter where `refused`
+  bool refused = false;            // true if the right answer is a message
+  std::function<Deviation()> run;  // its value does not matter if `refused`
 };
 
-// Cases that ask this device. From mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, the
-// seed being the index.
+// Returns cases from mesh text to wrench at scales of 1e-9 to 1e9 m, log-uniform, seeded by their
+// index, queried on `device`.
 std::vector<ExtremeCase> extreme_scales(const Device& device, bool quick);
-// Clouds and images: far origins, few, many and coinciding points, odd normals, odd depths.
+// Returns cases of clouds and images: far origins, few, many and coinciding points, odd normals,
+// odd depths.
 std::vector<ExtremeCase> extreme_clouds(const Device& device, bool quick);
-// Tools of one to a million spheres, of very different spheres, needles and sheets; poses.
+// Returns cases of tools with one to a million spheres, with very different radii, needles and
+// sheets, and of odd poses.
 std::vector<ExtremeCase> extreme_tools(const Device& device, bool quick);
 
-// The part of the tool's volume; not a number if anything in the result is none, or no volume.
+// Returns the penetrating fraction of the tool; NaN if the result lacks a volume or holds a number
+// that is not finite.
 double sound_fraction(const Result& result);
 
-// Points that are planes to any tool here: their disks are huge.
+// Returns a cloud whose disks are so large that each point is a plane to any tool here.
 Cloud plane_points(std::vector<Vec3f> positions, std::vector<Vec3f> normals);
 
-// A cube of edge 2 at the origin with n^3 equal spheres that touch.
+// Returns a cube of edge 2 at the origin with n^3 equal spheres that touch.
 Packing lattice_packing(int n);
 
-// The part of the tool's volume that is inside, by a query on this device.
+// Returns the penetrating fraction of the tool, by a query on `device`.
 double ask(const Device& device, const ToolModel& tool, const Cloud& cloud, Measure measure,
            const Pose& pose = {});
 
-// The surface, or an image that a camera took, with estimated normals.
-Camera small_camera();  // 160 x 120 pixels, at the world's origin
+// Returns the camera of the image cases: 160 x 120 pixels, at the world's origin.
+Camera small_camera();
 Cloud see(const synthetic::Surface& surface, const Camera& camera);
 
 }  // namespace vpm::bench

@@ -13,8 +13,8 @@ namespace vpm::bench {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr double kTight = 1e-6;    // where the answer is exact up to rounding
-constexpr double kSampled = 5e-3;  // where the cell samples of few spheres limit it
+constexpr double kTight = 1e-6;    // for answers that are exact up to rounding
+constexpr double kSampled = 5e-3;  // for answers limited by the cell samples of few spheres
 
 const ToolModel& cube_of_64() {
   static const ToolModel tool = build_tool_model(lattice_packing(4), {});
@@ -25,13 +25,13 @@ const ToolModel& cube_of_1() {
   return tool;
 }
 
-// Of the unit ball's volume, in the cube of edge 2, that lies below height z.
+// Returns the fraction of the unit ball's volume, in the cube of edge 2, that lies below height z.
 double ball_part(double z) {
   const double height = 1 + z;
   return kPi * height * height * (3 - height) / 3 / 8;
 }
 
-// `side`^2 points on the plane at this height, over the tool.
+// Returns `side`^2 points on the plane at this height, over the tool.
 Cloud floor_of(int side, double height) {
   std::vector<Vec3f> positions;
   for (int i = 0; i < side * side; ++i) {
@@ -42,7 +42,7 @@ Cloud floor_of(int side, double height) {
   return plane_points(std::move(positions), std::vector<Vec3f>(count, Vec3f{0, 0, 1}));
 }
 
-// `side`^2 points within half a unit of the axis, at half the sphere's lower radius.
+// Returns `side`^2 points within half a unit of the axis, at half the sphere's lower radius.
 Cloud points_in_one_sphere(int side) {
   Cloud cloud = floor_of(side, -0.5);
   for (Vec3f& p : cloud.positions) p = {p.x / 3, p.y / 3, p.z};
@@ -136,7 +136,8 @@ void add_normals(std::vector<ExtremeCase>& cases, const Device& device) {
                    }});
 }
 
-// A cube of 0.2 depths, half of it behind a wall at that depth, 160 x 120 pixels.
+// Queries a cube of 0.2 depths, half of it behind a wall at that depth, in an image of 160 x 120
+// pixels.
 Deviation half_behind(const Device& device, const DepthImage& image, const Camera& camera,
                       const Pose& pose, double edge, double truth) {
   Packing packing = lattice_packing(4);
@@ -175,12 +176,14 @@ void add_images(std::vector<ExtremeCase>& cases, const Device& device) {
     DepthImage image = flat(camera, 0);
     image.depth[image.index(80, 60)] = 1;
     Deviation d = half_behind(device, image, camera, {{}, {0, 0, 1}}, 0.2, 0);
-    const double side = 1.1 / 131.25 / 0.2;  // of the pixel at the far face, of the cube's edge
-    d.bound = 4 * side * side;               // known only along one ray, of which half is behind
+    // The far face is known along one ray only, half of which is behind. `side` is the pixel's
+    // width there in edges of the cube.
+    const double side = 1.1 / 131.25 / 0.2;
+    d.bound = 4 * side * side;
     return d;
   });
   add("the tool in the image's corner", [=] {
-    const double edge = 0.04;  // 5 pixels: every window is cut by the border
+    const double edge = 0.04;  // 5 pixels: the border cuts every window
     return half_behind(device, flat(camera, 1), camera, {{}, {-0.57, -0.42, 1}}, edge, 0.5);
   });
   add("origin at 10^7 m", [=] {

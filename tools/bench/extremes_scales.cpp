@@ -15,10 +15,11 @@ namespace vpm::bench {
 namespace {
 
 constexpr std::uint32_t kSpheres = 300;
-// Of 300 spheres; a wrong unit, threshold or rounding anywhere would show as all or nothing.
+// Bound of a model of 300 spheres. A wrong unit, threshold or rounding anywhere would show as all
+// or nothing.
 constexpr double kBound = 2e-3;
 
-// SplitMix64's first number of this seed, 0 to 1.
+// Returns the first number of SplitMix64 with this seed, 0 to 1.
 double uniform(std::uint64_t seed) {
   std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ULL;
@@ -50,8 +51,8 @@ Cloud scattered(const Cloud& cloud) {
   return cloud_of_scattered_points(positions, normals, {}, "the scene");
 }
 
-// The largest error of the refined volume over three depths and both kinds of cloud, as a part of
-// the tool's volume; not a number if the paper's results are not sound.
+// Returns the largest error of the refined volume over three depths and both kinds of cloud, as a
+// fraction of the tool's volume; NaN if the results of the printed measure are not sound.
 Deviation whole_pipeline(const Device& device, const std::string& shape, double scale) {
   const std::string text = off_text(make_shape(shape), scale);
   const Solid solid = make_solid(parse_mesh(std::as_bytes(std::span(text)), "tool.off")).solid;

@@ -14,7 +14,7 @@ Cloud floor_at(double z) {
   return plane_points({narrow({0, 0, z})}, {{0, 0, 1}});
 }
 
-// The refined volume against the exact one at a plane z = height.
+// Compares the refined volume with the exact one at a plane z = height.
 Deviation at_floor(const Device& device, const Packing& packing, double height, double bound) {
   const ToolModel tool = build_tool_model(packing, {});
   validate(tool, "tool");
@@ -33,7 +33,7 @@ Packing two_spheres() {
   return packing;
 }
 
-// A row of spheres of radius 1, 0.1 ... 1e-6, each beside the one before, in a box.
+// Returns a row of spheres of radius 1, 0.1 ... 1e-6, each beside the one before, in a box.
 Packing radii_over_six_decades() {
   Packing packing;
   packing.solid = synthetic::make_box(2.5, 2, 2);
@@ -45,8 +45,8 @@ Packing radii_over_six_decades() {
   return packing;
 }
 
-// A point in the smallest sphere's centre: half of that sphere is inside, which is 1e-19 of the
-// tool and below what the sums resolve.
+// Places a point in the smallest sphere's centre. Half of that sphere is inside, 1e-19 of the tool
+// and below what the sums resolve.
 Deviation touch_of_the_smallest(const Device& device) {
   const Packing packing = radii_over_six_decades();
   const ToolModel tool = build_tool_model(packing, {});
@@ -60,7 +60,7 @@ Deviation touch_of_the_smallest(const Device& device) {
   return {sound_fraction(r), volume(smallest) / 2 / tool.volume, kResolution};
 }
 
-// A long or flat tool, packed, tilted into a wall that a camera sees.
+// Packs a long or flat tool and tilts it into a wall that a camera sees.
 Deviation packed_into_wall(const Device& device, const Solid& solid, std::uint32_t spheres,
                            double bound) {
   const ToolModel tool = make_tool(solid, {spheres});

@@ -1,4 +1,4 @@
-// vpm-bench SUITE [--out DIR] [--quick]
+// vpm-bench: runs a suite of measurements and writes its results.
 #include <iostream>
 
 #include "libvpm/core/error.h"
@@ -6,65 +6,83 @@
 #include "tools/common/number_checks.h"
 #include "tools/common/tool.h"
 
-int main(int argc, char** argv) {
-  vpm::tools::Tool tool("vpm-bench",
-                        "Measures accuracy and speed; writes JSON and CSV for scripts/plot_*.py");
+namespace vpm::bench {
+namespace {
+
+struct Arguments {
   std::string suite, folder = "bench-output", meshes, data, shadows = "near";
   bool quick = false, all = false, baseline = false;
-  std::uint64_t noise_seed = vpm::bench::SuiteOptions::kUsualNoise;
-  tool.app().add_option("suite", suite, vpm::bench::suite_names());
-  tool.app()
-      .add_option("--out", folder, "Folder for SUITE.json and SUITE.csv")
+  std::uint64_t noise_seed = SuiteOptions::kUsualNoise;
+};
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option("suite", a.suite, "Suite to run: " + suite_names());
+  app.add_option("--out", a.folder, "Write SUITE.json and SUITE.csv into this folder")
       ->capture_default_str();
-  tool.app().add_flag("--quick", quick, "A small version that takes seconds");
-  tool.app().add_flag(
-      "--all", all,
-      "accuracy: every tool, scene and kind of cloud; packing, scaling: a million spheres");
-  tool.app().add_option("--meshes", meshes,
-                        "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
-  tool.app().add_option(
-      "--data", data,
-      "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; replay: or "
-      "your own recording, with camera-intrinsics.txt (vpm-query --frames)");
-  tool.app()
-      .add_option("--noise-seed", noise_seed, "accuracy: which sample of the noise")
-      ->check(vpm::tools::whole_number_in(0, 1 << 30))
+  app.add_flag("--quick", a.quick, "Run a small version that takes seconds");
+  app.add_flag("--all", a.all,
+               "accuracy: take every tool, scene and kind of cloud; packing, scaling: go up to a "
+               "million spheres");
+  app.add_option("--meshes", a.meshes,
+                 "packing: folder of bunny.off, armadillo.obj, fandisk.obj and knot.ply");
+  app.add_option("--data", a.data,
+                 "accuracy --all, replay, timing: folder whose depth/ holds recorded depth images; "
+                 "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames");
+  app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")
+      ->check(tools::whole_number_in(0, 1 << 30))
       ->capture_default_str();
-  tool.app()
-      .add_option("--shadows", shadows,
-                  "accuracy: what counts of places that a depth image does not show, near ones or "
-                  "all (solid, of images alone)")
+  app.add_option("--shadows", a.shadows,
+                 "accuracy: what counts of the places that a depth image does not show: near ones, "
+                 "or all (solid)")
       ->check(CLI::IsMember({"near", "solid"}))
       ->capture_default_str();
-  tool.app().add_flag("--baseline", baseline,
-                      "scaling: beside the measure as printed, by the algorithm as printed");
-  tool.app()
-      .get_option("--device")
-      ->description("Where to query, with the same results: cpu, and of " +
-                    vpm::bench::suite_names(true) +
-                    " cuda or cuda:N; auto is the CPU, of scaling, which times a device, cuda");
+  app.add_flag("--baseline", a.baseline,
+               "scaling: time the algorithm as printed beside the measure as printed");
+  app.get_option("--device")
+      ->description(
+          "Compute queries on cpu, or, in " + suite_names(true) +
+          ", on cuda or cuda:N, with the same results. auto is the CPU, and cuda for scaling");
+}
+
+// Returns the command that repeats the run, with placeholders for folders.
+std::string command_of(const Arguments& a, const std::string& device) {
+  const bool usual_noise = a.noise_seed == SuiteOptions::kUsualNoise;
+  return "vpm-bench " + a.suite + (a.quick ? " --quick" : "") + (a.all ? " --all" : "") +
+         (a.baseline ? " --baseline" : "") +
+         (usual_noise ? "" : " --noise-seed " + std::to_string(a.noise_seed)) +
+         (a.shadows == "near" ? "" : " --shadows " + a.shadows) +
+         (device == "auto" ? "" : " --device " + device) +
+         (a.meshes.empty() ? "" : " --meshes MESHES") + (a.data.empty() ? "" : " --data DATA");
+}
+
+void run(const tools::Tool& tool, const Arguments& a) {
+  const std::string& device = tool.common().device;
+  const bool asks_device = device != "auto" || needs_device(a.suite);
+  if (is_suite(a.suite)) make_folder(a.folder);
+  tools::Progress progress("vpm-bench " + a.suite, tool.common());
+  const Report report =
+      run_suite(a.suite, {.quick = a.quick,
+                          .all = a.all,
+                          .progress = [&](double fraction) { progress.update(fraction); },
+                          .meshes = a.meshes,
+                          .data = a.data,
+                          .baseline = a.baseline,
+                          .noise_seed = a.noise_seed,
+                          .shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near,
+                          .device = asks_device ? tool.device() : Device{}});
+  write(report, command_of(a, device), a.folder);
+  if (!tool.common().quiet) std::cout << report.summary << std::flush;
+  if (!report.failure.empty())
+    refuse(report.failure + "; " + a.folder + "/" + a.suite + ".json names them");
+}
+
+}  // namespace
+}  // namespace vpm::bench
+
+int main(int argc, char** argv) {
+  vpm::tools::Tool tool("vpm-bench", "Measure accuracy and speed; write JSON and CSV");
+  vpm::bench::Arguments arguments;
+  declare(tool.app(), arguments);
   tool.computes_on_devices();
-  return tool.run(argc, argv, [&] {
-    const bool asks_device = tool.common().device != "auto" || vpm::bench::needs_device(suite);
-    if (vpm::bench::is_suite(suite)) vpm::bench::make_folder(folder);
-    vpm::tools::Progress progress("vpm-bench " + suite, tool.common());
-    const vpm::bench::Report report = vpm::bench::run_suite(
-        suite, {quick, all, [&](double fraction) { progress.update(fraction); }, meshes, data,
-                baseline, noise_seed, shadows == "solid" ? vpm::Shadows::solid : vpm::Shadows::near,
-                asks_device ? tool.device() : vpm::Device{}});
-    vpm::bench::write(
-        report,
-        "vpm-bench " + suite + (quick ? " --quick" : "") + (all ? " --all" : "") +
-            (baseline ? " --baseline" : "") +
-            (noise_seed == vpm::bench::SuiteOptions::kUsualNoise
-                 ? ""
-                 : " --noise-seed " + std::to_string(noise_seed)) +
-            (shadows == "near" ? "" : " --shadows " + shadows) +
-            (tool.common().device == "auto" ? "" : " --device " + tool.common().device) +
-            (meshes.empty() ? "" : " --meshes MESHES") + (data.empty() ? "" : " --data DATA"),
-        folder);
-    if (!tool.common().quiet) std::cout << report.summary << std::flush;
-    if (!report.failure.empty())
-      vpm::refuse(report.failure + "; " + folder + "/" + suite + ".json names them");
-  });
+  return tool.run(argc, argv, [&] { run(tool, arguments); });
 }

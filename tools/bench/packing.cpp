@@ -1,5 +1,5 @@
-// Packings: coverage, time and memory beside two greedy packers on voxels, what growing adds, and
-// the cost per sphere from a hundred spheres to a million, and of meshes up to two million
+// Measures packings: coverage, time and memory beside two greedy packers on voxels, the gain by
+// growing, and the cost per sphere up to a million spheres and per mesh up to two million
 // triangles.
 
 #include <algorithm>
@@ -54,7 +54,7 @@ double filled(const std::vector<Sphere>& spheres) {
   return sum;
 }
 
-// 1, 2, 5, 10, 20 ... up to `most`.
+// Returns 1, 2, 5, 10, 20 ... up to `most`.
 std::vector<std::size_t> counts_up_to(std::size_t most) {
   std::vector<std::size_t> counts;
   for (std::size_t decade = 1; decade <= most; decade *= 10)
@@ -135,7 +135,7 @@ class Packings {
     if (options_.progress) options_.progress(share);
   }
 
-  // One line of the comparison: the coverage of every prefix.
+  // Adds the coverage of every prefix, one line of the comparison each.
   void add_prefixes(const Shape& shape, const std::string& method,
                     const std::vector<Sphere>& spheres, const Cost& cost) {
     std::string line = "| " + shape.name + " | " + method + " |";
@@ -166,7 +166,7 @@ class Packings {
       std::vector<Sphere> spheres;
       PackOptions pack_options;
       pack_options.spheres = most_;
-      pack_options.enclosure = &shape.enclosure;  // vpm-pack knows it from its check of the mesh
+      pack_options.enclosure = &shape.enclosure;  // vpm-pack has it from its check of the mesh
       Cost cost = cost_of([&] { spheres = pack(shape.solid, pack_options).spheres; });
       add_prefixes(shape, "vpm-pack", spheres, cost);
       std::optional<VoxelGreedy> voxels;
@@ -213,7 +213,7 @@ class Packings {
     progress(0.7);
   }
 
-  // Fewest spheres that cover a share of the volume, greedy and grown.
+  // Finds the fewest spheres that cover a fraction of the volume, greedy and grown.
   void count_what_is_needed() {
     report_.summary +=
         "\n| shape | coverage | spheres, greedy | spheres, --grow |\n"
@@ -235,7 +235,7 @@ class Packings {
     progress(0.8);
   }
 
-  // By bisection: coverage rises with the number of spheres, but for the odd one.
+  // Bisects, since coverage rises with the number of spheres with rare exceptions.
   static std::size_t needed_with_growth(const Shape& shape, const std::vector<Sphere>& greedy,
                                         std::size_t enough, double share) {
     std::size_t too_few = 0;
@@ -249,7 +249,7 @@ class Packings {
     return enough;
   }
 
-  // The bunny where its mesh is at hand, else the torus knot.
+  // Measures the cost per sphere in the bunny if its mesh is given, otherwise in the torus knot.
   void scale_up() {
     const auto found = std::find_if(shapes_.begin(), shapes_.end(),
                                     [](const Shape& s) { return s.name == "bunny"; });
@@ -275,7 +275,8 @@ class Packings {
     progress(0.9);
   }
 
-  // The torus knot from 11 520 triangles to two million: all that vpm-pack does but reading.
+  // Measures the torus knot with 11 520 to two million triangles: all that vpm-pack does except
+  // reading.
   void refine_mesh() {
     report_.summary +=
         "\n| torus knot: triangles | coverage | s, mesh | s, packing | CPU s | MB | certified |\n"
@@ -318,7 +319,7 @@ class Packings {
     return mesh;
   }
 
-  // Proportions such that the first sphere fills .0146, as in the literature's (2,3) knot.
+  // Makes a torus knot whose first sphere fills .0146 of it, as the (2,3) knot of the literature.
   static Solid make_torus_knot(int fine) {
     return synthetic::make_torus_knot(2, 3, 1, 0.5, 0.177, 240 * fine, 24 * fine);
   }

@@ -1,4 +1,4 @@
-// What takes the place of cuda/ in a build without CUDA.
+// Replaces cuda/ in a build without CUDA.
 #include "libvpm/core/error.h"
 #include "tools/bench/paper_baseline.h"
 

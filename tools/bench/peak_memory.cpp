@@ -10,7 +10,7 @@
 namespace vpm::bench {
 namespace {
 
-// What earlier work has freed would count.
+// Returns freed memory to the system, which would otherwise count.
 void give_back_freed() {
 #ifdef __GLIBC__
   malloc_trim(0);

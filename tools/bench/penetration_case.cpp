@@ -24,12 +24,12 @@ Extent extent_along_z(const Solid& solid, const Rotation& rotation) {
   return extent;
 }
 
-// The least z of the tool's origin between two at which more than `part` of the tool is inside, by
-// bisection: deeper poses penetrate more. `deep` where none is.
+// Returns the least z of the tool's origin at which more than `part` of the tool is inside, by
+// bisection, since deeper poses penetrate more; `deep` if there is none.
 double z_of_volume(const synthetic::TrueSolid& tool, const Pose& start,
                    const synthetic::Surface& surface, double part, double clear, double deep) {
   constexpr int kHalvings = 30;
-  constexpr double kCoarse = 1e-4;  // tolerance: the place of a pose need not be exact
+  constexpr double kCoarse = 1e-4;  // tolerance, fraction of the range
   for (int k = 0; k < kHalvings; ++k) {
     const double middle = 0.5 * (clear + deep);
     const Pose pose{start.rotation, {start.translation.x, start.translation.y, middle}};

@@ -12,42 +12,44 @@
 
 namespace vpm::bench {
 
-// Solids of about 0.2 m: cube, tetrahedron, octahedron, torus, twisted-torus. Throws Error(usage)
-// for others.
+// Returns a solid of about 0.2 m: cube, tetrahedron, octahedron, torus or twisted-torus. Throws
+// Error(usage) for other names.
 Solid make_shape(const std::string& name);
 
-// Packed with as many spheres as the largest level has.
+// Packs the solid with as many spheres as the largest level has, and makes its tool model.
 ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels);
 
-// A packed solid, its truth, and places in it to count.
+// A packed solid with its exact truth and sample places inside of it.
 struct PackedSolid {
   synthetic::TrueSolid solid;
   ToolModel model;
   std::vector<Vec3> places;
 
-  // For errors of parts of a hundred.
+  // Returns a subset of the places that resolves errors of a per cent.
   std::span<const Vec3> few_places() const {
     return std::span(places).first(std::min(kFewPlaces, places.size()));
   }
   static constexpr std::size_t kFewPlaces = 8192;
 };
-// So many resolve a hundredth of a per cent of the tool: a twentieth of the least bound.
+// Number of places that resolves a hundredth of a per cent of the tool, a twentieth of the smallest
+// bound.
 inline constexpr std::size_t kCountedPlaces = 524288;
 PackedSolid make_packed(const std::string& shape, const std::vector<std::uint32_t>& levels,
                         std::size_t places = kCountedPlaces);
 
-// A rotation along no axis of any solid or scene.
+// Returns a rotation whose axis is none of any solid or scene.
 Rotation turned();
 
-// From just clear of the surface to kDeepest of the tool's height behind the first contact; the
-// first two poses or more are clear. `poses` >= 3.
+// Returns `poses` >= 3 poses from just clear of the surface to kDeepest of the tool's height behind
+// the first contact. At least the first two are clear.
 inline constexpr double kDeepest = 0.8;
-inline constexpr double kClear = 0.05;  // of the tool's height, before the contact
+inline constexpr double kClear = 0.05;  // clearance of the first pose, in the tool's height
 std::vector<Pose> make_path(const synthetic::TrueSolid& tool, const Rotation& rotation,
                             const synthetic::Surface& surface, int poses);
 
-// From the first contact until kFullest of the tool's volume is inside, or to kDeepest where that
-// never comes (a thin plate). The tool's origin keeps its place aside of the optical axis.
+// Returns poses from the first contact until kFullest of the tool's volume is inside, or until
+// kDeepest if that never happens (a thin plate). The tool's origin keeps its distance from the
+// optical axis.
 inline constexpr double kFullest = 0.6;
 std::vector<Pose> make_sweep(const synthetic::TrueSolid& tool, const Pose& start,
                              const synthetic::Surface& surface, int poses);

@@ -1,22 +1,22 @@
 #include "tools/bench/random_poses.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/query.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
-#include "tools/bench/random_rotation.h"
 #include "tools/bench/sight.h"
 
 namespace vpm::bench {
 namespace {
 
-constexpr double kAside = 0.03;  // m from the optical axis: scenes change in the middle
+constexpr double kAside = 0.03;  // m from the optical axis, since scenes change in the middle
 constexpr int kPaperEvery = 8;
-constexpr double kFieldOfView = 0.6;  // m at a depth of 1 m: room for every pose
+constexpr double kFieldOfView = 0.6;  // m at a depth of 1 m, wide enough for every pose
 
-// A bell-shaped place around the scene's middle, any rotation.
+// Returns a place with a bell-shaped distribution around the scene's middle and any rotation.
 Pose random_pose(std::uint64_t seed, std::uint64_t k, double reach) {
   synthetic::NormalNumbers numbers(seed, k);
   const Rotation rotation = random_rotation(numbers);
@@ -33,6 +33,12 @@ double counted(const PackedSolid& tool, const Pose& pose, const synthetic::Surfa
 }
 
 }  // namespace
+
+Rotation random_rotation(synthetic::NormalNumbers& numbers) {
+  const Quaternion q{numbers.next(), numbers.next(), numbers.next(), numbers.next()};
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  return rotation_from_quaternion({q.x / length, q.y / length, q.z / length, q.w / length});
+}
 
 Camera camera_of_spacing(double spacing) {
   const double f = 1 / spacing, pixels = std::ceil(kFieldOfView * f);
@@ -69,7 +75,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
         const auto m = static_cast<std::size_t>(measure);
         const double volume = queries[m].run(cloud, pose).volume_fraction;
         double error = volume_error(volume, truth, unseen);
-        if (!(error <= kLeak / 2)) {  // worth asking what the camera can know
+        if (!(error <= kLeak / 2)) {  // large enough to ask what the camera can know
           if (!looked) unseen = unseen_parts(tool.few_places(), pose, *scene.surface, sights);
           looked = true;
           error = volume_error(volume, truth, unseen);

@@ -1,7 +1,7 @@
-// Ten thousand random poses per scene and point spacing: does anything ever leak?
+// Random poses of tools in each scene at several point spacings, to find leaks.
 //
-// A leak is an error above kLeak of the tool. Truth is a count of places in the tool; what no
-// camera can know counts for neither side (sight.h).
+// A leak is an error above kLeak of the tool's volume. The truth is a count of places in the tool;
+// places that no camera can know count for neither side (sight.h).
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,33 @@
 
 #include "libvpm/device/device.h"
 #include "libvpm/query/shadows.h"
+#include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/statistics.h"
 
 namespace vpm::bench {
 
-inline constexpr double kLeak = 0.02;
+inline constexpr double kLeak = 0.02;  // of the tool's volume
 
 struct RandomPoses {
-  MeanAndWorst error[2];  // of Measure::refined, Measure::paper
+  MeanAndWorst error[2];  // indexed by Measure::refined, Measure::paper
   int leaks[2] = {};
   int poses = 0, paper_poses = 0;
 };
 
-// The scene's camera with the same field of view, but points `spacing` metres apart at 1 m.
+// Returns the scene's camera with the same field of view and points `spacing` metres apart at 1 m.
 Camera camera_of_spacing(double spacing);
 
-// `poses` poses with 0 to 60 % of the tool inside; the same for the same seed. The surface is
-// rendered without noise, normals are estimated from the image. Each tool takes its turn. `shadows`
-// are those of the refined measure. The measure as printed looks at every eighth pose only: it
+// Runs `poses` poses with 0 to 60 % of the tool inside, the same for the same seed; tools take
+// turns. The surface is rendered without noise and normals are estimated from the image. `shadows`
+// are those of the refined measure. The measure as printed runs at every eighth pose only, since it
 // takes most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
                              int poses, std::uint64_t seed, Shadows shadows, const Device& device);
+
+// Returns a uniformly distributed rotation; draws four numbers.
+Rotation random_rotation(synthetic::NormalNumbers& numbers);
 
 }  // namespace vpm::bench

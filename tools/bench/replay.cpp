@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An organised PCD of what a camera sees.
+// Returns an organised PCD of a depth image.
 std::string pcd_of(const DepthImage& depth, const Intrinsics& k) {
   const std::string size = std::to_string(depth.width), rows = std::to_string(depth.height);
   std::string text = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
@@ -35,8 +35,8 @@ std::string pcd_of(const DepthImage& depth, const Intrinsics& k) {
   return text;
 }
 
-// Where there is no recording: a camera that goes past a ball, 15 frames with Kinect noise, in a
-// folder that goes with this.
+// Writes a recording for runs without one: a camera that passes a ball, 15 frames with Kinect
+// noise. Its destructor removes the folder.
 class SyntheticRecording {
  public:
   SyntheticRecording() {
@@ -63,7 +63,8 @@ class SyntheticRecording {
   file::TemporaryFolder folder_;
 };
 
-// The red kitchen of a folder of depth images, or the folder itself.
+// Returns the folder of the recording: the red kitchen in a folder of depth images, or the folder
+// itself.
 std::string recording_in(const std::string& data) {
   const fs::path kitchen = fs::path(data) / "depth" / "redkitchen_seq";
   return fs::is_directory(kitchen) ? kitchen.string() : data;
@@ -87,7 +88,7 @@ Report run_replay(const SuiteOptions& options) {
   std::optional<SyntheticRecording> synthetic;
   if (options.data.empty()) synthetic.emplace();
   const std::string folder = synthetic ? synthetic->folder() : recording_in(options.data);
-  if (!synthetic) read_recording(folder, {});  // says what is wrong before minutes have passed
+  if (!synthetic) read_recording(folder, {});  // refuses before minutes have passed
   const ReplayTool tool = make_replay_tool(options.quick);
   report.settings = {{"quick", options.quick},
                      {"shape", "twisted torus, 0.25 m"},

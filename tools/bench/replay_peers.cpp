@@ -19,7 +19,7 @@ struct Rectangle {
   int u0 = 0, u1 = -1, v0 = 0, v1 = -1;
 };
 
-// Pixels of the box's corners, in the image. The box lies before the camera.
+// Returns the rectangle of the box's corners in the image. The box must lie in front of the camera.
 Rectangle pixels_of(const Box& box, const Pose& to_camera, const Camera& camera) {
   const Intrinsics& k = camera.intrinsics;
   double u0 = HUGE_VAL, u1 = -HUGE_VAL, v0 = HUGE_VAL, v1 = -HUGE_VAL;
@@ -46,7 +46,8 @@ openvdb::FloatGrid::Ptr distances_of(const Solid& solid, double voxel) {
     points.emplace_back(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   std::vector<openvdb::Vec3I> triangles;
   for (const Triangle& t : solid.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  constexpr float kOutside = 3, kInside = kPeerVoxels;  // voxels; inside: all of them
+  // Widths of the band in voxels; kInside exceeds every distance inside.
+  constexpr float kOutside = 3, kInside = kPeerVoxels;
   return openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
       *openvdb::math::Transform::createLinearTransform(voxel), points, triangles, {}, kOutside,
       kInside);
@@ -70,7 +71,7 @@ class Voxels {
     nx = dim.x(), ny = dim.y(), nz = dim.z();
   }
 
-  // Trilinear; m. `p`: voxels since the first.
+  // Interpolates the distance trilinearly, m; the place is in voxels from the first.
   bool read(float x, float y, float z, float& distance) const {
     const int i = static_cast<int>(x), j = static_cast<int>(y), k = static_cast<int>(z);
     if (!(x >= 0 && y >= 0 && z >= 0 && i + 1 < nx && j + 1 < ny && k + 1 < nz)) return false;

@@ -1,4 +1,4 @@
-// What is written by hand where there is no measure, to be timed beside it.
+// Hand-written alternatives to the measure, to be timed beside it.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace vpm::bench {
 
-// A frame as an application holds it: a point and a normal for each pixel, in camera coordinates;
-// zero where nothing was measured.
+// A frame as applications hold it: a point and a normal for each pixel, in camera coordinates, or
+// zeros where nothing was measured.
 struct PixelCloud {
   Camera camera;
   DepthImage depth;
@@ -20,21 +20,23 @@ struct PixelCloud {
 };
 PixelCloud make_pixel_cloud(const DepthImage& depth, const Camera& camera);
 
-// The solid's distances in voxels, kPeerVoxels on its longest side, made by OpenVDB.
+// Voxels along the solid's longest side in its distance grid, made by OpenVDB.
 inline constexpr int kPeerVoxels = 128;
 class Voxels;
 
 class Peers {
  public:
-  // What is built once for the tool.
+  // Builds the tool's grids, once.
   explicit Peers(const Solid& solid);
   ~Peers();
 
-  // The penalty force of the points that lie in the tool: the distance of each, read from a dense
-  // grid, along its normal. Only pixels of the tool's rectangle are looked at. No volume.
+  // Returns the penalty force of the points that lie in the tool: the sum of each point's distance,
+  // read from a dense grid, along its normal. Looks at the pixels of the tool's rectangle only.
+  // Gives no volume.
   Wrench penalty(const PixelCloud& cloud, const Pose& tool_to_camera) const;
 
-  // The volume of the tool's voxels that lie behind the depth of their pixel, m^3. No force.
+  // Returns the volume of the tool's voxels that lie behind the depth of their pixel, m^3. Gives no
+  // force.
   double count_voxels(const PixelCloud& cloud, const Pose& tool_to_camera) const;
 
  private:

@@ -1,4 +1,4 @@
-// The parts of `vpm-bench replay` on a recording.
+// The parts of `vpm-bench replay` that run on a recording.
 
 #include <algorithm>
 #include <bit>
@@ -42,7 +42,7 @@ PreparedChange prepare_frame(FrameReader& reader, std::size_t frame) {
   return prepared;
 }
 
-// The point in the middle of the image's points that is nearer than half of its neighbourhood.
+// Returns the point nearest to the image's middle that is nearer than half of its neighbourhood.
 std::size_t middle_point(const PreparedCloud& cloud) {
   const Vec3 camera = cloud.camera_to_world().translation - cloud.origin();
   const std::size_t count = cloud.positions().size();
@@ -59,7 +59,7 @@ std::size_t middle_point(const PreparedCloud& cloud) {
   return *middle;
 }
 
-// A tool that goes in and out of the surface twice a period, wanders over it and turns.
+// Returns a path in and out of the surface twice a period, wandering over it and turning.
 TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double seconds) {
   constexpr double kPeriod = 2.5, kPosesPerSecond = 100, kWander = 0.05;  // s, 1/s, m
   const std::size_t at = middle_point(cloud);
@@ -81,13 +81,13 @@ TimedPath haptic_path(const PreparedCloud& cloud, const ToolModel& tool, double 
   return TimedPath(std::move(times), std::move(poses));
 }
 
-// The path through the stream that the first frame suggests.
+// Returns the path through the stream, placed by its first frame.
 SampledPath path_through(const Stream& stream, const ToolModel& tool, double seconds) {
-  FrameReader reader(stream.recording, stream.import);  // its cloud is looked at here
+  FrameReader reader(stream.recording, stream.import);  // the CPU reads its cloud here
   return SampledPath(haptic_path(*prepare_frame(reader, 0).cloud, tool, seconds), kRate);
 }
 
-// What one pass over the stream has shown.
+// Results of one pass over the stream.
 struct Pass {
   std::vector<double> profile;               // volume fraction, every kProfileEvery steps
   std::vector<double> query_us, prepare_ms;  // of each frame
@@ -103,7 +103,7 @@ Pass pass_over(const Stream& stream, const SampledPath& path, Query& query) {
                  stream.import, stream.device);
   feed.wait_for_first();
   LoopClock clock(kRate, false);
-  std::size_t begin = 0;  // step of the frame
+  std::size_t begin = 0;  // step at which the frame begins
   const auto close_frame = [&](std::size_t end) {
     double sum = 0;
     for (std::size_t k = begin; k < end; ++k) sum += clock.latencies()[k];
@@ -163,7 +163,7 @@ void add_pass(const Pass& pass, std::uint32_t level, Report& report) {
   report.summary += line;
 }
 
-// One hash over the bits of many results.
+// Hashes the bits of many results.
 class ResultHash {
  public:
   void add(const Result& r) {
@@ -179,7 +179,8 @@ class ResultHash {
   std::vector<std::uint64_t> words_;
 };
 
-// Every frame of the recording once, prepared anew, with its part of the path.
+// Queries every frame of the recording once, prepared anew, along its part of the path. Returns the
+// hash of the results.
 std::string soak_round(const Stream& stream, FrameReader& reader, const SampledPath& path,
                        Query& query) {
   ResultHash hash;
@@ -200,7 +201,7 @@ void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOp
                 Report& report) {
   const Stream stream = read_stream(folder, suite.device);
   const SampledPath path = path_through(stream, tool.model, suite.quick ? 1 : 5);
-  set_thread_count(1);  // for the loop; frames are prepared beside it
+  set_thread_count(1);  // for the loop; another thread prepares frames
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
     Query query(tool.model,
@@ -215,7 +216,7 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   const Stream stream = read_stream(folder, suite.device);
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
-  constexpr double kGrowth = 8;  // MB: less than half of a frame, whatever the allocator keeps
+  constexpr double kGrowth = 8;  // MB: less than half of a frame, so it shows a leak of frames
   Query query(tool.model, {.level = tool.soak_level,
                            .device = suite.device,
                            .coherent = !suite.device.is_cuda(),

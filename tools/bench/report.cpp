@@ -11,7 +11,7 @@
 namespace vpm::bench {
 namespace {
 
-// As RFC 4180 has it: what holds commas, quotes or ends of lines is quoted.
+// Returns text as RFC 4180 wants it: in quotes if it holds commas, quotes or line ends.
 std::string quoted_if_needed(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -26,7 +26,7 @@ std::string text_of(const Table::Value& value) {
   return number;
 }
 
-// The first "model name" that the kernel tells, or nothing.
+// Returns the first "model name" of /proc/cpuinfo, or an empty string.
 std::string processor_name() {
   std::ifstream in("/proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {

@@ -1,4 +1,4 @@
-// What a suite measured: a table for plots and JSON for the record.
+// Result of a suite: a table for plots and JSON for the record.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,20 +16,22 @@ struct Table {
 
 struct Report {
   std::string suite;
-  nlohmann::json settings = nlohmann::json::object();  // what was run: sizes, seeds, counts
+  nlohmann::json settings = nlohmann::json::object();  // sizes, seeds and counts of the run
   nlohmann::json results = nlohmann::json::array();
   Table table;
-  std::string summary;  // for the terminal
-  std::string failure;  // what broke a promise; empty: nothing. The program then ends with 1.
+  std::string summary;  // printed to the terminal
+  std::string failure;  // the promise that was broken, if any; the program then exits with 1
 };
 
-// Comma-separated with a header line; numbers with 9 digits, text without commas.
+// Returns comma-separated text with a header line; numbers have 9 digits, text no commas.
 std::string to_csv(const Table& table);
 
-// Suite, version, commit, machine, compiler, command, settings, results. No clock time.
+// Returns suite, version, commit, machine, compiler, command, settings and results. Holds no clock
+// time.
 nlohmann::json to_json(const Report& report, const std::string& command);
 
-// Before the work, so that nobody waits for a refusal. Throws Error(cannot_write).
+// Makes the folder before the work begins, so that a refusal comes at once. Throws
+// Error(cannot_write).
 void make_folder(const std::string& folder);
 
 // Writes <folder>/<suite>.json and .csv; makes the folder. Throws Error(cannot_write).

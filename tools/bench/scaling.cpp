@@ -1,7 +1,7 @@
-// Time of a query on a CUDA device against the number of spheres, and along a path of the tool
+// Times queries on a CUDA device against the number of spheres, and along a path of the tool
 // (figures 7 and 9 of the paper): the refined measure, the measure as printed and, with `baseline`,
-// the latter by the algorithm as printed, on the same data. A twisted torus of 0.2 m in a tilted
-// wall with Kinect noise, 307 200 points.
+// the latter by the algorithm as printed, on the same data. The scene is a twisted torus of 0.2 m
+// in a tilted wall with Kinect noise, 307 200 points.
 
 #include <algorithm>
 #include <chrono>
@@ -27,12 +27,13 @@ namespace {
 
 constexpr std::uint64_t kNoiseSeed = 1;
 
-constexpr double kMicro = 1e6;  // of a second
+constexpr double kMicro = 1e6;  // microseconds per second
 
-// The level of figure 9.
+// Spheres of the level that figure 9 uses.
 constexpr std::uint32_t kPathLevel = 17000;
 
-// The algorithm as printed, in the report: with its traversals in one kernel, launched.
+// Names of the algorithm as printed in the report: traversals in one kernel, and launched by the
+// device.
 constexpr const char* kPrinted[] = {"baseline", "launched"};
 
 std::vector<std::uint32_t> levels_of(const SuiteOptions& options) {
@@ -42,7 +43,7 @@ std::vector<std::uint32_t> levels_of(const SuiteOptions& options) {
   return levels;
 }
 
-// Poses of the path for a level: fewer where the algorithm as printed takes a second for each.
+// Returns the poses for a level: fewer where the algorithm as printed takes a second for each.
 std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) {
   constexpr std::uint32_t kSpheresOfAll = 100000;
   const std::size_t step = std::max(1U, spheres / kSpheresOfAll);
@@ -51,7 +52,8 @@ std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) 
   return part;
 }
 
-// From far in front of the wall until this part of the tool is inside, then by bisection.
+// Returns the z at which this fraction of the tool is inside, by bisection from far in front of the
+// wall.
 double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
                      double fraction) {
   const auto is_deeper = [&](double z) {
@@ -72,7 +74,7 @@ double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& r
   return deep;
 }
 
-// The tool turns and slides over the wall, 5 to 10 % of it inside.
+// Returns poses of a tool that turns and slides over the wall, 5 to 10 % of it inside.
 std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud, int count) {
   QueryOptions options;
   options.level = tool.levels.front().sphere_count;
@@ -91,7 +93,7 @@ std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud
   return path;
 }
 
-// One way to have a pose's result, and what it took: seconds, round by round, pose by pose.
+// One way to compute a pose's result, and its times in seconds, round by round and pose by pose.
 struct Contender {
   std::string name;
   std::function<void(const Pose&)> run;
@@ -102,12 +104,12 @@ double median_of(const std::vector<double>& samples) {
   return spread_of(samples).median;
 }
 
-// From the call to the result. Rounds of all contenders take turns, so that a slow moment of the
-// machine, which outlasts a round of the fastest, meets one round of it and not all.
+// Times contenders from the call to the result. Rounds take turns, so that a slow moment of the
+// machine, which outlasts a round of the fastest, affects one of its rounds only.
 void time(std::vector<Contender>& contenders, const std::vector<Pose>& path, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     for (Contender& contender : contenders) {
-      contender.run(path.back());  // warms up: the others have had the caches
+      contender.run(path.back());  // warms the caches up after the other contenders
       std::vector<double>& took = contender.rounds.emplace_back();
       for (const Pose& pose : path) {
         const auto begin = std::chrono::steady_clock::now();
@@ -119,7 +121,7 @@ void time(std::vector<Contender>& contenders, const std::vector<Pose>& path, int
   }
 }
 
-// Medians of the rounds' medians and p99.
+// Returns medians of the rounds' medians and of their p99.
 nlohmann::json in_words(const Contender& contender) {
   std::vector<double> medians, p99s;
   for (const std::vector<double>& took : contender.rounds) {
@@ -190,7 +192,7 @@ class Scaling {
   }
 
  private:
-  // The algorithm as printed, its traversals in one kernel and launched by the device.
+  // The algorithm as printed, with traversals in one kernel and launched by the device.
   using Printed = std::vector<std::unique_ptr<PaperBaseline>>;
 
   void measure(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
@@ -225,7 +227,7 @@ class Scaling {
       add_frames(tool, level, cloud, path, contenders);
   }
 
-  // Median microseconds on the device's clock.
+  // Returns the median time of the flood on the device's clock, microseconds.
   static double flood_of(DeviceMeasure& query, const PreparedCloud& cloud,
                          const std::vector<Pose>& path) {
     std::vector<double> flood;
@@ -236,7 +238,7 @@ class Scaling {
     return median_of(flood);
   }
 
-  // What the algorithm as printed does when; the ratio is that of its faster form.
+  // Adds the times of the phases of the algorithm as printed, and the ratio of its faster form.
   static void add_phases(const Printed& printed, const std::vector<Pose>& path,
                          nlohmann::json& row) {
     for (std::size_t k = 0; k < printed.size(); ++k) {
@@ -256,8 +258,8 @@ class Scaling {
                    median("refined_median_us");
   }
 
-  // Poses whose results on the device are those of the measure as printed on the CPU: all of them
-  // from our algorithm, volume, counts and states from the algorithm as printed.
+  // Counts the poses whose results on the device are those of the measure as printed on the CPU:
+  // every field for our algorithm; volume, counts and states for the algorithm as printed.
   void compare(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
                const std::vector<Pose>& path, const Printed& printed, nlohmann::json& row) {
     QueryOptions options;

@@ -10,7 +10,7 @@
 namespace vpm::bench {
 namespace {
 
-// Fraction of 1 that the digits of k in a prime base spell backwards.
+// Returns the fraction of 1 that the digits of k in a prime base spell backwards.
 double radical_inverse(std::size_t k, std::size_t base) {
   double value = 0, digit = 1;
   for (; k > 0; k /= base) {
@@ -20,7 +20,7 @@ double radical_inverse(std::size_t k, std::size_t base) {
   return value;
 }
 
-// Depths that differ by more than this fraction between neighbouring pixels are a jump.
+// Relative difference of depth between neighbouring pixels above which they are a jump.
 constexpr double kJump = 0.03;
 
 }  // namespace
@@ -43,7 +43,8 @@ std::vector<Vec3> places_in(const Solid& solid, std::size_t count) {
   return places;
 }
 
-// Surfaces have one side: a camera inside an obstacle looks out through it.
+// Follows the ray from the camera to the place. Surfaces have one side: a camera inside an obstacle
+// looks out through it.
 Sight::Ray Sight::ray(Vec3 from_camera) const {
   const Vec3 origin = camera_.to_world.translation;
   const Vec3 direction = camera_.to_world.rotation * from_camera;
@@ -72,7 +73,7 @@ Sight::Ray Sight::ray(Vec3 from_camera) const {
   return ray;
 }
 
-// Whether the place lies between the depths that its own pixel and one beside it see, or where
+// True if the place lies between the depths of its own pixel and a neighbouring one, or where
 // nothing is measured.
 bool Sight::is_ambiguous(Vec3 from_camera, double entry) const {
   const Intrinsics& k = camera_.intrinsics;
@@ -94,7 +95,7 @@ bool Sight::is_ambiguous(Vec3 from_camera, double entry) const {
 Sight::Place Sight::at(Vec3 world) const {
   const Vec3 at = relative_to(camera_.to_world, {{}, world}).translation;
   if (!(at.z > 0)) return Place::unknown;
-  constexpr double kFarther = 100;  // past every scene
+  constexpr double kFarther = 100;  // m, past every scene
   const Ray seen = ray(at);
   const double entry = seen.entry > 0 ? seen.entry : ray(kFarther * at).entry;
   if (entry > 0 && is_ambiguous(at, entry)) return Place::unknown;
@@ -102,7 +103,7 @@ Sight::Place Sight::at(Vec3 world) const {
 }
 
 bool Sight::sees_well(Vec3 on_surface, Vec3 normal) const {
-  constexpr double kBefore = 1e-5;  // m: just off the surface
+  constexpr double kBefore = 1e-5;  // m, just off the surface
   const Vec3 at = relative_to(camera_.to_world, {{}, on_surface + kBefore * normal}).translation;
   if (!(at.z > 0)) return false;
   const Vec3 towards = camera_.to_world.translation - on_surface;
@@ -144,6 +145,26 @@ Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
   }
   const double all = static_cast<double>(places.size());
   return {unseen.free / all, unseen.inside / all, unseen.foot / all};
+}
+
+ProjectiveCount count_behind(std::span<const Vec3> places, double reach, const Pose& pose,
+                             const DepthImage& depth, const Camera& camera) {
+  const Pose to_camera = relative_to(camera.to_world, pose);
+  const Intrinsics& k = camera.intrinsics;
+  std::size_t behind = 0, shadow = 0;
+  for (const Vec3& place : places) {
+    const Vec3 x = to_camera * place;
+    if (!(x.z > 0)) continue;
+    const double u = std::floor(k.fx * x.x / x.z + k.cx + 0.5),
+                 v = std::floor(k.fy * x.y / x.z + k.cy + 0.5);
+    if (!(u >= 0 && v >= 0 && u < depth.width && v < depth.height)) continue;
+    const double seen =
+        depth.depth[depth.index(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v))];
+    behind += seen > 0 && x.z > seen;
+    shadow += seen > 0 && x.z > seen + reach;
+  }
+  const auto all = static_cast<double>(places.size());
+  return {static_cast<double>(behind) / all, static_cast<double>(shadow) / all};
 }
 
 }  // namespace vpm::bench

@@ -1,16 +1,19 @@
-// What cameras cannot know of a scene: where a measure cannot be held to the truth.
+// Places of a scene that cameras can know, which are the only ones where a measure can be held to
+// the truth.
 //
-// Rule. A place is *known* to be free if a camera sees it, and known to be inside if a camera's ray
-// enters the obstacle before it and does not leave it again. The part of the tool in free space
-// that no camera sees (behind a thin plate, in the shadow of a block) may or may not be counted; so
-// may the part inside that free space hides (a wall behind a block), everything whose pixel is a
-// hole, and what lies between the two depths of a jump within a pixel of it. The volume must lie
-// between both.
+// A place is known to be free if a camera sees it, and known to be inside if a camera's ray enters
+// the obstacle before it and does not leave it again. All else is unknown: free space that no
+// camera sees (behind a thin plate, in the shadow of a block), parts of an obstacle hidden by free
+// space (a wall behind a block), places whose pixel is a hole, and places between the two depths of
+// a jump within a pixel of it. Volumes with and without the unknown part bound what a measure may
+// say.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "libvpm/cloud/camera.h"
+#include "libvpm/cloud/depth_image.h"
 #include "libvpm/model/solid.h"
 #include "libvpm/synthetic/render.h"
 
@@ -20,19 +23,20 @@ namespace vpm::bench {
 // gives volumes within about 1 / count^(2/3) of the solid's.
 std::vector<Vec3> places_in(const Solid& solid, std::size_t count);
 
-// Parts of a placed tool.
+// Fractions of a placed tool that no camera can know.
 struct Unseen {
   double free = 0;    // in free space, and not known to be
   double inside = 0;  // inside the obstacle, and not known to be
-  double foot = 0;    // inside, but nearest to a part of the surface that no camera sees well: the
-                      // depth there, and so the force, cannot be known
+  // inside, but nearest to a part of the surface that no camera sees well, so that depth and force
+  // cannot be known there
+  double foot = 0;
 };
 
-// Surface that a ray meets at a lower cosine than this is not seen well: a pixel spans twenty times
-// the width of its ray there.
+// Smallest cosine between ray and normal at which a surface is seen well: a pixel spans twenty
+// times the width of its ray there.
 inline constexpr double kGrazingCosine = 0.05;
 
-// One camera's knowledge. `hole[pixel]`, if given, marks pixels without measurement.
+// Knowledge of one camera. `hole[pixel]`, if given, marks pixels without measurement.
 class Sight {
  public:
   Sight(const synthetic::Surface& surface, const Camera& camera,
@@ -45,8 +49,8 @@ class Sight {
 
  private:
   struct Ray {
-    bool sees = false;    // the place itself: free all the way
-    bool inside = false;  // entered once, and not left
+    bool sees = false;    // the ray reaches the place through free space alone
+    bool inside = false;  // the ray has entered once and not left
     double entry = 0;     // depth of the first entry; 0: none
   };
   Ray ray(Vec3 from_camera) const;
@@ -59,5 +63,17 @@ class Sight {
 
 Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras);
+
+// Fractions of the places. The count takes the shadow of an object as solid, as Shadows::solid
+// does.
+struct ProjectiveCount {
+  double behind = 0;  // behind the depth of the nearest pixel
+  double shadow = 0;  // the part of `behind` that is further behind it than the tool's reach
+};
+
+// Counts `places`, which are spread evenly over the tool. A place in front of a pixel without
+// depth, or of no pixel, is not behind.
+ProjectiveCount count_behind(std::span<const Vec3> places, double reach, const Pose& pose,
+                             const DepthImage& depth, const Camera& camera);
 
 }  // namespace vpm::bench

@@ -7,7 +7,7 @@
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
-#include "tools/bench/projective_count.h"
+#include "tools/bench/sight.h"
 
 namespace vpm::bench {
 namespace {
@@ -18,7 +18,7 @@ struct Path {
   std::string name;
   synthetic::Scene scene;
   DepthImage depth;
-  std::vector<bool> hole;  // pixels that the camera has not measured; empty: all measured
+  std::vector<bool> hole;  // pixels that the camera has not measured; empty if all are
   Vec3 from, to;
 };
 
@@ -33,8 +33,8 @@ void remove(DepthImage& depth, const std::vector<bool>& hole) {
     if (hole[i]) depth.depth[i] = 0;
 }
 
-// Every seventh pixel on average. What lies between measured pixels is closed, so nothing is
-// unknown.
+// Returns a path over an image that lacks every seventh pixel on average. Holes between measured
+// pixels are closed, so nothing is unknown.
 Path over_missing_pixels(Vec3 from, Vec3 to) {
   synthetic::Scene scene = synthetic::make_scene("tilted-wall");
   DepthImage depth = synthetic::render(*scene.surface, scene.camera);
@@ -45,7 +45,8 @@ Path over_missing_pixels(Vec3 from, Vec3 to) {
   return {"missing pixels", std::move(scene), std::move(depth), {}, from, to};
 }
 
-// Discs of 3 to 12 pixels' radius, which hide about a tenth of the image.
+// Returns a path over an image with holes of 3 to 12 pixels' radius, which hide about a tenth of
+// it.
 Path over_patches(Vec3 from, Vec3 to) {
   synthetic::Scene scene = synthetic::make_scene("tilted-wall");
   DepthImage depth = synthetic::render(*scene.surface, scene.camera);
@@ -66,8 +67,8 @@ Path over_patches(Vec3 from, Vec3 to) {
   return {"patches", std::move(scene), std::move(depth), std::move(hole), from, to};
 }
 
-// The block is 0.2 m wide, its front at z = 1 and its back at 1.2; the wall is at 1.5. Tools reach
-// about 0.1 m.
+// Returns paths past a block of 0.2 m width, with its front at z = 1, its back at 1.2 and a wall at
+// 1.5. Tools reach about 0.1 m.
 std::vector<Path> make_paths() {
   std::vector<Path> paths;
   paths.push_back(across_block("along the block's front", {-0.3, 0.01, 0.95}, {0.3, 0.01, 0.95}));

@@ -19,7 +19,7 @@ Spread spread_of(std::vector<double> samples) {
 void MeanAndWorst::add(double value) {
   sum_ += value;
   ++count_;
-  // A value that is not a number must not pass for a good one.
+  // Lets NaN count as the worst.
   if (std::isnan(value) || value > worst_) worst_ = value;
 }
 

@@ -9,7 +9,7 @@ struct Spread {
   double median = 0, quartile1 = 0, quartile3 = 0, min = 0, max = 0;
 };
 
-// Quartiles interpolate between neighbouring samples. `samples` must not be empty.
+// Returns the quartiles, interpolated between neighbouring samples. `samples` must not be empty.
 Spread spread_of(std::vector<double> samples);
 
 // Collects errors: their mean and their worst.

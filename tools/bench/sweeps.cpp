@@ -7,7 +7,7 @@
 namespace vpm::bench {
 namespace {
 
-// Beside the optical axis, so that no symmetry hides an error.
+// Offset from the optical axis, so that no symmetry hides an error, m.
 constexpr Vec3 kAside{0.012, -0.007, 0};
 
 std::string to_text(Measure measure) {

@@ -21,21 +21,22 @@ struct SweepCase {
   Rotation rotation;
 };
 
-// The six cases of the paper: three tools into a wall and into an inverted sphere, moved along z.
+// Returns the six cases of the paper: three tools moved along z into a wall and into an inverted
+// sphere.
 std::vector<SweepCase> paper_cases();
-// Turned tools in four other scenes.
+// Returns turned tools in four other scenes.
 std::vector<SweepCase> turned_cases();
-// Five tools, aligned and turned, into six scenes: from first contact to 60 % inside.
+// Returns five tools, aligned and turned, in six scenes: from first contact to 60 % inside.
 std::vector<SweepCase> all_cases();
 
-// What each case is run with: every combination, with and without noise, by both measures.
+// Settings that each case is run with: every combination, with and without noise, by both measures.
 struct SweepSettings {
   std::vector<std::uint32_t> spheres;
   std::vector<CloudKind> kinds;
   int poses = 0;
 };
 
-// Runs cases and collects their errors: one entry of `results` for each combination, one row of
+// Runs cases and collects their errors: an entry of `results` for each combination, and a row of
 // `table` for each pose of the paper's and the turned cases.
 class Sweeps {
  public:
@@ -45,7 +46,7 @@ class Sweeps {
 
   void run(const SweepCase& c, const SweepSettings& settings);
 
-  // group, cloud, noise, measure, spheres
+  // Holds group, cloud, noise, measure, spheres.
   using Key = std::array<std::string, 5>;
   const std::map<Key, GroupErrors>& groups() const { return groups_; }
 

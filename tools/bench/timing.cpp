@@ -1,6 +1,6 @@
-// Each stage of the main job on a scene that is always at hand: a twisted torus of 0.25 m with 7200
-// triangles and a noisy depth image of a tilted wall, 307 200 points; and the same points without
-// their camera. Where recorded images are given, queries of these, too.
+// Times each stage of the main job on a synthetic scene: a twisted torus of 0.25 m with 7200
+// triangles, a noisy depth image of a tilted wall with 307 200 points, and the same points without
+// their camera. If recorded images are given, times queries of these too.
 
 #include <algorithm>
 #include <chrono>
@@ -25,12 +25,12 @@
 namespace vpm::bench {
 namespace {
 
-// Runs for a median: fast stages take many, slow ones few.
+// Numbers of runs for a median: many of fast stages, few of slow ones.
 struct Runs {
   int slow, fast;
 };
 
-// From here on a stage is run once unmeasured, to warm caches and memory up.
+// Number of runs from which on a stage is run once unmeasured, to warm up caches and memory.
 constexpr int kRunsWithWarmUp = 5;
 
 std::vector<double> milliseconds_of(int runs, const std::function<void()>& stage) {
@@ -72,7 +72,8 @@ class Timing {
   }
 
  private:
-  // Times one stage with 1 and with 2 threads; where it is done `times` times, each.
+  // Times one stage with 1 and with 2 threads; the time is per call if the stage makes `times`
+  // calls.
   void time(const std::string& stage, std::size_t spheres, int runs,
             const std::function<void()>& body, std::size_t times = 1) {
     Spread by_threads[2];
@@ -131,7 +132,7 @@ class Timing {
     time_frame("frame, all at once, as measured", PointReading::as_measured);
   }
 
-  // Rooms are walked through as random poses: what one costs depends on what is near.
+  // Prepares recorded rooms and random poses in them, since a query's time depends on what is near.
   void prepare_recorded() {
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
     Query query(tool, {});
@@ -148,7 +149,7 @@ class Timing {
       }
       poses_in_rooms_ += room.poses.size();
     }
-    if (recorded_.empty()) return;  // none that this build can read
+    if (recorded_.empty()) return;  // this build can read none
     time(
         "cloud preparation, points, recorded rooms", 0, runs_.slow,
         [&] {
@@ -170,7 +171,7 @@ class Timing {
     const PreparedCloud cloud(cloud_), measured(cloud_, PointReading::as_measured), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
-    // Most of it is further behind the surface than its reach.
+    // Places most of the tool further behind the surface than its reach.
     const Pose deep{pose.rotation,
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
@@ -183,7 +184,13 @@ class Timing {
     time_query("query refined, points", points, pose);
     time_query("query refined, deep", cloud, deep);
     time_query("query refined, points, deep", points, deep);
-    const auto time_rooms = [&](const char* stage, const auto& cloud_of) {
+    if (poses_in_rooms_ > 0) time_rooms(model, spheres);
+    time_query("query paper", cloud, pose, Measure::paper);
+  }
+
+  // Times queries in the recorded rooms, by their image, as measured, and by their points alone.
+  void time_rooms(const ToolModel& model, std::size_t spheres) {
+    const auto time_room = [&](const char* stage, const auto& cloud_of) {
       Query query(model, {});
       time(
           stage, spheres, runs_.slow,
@@ -194,15 +201,12 @@ class Timing {
           },
           poses_in_rooms_);
     };
-    if (poses_in_rooms_ > 0) {
-      time_rooms("query refined, recorded rooms",
-                 [](const Recorded& room) -> const PreparedCloud& { return room.seen; });
-      time_rooms("query refined, as measured, recorded rooms",
-                 [](const Recorded& room) -> const PreparedCloud& { return room.measured; });
-      time_rooms("query refined, points, recorded rooms",
-                 [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
-    }
-    time_query("query paper", cloud, pose, Measure::paper);
+    time_room("query refined, recorded rooms",
+              [](const Recorded& room) -> const PreparedCloud& { return room.seen; });
+    time_room("query refined, as measured, recorded rooms",
+              [](const Recorded& room) -> const PreparedCloud& { return room.measured; });
+    time_room("query refined, points, recorded rooms",
+              [](const Recorded& room) -> const PreparedCloud& { return *room.points; });
   }
 
   static constexpr std::uint64_t kNoiseSeed = 1;
@@ -226,7 +230,7 @@ class Timing {
   int done_ = 0;
   const synthetic::Scene scene_ = synthetic::make_scene("tilted-wall");
   const Solid solid_ = synthetic::make_twisted_torus(0.09, 0.05, 3, 900);
-  Cloud cloud_, points_;  // the same without camera
+  Cloud cloud_, points_;  // points_: the same without camera
   std::vector<Recorded> recorded_;
   std::size_t poses_in_rooms_ = 0;
 };

@@ -1,6 +1,6 @@
-// What accuracy costs: everything that a user can turn, against time and error. Three tools, two
-// scenes each, seen by a camera without and with noise; one packing per tool, of which levels are
-// prefixes.
+// Measures what accuracy costs: everything that a user can turn, against time and error. Runs three
+// tools in two scenes each, seen by a camera with and without noise. Each tool has one packing,
+// whose prefixes are its levels.
 
 #include <algorithm>
 #include <chrono>
@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t kPlaces = 4096;   // of a tool, to count what the camera cannot know
 constexpr int kRuns = 3;                // of each query; the fastest counts, since load only slows
-constexpr std::uint32_t kUsual = 1000;  // spheres where something else is varied
+constexpr std::uint32_t kUsual = 1000;  // spheres while something else is varied
 
 struct Case {
   std::string shape, scene;
@@ -39,7 +39,7 @@ const std::vector<Case> kCases{{"cube", "wall", false},        {"cube", "inverte
                                {"octahedron", "ball", true},   {"octahedron", "groove", true},
                                {"torus", "tilted-wall", true}, {"torus", "ball", true}};
 
-// What makes a cloud of a scene.
+// Settings that make a cloud of a scene.
 struct Sensing {
   Noise noise = Noise::none;
   NormalOptions normals;
@@ -48,7 +48,7 @@ struct Sensing {
   auto key() const { return std::tuple(noise, normals.method, normals.window, stride); }
 };
 
-// Every stride-th pixel of every stride-th row.
+// Returns every stride-th pixel of every stride-th row, and adapts the camera.
 DepthImage thinned(const DepthImage& image, Camera& camera, std::uint32_t stride) {
   if (stride == 1) return image;
   DepthImage thin{image.width / stride, image.height / stride, {}};
@@ -137,13 +137,13 @@ class Tradeoff {
     return clouds_.try_emplace(key, make_cloud(depth, camera, sensing.normals)).first->second;
   }
 
-  // Median over the poses of the fastest of kRuns.
+  // Returns errors and the median over the poses of the fastest of kRuns.
   Errors measure(const Case& c, const ToolModel& model, const QueryOptions& query_options,
                  const Sensing& sensing, double& median_us) {
     const Run& run = path(c);
     const PreparedCloud& seen = cloud(c.scene, sensing);
     Query query(model, query_options);
-    query.run(seen, run.path.back());  // allocates what it needs
+    query.run(seen, run.path.back());  // allocates its memory
     std::vector<Result> results;
     std::vector<double> times;
     for (const Pose& pose : run.path) {
@@ -227,7 +227,7 @@ class Tradeoff {
         vary("threads", spheres, Measure::refined, sensing(Noise::none), threads);
   }
 
-  // What --max-error chooses, and what that level measured in the tool's scenes.
+  // Measures the errors of the level that --max-error chooses, in the tool's scenes.
   void keep_max_error() {
     for (const double asked : {0.05, 0.02, 0.01, 0.005, 0.002, 0.001}) {
       for (const auto& [shape, t] : tools_) {
@@ -248,8 +248,8 @@ class Tradeoff {
     }
   }
 
-  // As vpm-query does it, on one thread: into the contact and out of it by small steps, again and
-  // again.
+  // Runs --deadline-us as vpm-query does, on one thread, along a path into the contact and out of
+  // it by small steps, repeatedly.
   void keep_deadlines() {
     const std::size_t queries = options_.quick ? 500 : 10000;
     constexpr int kSteps = 250;
@@ -280,7 +280,7 @@ class Tradeoff {
     set_thread_count(0);
   }
 
-  // Levels by --for-scene, and packings by it, beside the fixed sizes.
+  // Measures levels and packings by --for-scene beside the fixed sizes.
   void fit_scenes() {
     for (const Case& c : cases_) {
       for (const Noise noise : {Noise::none, Noise::kinect}) {

@@ -10,7 +10,7 @@
 namespace vpm::bench {
 namespace {
 
-// Everything but the case.
+// Returns everything but the case.
 auto setting_of(const Measured& m) {
   return std::tuple(m.varied, m.noise, m.measure, m.method, m.window, m.stride, m.threads,
                     m.spheres);
@@ -55,7 +55,7 @@ nlohmann::json to_json(const Row& row) {
   return result;
 }
 
-// The knee of the refined measure over the number of spheres, for one kind of noise.
+// Returns the knee of the refined measure over the number of spheres, for one kind of noise.
 const Row* knee_of(const std::vector<Row>& rows, const std::string& noise) {
   std::vector<const Row*> curve;
   for (const Row& row : rows) {

@@ -1,4 +1,4 @@
-// What `vpm-bench tradeoff` measured, as tables.
+// Tables of the results of `vpm-bench tradeoff`.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 namespace vpm::bench {
 
 struct Measured {
-  std::string varied;  // spheres, normals, stride, threads
+  std::string varied;  // spheres, normals, stride or threads
   std::string shape, scene, noise, measure, method;
   int window = 0, stride = 0, threads = 0;
   std::uint32_t spheres = 0;
-  double median_us = 0;  // of a query
+  double median_us = 0;  // time of a query
   Errors errors;
 };
 
-// What --max-error chose: the largest error of a pose, and the largest mean of a scene.
+// Result of --max-error: the largest error of a pose, and the largest mean error of a scene.
 struct Kept {
   std::string shape;
   double asked = 0;
@@ -28,21 +28,21 @@ struct Kept {
   double worst = 0, mean = 0;
 };
 
-// Queries with --deadline-us along a path into contact and back.
+// Result of --deadline-us along a path into contact and back.
 struct Deadline {
   std::string shape, scene, noise;
   double asked_us = 0;
   std::size_t queries = 0, kept = 0;
-  std::uint32_t coarsest = 0, finest = 0;  // spheres of the levels used
+  std::uint32_t coarsest = 0, finest = 0;  // spheres of the levels that were used
 };
 
-// A level of the usual packing in one case.
+// Error and time of one level of the usual packing in one case.
 struct Fixed {
   std::uint32_t spheres = 0;
   double median_us = 0, volume_mean = 0;
 };
 
-// What --for-scene chose: a level of the usual packing, and a packing of its own; beside them all
+// Result of --for-scene: a level of the usual packing and a packing made for the scene, beside all
 // levels of the usual packing.
 struct Fitted {
   std::string shape, scene, noise;
@@ -60,11 +60,11 @@ struct TradeoffSettings {
   std::size_t cases = 0;
 };
 
-// Indices of the points that no other beats in both coordinates, by x.
+// Returns the indices of the points that no other point beats in both coordinates, sorted by x.
 std::vector<std::size_t> pareto_front(const std::vector<double>& x, const std::vector<double>& y);
 
-// Where a falling curve turns: the point furthest below the straight line between its ends, in
-// logarithms. `x` ascends; all positive; at least one point.
+// Returns the index where a falling curve turns: the point furthest below the straight line between
+// its ends, in logarithms. `x` ascends; all values are positive; there is at least one point.
 std::size_t knee(const std::vector<double>& x, const std::vector<double>& y);
 
 Report tradeoff_report(const TradeoffSettings& settings, const std::vector<Measured>& measured,

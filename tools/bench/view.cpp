@@ -6,7 +6,7 @@
 namespace vpm::bench {
 namespace {
 
-// At `eye`, upright, with the optical axis through `target`.
+// Returns a camera at `eye`, upright, with the optical axis through `target`.
 Camera looking_at(Vec3 eye, Vec3 target, Vec3 down) {
   const Vec3 z = normalized_or_zero(target - eye), x = normalized_or_zero(cross(down, z));
   Camera camera = synthetic::default_camera();

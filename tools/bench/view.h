@@ -1,4 +1,4 @@
-// A scene as cameras see it: the cloud that a query gets, and where the cameras stood.
+// A scene as cameras see it: the cloud for a query, and the cameras.
 #pragma once
 
 #include <string>
@@ -10,9 +10,10 @@
 namespace vpm::bench {
 
 enum class CloudKind {
-  camera,  // organised: one image with its camera
-  points,  // the points alone; of the step and the plate also those of a second camera, which sees
-           // the riser and the plate's back
+  camera,  // one image with its camera
+  // points without camera; in the scenes step and plate also those of a second camera, which sees
+  // the riser and the plate's back
+  points,
 };
 enum class Noise { none, kinect };
 std::string to_text(CloudKind kind);
@@ -25,7 +26,8 @@ struct View {
   PreparedCloud cloud;
 };
 
-// Normals are estimated from the images, noisy or not, with the default options.
+// Renders the scene and returns its cloud. Normals are estimated from the images, with or without
+// noise, by the default options.
 View make_view(const synthetic::Scene& scene, CloudKind kind, Noise noise,
                std::uint64_t noise_seed);
 

@@ -12,10 +12,10 @@
 namespace vpm::bench {
 namespace {
 
-constexpr double kMargin = 1 - 1e-12;  // radii shrink, so that rounding makes no overlap
+constexpr double kMargin = 1 - 1e-12;  // shrinks radii, so that rounding makes no overlap
 constexpr double kFirstStep = 0.5;     // of a compass search, in voxels
 constexpr double kLastStep = 1e-6;     // in voxels
-constexpr double kWalk = 2;            // farthest way of a compass search, in voxels
+constexpr double kWalk = 2;            // longest way of a compass search, in voxels
 
 }  // namespace
 
@@ -56,7 +56,7 @@ struct VoxelGreedy::Field {
   Vec3 low;
   double width = 0;
   int nx = 0, ny = 0, nz = 0;
-  std::vector<float> room;  // per voxel; 0 outside
+  std::vector<float> room;  // clearance per voxel; 0 outside
 };
 
 class VoxelGreedy::Run {
@@ -85,7 +85,7 @@ class VoxelGreedy::Run {
   }
 
  private:
-  // The spheres that a search from x can meet.
+  // Gathers the spheres that a search from x can meet.
   void gather(Vec3 x, double room) {
     near_.clear();
     for (const Sphere& s : placed_)
@@ -98,14 +98,14 @@ class VoxelGreedy::Run {
     return d;
   }
 
-  // Stays in the ball about the start that the mesh does not meet, so on its side.
+  // Searches within the ball about the start that the mesh does not meet, so on its side.
   Sphere compass_search(Vec3 start) const {
     Sphere best{start, clearance(start)};
     const double walk = std::min(kWalk * field_.width, best.radius);
     for (double step = kFirstStep * field_.width; step > kLastStep * field_.width;) {
       bool better = false;
       for (int k = 0; k < 26; ++k) {
-        const int code = k < 13 ? k : k + 1;  // all of 27 but the middle
+        const int code = k < 13 ? k : k + 1;  // skips the middle of the 27 directions
         const int i = code % 3 - 1, j = code / 3 % 3 - 1, l = code / 9 - 1;
         const Vec3 x = best.center + step * Vec3{1.0 * i, 1.0 * j, 1.0 * l};
         if (norm(x - start) > walk) continue;
@@ -119,7 +119,7 @@ class VoxelGreedy::Run {
     return best;
   }
 
-  // No voxel has more room than `most`.
+  // Adds a sphere and lowers the clearance around it. No voxel has more clearance than `most`.
   void take(const Sphere& s, double most) {
     const double around = s.radius + most;
     const auto range = [&](double at, double low, int count) {

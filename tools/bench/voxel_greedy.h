@@ -1,4 +1,4 @@
-// What a packer is compared with: greedy placement on a grid of voxels.
+// Greedy sphere placement on a grid of voxels, which packings are compared with.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,9 @@ enum class Refine {
   local_maximum,  // centres move to the local maximum of the exact clearance, by compass search
 };
 
-// Places spheres about the voxel centre with the largest clearance, exact distances to the mesh,
-// `voxels` along the longest side. The room of every voxel is measured once, on construction.
+// Places spheres at the voxel centre with the largest clearance, which is the exact distance to the
+// mesh. The grid has `voxels` along the longest side; the constructor computes the clearance of
+// every voxel once.
 class VoxelGreedy {
  public:
   VoxelGreedy(const Solid& solid, int voxels);
@@ -24,8 +25,8 @@ class VoxelGreedy {
   VoxelGreedy(const VoxelGreedy&) = delete;
   VoxelGreedy& operator=(const VoxelGreedy&) = delete;
 
-  // Up to `spheres` spheres; fewer where no voxel centre has room. Largest first but for refined
-  // ones, which come as they were placed.
+  // Returns up to `spheres` spheres, fewer if no voxel centre has room left. They are sorted by
+  // size, except refined ones, which come in the order of placement.
   std::vector<Sphere> pack(std::size_t spheres, Refine refine) const;
 
  private:

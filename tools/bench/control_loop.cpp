@@ -1,20 +1,20 @@
-// control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]: what a haptic or robot controller does with
-// libvpm, timed. The tool slides over the surface in the middle of the cloud, turning, 5 to 10 % of
-// its volume inside; every pose is one query, and its answer is awaited before the next.
+// control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]: times the queries of a haptic or robot
+// controller. The tool slides over the surface in the middle of the cloud, turning, 5 to 10 % of
+// its volume inside. Every pose is one query, and its answer is awaited before the next.
 //   device=auto   cpu, cuda, cuda:1, cuda:all
 //   queries=10000
 //   measure=refined  or paper; the path is the same
 //   level=0       spheres; 0 is the finest level
-//   rotate=1      so many copies of tool and cloud take turns, so that no cache is flattered
+//   rotate=1      number of copies of tool and cloud that take turns, so that caches do not help
 //   frames=none   counts or metres: every query sees a new depth image of the cloud's camera, which
 //                 lies in the frames' own memory when the time begins
-//   behind=0      1: a query looks at the image before the newest, which is made ready meanwhile
-//   method=inverse-depth   of the images' normals; or pca
-//   batch=1       so many poses are asked at once, as planners do; copies of the tool share them
+//   behind=0      1: a query sees the image before the newest, which is made ready meanwhile
+//   method=inverse-depth   or pca: normals of the images
+//   batch=1       number of poses asked at once, as planners do; copies of the tool share them
 //   points=0      1: also counts the cloud's points in spheres, which no control loop needs
 //   standby=0     microseconds that the device stays ready for the next pose
-//   json=FILE     the figures, also as JSON
-//   poses=FILE    the first path=400 poses, for vpm-query --poses
+//   json=FILE     writes the figures as JSON too
+//   poses=FILE    writes the first path=400 poses, for vpm-query --poses
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -35,11 +35,11 @@ namespace {
 using namespace vpm;
 using Options = std::map<std::string, std::string>;
 
-constexpr int kWarmUp = 200;  // queries that are not timed
+constexpr int kWarmUp = 200;  // queries before the timed ones
 constexpr double kPi2 = 6.28318530717958648;
 
-// The tool's path. `shallow` and `deep`: heights of its centre of mass above the point on which it
-// slides.
+// Path of the tool. `shallow` and `deep` are heights of its centre of mass above the point on which
+// it slides, metres.
 struct Path {
   Vec3 place, normal, side;
   double shallow = 0, deep = 0, swing = 0;
@@ -59,7 +59,7 @@ struct Path {
   }
 };
 
-// Height at which this part of the tool is inside, by bisection.
+// Returns the height at which this fraction of the tool is inside, by bisection.
 double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
                   double fraction) {
   double low = -tool.reach, high = tool.reach;
@@ -71,7 +71,7 @@ double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& too
   return 0.5 * (low + high);
 }
 
-// The point nearest to the mean of all.
+// Returns the index of the point nearest to the mean of all.
 std::size_t middle_of(const std::vector<Vec3f>& points) {
   Vec3 mean;
   for (const Vec3f& p : points) mean += widen(p) / static_cast<double>(points.size());
@@ -106,13 +106,13 @@ double quantile(const std::vector<double>& sorted, double q) {
 
 struct Figures {
   std::vector<double> microseconds;  // sorted
-  std::vector<double> steady;        // of those, what was measured while the host kept its pace
-  double fraction = 0;               // mean part of the tool that was inside
+  std::vector<double> steady;        // those measured while the host kept its pace, sorted
+  double fraction = 0;               // mean fraction of the tool inside
 };
 
-// Some machines slow down as a whole for some hundredths of a second, tenfold and more. What the
-// host does before each query, without libvpm and the same each time, tells: twice the usual time
-// is no chance then. `host_us[k]`: how long that took before `microseconds[k]`.
+// Sorts the times and finds the steady ones. Some machines slow down as a whole for some hundredths
+// of a second, tenfold and more. `host_us[k]` is the time of the host's own work before query k,
+// which is the same each time; where it takes twice the usual time the machine was slow.
 Figures figures_of(std::vector<double> microseconds, const std::vector<double>& host_us,
                    double fraction) {
   constexpr double kSlowed = 2;
@@ -129,7 +129,7 @@ Figures figures_of(std::vector<double> microseconds, const std::vector<double>& 
   return figures;
 }
 
-// Poses per second, asked `batch` at a time. Several tools take turns.
+// Returns poses per second, asked `batch` at a time. Several tools take turns.
 double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
   std::vector<Query*> together;
@@ -157,7 +157,7 @@ double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const T
 
 Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
-  // So many poses are computed, though only the last is asked: one takes no longer than the clock.
+  // Computes this many poses and asks the last, since one takes no longer than reading the clock.
   constexpr int kPaceOf = 32;
   std::vector<double> microseconds, host_us;
   microseconds.reserve(static_cast<std::size_t>(count));
@@ -180,7 +180,7 @@ Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
   return figures_of(std::move(microseconds), host_us, fraction);
 }
 
-// The depth images of a camera that looks at one scene.
+// Depth images of a camera that looks at one scene.
 class CameraStream {
  public:
   CameraStream(const CloudSensor& sensor, bool in_counts, const NormalOptions& normals,
@@ -208,7 +208,7 @@ class CameraStream {
   DepthFrames frames_;
 };
 
-// With a new image for each query. Copies of the camera take turns as those of the tool.
+// Times queries with a new image for each. Copies of the camera take turns like those of the tool.
 Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
                    const ToolModel& tool, const Path& path, int count, bool behind) {
   std::vector<double> microseconds, host_us;
@@ -233,7 +233,7 @@ Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras
   return figures_of(std::move(microseconds), host_us, fraction);
 }
 
-// Until an image is ready, without a query.
+// Returns the median time until an image is ready, without a query, in microseconds.
 double prepare_microseconds(std::deque<CameraStream>& cameras, int count) {
   std::vector<double> microseconds;
   for (int k = -kWarmUp; k < count; ++k) {
@@ -248,11 +248,11 @@ double prepare_microseconds(std::deque<CameraStream>& cameras, int count) {
   return quantile(microseconds, 0.5);
 }
 
-// What the machine takes of a thread that only looks at the clock: a query can be interrupted as
-// well, and no library can help it.
+// Measures how often the machine interrupts a thread that only reads the clock. Queries are
+// interrupted as well, whatever the library does.
 nlohmann::json interruptions() {
   using Microseconds = std::chrono::duration<double, std::micro>;
-  constexpr double kLeast = 5, kWatched = 5e5;  // us
+  constexpr double kLeast = 5, kWatched = 5e5;  // microseconds
   const Clock::time_point begin = Clock::now();
   int count = 0;
   double longest = 0, lost = 0;
@@ -271,7 +271,7 @@ nlohmann::json interruptions() {
           {"longest_us", longest}};
 }
 
-// Bars over classes that widen by a fifth.
+// Prints bars over classes of time that widen by a fifth.
 void print_histogram(const Figures& figures) {
   const std::vector<double>& times = figures.microseconds;
   double low = quantile(times, 0.001);
@@ -344,64 +344,85 @@ int number(const Options& options, const std::string& name, int least) {
   return value;
 }
 
-void control(int argc, char** argv) {
-  if (argc < 3)
-    throw Error(ErrorKind::usage, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
-  const Options options = parse(argc, argv);
+QueryOptions query_options(const Options& options) {
   QueryOptions query_options;
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
   query_options.counts_points = number(options, "points", 0) != 0;
   query_options.standby_us = static_cast<unsigned>(number(options, "standby", 0));
-  const int copies = number(options, "rotate", 1), count = number(options, "queries", 1);
+  return query_options;
+}
 
+Measure measure_of(const Options& options) {
+  const std::string& measure = options.at("measure");
+  if (measure == "paper") return Measure::paper;
+  if (measure == "refined") return Measure::refined;
+  throw Error(ErrorKind::usage, "measure=" + measure + ": there are refined and paper");
+}
+
+// Makes one camera for each copy of the tool, or none with frames=none.
+std::deque<CameraStream> make_cameras(const Options& options, const Cloud& cloud,
+                                      const Device& device) {
+  std::deque<CameraStream> cameras;
+  const std::string& frames = options.at("frames");
+  if (frames == "none") return cameras;
+  if (!cloud.sensor || (frames != "counts" && frames != "metres"))
+    throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
+  const NormalOptions normals{normal_method_from_text(options.at("method"))};
+  for (int k = number(options, "rotate", 1); k > 0; --k)
+    cameras.emplace_back(*cloud.sensor, frames == "counts", normals, device);
+  return cameras;
+}
+
+// Times single queries, in new images where there are cameras, and adds the figures to `json`.
+void time_single(const Options& options, std::deque<Query>& queries,
+                 const std::deque<PreparedCloud>& clouds, std::deque<CameraStream>& cameras,
+                 const ToolModel& tool, const Path& path, nlohmann::json& json) {
+  const int count = number(options, "queries", 1), behind = number(options, "behind", 0);
+  if (!cameras.empty()) {
+    json["frames"] = options.at("frames");
+    json["behind"] = behind;
+    json["method"] = options.at("method");
+    json["prepare_us"] = prepare_microseconds(cameras, count);
+  }
+  const Figures figures = cameras.empty()
+                              ? run(queries, clouds, tool, path, count)
+                              : run_frames(queries, cameras, tool, path, count, behind != 0);
+  print_histogram(figures);
+  json.update(to_json(figures));
+  json["copies"] = queries.size();
+  json["interruptions"] = interruptions();
+}
+
+void control(int argc, char** argv) {
+  if (argc < 3)
+    throw Error(ErrorKind::usage, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
+  const Options options = parse(argc, argv);
+  QueryOptions asked = query_options(options);
+  const int copies = number(options, "rotate", 1), batch = number(options, "batch", 1);
   const ToolModel tool = read_tool_model(argv[1]);
   const Cloud cloud = read_cloud(argv[2]);
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
   std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
-  Query refined(tool, query_options);
+  Query refined(tool, asked);
   const Path path = make_path(refined, clouds[0], tool);
-  const std::string& measure = options.at("measure");
-  if (measure != "refined" && measure != "paper")
-    throw Error(ErrorKind::usage, "measure=" + measure + ": there are refined and paper");
-  if (measure == "paper") query_options.measure = Measure::paper;
+  asked.measure = measure_of(options);
   std::deque<Query> queries;
   for (int k = 0; k < copies; ++k) {
     if (k > 0) clouds.emplace_back(cloud);
-    queries.emplace_back(tool, query_options);
+    queries.emplace_back(tool, asked);
   }
   if (!options.at("poses").empty())
     write_poses(options.at("poses"), tool, path, number(options, "path", 1));
 
-  nlohmann::json json = about(query_options, queries[0].level(), clouds[0]);
-  const int batch = number(options, "batch", 1);
+  nlohmann::json json = about(asked, queries[0].level(), clouds[0]);
   if (batch > 1) {
-    json["batch"] = batch;
-    json["poses"] = count;
-    json["tools"] = copies;
+    const int count = number(options, "queries", 1);
+    json.update({{"batch", batch}, {"poses", count}, {"tools", copies}});
     json["poses_per_second"] = run_batches(queries, clouds[0], tool, path, count, batch);
   } else {
-    const std::string& frames = options.at("frames");
-    std::deque<CameraStream> cameras;
-    if (frames != "none") {
-      if (!cloud.sensor || (frames != "counts" && frames != "metres"))
-        throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
-      for (int k = 0; k < copies; ++k)
-        cameras.emplace_back(*cloud.sensor, frames == "counts",
-                             NormalOptions{normal_method_from_text(options.at("method"))},
-                             query_options.device);
-      json["frames"] = frames;
-      json["behind"] = number(options, "behind", 0);
-      json["method"] = options.at("method");
-      json["prepare_us"] = prepare_microseconds(cameras, count);
-    }
-    const Figures figures =
-        cameras.empty() ? run(queries, clouds, tool, path, count)
-                        : run_frames(queries, cameras, tool, path, count, json["behind"] != 0);
-    print_histogram(figures);
-    json.update(to_json(figures));
-    json["copies"] = copies;
-    json["interruptions"] = interruptions();
+    std::deque<CameraStream> cameras = make_cameras(options, cloud, asked.device);
+    time_single(options, queries, clouds, cameras, tool, path, json);
   }
   std::cout << json.dump() << '\n';
   if (!options.at("json").empty()) std::ofstream(options.at("json")) << json.dump(2) << '\n';
@@ -414,7 +435,7 @@ int main(int argc, char** argv) {
     control(argc, argv);
     return 0;
   } catch (const vpm::Error& fault) {
-    std::cerr << "control-loop: " << fault.what() << '\n';
+    std::cerr << "control-loop: error: " << fault.what() << '\n';
     return static_cast<int>(fault.kind());
   }
 }
