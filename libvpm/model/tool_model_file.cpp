@@ -12,6 +12,7 @@ constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
 constexpr file::ChunkId kShareVolume("SHRV"), kShareCentroid("SHRC"), kShareReach("SHRR");
 constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
 constexpr file::ChunkId kCalibration("CALB");
+constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
 
 struct ToolRecord {
   double volume;
@@ -28,7 +29,7 @@ struct LevelRecord {
 static_assert(sizeof(ToolRecord) == 40 && sizeof(LevelRecord) == 64 &&
                   sizeof(HierarchyNode) == 48 && sizeof(CellBlock) == 24 &&
                   sizeof(CellSample) == 24 && sizeof(Sphere) == 32 && sizeof(Vec3) == 24 &&
-                  sizeof(LevelError) == 24,
+                  sizeof(LevelError) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12,
               "chunks hold these types as they lie in memory");
 
 LevelRecord record_of(const Level& level) {
@@ -93,6 +94,8 @@ ToolModel model_of(const file::Reader& reader) {
   for (std::uint32_t k = 0; k < records.size(); ++k)
     model.levels.push_back(level_of(records[k], reader, k));
   if (reader.has(kCalibration, 0)) model.calibration = reader.read<LevelError>(kCalibration, 0);
+  if (reader.has(kMeshVertices, 0))
+    model.mesh = {reader.read<Vec3f>(kMeshVertices, 0), reader.read<Triangle>(kMeshTriangles, 0)};
   validate(model, reader.name());
   return model;
 }
@@ -120,6 +123,10 @@ void write_tool_model(const std::string& path, const ToolModel& model) {
   writer.add(kLevels, 0, std::span(std::as_const(records)));
   for (std::uint32_t k = 0; k < model.levels.size(); ++k) add_level(writer, model.levels[k], k);
   if (!model.calibration.empty()) writer.add(kCalibration, 0, std::span(model.calibration));
+  if (!model.mesh.triangles.empty()) {
+    writer.add(kMeshVertices, 0, std::span(model.mesh.vertices));
+    writer.add(kMeshTriangles, 0, std::span(model.mesh.triangles));
+  }
   writer.write(path);
 }
 

@@ -184,7 +184,7 @@ nlohmann::json Tool::parameters() const {
     if (option->get_positional()) all.erase(config_key(*option));
   }
   for (const char* name : {"device", "threads", "quiet", "verbose", "force",  // change no result
-                           "output", "report", "export", "stats", "spheres-out", "out",  // outputs
+                           "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
                            "mesh", "for-scene", "tool", "cloud", "poses"}) {             // inputs
     all.erase(name);
   }

@@ -21,11 +21,13 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
+#include "libvpm/view/page.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/pack/pack_report.h"
+#include "tools/pack/pack_view.h"
 
 namespace vpm::tools {
 namespace {
@@ -33,7 +35,7 @@ namespace {
 constexpr long long kMostSpheres = 0xFFFFFFFE;  // a packing file counts them in 32 bits
 
 struct Arguments {
-  std::string mesh, repair, output, report, export_path, link, for_scene;
+  std::string mesh, repair, output, report, export_path, link, for_scene, view;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld, max_hole;
@@ -65,6 +67,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--validate", a.validate,
                "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
   app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
+  app.add_option("--view", a.view,
+                 "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
+                 "the defects of a mesh that is refused");
   app.add_option("--export", a.export_path,
                  "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
                  "(cuRobo), .urdf or .srdf");
@@ -116,8 +121,8 @@ void check(const Arguments& a, const CommonOptions& common) {
     wrong("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
     wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
-  if (a.output.empty() && a.export_path.empty() && a.report.empty())
-    wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
+  if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
+    wrong("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
     wrong("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
@@ -126,7 +131,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt},
-               {"--export", a.export_path, std::nullopt}},
+               {"--export", a.export_path, std::nullopt},
+               {"--view", a.view, std::nullopt}},
               common);
 }
 
@@ -136,6 +142,17 @@ std::string link_name(const Arguments& a) {
   if (!a.link.empty()) return a.link;
   const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
   return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
+}
+
+// Makes the solid; of a mesh that is refused, --view shows why.
+CheckedSolid checked_solid(const Arguments& a, const RawMesh& mesh) {
+  try {
+    return make_solid(mesh, solid_options(a));
+  } catch (const Error& fault) {
+    if (!a.view.empty() && fault.kind() == ErrorKind::refused)
+      write_defects_view(a.view, mesh, solid_options(a), fault.what());
+    throw;
+  }
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
@@ -250,10 +267,11 @@ Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSol
 
 void run(const Tool& tool, Arguments a) {
   check(a, tool.common());
+  if (!a.view.empty()) view::check_available();
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = make_solid(parse_mesh(bytes, name), solid_options(a));
+  CheckedSolid checked = checked_solid(a, parse_mesh(bytes, name));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
@@ -278,6 +296,7 @@ void run(const Tool& tool, Arguments a) {
     if (scene) report["scene"] = scene_report(*scene);
     file::write_all(a.report, report.dump(2) + "\n");
   }
+  if (!a.view.empty()) write_packing_view(a.view, a.mesh, checked, result);
   if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
   if (!a.output.empty()) {
     Packing packing =

@@ -142,7 +142,8 @@ void Replay::find_first_cloud() {
 }
 
 void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-                 file::Output& output) {
+                 file::Output& output, std::optional<PoseView>& view) {
+  if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
   clock_.emplace(rate_, arguments_.realtime);
@@ -163,6 +164,8 @@ void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Mea
     }
     clock_->end_step();
     query_seconds_.push_back(query.seconds());
+    if (view) view->see_frame(feed_->frame());
+    if (view) view->add(0, step.tool, step.contact, query.query());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     output.append(coupling ? coupled_line(step, frame_name())

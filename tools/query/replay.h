@@ -12,6 +12,7 @@
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/import_arguments.h"
 #include "tools/query/level_query.h"
+#include "tools/query/pose_view.h"
 
 namespace vpm::tools {
 
@@ -45,7 +46,7 @@ class Replay {
   // Queries step by step and writes a line of results for each; notes and warnings about frames
   // come as they happen.
   void run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-           file::Output& output);
+           file::Output& output, std::optional<PoseView>& view);
 
   // Return values that are complete after run().
   const Pose& last_pose() const { return last_pose_; }

@@ -18,11 +18,12 @@ SeveralTools::SeveralTools(std::span<const ToolModel> models, const QueryOptions
 }
 
 void SeveralTools::run(std::optional<Pose> next, std::optional<PoseReader>& reader,
-                       std::size_t at_once, file::Output& output) {
-  in_batches(next, reader, at_once, [&](std::span<const Pose> poses) { ask(poses, output); });
+                       std::size_t at_once, file::Output& output, std::optional<PoseView>& view) {
+  in_batches(next, reader, at_once, [&](std::span<const Pose> poses) { ask(poses, output, view); });
 }
 
-void SeveralTools::ask(std::span<const Pose> poses, file::Output& output) {
+void SeveralTools::ask(std::span<const Pose> poses, file::Output& output,
+                       std::optional<PoseView>& view) {
   const std::size_t tools = queries_.size();
   std::vector<ToolPose> questions;
   for (const Pose& pose : poses)
@@ -42,6 +43,7 @@ void SeveralTools::ask(std::span<const Pose> poses, file::Output& output) {
     output.append(result_line(asked_ + k / tools, results[k], together_[tool]->level(), measure_,
                               queries_[tool].reason(), {}, tool));
   }
+  if (view) view->add_batch(together_, cloud_, poses);
   asked_ += poses.size();
 }
 
