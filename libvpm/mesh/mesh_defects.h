@@ -14,10 +14,10 @@ namespace vpm {
 using Segment = std::array<Vec3, 2>;
 
 struct MeshDefects {
-  std::vector<std::vector<Segment>> holes;  // the rim of each hole
-  std::vector<Segment> non_manifold;        // edges of more than two triangles
-  std::vector<Segment> conflicting;         // edges whose two triangles face opposite ways
-  std::vector<Vec3> pinched;                // vertices in which the surface touches itself
+  std::vector<std::vector<Segment>> holes;    // the rim of each hole
+  std::vector<Segment> non_manifold;          // edges of more than two triangles
+  std::vector<Segment> conflicting;           // edges whose two triangles face opposite ways
+  std::vector<Vec3> pinched;                  // vertices in which the surface touches itself
   std::vector<std::array<Vec3, 3>> crossing;  // triangles that cut others
 };
 

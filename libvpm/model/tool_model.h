@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
 
 namespace vpm {
@@ -87,12 +86,6 @@ struct LevelError {
   double mean = 0, p95 = 0, worst = 0;
 };
 
-// The tool's surface as views draw it: no query reads it.
-struct DisplayMesh {
-  std::vector<Vec3f> vertices;  // about ToolModel::center_of_mass
-  std::vector<Triangle> triangles;
-};
-
 struct ToolModel {
   double volume = 0;       // volume of the solid, m^3
   Vec3 center_of_mass;     // centre of mass of the solid; blocks and samples are relative to it
@@ -101,7 +94,6 @@ struct ToolModel {
   std::vector<Sphere> spheres;          // largest first
   std::vector<Level> levels;            // at least one, ascending by sphere_count
   std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
-  DisplayMesh mesh;                     // empty where it is not known
   nlohmann::json provenance;
 
   // Returns the level with this many spheres, or the finest for 0. Throws Error(usage) that lists

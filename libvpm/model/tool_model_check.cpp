@@ -251,16 +251,6 @@ void check_calibration(const ToolModel& model, const std::string& name) {
   }
 }
 
-void check_mesh(const ToolModel& model, const std::string& name) {
-  for (const Vec3f& p : model.mesh.vertices) {
-    if (!is_finite(p)) refuse(name + ": a vertex of its mesh for display is not finite");
-  }
-  for (const Triangle& t : model.mesh.triangles) {
-    if (std::ranges::max(t) >= model.mesh.vertices.size())
-      refuse(name + ": a triangle of its mesh for display has a vertex that is not there");
-  }
-}
-
 }  // namespace
 
 void validate(const ToolModel& model, const std::string& name) {
@@ -287,7 +277,6 @@ void validate(const ToolModel& model, const std::string& name) {
     previous = count;
   }
   check_calibration(model, name);
-  check_mesh(model, name);
 }
 
 }  // namespace vpm

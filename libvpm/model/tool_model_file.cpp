@@ -1,5 +1,7 @@
 #include "libvpm/model/tool_model_file.h"
 
+#include <algorithm>
+
 #include "libvpm/core/error.h"
 #include "libvpm/file/container.h"
 
@@ -94,10 +96,15 @@ ToolModel model_of(const file::Reader& reader) {
   for (std::uint32_t k = 0; k < records.size(); ++k)
     model.levels.push_back(level_of(records[k], reader, k));
   if (reader.has(kCalibration, 0)) model.calibration = reader.read<LevelError>(kCalibration, 0);
-  if (reader.has(kMeshVertices, 0))
-    model.mesh = {reader.read<Vec3f>(kMeshVertices, 0), reader.read<Triangle>(kMeshTriangles, 0)};
   validate(model, reader.name());
   return model;
+}
+
+void add_mesh(file::Writer& writer, const Solid& mesh, Vec3 center_of_mass) {
+  std::vector<Vec3f> vertices;
+  for (const Vec3& p : mesh.vertices) vertices.push_back(narrow(p - center_of_mass));
+  writer.add(kMeshVertices, 0, std::span(std::as_const(vertices)));
+  writer.add(kMeshTriangles, 0, std::span(mesh.triangles));
 }
 
 }  // namespace
@@ -110,7 +117,25 @@ ToolModel parse_tool_model(std::vector<std::byte> bytes, const std::string& name
   return model_of(file::Reader(std::move(bytes), name, file::Kind::tool_model));
 }
 
-void write_tool_model(const std::string& path, const ToolModel& model) {
+Solid read_display_mesh(const std::string& path) {
+  const file::Reader reader(path, file::Kind::tool_model);
+  Solid mesh;
+  if (!reader.has(kMeshVertices, 0)) return mesh;
+  const std::vector<ToolRecord> tool = reader.read<ToolRecord>(kTool, 0);
+  if (tool.size() != 1) reader.refuse_file("chunk TOOL must hold one record; make the file again");
+  for (const Vec3f& p : reader.read<Vec3f>(kMeshVertices, 0)) {
+    if (!is_finite(p)) reader.refuse_file("a vertex of its mesh for views is not finite");
+    mesh.vertices.push_back(tool[0].center_of_mass + widen(p));
+  }
+  mesh.triangles = reader.read<Triangle>(kMeshTriangles, 0);
+  for (const Triangle& t : mesh.triangles) {
+    if (std::ranges::max(t) >= mesh.vertices.size())
+      reader.refuse_file("a triangle of its mesh for views has a vertex that is not there");
+  }
+  return mesh;
+}
+
+void write_tool_model(const std::string& path, const ToolModel& model, const Solid& mesh) {
   validate(model, path);
   file::Writer writer(
       file::Kind::tool_model,
@@ -123,10 +148,7 @@ void write_tool_model(const std::string& path, const ToolModel& model) {
   writer.add(kLevels, 0, std::span(std::as_const(records)));
   for (std::uint32_t k = 0; k < model.levels.size(); ++k) add_level(writer, model.levels[k], k);
   if (!model.calibration.empty()) writer.add(kCalibration, 0, std::span(model.calibration));
-  if (!model.mesh.triangles.empty()) {
-    writer.add(kMeshVertices, 0, std::span(model.mesh.vertices));
-    writer.add(kMeshTriangles, 0, std::span(model.mesh.triangles));
-  }
+  if (!mesh.triangles.empty()) add_mesh(writer, mesh, model.center_of_mass);
   writer.write(path);
 }
 

@@ -299,9 +299,9 @@ std::string Page::html() const {
   const bool is_empty = !(box_.low.x <= box_.high.x);
   const Vec3 center = is_empty ? Vec3{} : 0.5 * (box_.low + box_.high);
   const double radius = is_empty ? 1 : std::max(0.5 * norm(box_.size()), 1e-9);
-  Json document{{"program", program_},       {"version", VPM_VERSION}, {"title", title_},
-                {"facts", facts_},           {"notes", notes_},        {"up", as_json(up_)},
-                {"center", as_json(center)}, {"radius", radius}};
+  Json document{{"program", program_}, {"version", VPM_VERSION},    {"title", title_},
+                {"summary", summary_}, {"facts", facts_},           {"notes", notes_},
+                {"up", as_json(up_)},  {"center", as_json(center)}, {"radius", radius}};
   Json colors;
   for (const StateLook& look : kStateLooks) colors[look.name] = hex(look.rgb);
   document["colors"] = std::move(colors);

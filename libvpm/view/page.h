@@ -85,6 +85,8 @@ class Page {
 
   void set_origin(Vec3 origin) { origin_ = origin; }  // before the first layer
   void set_up(Vec3 up);
+  // What stands under the title beside program and version, e.g. "refined, 1000 of 1000 spheres".
+  void set_summary(std::string summary) { summary_ = std::move(summary); }
   void add_fact(const std::string& name, const std::string& value);
   void add_note(const std::string& text);
 
@@ -126,7 +128,7 @@ class Page {
   Vec3 place(Vec3 world);
   Json image_of(const ImageView& image, std::uint32_t stride);
 
-  std::string program_, title_;
+  std::string program_, title_, summary_;
   Vec3 origin_, up_{0, 0, 1};
   Box box_;  // of what is shown, about the origin
   Json facts_ = Json::array(), notes_ = Json::array(), bodies_ = Json::array(),

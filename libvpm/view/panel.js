@@ -26,7 +26,7 @@ function swatch(look) {
 function showFacts(doc) {
   document.title = doc.title + ' · ' + doc.program;
   document.getElementById('title').textContent = doc.title;
-  document.getElementById('program').textContent = doc.program + ' ' + doc.version;
+  document.getElementById('program').textContent = doc.program + ' ' + doc.version + (doc.summary ? ' · ' + doc.summary : '');
   const table = element('table', {});
   for (const [name, value] of doc.facts)
     table.append(element('tr', {}, element('td', {textContent: name, className: 'faint'}), element('td', {textContent: value})));

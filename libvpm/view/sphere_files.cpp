@@ -18,7 +18,8 @@
 namespace vpm::view {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "bodies are copied as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "bodies are copied as they lie in memory");
 
 using Color = std::array<std::uint8_t, 3>;
 
@@ -33,8 +34,8 @@ Color viridis(double t) {
   Color color{};
   for (std::size_t i = 0; i < 3; ++i) {
     const double from = kViridis[k][i], to = kViridis[k + 1][i];
-    color[i] = static_cast<std::uint8_t>(
-        std::lround(from + (at - static_cast<double>(k)) * (to - from)));
+    color[i] =
+        static_cast<std::uint8_t>(std::lround(from + (at - static_cast<double>(k)) * (to - from)));
   }
   return color;
 }
@@ -188,8 +189,8 @@ class Glb {
         {"scenes", Json::array({{{"nodes", roots}}})},
         {"nodes", nodes_},
         {"meshes", meshes_},
-        {"materials",
-         Json::array({{{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}})},
+        {"materials", Json::array({{{"pbrMetallicRoughness",
+                                     {{"metallicFactor", 0}, {"roughnessFactor", 0.8}}}}})},
         {"accessors", accessors_},
         {"bufferViews", views_},
         {"buffers", Json::array({{{"byteLength", buffer_.size()}}})}};

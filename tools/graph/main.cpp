@@ -85,22 +85,15 @@ void check_mesh(const Packing& packing, const Arguments& a) {
   }
 }
 
-DisplayMesh display_mesh(const Solid& solid, Vec3 center_of_mass) {
-  DisplayMesh mesh;
-  const Solid simple = view::simplified(solid, view::kMostTriangles);
-  for (const Vec3& p : simple.vertices) mesh.vertices.push_back(narrow(p - center_of_mass));
-  mesh.triangles = simple.triangles;
-  return mesh;
-}
-
 void run(const Tool& tool, Arguments& a) {
   if (a.packing == "-" && a.mesh == "-") {
     throw Error(ErrorKind::usage, "only one of the packing and --mesh can be standard input");
   }
-  check_files(
-      {a.packing, a.mesh},
-      {{"--output", a.output, file::Kind::tool_model}, {"--report", a.report, std::nullopt}, {"--view", a.view, std::nullopt}},
-      tool.common());
+  check_files({a.packing, a.mesh},
+              {{"--output", a.output, file::Kind::tool_model},
+               {"--report", a.report, std::nullopt},
+               {"--view", a.view, std::nullopt}},
+              tool.common());
   if (!a.view.empty()) view::check_available();
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
@@ -120,9 +113,9 @@ void run(const Tool& tool, Arguments& a) {
                       {"version", VPM_VERSION},
                       {"parameters", tool.parameters()},
                       {"packing", packing.provenance}};
-  model.mesh = display_mesh(packing.solid, model.center_of_mass);
-  write_tool_model(a.output, model);
-  if (!a.view.empty()) write_model_view(a.view, a.packing, model);
+  const Solid mesh = view::simplified(packing.solid, view::kMostTriangles);
+  write_tool_model(a.output, model, mesh);
+  if (!a.view.empty()) write_model_view(a.view, a.packing, model, mesh);
   if (!a.report.empty()) {
     file::write_all(a.report, graph_report(model, quality, seconds.count()).dump(2) + "\n");
   }

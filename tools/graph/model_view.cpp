@@ -62,8 +62,9 @@ std::size_t add_cells(view::Page& page, const ToolModel& model, const Level& lev
 }
 
 void add_numbers(view::Page& page, const ToolModel& model) {
-  view::Column spheres{"spheres", "", 1, {}}, edges{"edges", "", 1, {}}, bridges{"bridges", "", 1, {}},
-      epsilon{"largest gap of an edge", "m", 1, {}}, error{"mean error of the volume", "%", 1, {}};
+  view::Column spheres{"spheres", "", 1, {}}, edges{"edges", "", 1, {}},
+      bridges{"bridges", "", 1, {}}, epsilon{"largest gap of an edge", "m", 1, {}},
+      error{"mean error of the volume", "%", 1, {}};
   for (std::size_t k = 0; k < model.levels.size(); ++k) {
     const Level& level = model.levels[k];
     spheres.values.push_back(static_cast<float>(level.sphere_count));
@@ -80,8 +81,8 @@ void add_numbers(view::Page& page, const ToolModel& model) {
 
 }  // namespace
 
-void write_model_view(const std::string& path, const std::string& packing,
-                      const ToolModel& model) {
+void write_model_view(const std::string& path, const std::string& packing, const ToolModel& model,
+                      const Solid& mesh) {
   view::Page page("vpm-graph", "tool model of " + base_name(packing));
   page.set_origin(model.center_of_mass);
   std::size_t samples = 0;
@@ -98,12 +99,8 @@ void write_model_view(const std::string& path, const std::string& packing,
     add_graph(page, model, k);
     names.push_back("level of " + std::to_string(level.sphere_count));
   }
-  Solid solid;
-  for (const Vec3f& p : model.mesh.vertices)
-    solid.vertices.push_back(model.center_of_mass + widen(p));
-  solid.triangles = model.mesh.triangles;
-  if (!solid.triangles.empty())
-    page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &solid, .opacity = 0.15});
+  if (!mesh.triangles.empty())
+    page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &mesh, .opacity = 0.15});
   add_numbers(page, model);
   page.add_fact("packing", base_name(packing));
   page.add_fact("volume", std::to_string(1e6 * model.volume) + " cm³");

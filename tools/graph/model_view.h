@@ -7,6 +7,7 @@
 
 namespace vpm::tools {
 
-void write_model_view(const std::string& path, const std::string& packing, const ToolModel& model);
+void write_model_view(const std::string& path, const std::string& packing, const ToolModel& model,
+                      const Solid& mesh);
 
 }  // namespace vpm::tools

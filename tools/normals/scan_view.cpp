@@ -11,8 +11,7 @@ namespace {
 
 // Why a pixel is not in the cloud; the order of the colours in the page.
 enum Reason : std::uint8_t { has_normal, not_measured, out_of_range, no_normal };
-constexpr std::array<const char*, 4> kReasons{"with a normal", "not measured",
-                                              "depth out of range",
+constexpr std::array<const char*, 4> kReasons{"with a normal", "not measured", "depth out of range",
                                               "measured, too few neighbours for a normal"};
 constexpr const char* kNoNormalColor = "#d55e00";
 constexpr std::size_t kBins = 64, kMostMarks = 30'000;
@@ -44,10 +43,10 @@ Pixels pixels_of(const Cloud& cloud) {
     pixels.normals[cloud.pixels[k]] = narrow(to_camera * widen(cloud.normals[k]));
   for (std::size_t k = 0; k < image.depth.size(); ++k) {
     const float depth = image.depth[k];
-    const Reason reason = !is_measured(depth)                        ? not_measured
-                          : usable_depth(depth) == 0                 ? out_of_range
+    const Reason reason = !is_measured(depth)                          ? not_measured
+                          : usable_depth(depth) == 0                   ? out_of_range
                           : squared_norm(widen(pixels.normals[k])) > 0 ? has_normal
-                                                                     : no_normal;
+                                                                       : no_normal;
     pixels.reasons.push_back(reason);
     ++pixels.counts[reason];
   }
@@ -61,8 +60,8 @@ void add_depths(view::Page& page, const DepthImage& image) {
   std::ranges::sort(depths);
   const auto last = static_cast<double>(depths.size() - 1);
   const double low = depths[static_cast<std::size_t>(kTail * last)];
-  const double high = std::max<double>(depths[static_cast<std::size_t>((1 - kTail) * last)],
-                                       low * (1 + 1e-6));
+  const double high =
+      std::max<double>(depths[static_cast<std::size_t>((1 - kTail) * last)], low * (1 + 1e-6));
   std::vector<std::uint32_t> counts(kBins, 0);
   for (const double d : depths) {
     if (d < low || d > high) continue;
@@ -91,7 +90,7 @@ void add_marks(view::Page& page, const CloudSensor& sensor, const Pixels& pixels
     places.push_back(sensor.camera.to_world *
                      unproject(sensor.camera.intrinsics, u, v, sensor.depth.depth[k]));
   }
-  const std::vector<std::uint32_t> until(places.size(), 1);
+  const std::vector<std::uint32_t> until(places.size(), 1);  // shown at the only step
   if (!places.empty()) page.add_dust("measured, no normal", kNoNormalColor, places, until);
 }
 

@@ -81,8 +81,7 @@ struct Uncovered {
 // Asks places spread evenly over the solid's box.
 Uncovered find_uncovered(const CheckedSolid& checked, const std::vector<Sphere>& spheres) {
   const SolidDistance distance(checked.solid, &checked.enclosure);
-  const std::size_t count =
-      std::clamp(kMostDistances / spheres.size(), kFewestPlaces, kMostPlaces);
+  const std::size_t count = std::clamp(kMostDistances / spheres.size(), kFewestPlaces, kMostPlaces);
   const Vec3 low = checked.facts.low, size = checked.facts.high - checked.facts.low;
   std::vector<Vec3> places(count);
   std::vector<std::uint32_t> until(count, 0);
@@ -161,8 +160,8 @@ void write_packing_view(const std::string& path, const std::string& mesh,
   page.add_fact("triangles", std::to_string(checked.facts.triangles));
   page.add_fact("volume", text_of(checked.facts.volume, "m³"));
   page.add_fact("covered", text_of(100 * packed.coverage, "%"));
-  page.add_fact("radii", text_of(spheres.back().radius, "m") + " to " +
-                             text_of(spheres.front().radius, "m"));
+  page.add_fact(
+      "radii", text_of(spheres.back().radius, "m") + " to " + text_of(spheres.front().radius, "m"));
   page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &checked.solid, .opacity = 0.25});
   page.add_spheres({.name = "spheres by radius", .spheres = spheres, .prefix = true});
   const Uncovered uncovered = find_uncovered(checked, spheres);

@@ -7,6 +7,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/model/tool_model_file.h"
 
 namespace vpm::tools {
 namespace {
@@ -48,14 +49,6 @@ Vec3 image_up(const Camera& camera) {
   return camera.to_world.rotation * Vec3{0, -1, 0};
 }
 
-Solid solid_of(const ToolModel& model) {
-  Solid solid;
-  for (const Vec3f& p : model.mesh.vertices)
-    solid.vertices.push_back(model.center_of_mass + widen(p));
-  solid.triangles = model.mesh.triangles;
-  return solid;
-}
-
 }  // namespace
 
 PoseView::PoseView(std::string path, std::span<const ToolModel> models,
@@ -66,7 +59,10 @@ PoseView::PoseView(std::string path, std::span<const ToolModel> models,
       options_(options),
       levels_(models.size(), 0) {
   view::check_available();
-  for (std::string& name : names_) name = base_name(name);
+  for (std::string& name : names_) {
+    meshes_.push_back(name == "-" ? Solid{} : read_display_mesh(name));
+    name = base_name(name);
+  }
   std::size_t row = 0;
   for (const ToolModel& model : models_) row += model.spheres.size() / 4 + 1;
   most_steps_ = std::clamp(kStateBytes / row, kFewestSteps, kMostSteps);
@@ -81,7 +77,6 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
   recording_name_ = base_name(name);
   recording_ = &recording;
   import_ = options;
-  import_.device = {};
 }
 
 void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, const Query& query) {
@@ -132,6 +127,11 @@ std::vector<PoseView::Step> PoseView::kept() const {
 }
 
 void PoseView::add_facts(view::Page& page) const {
+  std::string summary = options_.measure == Measure::paper ? "paper" : "refined";
+  for (std::size_t t = 0; t < models_.size(); ++t)
+    summary += ", " + std::to_string(levels_[t]) + " of " +
+               std::to_string(models_[t].spheres.size()) + " spheres";
+  page.set_summary(summary);
   for (std::size_t t = 0; t < models_.size(); ++t) {
     page.add_fact("tool", names_[t] + maker_of(models_[t].provenance));
     page.add_fact("level", std::to_string(levels_[t]) + " of " +
@@ -259,11 +259,10 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
                     .spheres = {model.spheres.data(), levels_[tool]},
                     .body = body,
                     .states = bits});
-  if (!model.mesh.triangles.empty()) {
-    const Solid solid = solid_of(model);
+  if (!meshes_[tool].triangles.empty()) {
     page.add_mesh({.name = "tool's mesh" + of,
                    .color = kToolColors[tool % kToolColors.size()],
-                   .solid = &solid,
+                   .solid = &meshes_[tool],
                    .body = body,
                    .opacity = 0.3});
   }

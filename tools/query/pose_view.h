@@ -19,7 +19,8 @@ namespace vpm::tools {
 // keeps every n-th pose and the last one, so that its memory and the page stay small.
 class PoseView {
  public:
-  // The models outlive this. Throws Error(unavailable) where this build draws no pages.
+  // `names` are the models' files, which keep their meshes too. The models outlive this. Throws
+  // Error(unavailable) where this build draws no pages.
   PoseView(std::string path, std::span<const ToolModel> models, std::vector<std::string> names,
            const QueryOptions& options);
 
@@ -67,6 +68,7 @@ class PoseView {
   std::string path_;
   std::span<const ToolModel> models_;
   std::vector<std::string> names_;
+  std::vector<Solid> meshes_;  // empty where a model came by a pipe or keeps none
   QueryOptions options_;
   std::vector<std::pair<std::string, Cloud>> clouds_;
   std::string recording_name_;
