@@ -7,7 +7,7 @@ float lit(vec3 n, vec3 toEye) {
 }`;
 
 // Points, or triangles between them. A window opens in what is between the eye and the tool (`hole`:
-// its centre and radius), where only one pixel in five is left.
+// its centre and radius), where few pixels are left.
 function surfaceMaterial(options) {
   return new THREE.ShaderMaterial({
     transparent: true, side: THREE.DoubleSide,
@@ -39,7 +39,7 @@ function surfaceMaterial(options) {
           vec3 center = (viewMatrix * vec4(hole.xyz, 1.0)).xyz;
           float far = length(center), near = dot(vView, center) / far;
           float off = length(vView * (far / max(near, 1e-9)) - center) / hole.w;
-          float left = near > 0.0 && near < far + hole.w ? mix(0.2, 1.0, smoothstep(0.95, 1.25, off)) : 1.0;
+          float left = near > 0.0 && near < far + hole.w ? mix(0.1, 1.0, smoothstep(0.95, 1.2, off)) : 1.0;
           vec2 cell = mod(floor(gl_FragCoord.xy), 4.0);
           float order = mod(cell.x * 5.0 + cell.y * 7.0 + mod(cell.x + cell.y, 2.0) * 8.0, 16.0);
           if (order + 0.5 > 16.0 * left) discard;
