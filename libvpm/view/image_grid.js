@@ -36,25 +36,30 @@ function normalsOfDepth(depth, image) {
   return normals;
 }
 
-// Returns {depth, positions, normals}: camera coordinates of each pixel.
-function verticesOfImage(image) {
-  const depth = decodeDepth(image), [fx, fy, cx, cy] = image.intrinsics;
-  const positions = new Float32Array(3 * depth.length);
+// Returns camera coordinates and normals of each pixel.
+function verticesOfDepth(depth, image) {
+  const [fx, fy, cx, cy] = image.intrinsics, positions = new Float32Array(3 * depth.length);
   for (let v = 0, k = 0; v < image.height; ++v)
     for (let u = 0; u < image.width; ++u, ++k) {
       positions[3 * k] = (u - cx) / fx * depth[k];
       positions[3 * k + 1] = (v - cy) / fy * depth[k];
       positions[3 * k + 2] = depth[k];
     }
-  const normals = image.normals ? decodeNormals(image.normals) : normalsOfDepth(depth, image);
-  return {depth, positions, normals};
+  return {positions, normals: image.normals ? decodeNormals(image.normals) : normalsOfDepth(depth, image)};
 }
 
-// Returns corners of triangles between every `stride`-th pixel: of the surface, and of the curtains
-// that hang from its edges to what is seen behind them, which nobody has seen.
-function trianglesOfImage(depth, {width, height, step}, stride) {
-  const most = 6 * Math.ceil(width / stride) * Math.ceil(height / stride), all = new Uint32Array(most), curtain = [];
-  const jump = 1 + (JUMP - 1) * Math.min(step * stride, 3);
+// Returns every n-th pixel each way as an image of its own, of about `most` pixels.
+function thinned(depth, image, most) {
+  const n = Math.max(1, Math.round(Math.sqrt(depth.length / most)));
+  const width = Math.ceil(image.width / n), height = Math.ceil(image.height / n), fewer = new Float32Array(width * height);
+  for (let v = 0, k = 0; v < height; ++v) for (let u = 0; u < width; ++u, ++k) fewer[k] = depth[n * v * image.width + n * u];
+  return {depth: fewer, image: {width, height, step: n * image.step, intrinsics: image.intrinsics.map(x => x / n)}};
+}
+
+// Returns corners of the triangles between pixels: of the surface, and of the curtains that hang from
+// its edges to what is seen behind them, which nobody has seen.
+function trianglesOfDepth(depth, {width, height, step}) {
+  const all = new Uint32Array(6 * width * height), curtain = [], jump = 1 + (JUMP - 1) * Math.min(step, 3);
   let count = 0;
   const add = (a, b, c) => {
     const x = depth[a], y = depth[b], z = depth[c];
@@ -62,9 +67,9 @@ function trianglesOfImage(depth, {width, height, step}, stride) {
     if (Math.max(x, y, z) > jump * Math.min(x, y, z)) curtain.push(a, b, c);
     else all[count] = a, all[count + 1] = b, all[count + 2] = c, count += 3;
   };
-  for (let v = 0; v + stride < height; v += stride)
-    for (let u = 0; u + stride < width; u += stride) {
-      const a = v * width + u, b = a + stride, c = a + stride * width, d = c + stride;
+  for (let v = 0; v + 1 < height; ++v)
+    for (let u = 0; u + 1 < width; ++u) {
+      const a = v * width + u, b = a + 1, c = a + width, d = c + 1;
       add(a, c, b), add(b, c, d);
     }
   return {surface: all.subarray(0, count), curtain: new Uint32Array(curtain)};

@@ -54,22 +54,34 @@ function imageLayers(layer) {
   const sheet = placed(new THREE.Mesh(geometryOf(new Float32Array(12), null, new Uint32Array([0, 1, 2, 2, 1, 3])), sheetMaterial()), 4);
   const shown = {current: -1, coarse: false, image: null, toWorld: new THREE.Matrix4(), cache: new Map()};
 
+  // What an image becomes is made when it is first shown.
   function made(index) {
     if (shown.cache.has(index)) return shown.cache.get(index);
-    const image = layer.images[index], {depth, positions, normals} = verticesOfImage(image);
-    const fine = trianglesOfImage(depth, image, 1), coarse = trianglesOfImage(depth, image, Math.max(1, Math.round(Math.sqrt(depth.length) / 140)));
-    const position = new THREE.BufferAttribute(positions, 3), normal = new THREE.BufferAttribute(normals, 3);
-    const share = (indices, count) => {
+    const image = layer.images[index], depth = decodeDepth(image), parts = {};
+    const once = (name, make) => parts[name] || (parts[name] = make());
+    const vertices = () => once('vertices', () => {
+      const {positions, normals} = verticesOfDepth(depth, image);
+      return {position: new THREE.BufferAttribute(positions, 3), normal: new THREE.BufferAttribute(normals, 3)};
+    });
+    const triangles = () => once('triangles', () => trianglesOfDepth(depth, image));
+    const share = indices => {
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', position), geometry.setAttribute('normal', normal);
+      geometry.setAttribute('position', vertices().position), geometry.setAttribute('normal', vertices().normal);
       geometry.setIndex(new THREE.BufferAttribute(indices, 1));
       return geometry;
     };
-    const measured = new Uint32Array(depth.reduce((n, d) => n + (d > 0), 0));
-    for (let k = 0, n = 0; k < depth.length; ++k) if (depth[k] > 0) measured[n++] = k;
+    let count = 0;
+    for (const d of depth) count += d > 0;
     const result = {
-      image, depth, count: measured.length, fine: share(fine.surface), coarse: share(coarse.surface),
-      curtain: share(fine.curtain), points: share(measured), texture: textureOfDepth(depth, image),
+      image, count,
+      fine: () => once('fine', () => share(triangles().surface)),
+      coarse: () => once('coarse', () => {
+        const small = thinned(depth, image, 12000), {positions, normals} = verticesOfDepth(small.depth, small.image);
+        return geometryOf(positions, normals, trianglesOfDepth(small.depth, small.image).surface);
+      }),
+      curtain: () => once('curtain', () => share(triangles().curtain)),
+      points: () => once('points', () => share(Uint32Array.from(depth.keys()).filter(k => depth[k] > 0))),
+      texture: () => once('texture', () => textureOfDepth(depth, image)),
     };
     if (shown.cache.size > 8) shown.cache.delete(shown.cache.keys().next().value);
     shown.cache.set(index, result);
@@ -82,20 +94,24 @@ function imageLayers(layer) {
   group.add(mesh), points.add(cloud), hidden.add(curtain, sheet), frusta.add(frustum);
   for (const object of [mesh, cloud, curtain, frustum]) object.matrixAutoUpdate = false;
 
+  // Gives the objects that are switched on their shapes.
+  function fill() {
+    const it = shown.made;
+    if (own.on) mesh.geometry = shown.coarse ? it.coarse() : it.fine();
+    if (cloudLayer.on) cloud.geometry = it.points();
+    if (!hiddenLayer.on) return;
+    curtain.geometry = it.curtain();
+    sheet.material.uniforms.depth.value = it.texture();
+  }
   function show(index) {
     if (index === shown.current) return;
     shown.current = index;
-    const it = made(index), {image} = it;
+    const it = shown.made = made(index), {image} = it;
     shown.image = image;
-    shown.made = it;
     shown.toWorld = matrixOf(image.pose, 0);
-    mesh.geometry = shown.coarse ? it.coarse : it.fine;
-    cloud.geometry = it.points;
-    curtain.geometry = it.curtain;
     frustum.geometry = frustumOf(image);
     for (const object of [mesh, cloud, curtain, frustum]) object.matrix.copy(shown.toWorld), object.matrixWorldNeedsUpdate = true;
     const uniforms = sheet.material.uniforms;
-    uniforms.depth.value = it.texture;
     uniforms.toCamera.value.getInverse(shown.toWorld);
     uniforms.lens.value.set(...image.intrinsics);
     uniforms.size.value.set(image.width, image.height);
@@ -104,14 +120,15 @@ function imageLayers(layer) {
   }
   const own = {
     name: layer.name, type: 'surface', count: 0, on: true, object: group, swatch: {color: '#8fa9c4'}, shown, material, mesh, sheet,
-    opacity: material.uniforms.opacity,
+    opacity: material.uniforms.opacity, fill,
     atStep(step) { show(ofStep ? ofStep[Math.min(step, ofStep.length - 1)] : 0); },
-    setCoarse(coarse) { shown.coarse = coarse; if (shown.made) mesh.geometry = coarse ? shown.made.coarse : shown.made.fine; },
+    setCoarse(coarse) { shown.coarse = coarse; },
   };
   const cloudLayer = {name: layer.name.replace('surface', 'points'), type: 'points', count: 0, on: false, object: points, swatch: {color: '#5c7fa6'}, material: pointMaterial};
   const hiddenLayer = {name: 'not seen by the camera', type: 'unseen', on: false, object: hidden, swatch: {color: '#3a3a44'},
     legend: [['hidden behind the surface', '#3a3a44'], ['not measured', null, 'hatch'], ['seen free', '#bfe1f2']]};
   const frustumLayer = {name: 'camera', type: 'camera', on: true, object: frusta, swatch: {color: '#22303c', shape: 'line'}};
+  shown.coarse = true;  // for the first picture
   own.atStep(0);
   return [own, cloudLayer, hiddenLayer, frustumLayer];
 }
@@ -153,7 +170,6 @@ function sphereLayers(layer, colors) {
   geometry.setAttribute('sphere', new THREE.InstancedBufferAttribute(sphere, 4));
   const tints = new THREE.InstancedBufferAttribute(tint, 3, true), states = new THREE.InstancedBufferAttribute(state, 1);
   geometry.setAttribute('tint', tints), geometry.setAttribute('state', states);
-  geometry.maxInstancedCount = count;
   const object = placed(new THREE.Mesh(geometry, sphereMaterial()), 0);
   const own = {name: layer.name, type: 'spheres', body: layer.body, count, on: layer.on, object, sphere, centers, radii, step: layer.step, prefix: layer.prefix, tints, cellsOf: layer.cells};
   if (layer.states) {
@@ -175,7 +191,10 @@ function sphereLayers(layer, colors) {
     own.key = {name: 'radius', unit: 'm', low: smallest, high: largest};
   }
   own.swatch = {color: layer.states ? colors.boundary : '#21918c', shape: 'ball'};
-  if (layer.prefix) own.atStep = step => { geometry.maxInstancedCount = Math.min(step + 1, count); };
+  let most = count, prefix = count;  // the largest spheres are first
+  const restrict = () => { geometry.maxInstancedCount = Math.min(most, prefix); };
+  own.setCoarse = coarse => { most = coarse ? 2000 : count; restrict(); };
+  if (layer.prefix) own.atStep = step => { prefix = Math.min(step + 1, count); restrict(); };
   return [own];
 }
 

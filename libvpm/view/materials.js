@@ -17,18 +17,18 @@ function surfaceMaterial(options) {
       byNormal: {value: options.byNormal ? 1 : 0}, axes: {value: new THREE.Matrix3()},
     },
     vertexShader: `
-      uniform float size;
-      varying vec3 vNormal, vModel, vView, vWorld;
+      uniform float size; uniform vec4 hole;
+      varying vec3 vNormal, vModel, vView, vHole;
       void main() {
         vec4 view = modelViewMatrix * vec4(position, 1.0);
         vNormal = normalMatrix * normal; vModel = normal; vView = view.xyz;
-        vWorld = (modelMatrix * vec4(position, 1.0)).xyz;
+        vHole = (viewMatrix * vec4(hole.xyz, 1.0)).xyz;
         gl_Position = projectionMatrix * view;
         gl_PointSize = size;
       }`,
     fragmentShader: LIGHT + `
       uniform vec3 color; uniform float opacity, byNormal; uniform vec4 hole; uniform mat3 axes;
-      varying vec3 vNormal, vModel, vView, vWorld;
+      varying vec3 vNormal, vModel, vView, vHole;
       void main() {
         vec3 toEye = normalize(-vView), n = vNormal;
         bool known = dot(n, n) > 0.1;
@@ -36,9 +36,8 @@ function surfaceMaterial(options) {
         if (dot(n, toEye) < 0.0) n = -n;
         vec3 base = byNormal > 0.5 ? (known ? 0.5 + 0.5 * normalize(axes * vModel) * vec3(1.0, -1.0, -1.0) : vec3(0.25)) : color;
         if (hole.w > 0.0) {
-          vec3 center = (viewMatrix * vec4(hole.xyz, 1.0)).xyz;
-          float far = length(center), near = dot(vView, center) / far;
-          float off = length(vView * (far / max(near, 1e-9)) - center) / hole.w;
+          float far = length(vHole), near = dot(vView, vHole) / far;
+          float off = length(vView * (far / max(near, 1e-9)) - vHole) / hole.w;
           float left = near > 0.0 && near < far + hole.w ? mix(0.1, 1.0, smoothstep(0.95, 1.2, off)) : 1.0;
           vec2 cell = mod(floor(gl_FragCoord.xy), 4.0);
           float order = mod(cell.x * 5.0 + cell.y * 7.0 + mod(cell.x + cell.y, 2.0) * 8.0, 16.0);

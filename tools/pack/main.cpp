@@ -71,7 +71,7 @@ void declare(CLI::App& app, Arguments& a) {
                  "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
                  "the defects of a mesh that is refused");
   app.add_option("--export", a.export_path,
-                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
+                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
                  "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
                  "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");

@@ -1,6 +1,7 @@
 #include "tools/pack/pack_view.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "libvpm/core/parallel.h"

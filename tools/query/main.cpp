@@ -105,7 +105,7 @@ void declare(CLI::App& app, Arguments& a) {
   declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
-                 "The spheres of the last pose by state (.ply or .csv)");
+                 "The spheres of the last pose by state: .csv, .ply (balls), .points.ply or .glb");
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
   app.add_option("--view", a.view,
                  "A page (.html) that shows scene, tool, answers and path in any browser");
