@@ -328,7 +328,7 @@ Options parse(int argc, char** argv) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(ErrorKind::usage,
+      throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
                       "rotate= frames= behind= method= batch= points= standby= json= poses= path=");
@@ -340,13 +340,15 @@ Options parse(int argc, char** argv) {
 int number(const Options& options, const std::string& name, int least) {
   const int value = std::atoi(options.at(name).c_str());
   if (value < least)
-    throw Error(ErrorKind::usage, name + "= must be a number of at least " + std::to_string(least));
+    throw Error(ErrorKind::invalid_argument,
+                name + "= must be a number of at least " + std::to_string(least));
   return value;
 }
 
 void control(int argc, char** argv) {
   if (argc < 3)
-    throw Error(ErrorKind::usage, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
+    throw Error(ErrorKind::invalid_argument,
+                "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
   const Options options = parse(argc, argv);
   QueryOptions query_options;
   query_options.device = device_from_text(options.at("device"));
@@ -363,7 +365,8 @@ void control(int argc, char** argv) {
   const Path path = make_path(refined, clouds[0], tool);
   const std::string& measure = options.at("measure");
   if (measure != "refined" && measure != "paper")
-    throw Error(ErrorKind::usage, "measure=" + measure + ": there are refined and paper");
+    throw Error(ErrorKind::invalid_argument,
+                "measure=" + measure + ": there are refined and paper");
   if (measure == "paper") query_options.measure = Measure::paper;
   std::deque<Query> queries;
   for (int k = 0; k < copies; ++k) {
@@ -385,7 +388,8 @@ void control(int argc, char** argv) {
     std::deque<CameraStream> cameras;
     if (frames != "none") {
       if (!cloud.sensor || (frames != "counts" && frames != "metres"))
-        throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
+        throw Error(ErrorKind::invalid_argument,
+                    "frames= takes counts or metres, and a cloud with a camera");
       for (int k = 0; k < copies; ++k)
         cameras.emplace_back(*cloud.sensor, frames == "counts",
                              NormalOptions{normal_method_from_text(options.at("method"))},
@@ -415,6 +419,6 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const vpm::Error& fault) {
     std::cerr << "control-loop: " << fault.what() << '\n';
-    return static_cast<int>(fault.kind());
+    return 1;
   }
 }

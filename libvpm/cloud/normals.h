@@ -28,7 +28,7 @@ namespace vpm {
 
 enum class NormalMethod { inverse_depth, pca };
 
-// "inverse-depth" or "pca". Parsing another text throws Error(usage).
+// "inverse-depth" or "pca". Parsing another text throws Error(invalid_argument).
 std::string to_text(NormalMethod method);
 NormalMethod normal_method_from_text(const std::string& text);
 
@@ -39,13 +39,14 @@ struct NormalOptions {
   double edge_gate = kEdgeGate;
 };
 
-// Throw Error(usage) if a value is out of range.
+// Throw Error(invalid_argument) if a value is out of range.
 void check_normal_options(const NormalOptions& options);
 void check_intrinsics(const Intrinsics& intrinsics);
 
 // Returns one unit normal per pixel, row by row, in camera coordinates and towards the sensor; zero
 // where the pixel is unmeasured or too little of its window remains (normal_limits.h). Throws
-// Error(usage) for options out of range, Error(refused) for an image whose size does not match.
+// Error(invalid_argument) for options out of range, Error(refused) for an image whose size does not
+// match.
 std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
                                     const NormalOptions& options);
 

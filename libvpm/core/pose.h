@@ -83,8 +83,8 @@ Rotation exact_rotation(const Rotation& rounded);
 // Returns the quaternion with w >= 0.
 Quaternion quaternion_from_rotation(const Rotation& r);
 
-// Parses "tx,ty,tz,qx,qy,qz,qw", metres and a unit quaternion. Throws Error(usage) if the text is
-// not seven numbers, Error(refused) if the numbers are no pose. `deviation` as in
+// Parses "tx,ty,tz,qx,qy,qz,qw", metres and a unit quaternion. Throws Error(invalid_argument) if
+// the text is not seven numbers, Error(refused) if the numbers are no pose. `deviation` as in
 // rotation_from_quaternion.
 Pose pose_from_text(const std::string& text, double* deviation = nullptr);
 

@@ -28,7 +28,8 @@ std::string cuda_device_name(int index);
 std::string device_name(const Device& device);
 
 // Parses "cpu", "cuda", "cuda:1", "cuda:all" or "auto" (the first CUDA device, else the CPU).
-// Throws Error(usage) for other texts and Error(unavailable) if the device does not exist.
+// Throws Error(invalid_argument) for other texts and Error(unavailable) if the device does not
+// exist.
 Device device_from_text(const std::string& text);
 
 }  // namespace vpm

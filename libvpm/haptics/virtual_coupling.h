@@ -25,7 +25,7 @@ struct CouplingParameters {
   double rate = 1000;    // steps per second
 };
 
-// Throws Error(usage) if a parameter is not positive and finite.
+// Throws Error(invalid_argument) if a parameter is not positive and finite.
 void validate(const CouplingParameters& parameters);
 
 // Returns the mass, kg, that the coupling moves without overshoot: damping^2 / (4 stiffness).
@@ -56,9 +56,9 @@ struct CouplingEnergy {
 
 class VirtualCoupling {
  public:
-  // Starts with the tool at rest at the device's pose. Throws Error(usage) for parameters that
-  // validate() refuses, Error(refused) for a pose or a centre of mass that is not finite or not
-  // rigid.
+  // Starts with the tool at rest at the device's pose. Throws Error(invalid_argument) for
+  // parameters that validate() refuses, Error(refused) for a pose or a centre of mass that is not
+  // finite or not rigid.
   VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass, const Pose& device);
 
   // Returns the tool's current pose, at which the contact is to be measured.

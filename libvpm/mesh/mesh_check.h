@@ -75,8 +75,8 @@ struct CheckedSolid {
 
 // Checks, repairs and orients a mesh. Throws Error(refused) for meshes that are empty; open,
 // non-manifold or one-sided beyond the requested repair (naming rims of holes by their first
-// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws Error(usage) for
-// options out of range.
+// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws
+// Error(invalid_argument) for options out of range.
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
 
 }  // namespace vpm

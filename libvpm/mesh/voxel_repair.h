@@ -30,7 +30,7 @@ bool orient_outward(Solid& mesh);
 
 // The repairs return a closed, oriented surface made by OpenVDB, empty if no voxel lies inside.
 // Details below a voxel vanish. Lengths in the mesh's unit. Identical for any number of threads.
-// Throw Error(usage) for a resolution or width out of range.
+// Throw Error(invalid_argument) for a resolution or width out of range.
 
 // Takes as inside what has a generalised winding number above one half; most triangles must face
 // outward.

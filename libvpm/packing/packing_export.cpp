@@ -105,9 +105,11 @@ ExportFormat export_format(const std::string& path) {
   if (ends(".yml") || ends(".yaml")) return ExportFormat::yml;
   if (ends(".urdf")) return ExportFormat::urdf;
   if (ends(".srdf")) return ExportFormat::srdf;
-  throw Error(ErrorKind::usage, "export: the name '" + path +
-                                    "' must end with .csv, .json, .ply (.points.ply), .vtk, .yml "
-                                    "(.yaml), .urdf or .srdf");
+  throw Error(
+      ErrorKind::invalid_argument,
+      "the name '" + path +
+          "' must end with .csv, .json, .ply (.points.ply), .vtk, .yml (.yaml), .urdf or .srdf",
+      "export");
 }
 
 std::string packing_as_csv(const std::vector<Sphere>& spheres) {
@@ -131,7 +133,7 @@ std::string packing_as_ply(const std::vector<Sphere>& spheres) {
   const Solid ball = synthetic::make_icosphere(1, 1);
   const std::size_t corners = ball.vertices.size(), faces = ball.triangles.size();
   if (corners * spheres.size() > 0xffffffff) {
-    refuse("export: too many spheres for the 32-bit indices of a PLY file; use .points.ply");
+    refuse("too many spheres for the 32-bit indices of a PLY file", "export", "use .points.ply");
   }
   std::string bytes = kPlyHeader + std::to_string(corners * spheres.size()) + kPlyCorners +
                       "element face " + std::to_string(faces * spheres.size()) +

@@ -19,7 +19,7 @@ namespace vpm {
 //   .srdf        link_sphere_approximation of a link
 // Text has 9 significant digits, JSON as many as are exact. PLY is coloured by radius, from blue
 // (smallest) over green to red (largest), logarithmically. `link` names the link in YAML, URDF and
-// SRDF. export_format throws Error(usage) for any other extension.
+// SRDF. export_format throws Error(invalid_argument) for any other extension.
 enum class ExportFormat { csv, json, ply, points, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 

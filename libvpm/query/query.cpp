@@ -14,13 +14,12 @@ namespace {
 // is done everywhere: a rounded one would not have the same bits on a device.
 Pose sound(const Pose& pose) {
   if (!is_in_range(pose.translation)) {
-    refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
+    refuse("the translation is not finite, or further than 2^100 m from the origin", "pose");
   }
   if (is_rotation(pose.rotation, kRotationExact)) return pose;
   if (!is_rotation(pose.rotation, kRotationRounding)) {
-    refuse(
-        "pose: its rotation is not finite, not orthonormal or mirrors; make it with "
-        "rotation_from_matrix or rotation_from_quaternion");
+    refuse("its rotation is not finite, not orthonormal or mirrors", "pose",
+           "make it with rotation_from_matrix or rotation_from_quaternion");
   }
   return {exact_rotation(pose.rotation), pose.translation};
 }
@@ -36,8 +35,10 @@ void for_each_pose(std::size_t count, const Body& body) {
 
 void check_room(std::size_t poses, std::size_t results) {
   if (poses == results) return;
-  throw Error(ErrorKind::usage, "query: " + std::to_string(poses) + " poses, but room for " +
-                                    std::to_string(results) + " results");
+  throw Error(
+      ErrorKind::invalid_argument,
+      std::to_string(poses) + " poses, but room for " + std::to_string(results) + " results",
+      "query");
 }
 
 // Whether one launch can answer for both.
@@ -53,18 +54,20 @@ void Query::check_together(std::span<Query* const> queries, std::span<const Tool
   check_room(poses.size(), results.size());
   for (const Query* query : queries) {
     if (query->options_.coherent)
-      throw Error(ErrorKind::usage, "coherent poses follow each other: ask for them one by one");
+      throw Error(ErrorKind::invalid_argument,
+                  "coherent poses follow each other: ask for them one by one");
     if (!go_together(query->options_, queries.front()->options_)) {
-      throw Error(ErrorKind::usage,
-                  "tools that are queried together need the same measure, device, shadows and "
-                  "points; make their queries with the same options");
+      throw Error(
+          ErrorKind::invalid_argument,
+          "tools that are queried together need the same measure, device, shadows and points", {},
+          "make their queries with the same options");
     }
   }
   for (const ToolPose& pose : poses) {
     if (pose.tool >= queries.size()) {
-      throw Error(ErrorKind::usage, "a pose is of tool " + std::to_string(pose.tool) +
-                                        ", counted from 0, but there are " +
-                                        std::to_string(queries.size()));
+      throw Error(ErrorKind::invalid_argument, "a pose is of tool " + std::to_string(pose.tool) +
+                                                   ", counted from 0, but there are " +
+                                                   std::to_string(queries.size()));
     }
   }
 }
@@ -72,22 +75,23 @@ void Query::check_together(std::span<Query* const> queries, std::span<const Tool
 Query::Query(const ToolModel& tool, const QueryOptions& options)
     : level_(tool.level(options.level)), options_(options), states_(level_.sphere_count) {
   if (!(options.stiffness > 0 && std::isfinite(options.stiffness))) {
-    throw Error(ErrorKind::usage, "the stiffness must be a positive number");
+    throw Error(ErrorKind::invalid_argument, "the stiffness must be a positive number");
   }
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach))) {
-    throw Error(ErrorKind::usage, "the stiffness is so large that forces overflow");
+    throw Error(ErrorKind::invalid_argument, "the stiffness is so large that forces overflow");
   }
   if (options.standby_us > QueryOptions::kLongestStandby) {
-    throw Error(ErrorKind::usage, "a device stands by for a second (1000000 us) at most");
+    throw Error(ErrorKind::invalid_argument,
+                "a device stands by for a second (1000000 us) at most");
   }
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda())) {
-    throw Error(ErrorKind::usage,
-                "coherent poses are a matter of the refined measure on the CPU; leave the other "
-                "measure or device out");
+    throw Error(ErrorKind::invalid_argument,
+                "coherent poses are a matter of the refined measure on the CPU", {},
+                "leave the other measure or device out");
   }
   if (options.shadows == Shadows::solid && options.measure == Measure::paper) {
-    throw Error(ErrorKind::usage,
-                "solid shadows are a matter of the refined measure; leave the other measure out");
+    throw Error(ErrorKind::invalid_argument, "solid shadows are a matter of the refined measure",
+                {}, "leave the other measure out");
   }
   if (options.device.is_cuda()) {
     device_ = make_device_measure(tool, level_, options);

@@ -27,7 +27,7 @@ namespace vpm {
 
 class Query {
  public:
-  // Throws Error(unavailable) where the device is not there or too small, Error(usage) where the
+  // Throws Error(unavailable) where the device is not there or too small, Error(invalid_argument) where the
   // model has no such level, coherence is asked of another measure or device, or solid shadows of
   // another measure, the stiffness is not positive or so large that forces overflow, or a device is
   // to stand by for too long. The model must be one that validate() of tool_model.h accepts.
@@ -51,7 +51,7 @@ class Query {
   // Many poses of several tools, each with a query of its own; `queries` were made with the same
   // options, but for level and stiffness. The bits of one by one; a device takes thousands of poses
   // of up to 16 tools in one launch, of the measure as printed in one for each tool. Throws
-  // Error(usage) where options differ, or a pose has no such tool.
+  // Error(invalid_argument) where options differ, or a pose has no such tool.
   static void run_together(std::span<Query* const> queries, const PreparedCloud& cloud,
                            std::span<const ToolPose> poses, std::span<Result> results);
   static void run_together(std::span<Query* const> queries, const DepthFrame& frame,

@@ -309,7 +309,7 @@ TEST(RepairByVoxels, RefusesWhatHoldsNoVoxelAndWrongResolutions) {
   EXPECT_TRUE(contains(message, "a.off: no voxel of 1/16")) << message;
   for (const int voxels : {0, -5, 7, 1025}) {
     const auto kind = kind_of_fault([&] { solid_of(make_cube(1), repair(Repair::voxel, voxels)); });
-    EXPECT_EQ(kind, ErrorKind::usage) << voxels;
+    EXPECT_EQ(kind, ErrorKind::invalid_argument) << voxels;
   }
 }
 

@@ -45,7 +45,7 @@ TEST(QueryOptions, NoDeviceStandsByForLongerThanASecond) {
     const Query query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
     FAIL() << "stands by for too long";
   } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::usage);
+    EXPECT_EQ(fault.kind(), ErrorKind::invalid_argument);
   }
 }
 

@@ -31,7 +31,7 @@ class ToolsTogether : public ::testing::Test {
     try {
       Query::run_together(together_, cloud_, poses_, results_);
     } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), ErrorKind::usage);
+      EXPECT_EQ(fault.kind(), ErrorKind::invalid_argument);
       return fault.what();
     }
     return "";

@@ -12,8 +12,8 @@
 
 namespace vpm::bench {
 
-// Solids of about 0.2 m: cube, tetrahedron, octahedron, torus, twisted-torus. Throws Error(usage)
-// for others.
+// Solids of about 0.2 m: cube, tetrahedron, octahedron, torus, twisted-torus. Throws
+// Error(invalid_argument) for others.
 Solid make_shape(const std::string& name);
 
 // Packed with as many spheres as the largest level has.

@@ -37,9 +37,10 @@ void require_recorded_images(const std::string& folder) {
   for (const Frame& frame : kFrames) {
     if (std::filesystem::exists(path_of(frame, folder))) return;
   }
-  throw Error(ErrorKind::usage, "--data " + folder + ": its folder depth/ holds none of the " +
-                                    "recorded images that are known by name, like " +
-                                    kFrames[0].file + "; leave --data away to do without");
+  throw Error(ErrorKind::invalid_argument,
+              "--data " + folder + ": its folder depth/ holds none of the " +
+                  "recorded images that are known by name, like " + kFrames[0].file +
+                  "; leave --data away to do without");
 }
 
 std::vector<RecordedImage> recorded_images(const std::string& folder) {

@@ -15,8 +15,8 @@ struct RecordedImage {
   Cloud cloud;
 };
 
-// Throws Error(usage) where `folder`/depth holds none of those that are known by name; for the
-// start of a suite, since what is found out later costs minutes.
+// Throws Error(invalid_argument) where `folder`/depth holds none of those that are known by name;
+// for the start of a suite, since what is found out later costs minutes.
 void require_recorded_images(const std::string& folder);
 
 // Those that are there and can be read by this build. Throws what import_cloud throws for damaged

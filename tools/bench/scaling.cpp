@@ -145,7 +145,7 @@ Device device_of(const SuiteOptions& options) {
                     : "scaling: this build has no CUDA; build with cmake --preset cuda");
   }
   if (!options.device.is_cuda() || options.device.index == Device::kAll) {
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::invalid_argument,
                 "scaling times one CUDA device; use --device cuda or cuda:N, or leave the option "
                 "out");
   }

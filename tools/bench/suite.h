@@ -31,8 +31,8 @@ std::string suite_names(bool on_device = false);
 bool is_suite(const std::string& name);
 bool needs_device(const std::string& name);
 
-// Throws Error(usage) naming the suites there are, or those that take an option which this one does
-// not; Error(unavailable) naming those that take a device for one that does not.
+// Throws Error(invalid_argument) naming the suites there are, or those that take an option which
+// this one does not; Error(unavailable) naming those that take a device for one that does not.
 Report run_suite(const std::string& name, const SuiteOptions& options);
 
 // Errors of volume, force and torque against the truth, for `paper` and `refined`.
@@ -58,7 +58,8 @@ Report run_packing(const SuiteOptions& options);
 Report run_replay(const SuiteOptions& options);
 
 // Queries on a CUDA device against the number of spheres and along a path. Throws
-// Error(unavailable) where there is no device, Error(usage) for the CPU and for several devices.
+// Error(unavailable) where there is no device, Error(invalid_argument) for the CPU and for several
+// devices.
 Report run_scaling(const SuiteOptions& options);
 
 }  // namespace vpm::bench

@@ -92,8 +92,9 @@ void declare(CLI::App& app, Arguments& a) {
 SolidOptions solid_options(const Arguments& a) {
   SolidOptions options{.scale = a.scale, .weld = a.weld, .max_hole = a.max_hole};
   if (a.repair.empty() || parse_repair(a.repair, options)) return options;
-  throw Error(ErrorKind::usage, "--repair: '" + a.repair +
-                                    "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+  throw Error(
+      ErrorKind::invalid_argument,
+      "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
 }
 
 // Returns the arguments with a bare --repair replaced by `holes`, since CLI11 would take a mesh
@@ -110,7 +111,9 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
     wrong("--max-hole belongs to --repair voxel or flood");

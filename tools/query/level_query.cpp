@@ -23,7 +23,7 @@ double fraction_from_text(const std::string& text, const std::string& option) {
   const auto [stop, fault] = std::from_chars(text.data(), end, value);
   const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
   if (fault != std::errc() || (!unit.empty() && unit != "%") || !(value > 0)) {
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::invalid_argument,
                 option + " " + text + ": give a share of the tool's volume like 0.5% or 0.005");
   }
   return unit.empty() ? value : value / 100;
@@ -39,9 +39,8 @@ LevelQuery::LevelQuery(const ToolModel& tool, const QueryOptions& options,
   }
   const std::size_t finest = finest_wanted(tool, options, cloud, first_pose);
   if (request.deadline_seconds && tool.levels.size() < 2) {
-    refuse(
-        "the tool model has one level only, so that a deadline cannot choose; make it again "
-        "with vpm-graph --levels");
+    refuse("the tool model has one level only, so that a deadline cannot choose", {},
+           "make it again with `levels`");
   }
   for (std::size_t k = request.deadline_seconds ? 0 : finest; k <= finest; ++k) {
     QueryOptions of_level = options;
@@ -58,9 +57,9 @@ std::size_t LevelQuery::finest_wanted(const ToolModel& tool, const QueryOptions&
                                       const PreparedCloud& cloud, const Pose& pose) {
   if (request_.max_error) {
     if (options.measure == Measure::paper) {
-      throw Error(ErrorKind::usage,
-                  "--max-error is about the refined measure, which calibrations measure; leave "
-                  "--measure paper out");
+      throw Error(ErrorKind::invalid_argument,
+                  "`max_error` is about the refined measure, which calibrations measure", {},
+                  "leave `measure` paper out");
     }
     return coarsest_level_within(tool, *request_.max_error);
   }

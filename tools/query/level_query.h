@@ -11,7 +11,7 @@
 
 namespace vpm::tools {
 
-// A fraction as users write it: "0.5%" or "0.005". Throws Error(usage) naming `option`.
+// A fraction as users write it: "0.5%" or "0.005". Throws Error(invalid_argument) naming `option`.
 double fraction_from_text(const std::string& text, const std::string& option);
 
 struct LevelRequest {

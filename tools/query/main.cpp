@@ -109,7 +109,9 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   if (a.tools.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
   const bool replays = !a.replay.frames.empty();
   if (!replays && a.cloud.empty())
@@ -335,7 +337,8 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
   if (!a.coupling.empty()) {
     parameters = coupling_from_text(a.coupling, model, rate);
     if (a.replay.rate && rate != parameters->rate)
-      throw Error(ErrorKind::usage, "--rate and the rate of --coupling differ; give one of them");
+      throw Error(ErrorKind::invalid_argument,
+                  "--rate and the rate of --coupling differ; give one of them");
     rate = parameters->rate;
   }
   Replay replay(tool, a.replay, rate, options.device, reading_of_points(a));

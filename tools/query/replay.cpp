@@ -28,7 +28,7 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
 
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
   if (!a.camera_poses.empty() && import.to_world)
-    throw Error(ErrorKind::usage, "give either --camera-poses or --camera-pose");
+    throw Error(ErrorKind::invalid_argument, "give either --camera-poses or --camera-pose");
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 

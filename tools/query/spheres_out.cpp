@@ -26,7 +26,8 @@ void append(std::string& text, double value) {
 
 void check_spheres_path(const std::string& path) {
   if (!is_ply(path) && !path.ends_with(".csv")) {
-    throw Error(ErrorKind::usage, "--spheres-out " + path + ": the name must end in .ply or .csv");
+    throw Error(ErrorKind::invalid_argument,
+                "--spheres-out " + path + ": the name must end in .ply or .csv");
   }
 }
 
