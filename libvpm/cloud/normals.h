@@ -26,18 +26,9 @@
 
 namespace vpm {
 
-enum class NormalMethod { inverse_depth, pca };
-
 // "inverse-depth" or "pca". Parsing another text throws Error(invalid_argument).
 std::string to_text(NormalMethod method);
 NormalMethod normal_method_from_text(const std::string& text);
-
-struct NormalOptions {
-  NormalMethod method = NormalMethod::inverse_depth;
-  int window = 7;  // side in pixels; odd, kMinWindow to kMaxWindow
-  // Relative difference of inverse depth, below 1; 0 keeps every pixel of the window.
-  double edge_gate = kEdgeGate;
-};
 
 // Throw Error(invalid_argument) if a value is out of range.
 void check_normal_options(const NormalOptions& options);
