@@ -6,12 +6,13 @@
 // given width cannot reach is inside, however triangles face.
 #pragma once
 
+#include "libvpm/include/vpm/solid.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
 
-// Number of voxels along the longest side of the mesh's bounding box.
-inline constexpr int kRepairVoxels = 128, kFewestRepairVoxels = 8, kMostRepairVoxels = 1024;
+// Limits of the number of voxels along the longest side of the mesh's bounding box.
+inline constexpr int kFewestRepairVoxels = 8, kMostRepairVoxels = 1024;
 // Least width of a flood's ball in voxels; smaller ones would slip through the lattice.
 inline constexpr double kNarrowestFlood = 2;
 

@@ -1,5 +1,5 @@
-// Rigid motions. Lengths are metres; a pose maps tool (or camera) to world coordinates:
-// x_world = rotation * x + translation.
+// Vectors, spheres and rigid motions. Lengths are metres; a pose maps tool (or camera) to world
+// coordinates: x_world = rotation * x + translation.
 #pragma once
 
 #include <array>
@@ -18,6 +18,12 @@ struct Vec3 {
 struct Vec3f {
   float x = 0, y = 0, z = 0;
   friend constexpr bool operator==(const Vec3f&, const Vec3f&) = default;
+};
+
+struct Sphere {
+  Vec3 center;
+  double radius = 0;
+  friend constexpr bool operator==(const Sphere&, const Sphere&) = default;
 };
 
 struct Quaternion {

@@ -12,7 +12,7 @@
 #pragma once
 
 #include "vpm/pose.h"
-#include "vpm/result.h"
+#include "vpm/query_types.h"
 
 namespace vpm {
 

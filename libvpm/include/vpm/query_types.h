@@ -1,12 +1,17 @@
-// The answer of a query.
+// What a query is asked for, and what it answers.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
+#include "vpm/device.h"
 #include "vpm/pose.h"
 
 namespace vpm {
+
+// refined: each part of the tool belongs to its nearest sphere, surfaces are planes within it, and
+// noise is taken out. paper: the algorithm as printed in 2017.
+enum class Measure { refined, paper };
 
 // State of a sphere of the tool at the pose last asked: free, cut by the surface, or behind it.
 enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
