@@ -27,7 +27,7 @@
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/depth_frames.h"
 
 namespace {
@@ -60,8 +60,8 @@ struct Path {
 };
 
 // Height at which this part of the tool is inside, by bisection.
-double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
-                  double fraction) {
+double height_for(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool,
+                  const Path& path, double fraction) {
   double low = -tool.reach, high = tool.reach;
   for (int step = 0; step < 24; ++step) {
     const double middle = 0.5 * (low + high);
@@ -82,7 +82,7 @@ std::size_t middle_of(const std::vector<Vec3f>& points) {
                                   points.begin());
 }
 
-Path make_path(Query& query, const PreparedCloud& cloud, const ToolModel& tool) {
+Path make_path(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool) {
   const std::size_t middle = middle_of(cloud.positions());
   Path path;
   path.place = cloud.origin() + widen(cloud.positions()[middle]);
@@ -130,23 +130,23 @@ Figures figures_of(std::vector<double> microseconds, const std::vector<double>& 
 }
 
 // Poses per second, asked `batch` at a time. Several tools take turns.
-double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const ToolModel& tool,
+double run_batches(std::deque<ToolQuery>& tools, const PreparedCloud& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
-  std::vector<Query*> together;
-  for (Query& query : tools) together.push_back(&query);
+  std::vector<ToolQuery*> together;
+  for (ToolQuery& query : tools) together.push_back(&query);
   std::vector<Pose> poses;
-  std::vector<ToolPose> of_tools;
+  std::vector<Job> of_tools;
   for (int k = 0; k < batch; ++k) {
     poses.push_back(path.at(tool, k));
     of_tools.push_back(
-        {static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(tools.size()), poses.back()});
+        {poses.back(), static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(tools.size())});
   }
   std::vector<Result> results(poses.size());
   const auto run = [&] {
     if (tools.size() == 1)
-      tools.front().run(cloud, poses, results);
+      tools.front().run(cloud, jobs_of(poses), results);
     else
-      Query::run_together(together, cloud, of_tools, results);
+      ToolQuery::run(together, cloud, of_tools, results);
   };
   run();
   const auto begin = Clock::now();
@@ -155,7 +155,7 @@ double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const T
   return 1e6 * batches * batch / microseconds_since(begin);
 }
 
-Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
+Figures run(std::deque<ToolQuery>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
   // So many poses are computed, though only the last is asked: one takes no longer than the clock.
   constexpr int kPaceOf = 32;
@@ -209,7 +209,7 @@ class CameraStream {
 };
 
 // With a new image for each query. Copies of the camera take turns as those of the tool.
-Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
+Figures run_frames(std::deque<ToolQuery>& queries, std::deque<CameraStream>& cameras,
                    const ToolModel& tool, const Path& path, int count, bool behind) {
   std::vector<double> microseconds, host_us;
   double fraction = 0;
@@ -361,14 +361,14 @@ void control(int argc, char** argv) {
   const Cloud cloud = read_cloud(argv[2]);
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
   std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
-  Query refined(tool, query_options);
+  ToolQuery refined(tool, query_options);
   const Path path = make_path(refined, clouds[0], tool);
   const std::string& measure = options.at("measure");
   if (measure != "refined" && measure != "paper")
     throw Error(ErrorKind::invalid_argument,
                 "measure=" + measure + ": there are refined and paper");
   if (measure == "paper") query_options.measure = Measure::paper;
-  std::deque<Query> queries;
+  std::deque<ToolQuery> queries;
   for (int k = 0; k < copies; ++k) {
     if (k > 0) clouds.emplace_back(cloud);
     queries.emplace_back(tool, query_options);

@@ -93,7 +93,7 @@ void check_image_size(std::uint64_t width, std::uint64_t height, const std::stri
 DepthImage parse_png_depth(std::span<const std::byte> bytes, const std::string& name,
                            double units_per_metre) {
   PngReader png(bytes);
-  if (!png.read_header()) refuse("not a sound PNG: " + png.fault(), name);
+  if (!png.read_header()) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   if (!png.is_gray16()) {
     refuse("a PNG with " + std::to_string(png.channels()) + " channels of " +
                std::to_string(png.bit_depth()) + " bits is no depth image",
@@ -107,7 +107,7 @@ DepthImage parse_png_depth(std::span<const std::byte> bytes, const std::string& 
   std::vector<png_bytep> rows(image.height);
   for (std::uint32_t v = 0; v < image.height; ++v)
     rows[v] = reinterpret_cast<png_bytep>(values.data() + image.index(0, v));
-  if (!png.read_rows(rows)) refuse("not a sound PNG: " + png.fault(), name);
+  if (!png.read_rows(rows)) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   image.depth.resize(count);
   for (std::size_t i = 0; i < count; ++i)
     image.depth[i] = depth_in_metres(values[i], units_per_metre);

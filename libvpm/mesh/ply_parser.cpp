@@ -327,7 +327,8 @@ void check_elements(const Header& header, const std::string& name) {
       for (const char* const axis : {"x", "y", "z"}) {
         const auto is_axis = [&](const Property& p) { return p.name == axis && !p.is_list; };
         if (std::count_if(element.properties.begin(), element.properties.end(), is_axis) != 1)
-          refuse("the header must give the vertices one property '" + axis + "'", name);
+          refuse(std::string("the header must give the vertices one property '") + axis + "'",
+                 name);
       }
       if (element.count > kMaxVertices) refuse("more than 2^32 - 2 vertices", name);
     }

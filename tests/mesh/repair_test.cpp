@@ -158,7 +158,7 @@ TEST(RepairHoles, SmallOnesAreClosedAndLargeOnesRefused) {
   for (Vec3& p : bent.vertices) p.z += 0.4 * p.x * p.x;
   const std::string message = refusal_of(as_off(bent), "a.off", repair(Repair::holes));
   EXPECT_TRUE(contains(message, "around 1 hole")) << message;
-  EXPECT_TRUE(contains(message, "--repair voxel")) << message;
+  EXPECT_TRUE(contains(message, "`repair` voxel")) << message;
 }
 
 TEST(RepairHoles, AreFilledWhereTrianglesFaceTheOtherWay) {

@@ -6,7 +6,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -31,7 +31,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
 
 // Where kInside of the tool is inside, by bisection along the optical axis.
 Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
   constexpr int kHalvings = 30;
   for (int k = 0; k < kHalvings; ++k) {
@@ -144,7 +144,7 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
   for (int threads = 1; threads <= (suite.device.is_cuda() ? 1 : 2); ++threads) {
     set_thread_count(threads);
     for (const std::uint32_t level : tool.levels) {
-      Query query(tool.model, {.level = level, .device = suite.device}),
+      ToolQuery query(tool.model, {.level = level, .device = suite.device}),
           counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
       Result result;
       const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
@@ -160,7 +160,7 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
       });
       add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
     }
-    Query query(tool.model, {.level = tool.levels.front(), .device = suite.device});
+    ToolQuery query(tool.model, {.level = tool.levels.front(), .device = suite.device});
     Result result;
     const Durations of_sparse = timed(few, 1, [&](int k) {
       result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
@@ -196,7 +196,7 @@ struct CoherentPath {
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
-  Query stateless(tool.model, {.level = level}),
+  ToolQuery stateless(tool.model, {.level = level}),
       coherent(tool.model, {.level = level, .coherent = true});
   Result alone, following;
   bool same = true;
@@ -253,7 +253,8 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
     const QueryOptions options{.level = level, .device = suite.device};
-    Query of_once(tool.model, options), of_twice(tool.model, options);  // a device holds one cloud
+    ToolQuery of_once(tool.model, options),
+        of_twice(tool.model, options);  // a device holds one cloud
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
         suite.quick ? 64 : 1280, 8, [&](int k) { of_once.run(once, pose(k)); },

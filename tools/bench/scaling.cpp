@@ -13,7 +13,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -52,8 +52,8 @@ std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) 
 }
 
 // From far in front of the wall until this part of the tool is inside, then by bisection.
-double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
-                     double fraction) {
+double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotation& rotation,
+                     Vec3 aside, double fraction) {
   const auto is_deeper = [&](double z) {
     return query.run(cloud, {rotation, {aside.x, aside.y, z}}).volume_fraction > fraction;
   };
@@ -76,7 +76,7 @@ double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& r
 std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud, int count) {
   QueryOptions options;
   options.level = tool.levels.front().sphere_count;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   std::vector<Pose> path;
   for (int k = 0; k < count; ++k) {
     const double along = 2 * kPi * k / count;
@@ -226,12 +226,12 @@ class Scaling {
   }
 
   // Median microseconds on the device's clock.
-  static double flood_of(DeviceMeasure& query, const PreparedCloud& cloud,
+  static double flood_of(DeviceMeasure& measure, const PreparedCloud& cloud,
                          const std::vector<Pose>& path) {
     std::vector<double> flood;
     for (const Pose& pose : path) {
-      query.run(cloud, pose);
-      flood.push_back(query.flood_microseconds());
+      measure.run(cloud, pose);
+      flood.push_back(measure.flood_microseconds());
     }
     return median_of(flood);
   }
@@ -263,9 +263,9 @@ class Scaling {
     QueryOptions options;
     options.measure = Measure::paper;
     options.level = level.sphere_count;
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = device_;
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     std::size_t same_of_ours = 0, same = 0;
     for (const Pose& pose : path) {
       const Result expected = on_cpu.run(cloud, pose);
@@ -289,7 +289,7 @@ class Scaling {
                   const std::vector<Pose>& path, const std::vector<Contender>& contenders) {
     QueryOptions options;
     options.level = level.sphere_count;
-    Query query(tool, options);
+    ToolQuery query(tool, options);
     for (std::size_t k = 0; k < path.size(); ++k) {
       nlohmann::json frame = {{"part", "frame"},
                               {"spheres", level.sphere_count},

@@ -12,7 +12,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -134,7 +134,7 @@ class Timing {
   // Rooms are walked through as random poses: what one costs depends on what is near.
   void prepare_recorded() {
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
-    Query query(tool, {});
+    ToolQuery query(tool, {});
     for (const RecordedImage& image : recorded_images(options_.data)) {
       recorded_.push_back({PreparedCloud(image.cloud),
                            PreparedCloud(image.cloud, PointReading::as_measured),
@@ -175,7 +175,7 @@ class Timing {
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
                                 Measure measure = Measure::refined) {
-      Query query(model, {.measure = measure});
+      ToolQuery query(model, {.measure = measure});
       time(stage, spheres, runs_.fast, [&] { query.run(seen, at); });
     };
     time_query("query refined", cloud, pose);
@@ -184,7 +184,7 @@ class Timing {
     time_query("query refined, deep", cloud, deep);
     time_query("query refined, points, deep", points, deep);
     const auto time_rooms = [&](const char* stage, const auto& cloud_of) {
-      Query query(model, {});
+      ToolQuery query(model, {});
       time(
           stage, spheres, runs_.slow,
           [&] {

@@ -59,7 +59,7 @@ std::string in_words_of_tools(const std::string& text,
       said.replace(at, end + 1 - at, replacement);
       at += replacement.size();
     } else {
-      at = end;
+      at = end + 1;
     }
   }
   return said;

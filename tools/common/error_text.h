@@ -8,7 +8,8 @@
 
 namespace vpm::tools {
 
-// Returns the exit code of an executable: 1 data refused, 2 wrong usage, 3 not there, 4 not written.
+// Returns the exit code of an executable: 1 data refused, 2 wrong usage, 3 not there, 4 not
+// written.
 int exit_code(ErrorKind kind);
 
 // Returns the library's text with the user's words for parameters and functions in backquotes:

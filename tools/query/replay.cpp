@@ -141,7 +141,7 @@ void Replay::find_first_cloud() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
-void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
                  file::Output& output) {
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();

@@ -17,12 +17,6 @@
 
 namespace vpm {
 
-// Question of a batch: one of the query's tools at a pose.
-struct Job {
-  Pose pose;               // tool to world coordinates
-  std::uint32_t tool = 0;  // place in the list of tools
-};
-
 // Measures tools against scenes, by Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure
 // for 6-DOF Haptic Rendering of Streaming Point Clouds" (2017), sections 3 and 4, as printed or
 // refined. Shares its tools, so nothing dangles. Belongs to one thread at a time, and may use
@@ -50,7 +44,7 @@ class VPM_API Query {
   // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
   // thousands of poses of up to 16 tools at once. `results` must have the size of `jobs`, else
   // throws Error(invalid_argument), as for a job without such a tool and for coherent queries of
-  // several jobs; otherwise as for one pose. After an error the results are unspecified.
+  // several tools; otherwise as for one pose. After an error the results are unspecified.
   void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Ends a motion of coherent poses: the next pose does not follow from the last.

@@ -31,8 +31,9 @@ class VPM_API PointCloud {
                                const NormalOptions& options = {});
 
   // Makes the cloud of points that no camera's image holds: positions in the world, m, and as
-  // many normals of any length that point into free space. Points that are not finite are left out. Throws
-  // Error(invalid_argument) if the numbers differ, Error(refused) if fewer than two places remain.
+  // many normals of any length that point into free space. Points that are not finite are left out.
+  // Throws Error(invalid_argument) if the numbers differ, Error(refused) if fewer than two places
+  // remain.
   static PointCloud from_points(std::span<const Vec3> positions, std::span<const Vec3> normals);
 
   // Writes a .vpmc file, replacing it in one step; "-" is standard output. Throws
