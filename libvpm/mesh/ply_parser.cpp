@@ -339,7 +339,7 @@ void check_elements(const Header& header, const std::string& name) {
     }
   }
   if (vertex_elements != 1 || face_elements != 1) {
-    refuse("the header must have one element 'vertex' and one element 'face'" +
+    refuse(std::string("the header must have one element 'vertex' and one element 'face'") +
                (face_elements == 0 ? "; this is a cloud of points or strips, not a mesh of faces"
                                    : ""),
            name);

@@ -6,7 +6,7 @@
 
 namespace vpm {
 
-// View; the cloud or the frame must outlive it.
+// Points to one of both, which must outlive it.
 class SceneView {
  public:
   SceneView(const PreparedCloud& cloud) : cloud_(&cloud) {}
@@ -15,7 +15,7 @@ class SceneView {
   // Returns the frame, or null if the scene is a cloud.
   const DepthFrame* frame() const { return frame_; }
   // Returns the cloud; a frame's is prepared by the CPU when first asked for.
-  const PreparedCloud& cloud() const { return cloud_ != nullptr ? *cloud_ : frame_->cloud(); }
+  const PreparedCloud& cloud() const { return frame_ != nullptr ? frame_->cloud() : *cloud_; }
 
  private:
   const PreparedCloud* cloud_ = nullptr;
