@@ -81,14 +81,15 @@ void add_level(file::Writer& writer, const Level& level, std::uint32_t k) {
 
 ToolModel model_of(const file::Reader& reader) {
   const std::vector<ToolRecord> tool = reader.read<ToolRecord>(kTool, 0);
-  if (tool.size() != 1) reader.refuse_file("chunk TOOL must hold one record; make the file again");
+  if (tool.size() != 1)
+    reader.refuse_file("chunk TOOL must hold one record", "make the file again");
   ToolModel model;
   model.volume = tool[0].volume;
   model.center_of_mass = tool[0].center_of_mass;
   model.reach = tool[0].reach;
   const nlohmann::json& header = reader.header();
   const nlohmann::json hash = header.value("solid_hash", nlohmann::json());
-  if (!hash.is_string()) reader.refuse_file("the header has no solid_hash; make the file again");
+  if (!hash.is_string()) reader.refuse_file("the header has no solid_hash", "make the file again");
   model.solid_hash = hash.get<std::string>();
   model.provenance = header.value("provenance", nlohmann::json());
   model.spheres = reader.read<Sphere>(kSpheres, 0);

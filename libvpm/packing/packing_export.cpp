@@ -58,10 +58,12 @@ ExportFormat export_format(const std::string& path) {
   if (ends(".yml") || ends(".yaml")) return ExportFormat::yml;
   if (ends(".urdf")) return ExportFormat::urdf;
   if (ends(".srdf")) return ExportFormat::srdf;
-  throw Error(ErrorKind::usage,
-              "export: the name '" + path +
-                  "' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml "
-                  "(.yaml), .urdf or .srdf");
+  throw Error(
+      ErrorKind::invalid_argument,
+      "the name '" + path +
+          "' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .urdf "
+          "or .srdf",
+      "export");
 }
 
 std::string packing_as_json(const std::vector<Sphere>& spheres) {

@@ -16,7 +16,7 @@ namespace vpm {
 //   .urdf        a robot of one link whose collision geometry is the spheres
 //   .srdf        link_sphere_approximation of a link
 // Text has 9 significant digits, JSON as many as are exact. `link` names the link in YAML, URDF and
-// SRDF. export_format throws Error(usage) for any other extension.
+// SRDF. export_format throws Error(invalid_argument) for any other extension.
 enum class ExportFormat { spheres, json, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 

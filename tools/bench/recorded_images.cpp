@@ -7,7 +7,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/random_poses.h"
 #include "tools/bench/sight.h"
@@ -39,7 +39,7 @@ std::string path_of(const Frame& frame, const std::string& folder) {
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses, const Device& device) {
   const PreparedCloud prepared(cloud);
-  Query solid(tool.model, {.level = level, .device = device, .shadows = Shadows::solid}),
+  ToolQuery solid(tool.model, {.level = level, .device = device, .shadows = Shadows::solid}),
       near(tool.model, {.level = level, .device = device}),
       paper(tool.model, {.measure = Measure::paper, .level = level, .device = device});
   FrameResult result;
@@ -51,13 +51,13 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
                                                cloud.sensor->depth, cloud.sensor->camera);
     if (!(count.behind > 0 && count.behind < kShallow)) continue;
     ++result.poses;
-    const auto volume = [&](Query& query) { return query.run(prepared, pose).volume_fraction; };
+    const auto volume = [&](ToolQuery& query) { return query.run(prepared, pose).volume_fraction; };
     const double volume_near = volume(near);
     result.near.add(std::abs(volume_near - count.behind));
     result.without_shadows.add(volume_error(volume_near, count.behind, {.inside = count.shadow}));
     result.solid.add(std::abs(volume(solid) - count.behind));
     result.paper.add(std::abs(volume(paper) - count.behind));
-    for (const Query* query : {&near, &solid})
+    for (const ToolQuery* query : {&near, &solid})
       result.counted_in_free_space +=
           counted_in_free_space(tool.model, query->level(), pose, cloud.sensor->depth,
                                 cloud.sensor->camera, query->states());
@@ -71,9 +71,10 @@ void require_recorded_images(const std::string& folder) {
   for (const Frame& frame : kFrames) {
     if (std::filesystem::exists(path_of(frame, folder))) return;
   }
-  throw Error(ErrorKind::usage, "--data " + folder + ": its folder depth/ holds none of the " +
-                                    "recorded images that are known by name, like " +
-                                    kFrames[0].file + "; leave --data away to do without");
+  throw Error(ErrorKind::invalid_argument,
+              "--data " + folder + ": its folder depth/ holds none of the " +
+                  "recorded images that are known by name, like " + kFrames[0].file +
+                  "; leave --data away to do without");
 }
 
 std::vector<RecordedImage> recorded_images(const std::string& folder) {

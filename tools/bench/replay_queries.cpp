@@ -7,7 +7,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -32,7 +32,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
 
 // Returns the pose along the optical axis at which kInside of the tool is inside, by bisection.
 Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
   constexpr int kHalvings = 30;
   for (int k = 0; k < kHalvings; ++k) {
@@ -159,7 +159,7 @@ struct QueryScene {
 
 void time_level(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
                 std::uint32_t level, int threads, Report& report) {
-  Query query(tool.model, {.level = level, .device = suite.device}),
+  ToolQuery query(tool.model, {.level = level, .device = suite.device}),
       counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
   Result result;
   const auto add = [&](const char* what, const Durations& durations) {
@@ -178,7 +178,7 @@ void time_level(const ReplayTool& tool, const SuiteOptions& suite, const QuerySc
 
 void time_sparse_points(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
                         const PreparedCloud& sparse, int threads, Report& report) {
-  Query query(tool.model, {.level = tool.levels.front(), .device = suite.device});
+  ToolQuery query(tool.model, {.level = tool.levels.front(), .device = suite.device});
   Result result;
   const Durations durations = timed(seen.few, 1, [&](int k) {
     result = query.run(sparse, {seen.pose(k).rotation, {0, 0, 1}});
@@ -234,7 +234,7 @@ struct CoherentPath {
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
-  Query stateless(tool.model, {.level = level}),
+  ToolQuery stateless(tool.model, {.level = level}),
       coherent(tool.model, {.level = level, .coherent = true});
   Result alone, following;
   bool same = true;
@@ -292,7 +292,7 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
     const QueryOptions options{.level = level, .device = suite.device};
     // Keeps a query for each cloud, since a device holds one cloud per query.
-    Query of_once(tool.model, options), of_twice(tool.model, options);
+    ToolQuery of_once(tool.model, options), of_twice(tool.model, options);
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
         suite.quick ? 64 : 1280, 8, [&](int k) { of_once.run(once, pose(k)); },

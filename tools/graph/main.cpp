@@ -87,7 +87,8 @@ void check_mesh(const Packing& packing, const Arguments& a) {
 
 void run(const Tool& tool, Arguments& a) {
   if (a.packing == "-" && a.mesh == "-") {
-    throw Error(ErrorKind::usage, "only one of the packing and --mesh can be standard input");
+    throw Error(ErrorKind::invalid_argument,
+                "only one of the packing and --mesh can be standard input");
   }
   check_files({a.packing, a.mesh},
               {{"--output", a.output, file::Kind::tool_model},

@@ -34,7 +34,9 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   if (a.depth.empty()) wrong("no depth image is given: name a file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
     wrong("nothing would be written: give -o OUT.vpmc, --export, --report or --view");

@@ -97,8 +97,9 @@ void declare(CLI::App& app, Arguments& a) {
 SolidOptions solid_options(const Arguments& a) {
   SolidOptions options{.scale = a.scale, .weld = a.weld, .max_hole = a.max_hole};
   if (a.repair.empty() || parse_repair(a.repair, options)) return options;
-  throw Error(ErrorKind::usage, "--repair: '" + a.repair +
-                                    "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+  throw Error(
+      ErrorKind::invalid_argument,
+      "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
 }
 
 // Returns the arguments with a bare --repair replaced by `holes`, since CLI11 would take a mesh
@@ -115,7 +116,9 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
     wrong("--max-hole belongs to --repair voxel or flood");
@@ -237,19 +240,6 @@ void say_validation(const Tool& tool, const Validation& v) {
     tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
 }
 
-void refuse_uncertified(const Arguments& a, double coverage, const Certificate& certificate) {
-  if (coverage > 1 + kCertificateTolerance)
-    refuse(
-        a.mesh + ": the spheres hold " + std::to_string(coverage) +
-        " times the volume of the mesh, which intersects itself so that its inside is ambiguous; "
-        "nothing is written. Give --repair voxel");
-  if (certificate.holds) return;
-  refuse(a.mesh + ": the packing does not hold its certificate (protrusion " +
-         std::to_string(certificate.max_protrusion) + " m, overlap " +
-         std::to_string(certificate.max_overlap) +
-         " m); nothing is written. This is a bug of vpm-pack: please report it with the mesh");
-}
-
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
   nlohmann::json parameters = tool.parameters();
@@ -281,7 +271,7 @@ void run(const Tool& tool, Arguments a) {
   PackResult result = pack_checked(tool, a, checked);
   if (a.grow) grow_together(tool, a, checked, result);
   const Certificate certificate = certify(checked.solid, result.spheres, &checked.enclosure);
-  refuse_uncertified(a, result.coverage, certificate);
+  refuse_uncertified(a.mesh, result.coverage, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say_result(tool, a, result);

@@ -10,13 +10,13 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/level_tool_query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
-#include "tools/query/level_query.h"
 #include "tools/query/pose_batches.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
@@ -112,7 +112,9 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   if (a.tools.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
   const bool replays = !a.replay.frames.empty();
   if (!replays && a.cloud.empty())
@@ -194,21 +196,21 @@ struct Run {
   Pose last;
   std::optional<PoseView>& view;
 
-  Result ask(LevelQuery& query, const Pose& pose) {
+  Result ask(LevelToolQuery& query, const Pose& pose) {
     const Result result = query.run(cloud, pose);
     seconds.push_back(query.seconds());
     last = pose;
     if (view) view->add(0, pose, result, query.query());
     return result;
   }
-  void pose(LevelQuery& query, const Pose& pose, Measure measure) {
+  void pose(LevelToolQuery& query, const Pose& pose, Measure measure) {
     const std::size_t index = seconds.size();
     const Result result = ask(query, pose);
     output.append(result_line(index, result, query.query().level(), measure, query.reason(), {}));
   }
-  void batch(LevelQuery& query, const std::vector<Pose>& poses, Measure measure) {
+  void batch(LevelToolQuery& query, const std::vector<Pose>& poses, Measure measure) {
     std::vector<Result> results(poses.size());
-    query.run(cloud, poses, results);
+    query.run(cloud, jobs_of(poses), results);
     for (const Result& result : results) {
       output.append(
           result_line(seconds.size(), result, query.query().level(), measure, query.reason(), {}));
@@ -218,13 +220,13 @@ struct Run {
     if (view) view->add_batch(query.query(), cloud, poses);
   }
   // From the first pose on all of the reader, if there is one.
-  void all(LevelQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
+  void all(LevelToolQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
            std::size_t at_once, Measure measure) {
     in_batches(next, reader, at_once, [&](const std::vector<Pose>& poses) {
       at_once == 1 ? pose(query, poses.front(), measure) : batch(query, poses, measure);
     });
   }
-  void coupled(LevelQuery& query, VirtualCoupling coupling, const SampledPath& path) {
+  void coupled(LevelToolQuery& query, VirtualCoupling coupling, const SampledPath& path) {
     for (std::size_t k = 0; k < path.steps(); ++k) {
       CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
       step.contact = ask(query, step.tool);
@@ -250,7 +252,7 @@ void write_stats(const Arguments& a, const Device& device, nlohmann::json stats)
   file::write_all(a.stats, stats.dump(2) + "\n");
 }
 
-void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& query,
+void write_rest(const Arguments& a, const ToolModel& model, const LevelToolQuery& query,
                 const Device& device, const Pose& last, nlohmann::json stats) {
   const Level& level = query.query().level();
   if (!a.spheres_out.empty())
@@ -321,7 +323,7 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
     pose = reader->next();
     if (!pose) reader->refuse_empty();
   }
-  LevelQuery query(model, options, level_request(a), prepared, *pose);
+  LevelToolQuery query(model, options, level_request(a), prepared, *pose);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   if (coupling) {
     say_limits(tool, *coupling, model, options.stiffness);
@@ -346,12 +348,13 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
   if (!a.coupling.empty()) {
     parameters = coupling_from_text(a.coupling, model, rate);
     if (a.replay.rate && rate != parameters->rate)
-      throw Error(ErrorKind::usage, "--rate and the rate of --coupling differ; give one of them");
+      throw Error(ErrorKind::invalid_argument,
+                  "--rate and the rate of --coupling differ; give one of them");
     rate = parameters->rate;
   }
   Replay replay(tool, a.replay, rate, options.device, reading_of_points(a));
   const Pose first = replay.path().pose(0);
-  LevelQuery query(model, options, level_request(a), replay.first_cloud(), first);
+  LevelToolQuery query(model, options, level_request(a), replay.first_cloud(), first);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   std::optional<VirtualCoupling> coupling;
   if (parameters) {

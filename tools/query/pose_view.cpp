@@ -80,7 +80,7 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
   import_ = options;
 }
 
-void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, const Query& query) {
+void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query) {
   Answer answer{pose, result, {}};
   for (const SphereState state : query.states())
     answer.states.push_back(static_cast<std::uint8_t>(state));
@@ -90,12 +90,12 @@ void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, con
   if (tool + 1 == models_.size()) keep(std::move(current_));
 }
 
-void PoseView::add_batch(Query& query, const PreparedCloud& cloud, std::span<const Pose> poses) {
-  Query* const only = &query;
+void PoseView::add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses) {
+  ToolQuery* const only = &query;
   add_batch(std::span(&only, 1), cloud, poses);
 }
 
-void PoseView::add_batch(std::span<Query* const> queries, const PreparedCloud& cloud,
+void PoseView::add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
                          std::span<const Pose> poses) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     if (!keeps_next() && k + 1 < poses.size()) {

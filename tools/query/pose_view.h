@@ -9,7 +9,7 @@
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/recording.h"
 #include "libvpm/view/page.h"
 
@@ -30,11 +30,11 @@ class PoseView {
                   const ImportOptions& options);
 
   // Adds the answer of the tool's query to its last pose. Tools come in their order.
-  void add(std::size_t tool, const Pose& pose, const Result& result, const Query& query);
+  void add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query);
   // Adds poses that were answered together, which leaves no states: those that are kept, and the
   // last, are asked again.
-  void add_batch(Query& query, const PreparedCloud& cloud, std::span<const Pose> poses);
-  void add_batch(std::span<Query* const> queries, const PreparedCloud& cloud,
+  void add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses);
+  void add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
                  std::span<const Pose> poses);
   // Says which frame of the recording the steps from here on see.
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }

@@ -28,7 +28,7 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
 
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
   if (!a.camera_poses.empty() && import.to_world)
-    throw Error(ErrorKind::usage, "give either --camera-poses or --camera-pose");
+    throw Error(ErrorKind::invalid_argument, "give either --camera-poses or --camera-pose");
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 
@@ -141,7 +141,7 @@ void Replay::find_first_cloud() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
-void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
                  file::Output& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);

@@ -25,15 +25,15 @@ void SeveralTools::run(std::optional<Pose> next, std::optional<PoseReader>& read
 void SeveralTools::ask(std::span<const Pose> poses, file::Output& output,
                        std::optional<PoseView>& view) {
   const std::size_t tools = queries_.size();
-  std::vector<ToolPose> questions;
+  std::vector<Job> questions;
   for (const Pose& pose : poses)
-    for (std::uint32_t t = 0; t < tools; ++t) questions.push_back({t, pose});
+    for (std::uint32_t t = 0; t < tools; ++t) questions.push_back({pose, t});
   std::vector<Result> results(questions.size());
   const auto begin = std::chrono::steady_clock::now();
   if (poses.size() == 1) {  // the whole device answers each sooner
     for (std::size_t t = 0; t < tools; ++t) results[t] = together_[t]->run(cloud_, poses.front());
   } else {
-    Query::run_together(together_, cloud_, questions, results);
+    ToolQuery::run(together_, cloud_, questions, results);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   seconds_.insert(seconds_.end(), results.size(),
@@ -49,7 +49,7 @@ void SeveralTools::ask(std::span<const Pose> poses, file::Output& output,
 
 std::vector<std::uint32_t> SeveralTools::levels() const {
   std::vector<std::uint32_t> levels;
-  for (const Query* query : together_) levels.push_back(query->level().sphere_count);
+  for (const ToolQuery* query : together_) levels.push_back(query->level().sphere_count);
   return levels;
 }
 

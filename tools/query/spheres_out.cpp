@@ -10,7 +10,7 @@ namespace vpm::tools {
 
 void check_spheres_path(const std::string& path) {
   if (!view::sphere_format(path)) {
-    throw Error(ErrorKind::usage, "--spheres-out " + path +
+    throw Error(ErrorKind::invalid_argument, "--spheres-out " + path +
                                       ": the name must end in .csv, .ply (balls), .points.ply or "
                                       ".glb");
   }
