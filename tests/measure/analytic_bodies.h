@@ -96,7 +96,7 @@ struct Both {
   VPM_HD const Both& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };
 
-static_assert(SceneBody<HalfSpace> && !SeesFreeSpace<HalfSpace> && !HasOtherWalls<HalfSpace>);
-static_assert(SceneBody<Both<HalfSpace, HalfSpace>>);
+static_assert(MeasuredBody<HalfSpace> && !SeesFreeSpace<HalfSpace> && !HasOtherWalls<HalfSpace>);
+static_assert(MeasuredBody<Both<HalfSpace, HalfSpace>>);
 
 }  // namespace vpm::testing

@@ -15,9 +15,9 @@ namespace {
 using testing::Both;
 using testing::HalfSpace;
 
-static_assert(SceneBody<DepthSurface> && SeesFreeSpace<DepthSurface> && BoundsGap<DepthSurface>);
+static_assert(MeasuredBody<DepthSurface> && SeesFreeSpace<DepthSurface> && BoundsGap<DepthSurface>);
 static_assert(!HasOtherWalls<DepthSurface>);
-static_assert(SceneBody<DiskSurface> && HasOtherWalls<DiskSurface>);
+static_assert(MeasuredBody<DiskSurface> && HasOtherWalls<DiskSurface>);
 static_assert(!SeesFreeSpace<DiskSurface> && !BoundsGap<DiskSurface>);
 
 constexpr double kEdge = 0.2;
