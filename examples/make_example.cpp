@@ -59,13 +59,13 @@ void make_example(const std::string& folder, const std::string& name) {
 int main(int argc, char** argv) {
   if (argc < 2 || argc > 3) {
     std::cerr << "usage: make-example FOLDER [SCENE]\n";
-    return static_cast<int>(ErrorKind::usage);
+    return 2;
   }
   try {
     make_example(argv[1], argc == 3 ? argv[2] : "inverted-ball");
     return 0;
   } catch (const Error& fault) {
     std::cerr << "make-example: error: " << fault.what() << '\n';
-    return static_cast<int>(fault.kind());
+    return 1;
   }
 }

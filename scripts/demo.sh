@@ -27,7 +27,13 @@ say "4. vpm-normals makes points with normals of the depth image"
 
 say "5. vpm-query asks at every pose of the path how much of the tool is inside the bowl's wall"
 "$bin/vpm-query" --tool "$out/tool.vpmg" --cloud "$out/scene.vpmc" --poses "$out/poses.jsonl" \
-  -o "$out/results.jsonl" --spheres-out "$out/spheres.ply" --stats "$out/stats.json" --force
+  -o "$out/results.jsonl" --spheres-out "$out/spheres.csv" --stats "$out/stats.json" --force
 
 say "6. What came out"
 "$python" scripts/plot_demo.py "$out"
+
+say "7. A page to look at"
+if "$bin/vpm-query" --tool "$out/tool.vpmg" --cloud "$out/scene.vpmc" --poses "$out/poses.jsonl" \
+  -o /dev/null --view "$out/demo.html" --force; then
+  echo "Open $out/demo.html in a browser."
+fi

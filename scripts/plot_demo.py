@@ -26,9 +26,8 @@ def read(folder):
 
 
 def read_spheres(path):
-    lines = path.read_text().splitlines()
-    begin = lines.index("end_header") + 1
-    return np.array([[float(x) for x in line.split()[:5]] for line in lines[begin:]])
+    with path.open() as file:
+        return sorted(csv.DictReader(file), key=lambda row: -float(row["y"]))
 
 
 def describe(folder, results, truth):
@@ -64,10 +63,10 @@ def draw(folder, results, truth):
     curve.set_title("volume inside the wall")
     curve.legend()
 
-    data = read_spheres(folder / "spheres.ply")
     # Draws the nearest spheres last, seen from the side: the camera is above, the bowl below.
-    for x, _, z, radius, state in data[np.argsort(-data[:, 1])]:
-        spheres.add_patch(plt.Circle((x, -z), radius, fc=STATES[int(state)][1], ec="k", lw=0.2))
+    for row in read_spheres(folder / "spheres.csv"):
+        spheres.add_patch(plt.Circle((float(row["x"]), -float(row["z"])), float(row["r"]),
+                                     fc=dict(STATES)[row["state"]], ec="k", lw=0.2))
     for name, colour in STATES:
         spheres.plot([], [], "o", color=colour, label=name)
     angle = np.linspace(-0.6, 0.6, 200)

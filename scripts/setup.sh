@@ -12,7 +12,7 @@ packages=(
   g++ cmake ninja-build
   libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
   libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
-  python3 python3-numpy python3-matplotlib
+  libjs-three python3 python3-numpy python3-matplotlib
 )
 test_packages=(libgtest-dev python3-jsonschema)
 

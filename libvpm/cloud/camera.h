@@ -1,17 +1,12 @@
-// Pinhole camera: x right, y down, z forward; pixel centres at integer coordinates. Lengths in
-// metres.
+// Arithmetic of pinhole cameras (vpm/camera.h), for host and device.
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/include/vpm/camera.h"
 
 namespace vpm {
-
-struct Intrinsics {
-  double fx = 0, fy = 0, cx = 0, cy = 0;  // in pixels
-};
 
 // True if focal lengths are positive and no number is infinite, undefined or above
 // kLargestIntrinsics pixels, which is far beyond any image.
@@ -20,12 +15,6 @@ inline bool are_sound(const Intrinsics& k) {
   return k.fx > 0 && k.fy > 0 && k.fx <= kLargestIntrinsics && k.fy <= kLargestIntrinsics &&
          std::abs(k.cx) <= kLargestIntrinsics && std::abs(k.cy) <= kLargestIntrinsics;
 }
-
-struct Camera {
-  Intrinsics intrinsics;
-  std::uint32_t width = 0, height = 0;
-  Pose to_world;  // camera to world coordinates
-};
 
 // Returns the point at depth z (along the optical axis) on the ray (x, y, 1), in camera
 // coordinates.

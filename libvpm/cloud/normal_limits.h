@@ -1,6 +1,8 @@
 // Limits of normal estimation, shared by host and device.
 #pragma once
 
+#include "libvpm/include/vpm/camera.h"
+
 namespace vpm {
 
 inline constexpr int kMinWindow = 3, kMaxWindow = 31;
@@ -9,10 +11,6 @@ inline constexpr int kMinWindow = 3, kMaxWindow = 31;
 // direction, px^2; two neighbouring diagonals have 1/8.
 inline constexpr int kMinSupport = 6;
 inline constexpr float kMinSpread = 0.1F;
-
-// Difference of inverse depth, relative to the centre's, that noise alone explains: 4 sigma of a
-// Kinect at 3.5 m.
-inline constexpr double kEdgeGate = 0.02;
 
 // Range of depths, m, whose inverse floats hold well; others get no normal.
 inline constexpr float kMinDepth = 0x1p-80F, kMaxDepth = 0x1p80F;

@@ -53,24 +53,25 @@ std::string to_text(NormalMethod method) {
 NormalMethod normal_method_from_text(const std::string& text) {
   if (text == "pca") return NormalMethod::pca;
   if (text == "inverse-depth") return NormalMethod::inverse_depth;
-  throw Error(ErrorKind::usage,
-              "normals: unknown method '" + text + "'; there are inverse-depth and pca");
+  throw Error(ErrorKind::invalid_argument, "unknown method '" + text + "'", "normals",
+              "there are inverse-depth and pca");
 }
 
 void check_normal_options(const NormalOptions& options) {
   if (options.window < kMinWindow || options.window > kMaxWindow || options.window % 2 == 0) {
-    throw Error(ErrorKind::usage, "normals: the window must be odd and between " +
-                                      std::to_string(kMinWindow) + " and " +
-                                      std::to_string(kMaxWindow) + " pixels, not " +
-                                      std::to_string(options.window));
+    throw Error(ErrorKind::invalid_argument,
+                "the window must be odd and between " + std::to_string(kMinWindow) + " and " +
+                    std::to_string(kMaxWindow) + " pixels, not " + std::to_string(options.window),
+                "normals");
   }
   if (!(options.edge_gate >= 0 && options.edge_gate < 1))
-    throw Error(ErrorKind::usage, "normals: the edge gate must be at least 0 and less than 1");
+    throw Error(ErrorKind::invalid_argument, "the edge gate must be at least 0 and less than 1",
+                "normals");
 }
 
 void check_intrinsics(const Intrinsics& k) {
   if (!are_sound(k)) {
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::invalid_argument,
                 "intrinsics: fx,fy,cx,cy must be finite and within 2^40, fx and fy greater than 0 "
                 "(pixels)");
   }
@@ -81,9 +82,9 @@ std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& i
   check_normal_options(options);
   check_intrinsics(intrinsics);
   if (depth.depth.size() != std::size_t{depth.width} * depth.height) {
-    refuse("normals: the depth image has " + std::to_string(depth.depth.size()) +
-           " values for a size of " + std::to_string(depth.width) + " x " +
-           std::to_string(depth.height));
+    refuse("the depth image has " + std::to_string(depth.depth.size()) + " values for a size of " +
+               std::to_string(depth.width) + " x " + std::to_string(depth.height),
+           "normals");
   }
   std::vector<Vec3f> normals(depth.depth.size());
   NormalImages images;

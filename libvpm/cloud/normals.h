@@ -26,26 +26,18 @@
 
 namespace vpm {
 
-enum class NormalMethod { inverse_depth, pca };
-
-// "inverse-depth" or "pca". Parsing another text throws Error(usage).
+// "inverse-depth" or "pca". Parsing another text throws Error(invalid_argument).
 std::string to_text(NormalMethod method);
 NormalMethod normal_method_from_text(const std::string& text);
 
-struct NormalOptions {
-  NormalMethod method = NormalMethod::inverse_depth;
-  int window = 7;  // side in pixels; odd, kMinWindow to kMaxWindow
-  // Relative difference of inverse depth, below 1; 0 keeps every pixel of the window.
-  double edge_gate = kEdgeGate;
-};
-
-// Throw Error(usage) if a value is out of range.
+// Throw Error(invalid_argument) if a value is out of range.
 void check_normal_options(const NormalOptions& options);
 void check_intrinsics(const Intrinsics& intrinsics);
 
 // Returns one unit normal per pixel, row by row, in camera coordinates and towards the sensor; zero
 // where the pixel is unmeasured or too little of its window remains (normal_limits.h). Throws
-// Error(usage) for options out of range, Error(refused) for an image whose size does not match.
+// Error(invalid_argument) for options out of range, Error(refused) for an image whose size does not
+// match.
 std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,
                                     const NormalOptions& options);
 

@@ -50,9 +50,9 @@ void refuse_rounded_places(const Cloud& cloud, const std::string& name) {
   if (rounding <= kMostRounding * median(cloud.radii)) return;
   std::ostringstream metres;
   metres << rounding;
-  refuse(name + ": its points are too far apart: float32 rounds their places by up to " +
-         metres.str() +
-         " m, too much for their spacing; leave out those that are far from the others");
+  refuse("its points are too far apart: float32 rounds their places by up to " + metres.str() +
+             " m, too much for their spacing",
+         name, "leave out those that are far from the others");
 }
 
 }  // namespace
@@ -94,19 +94,20 @@ Cloud cloud_of_scattered_points(const std::vector<Vec3>& positions,
     kept.push_back(to_world * positions[i]);
     cloud.normals.push_back(narrow(to_world.rotation * normal));
   }
-  if (kept.empty()) refuse(name + ": no point with a finite position and normal");
+  if (kept.empty()) refuse("no point with a finite position and normal", name);
   cloud.origin = middle_of_box(kept);
   cloud.positions.reserve(kept.size());
   for (const Vec3& p : kept) {
     cloud.positions.push_back(narrow(p - cloud.origin));
     if (!is_finite(cloud.positions.back()))
-      refuse(name + ": its points are too far apart: float32 cannot hold their distances");
+      refuse("its points are too far apart: float32 cannot hold their distances", name);
   }
   if (std::all_of(cloud.positions.begin(), cloud.positions.end(),
                   [&](const Vec3f& p) { return p == cloud.positions.front(); })) {
-    refuse(name +
-           ": all points are at one place; their spacing, which tells the size of the "
-           "surface that each stands for, is not known");
+    refuse(
+        "all points are at one place; their spacing, which tells the size of the surface that each "
+        "stands for, is not known",
+        name);
   }
   cloud.radii = sampling_radii(cloud.positions);
   refuse_rounded_places(cloud, name);

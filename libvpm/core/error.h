@@ -1,30 +1,16 @@
-// What went wrong, in words for the person at the terminal: what, where, and how to mend it.
+// Errors (vpm/error.h), and the shortest way to throw the most frequent one.
 #pragma once
 
-#include <stdexcept>
 #include <string>
+
+#include "libvpm/include/vpm/error.h"
 
 namespace vpm {
 
-// The value is the exit code of the executables.
-enum class ErrorKind {
-  refused = 1,       // the input or the data was refused
-  usage = 2,         // the command line or configuration is wrong
-  unavailable = 3,   // a feature that is not built, or a device that is not there
-  cannot_write = 4,  // an output could not be written
-};
-
-class Error : public std::runtime_error {
- public:
-  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
-  ErrorKind kind() const { return kind_; }
-
- private:
-  ErrorKind kind_;
-};
-
-[[noreturn]] inline void refuse(const std::string& message) {
-  throw Error(ErrorKind::refused, message);
+// Throws Error(refused).
+[[noreturn]] inline void refuse(const std::string& what, const std::string& where = {},
+                                const std::string& hint = {}) {
+  throw Error(ErrorKind::refused, what, where, hint);
 }
 
 }  // namespace vpm

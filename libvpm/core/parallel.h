@@ -5,11 +5,11 @@
 #include <cstddef>
 #include <functional>
 
+#include "libvpm/include/vpm/device.h"
+
 namespace vpm {
 
-// Caps the number of threads for all later parallel work of the process; 0 means one per core. Not
-// thread-safe: call it once, at program start.
-void set_thread_count(int threads);
+// Returns the cap that set_thread_count (vpm/device.h) has set, or the number of cores.
 int thread_count();
 
 // Calls body(begin, end) for disjoint ranges that cover [0, count), each at most `grain` long.

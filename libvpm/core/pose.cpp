@@ -37,8 +37,8 @@ std::vector<double> parse_numbers(const std::string& text) {
     double value = 0;
     const auto [stop, fault] = std::from_chars(begin, end, value);
     if (fault != std::errc() || stop != end) {
-      throw Error(ErrorKind::usage,
-                  "pose: '" + std::string(begin, end) + "' is not a number in '" + text + "'");
+      throw Error(ErrorKind::invalid_argument,
+                  "'" + std::string(begin, end) + "' is not a number in '" + text + "'", "pose");
     }
     numbers.push_back(value);
     at = comma + 1;
@@ -50,10 +50,10 @@ std::vector<double> parse_numbers(const std::string& text) {
 
 Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (!std::isfinite(length)) refuse("pose: the quaternion is not finite");
+  if (!std::isfinite(length)) refuse("the quaternion is not finite", "pose");
   if (!(std::abs(length - 1) <= kRotationTolerance)) {
-    refuse("pose: the quaternion has length " + std::to_string(length) +
-           " instead of 1; give x,y,z,w of a unit quaternion");
+    refuse("the quaternion has length " + std::to_string(length) + " instead of 1", "pose",
+           "give x,y,z,w of a unit quaternion");
   }
   if (deviation != nullptr) *deviation = std::abs(length - 1);
   const double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
@@ -64,7 +64,7 @@ Rotation rotation_from_quaternion(const Quaternion& q, double* deviation) {
 
 Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation) {
   for (const double value : m) {
-    if (!std::isfinite(value)) refuse("pose: the rotation matrix is not finite");
+    if (!std::isfinite(value)) refuse("the rotation matrix is not finite", "pose");
   }
   const Rotation given{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
   const Rotation gram = given * transpose(given);
@@ -72,12 +72,11 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
       std::max({std::abs(gram.row0.x - 1), std::abs(gram.row1.y - 1), std::abs(gram.row2.z - 1),
                 std::abs(gram.row0.y), std::abs(gram.row0.z), std::abs(gram.row1.z)});
   if (!(dot(given.row0, cross(given.row1, given.row2)) > 0)) {
-    refuse(
-        "pose: the rotation matrix mirrors (its determinant is not positive); give a proper "
-        "rotation");
+    refuse("the rotation matrix mirrors (its determinant is not positive)", "pose",
+           "give a proper rotation");
   }
   if (!(off <= kRotationTolerance)) {
-    refuse("pose: the 3x3 block is " + std::to_string(off) + " away from a rotation matrix");
+    refuse("the 3x3 block is " + std::to_string(off) + " away from a rotation matrix", "pose");
   }
   if (deviation != nullptr) *deviation = off;
   return nearest_rotation(given);
@@ -108,11 +107,13 @@ Quaternion quaternion_from_rotation(const Rotation& r) {
 Pose pose_from_text(const std::string& text, double* deviation) {
   const std::vector<double> n = parse_numbers(text);
   if (n.size() != 7) {
-    throw Error(ErrorKind::usage, "pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found " +
-                                      std::to_string(n.size()) + " in '" + text + "'");
+    throw Error(ErrorKind::invalid_argument,
+                "expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found " + std::to_string(n.size()) +
+                    " in '" + text + "'",
+                "pose");
   }
   const Vec3 translation{n[0], n[1], n[2]};
-  if (!is_finite(translation)) refuse("pose: the translation is not finite");
+  if (!is_finite(translation)) refuse("the translation is not finite", "pose");
   return {rotation_from_quaternion({n[3], n[4], n[5], n[6]}, deviation), translation};
 }
 

@@ -1,22 +1,9 @@
-// Rigid motions: a Pose maps tool to world coordinates, x_world = rotation * x_tool + translation,
-// in metres.
+// Arithmetic of rigid motions (vpm/pose.h), for host and device.
 #pragma once
-
-#include <array>
-#include <string>
 
 #include "libvpm/core/vec3.h"
 
 namespace vpm {
-
-struct Quaternion {
-  double x = 0, y = 0, z = 0, w = 1;
-};
-
-// Rotation matrix by rows; orthonormal with determinant +1 if made by the functions below.
-struct Rotation {
-  Vec3 row0{1, 0, 0}, row1{0, 1, 0}, row2{0, 0, 1};
-};
 
 [[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Rotation& r, Vec3 v) {
   return {dot(r.row0, v), dot(r.row1, v), dot(r.row2, v)};
@@ -30,11 +17,6 @@ VPM_HD constexpr Rotation operator*(const Rotation& a, const Rotation& b) {
   const Rotation columns = transpose(b);
   return transpose(Rotation{a * columns.row0, a * columns.row1, a * columns.row2});
 }
-
-struct Pose {
-  Rotation rotation;
-  Vec3 translation;
-};
 
 [[gnu::always_inline]] VPM_HD constexpr Vec3 operator*(const Pose& p, Vec3 v) {
   return p.rotation * v + p.translation;
@@ -72,20 +54,8 @@ inline constexpr double kRotationRounding = 1e-5;
 // Deviation of rotations computed in double.
 inline constexpr double kRotationExact = 1e-13;
 
-// Returns the rotation of a quaternion or of a row-major 3x3 matrix, normalised. Stores in
-// `deviation`, unless null, how far the input was from a rotation. Throws Error(refused) if the
-// input is not finite, zero, mirrored, or further off than kRotationTolerance.
-Rotation rotation_from_quaternion(const Quaternion& q, double* deviation = nullptr);
-Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation = nullptr);
 // Returns the nearest rotation to one that is off by rounding (at most kRotationTolerance); returns
 // it unchanged if it is exact to kRotationExact.
 Rotation exact_rotation(const Rotation& rounded);
-// Returns the quaternion with w >= 0.
-Quaternion quaternion_from_rotation(const Rotation& r);
-
-// Parses "tx,ty,tz,qx,qy,qz,qw", metres and a unit quaternion. Throws Error(usage) if the text is
-// not seven numbers, Error(refused) if the numbers are no pose. `deviation` as in
-// rotation_from_quaternion.
-Pose pose_from_text(const std::string& text, double* deviation = nullptr);
 
 }  // namespace vpm

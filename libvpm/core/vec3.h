@@ -5,18 +5,9 @@
 
 #include "libvpm/core/division.h"
 #include "libvpm/core/host_device.h"
+#include "libvpm/include/vpm/pose.h"
 
 namespace vpm {
-
-struct Vec3 {
-  double x = 0, y = 0, z = 0;
-  friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
-};
-
-struct Vec3f {
-  float x = 0, y = 0, z = 0;
-  friend constexpr bool operator==(const Vec3f&, const Vec3f&) = default;
-};
 
 VPM_HD constexpr Vec3 operator+(Vec3 a, Vec3 b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

@@ -8,6 +8,11 @@
 #include <span>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/core/vector_width.h"
+
+// No vector is passed by any ABI: all is inlined.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace vpm {
 
@@ -17,9 +22,23 @@ using Float4 = float __attribute__((vector_size(4 * sizeof(float))));
 using Int4 = std::int32_t __attribute__((vector_size(4 * sizeof(std::int32_t))));
 using Mask4 = decltype(Double4() < Double4());  // all bits where it holds, else none
 
-template <class Mask>
-[[gnu::always_inline]] inline bool any(const Mask& mask) {
+[[gnu::always_inline]] inline bool any(const Mask4& mask) {
   return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+[[gnu::always_inline]] inline bool all(const Mask4& mask) {
+  return (mask[0] & mask[1] & mask[2] & mask[3]) != 0;
+}
+[[gnu::always_inline]] inline Mask4 negated(const Mask4& mask) {
+  return ~mask;
+}
+[[gnu::always_inline]] inline Double4 quotient(const Double4& a, const Double4& b) {
+  return a / b;
+}
+[[gnu::always_inline]] inline Double4 quotient(double a, const Double4& b) {
+  return a / b;
+}
+[[gnu::always_inline]] inline Double4 quotient(const Double4& a, double b) {
+  return a / b;
 }
 [[gnu::always_inline]] inline Double4 square_root(const Double4& a) {
   return Double4{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])};
@@ -40,6 +59,11 @@ template <class Mask>
   return __builtin_convertvector(mask, Mask4);
 }
 
+// Vec3f by fours.
+struct Vec3fx4 {
+  Float4 x, y, z;
+};
+
 struct Vec3x4 {
   Double4 x, y, z;
 
@@ -56,6 +80,27 @@ struct Vec3x4 {
   [[gnu::always_inline]] Vec3 of(int lane) const { return {x[lane], y[lane], z[lane]}; }
 };
 
+template <>
+struct WidthOf<Double4> {
+  using Mask = Mask4;
+  using Int = Int4;
+  using Index = Int4;
+  using Place = Vec3x4;
+  using Stored = Vec3fx4;
+};
+
+[[gnu::always_inline]] inline Vec3x4 widen(const Vec3fx4& a) {
+  return {widen(a.x), widen(a.y), widen(a.z)};
+}
+template <class Get>
+[[gnu::always_inline]] inline Double4 gather(const Int4& i, const Get& get) {
+  return widen(Float4{get(i[0]), get(i[1]), get(i[2]), get(i[3])});
+}
+[[gnu::always_inline]] inline Vec3fx4 gather(const Vec3f* row, const Int4& i) {
+  const Vec3f &a = row[i[0]], &b = row[i[1]], &c = row[i[2]], &d = row[i[3]];
+  return {Float4{a.x, b.x, c.x, d.x}, Float4{a.y, b.y, c.y, d.y}, Float4{a.z, b.z, c.z, d.z}};
+}
+
 [[gnu::always_inline]] inline Vec3x4 operator+(const Vec3x4& a, const Vec3x4& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -63,6 +108,9 @@ struct Vec3x4 {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 [[gnu::always_inline]] inline Vec3x4 operator*(const Double4& s, const Vec3x4& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+[[gnu::always_inline]] inline Vec3x4 operator*(double s, const Vec3x4& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 [[gnu::always_inline]] inline Double4 dot(const Vec3x4& a, const Vec3x4& b) {
@@ -104,3 +152,5 @@ template <class T>
 }
 
 }  // namespace vpm
+
+#pragma GCC diagnostic pop

@@ -8,8 +8,8 @@ namespace vpm {
 namespace {
 
 [[noreturn]] void unavailable(const std::string& text, const std::string& why) {
-  throw Error(ErrorKind::unavailable,
-              "--device " + text + ": " + why + "; use --device cpu, or leave the option out");
+  throw Error(ErrorKind::unavailable, why, "`device` " + text,
+              "use `device` cpu, or leave the option out");
 }
 
 int index_from_text(const std::string& text) {
@@ -24,9 +24,9 @@ int index_from_text(const std::string& text) {
     if (fault != std::errc() || stop != end) index = kNone;
   }
   if (index < 0) {
-    throw Error(
-        ErrorKind::usage,
-        "--device: " + text + " not in {auto,cpu,cuda,cuda:N,cuda:all} with N a device's number");
+    throw Error(ErrorKind::invalid_argument,
+                text + " not in {auto,cpu,cuda,cuda:N,cuda:all} with N a device's number",
+                "`device`");
   }
   return index;
 }

@@ -87,8 +87,8 @@ class Reader {
     return values;
   }
 
-  // Throws Error(refused) with the text "<name>: <defect>".
-  [[noreturn]] void refuse_file(const std::string& defect) const;
+  // Throws Error(refused) with the text "<name>: <defect>; <hint>".
+  [[noreturn]] void refuse_file(const std::string& defect, const std::string& hint = {}) const;
 
  private:
   struct Entry {

@@ -51,7 +51,7 @@ constexpr std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-// Names of a kind for messages: e.g. "a packing (.vpmp)" and "vpm-pack", the tool that writes it.
+// Names of a kind for messages: e.g. "a packing (.vpmp)" and `pack`, the function that makes it.
 struct KindNames {
   const char* what;
   const char* made_by;

@@ -31,8 +31,8 @@ Existing content_of(const std::string& path) {
 }
 
 [[noreturn]] void refuse_to_overwrite(const std::string& path, const std::string& what) {
-  throw Error(ErrorKind::usage, path + " exists and is " + what +
-                                    "; name another output, or give --force to overwrite it");
+  throw Error(ErrorKind::invalid_argument, path + " exists and is " + what, {},
+              "name another output, or give `force` to overwrite it");
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ void check_folder_of(const std::string& path) {
   if (path.empty() || path == "-") return;
   std::error_code fault;
   if (fs::is_directory(path, fault))
-    throw Error(ErrorKind::cannot_write, path + " is a folder; name a file");
+    throw Error(ErrorKind::cannot_write, path + " is a folder", {}, "name a file");
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, fault)) {
     throw Error(ErrorKind::cannot_write,

@@ -7,9 +7,9 @@
 
 namespace vpm::file {
 
-// Throws Error(usage) if writing to `path` would destroy something else. A container may replace an
-// empty file or a container of its own kind; text outputs (reports, tables, meshes) may replace
-// anything but a vpm container. "-", an empty path, pipes and devices always pass. Throws
+// Throws Error(invalid_argument) if writing to `path` would destroy something else. A container may
+// replace an empty file or a container of its own kind; text outputs (reports, tables, meshes) may
+// replace anything but a vpm container. "-", an empty path, pipes and devices always pass. Throws
 // Error(cannot_write) if the folder does not exist.
 void check_container_output(const std::string& path, Kind kind);
 void check_text_output(const std::string& path);

@@ -21,7 +21,7 @@ class TemporaryFolder {
     std::string name = (std::filesystem::temp_directory_path(fault) / "vpm-XXXXXX").string();
     if (fault)
       throw Error(ErrorKind::cannot_write,
-                  "there is no folder for temporary files: " + fault.message() + "; set TMPDIR");
+                  "there is no folder for temporary files: " + fault.message(), {}, "set TMPDIR");
     if (::mkdtemp(name.data()) == nullptr)
       throw Error(ErrorKind::cannot_write, "cannot make a folder like " + name);
     folder_ = name;

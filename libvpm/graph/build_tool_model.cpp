@@ -57,24 +57,24 @@ Normalized normalize(const Packing& packing, const MassProperties& mass) {
 }
 
 void check(const Packing& packing, const MassProperties& mass, const GraphOptions& options) {
-  if (packing.spheres.empty()) refuse("the packing has no spheres; pack the mesh again");
-  if (!(mass.volume > 0)) refuse("the packing's solid has no volume; pack the mesh again");
+  if (packing.spheres.empty()) refuse("the packing has no spheres", {}, "pack the mesh again");
+  if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
   double before = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     const Sphere& s = packing.spheres[i];
     if (!is_finite(s.center) || !(s.radius > 0) || !(s.radius <= before) ||
         !std::isfinite(s.radius)) {
-      refuse(
-          "sphere " + std::to_string(i) +
-          " of the packing is not finite, or larger than the one before it; pack the mesh again");
+      refuse("sphere " + std::to_string(i) +
+                 " of the packing is not finite, or larger than the one before it",
+             {}, "pack the mesh again");
     }
     before = s.radius;
   }
   if (!(options.epsilon >= 0) || !std::isfinite(options.epsilon)) {
-    throw Error(ErrorKind::usage, "epsilon must be a positive length in metres");
+    throw Error(ErrorKind::invalid_argument, "epsilon must be a positive length in metres");
   }
   if (std::count(options.levels.begin(), options.levels.end(), 0u) > 0) {
-    throw Error(ErrorKind::usage, "a level needs at least one sphere");
+    throw Error(ErrorKind::invalid_argument, "a level needs at least one sphere");
   }
 }
 

@@ -27,7 +27,7 @@ struct GraphOptions {
 };
 
 // Builds each level from the largest spheres and the solid of the packing; metres. `quality`,
-// unless null, receives one entry per level. Throws Error(usage) for senseless options,
+// unless null, receives one entry per level. Throws Error(invalid_argument) for senseless options,
 // Error(refused) for a bad packing. Same bytes for any thread count; scaling all coordinates by a
 // power of two changes exponents only.
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,

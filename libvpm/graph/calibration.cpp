@@ -149,7 +149,7 @@ LevelError summarise(std::vector<double> errors) {
 
 std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   if (content_hash(solid) != model.solid_hash) {
-    refuse("the tool model was not made of this solid; calibrate it with its own packing");
+    refuse("the tool model was not made of this solid", {}, "calibrate it with its own packing");
   }
   Solid centered = solid;
   for (Vec3& v : centered.vertices) v -= model.center_of_mass;

@@ -40,8 +40,8 @@ SphereGraph epsilon_edges(const SphereBvh& bvh, double epsilon) {
     }
   });
   if (total > kMostNeighbors) {
-    refuse("epsilon joins more than " + std::to_string(kMostNeighbors / 2) +
-           " pairs of spheres; choose one of the size of the gaps between them");
+    refuse("epsilon joins more than " + std::to_string(kMostNeighbors / 2) + " pairs of spheres",
+           {}, "choose one of the size of the gaps between them");
   }
   SphereGraph graph;
   graph.begin.reserve(count + 1);

@@ -99,7 +99,8 @@ Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereB
   const double balls = ball_sum.value();
   if (balls > mass.volume * (1 + kVolumeTolerance)) {
     refuse("the spheres hold " + std::to_string(balls / mass.volume) +
-           " times the volume of the solid, so they overlap or leave it; pack the mesh again");
+               " times the volume of the solid, so they overlap or leave it",
+           {}, "pack the mesh again");
   }
   const double gap_volume = std::max(0.0, mass.volume - balls);
 
@@ -110,8 +111,8 @@ Shares find_shares(const Solid& solid, const MassProperties& mass, const SphereB
   const double sampled = sampled_sum.value();
   if (!(sampled > 0) && gap_volume > kVolumeTolerance * mass.volume) {
     refuse("no point was found between the spheres and the surface of the solid, although " +
-           std::to_string(100 * gap_volume / mass.volume) +
-           " % of it lies there; is it turned inside out? pack the mesh again");
+               std::to_string(100 * gap_volume / mass.volume) + " % of it lies there",
+           {}, "is it turned inside out? pack the mesh again");
   }
   shares.gap_scale = sampled > 0 ? gap_volume / sampled : 0;
 

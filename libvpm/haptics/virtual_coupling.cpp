@@ -12,12 +12,13 @@ namespace {
 
 void check_positive(double value, const char* name) {
   if (!(value > 0 && std::isfinite(value)))
-    throw Error(ErrorKind::usage, std::string("coupling: ") + name + " must be a positive number");
+    throw Error(ErrorKind::invalid_argument,
+                std::string("coupling: ") + name + " must be a positive number");
 }
 
 void check_device(const Pose& pose) {
   if (!is_rotation(pose.rotation, kRotationRounding) || !is_in_range(pose.translation))
-    refuse("coupling: the device's pose is not finite, not rigid or further than 2^100 m away");
+    refuse("the device's pose is not finite, not rigid or further than 2^100 m away", "coupling");
 }
 
 // Largest contact force and torque, N and N m; beyond, squares and products with lengths would
@@ -70,7 +71,7 @@ VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 cent
   validate(parameters);
   check_device(device);
   if (!is_in_range(center_of_mass))
-    refuse("coupling: the tool's centre of mass is not finite or further than 2^100 m away");
+    refuse("the tool's centre of mass is not finite or further than 2^100 m away", "coupling");
   device_ = {device.rotation, device * center_of_mass_};
   tool_ = device_;
 }
@@ -92,11 +93,11 @@ double VirtualCoupling::stored() const {
 Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
   check_device(device);
   if (!(is_within(contact.force, kLargestContact) && is_within(contact.torque, kLargestContact)))
-    refuse("coupling: the contact's force or torque is not finite, or absurdly large");
+    refuse("the contact's force or torque is not finite, or absurdly large", "coupling");
   VirtualCoupling next = *this;
   const Wrench felt = next.step(device, contact);
   if (!is_finite(felt.force) || !is_finite(felt.torque) || !is_in_range(next.tool_.translation))
-    refuse("coupling: the contact pushes the tool out of all bounds; is its stiffness stable?");
+    refuse("the contact pushes the tool out of all bounds", "coupling", "is its stiffness stable?");
   *this = next;
   return felt;
 }

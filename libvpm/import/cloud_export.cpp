@@ -82,7 +82,8 @@ std::string to_pcd(const Cloud& cloud) {
 
 void check_points_path(const std::string& path) {
   if (!path.ends_with(".ply") && !path.ends_with(".pcd"))
-    throw Error(ErrorKind::usage, "--export " + path + ": the name must end in .ply or .pcd");
+    throw Error(ErrorKind::invalid_argument, "the name must end in .ply or .pcd",
+                "`export` " + path);
 }
 
 void write_points(const std::string& path, const Cloud& cloud) {

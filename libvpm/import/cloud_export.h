@@ -16,7 +16,7 @@ std::string to_ply(const Cloud& cloud);
 // pose as VIEWPOINT. Any other is relative to its origin, which is the VIEWPOINT.
 std::string to_pcd(const Cloud& cloud);
 
-// Writes by the extension of `path`, .ply or .pcd; any other throws Error(usage).
+// Writes by the extension of `path`, .ply or .pcd; any other throws Error(invalid_argument).
 void write_points(const std::string& path, const Cloud& cloud);
 void check_points_path(const std::string& path);
 

@@ -113,7 +113,7 @@ DepthImage parse_exr_depth(std::span<const std::byte> bytes, const std::string& 
   } catch (const Error&) {
     throw;
   } catch (const std::exception& fault) {
-    refuse(name + ": not a depth image in OpenEXR: " + fault.what());
+    refuse(std::string("not a depth image in OpenEXR: ") + fault.what(), name);
   }
 }
 

@@ -4,10 +4,8 @@
 namespace vpm {
 
 DepthImage parse_exr_depth(std::span<const std::byte>, const std::string& name, double) {
-  throw Error(ErrorKind::unavailable,
-              name +
-                  ": this build reads no OpenEXR; build with VPM_EXR=ON, or convert the image "
-                  "to a 16-bit PNG");
+  throw Error(ErrorKind::unavailable, "this build reads no OpenEXR", name,
+              "build with VPM_EXR=ON, or convert the image to a 16-bit PNG");
 }
 
 }  // namespace vpm

@@ -40,7 +40,7 @@ ImportedScan scan_of_depth(DepthImage depth, const Intrinsics& k, const Pose& to
   scan.height = depth.height;
   scan.invalid = count_invalid(depth);
   if (scan.invalid == depth.depth.size())
-    throw NothingMeasured(name + ": no pixel holds a measurement");
+    throw NothingMeasured("no pixel holds a measurement", name);
   const Camera camera{k, depth.width, depth.height, to_world};
   scan.image = CloudSensor{camera, std::move(depth)};
   return scan;
@@ -59,9 +59,8 @@ ImportedScan scan_of_points(PointSet points, const std::string& name,
     return scan;
   }
   if (points.normals.empty()) {
-    refuse(name +
-           ": points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx "
-           "ny nz); estimate them first, or give the depth image");
+    refuse("points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz)",
+           name, "estimate them first, or give the depth image");
   }
   for (Vec3& p : points.positions) p = p / scale;
   ImportedScan scan;
@@ -83,13 +82,12 @@ ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& na
   if (format == Format::pcd) return scan_of_points(parse_pcd(bytes, name), name, options);
   if (format == Format::ply) return scan_of_points(parse_ply_points(bytes, name), name, options);
   if (format == Format::unknown) {
-    refuse(name +
-           (bytes.empty() ? ": the file is empty; "
-                          : ": neither PNG, OpenEXR, PCD nor PLY by its content; ") +
-           "give a depth image or a cloud");
+    refuse(bytes.empty() ? "the file is empty" : "neither PNG, OpenEXR, PCD nor PLY by its content",
+           name, "give a depth image or a cloud");
   }
   if (!options.intrinsics) {
-    throw Error(ErrorKind::usage, name + ": a depth image needs --intrinsics fx,fy,cx,cy (pixels)");
+    throw Error(ErrorKind::invalid_argument,
+                "a depth image needs `intrinsics` fx,fy,cx,cy (pixels)", name);
   }
   DepthImage depth =
       format == Format::png
@@ -101,8 +99,9 @@ ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& na
 
 NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name) {
   const std::size_t measured = scan.image->depth.depth.size() - scan.invalid;
-  return NothingMeasured(name + ": none of its " + std::to_string(measured) +
-                         " measured pixels has neighbours enough for a normal");
+  return NothingMeasured("none of its " + std::to_string(measured) +
+                             " measured pixels has neighbours enough for a normal",
+                         name);
 }
 
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,

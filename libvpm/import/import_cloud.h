@@ -35,7 +35,8 @@ struct ImportedCloud {
 // Refusal of a valid depth image in which nothing was measured.
 class NothingMeasured : public Error {
  public:
-  explicit NothingMeasured(const std::string& message) : Error(ErrorKind::refused, message) {}
+  NothingMeasured(const std::string& what, const std::string& name)
+      : Error(ErrorKind::refused, what, name) {}
 };
 
 // Content of a file before normals are estimated: a depth image with its camera, or points.
@@ -57,8 +58,8 @@ NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string&
 // Returns the cloud of a file. Depth images and organised PCD become clouds with a sensor, with
 // normals estimated from depth whatever the file holds. Other PCD and PLY must have normals,
 // pointing into free space. Throws Error(refused) for files that are damaged, unknown, without
-// normals or without any point (for depth: NothingMeasured), Error(usage) for depth images without
-// intrinsics, Error(unavailable) for OpenEXR in builds without it.
+// normals or without any point (for depth: NothingMeasured), Error(invalid_argument) for depth
+// images without intrinsics, Error(unavailable) for OpenEXR in builds without it.
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
                            const ImportOptions& options);
 

@@ -53,7 +53,7 @@ class PcdParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& defect) const { refuse(name_ + ": PCD " + defect); }
+  [[noreturn]] void fail(const std::string& defect) const { refuse("PCD " + defect, name_); }
 
   void read_header();
   void read_entry(const std::vector<std::string_view>& words);
@@ -162,7 +162,7 @@ void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
   try {
     header_.viewpoint.rotation = rotation_from_quaternion({n[4], n[5], n[6], n[3]});
   } catch (const Error& fault) {
-    fail(std::string("header: VIEWPOINT: ") + fault.what());
+    refuse("PCD header: VIEWPOINT: " + fault.problem(), name_, fault.hint());
   }
 }
 

@@ -70,13 +70,14 @@ Intrinsics fit_pinhole(const PointSet& points, const std::string& name) {
     down.add(p.y / p.z, static_cast<double>(row));
   }
   if (!across.solvable() || !down.solvable()) {
-    refuse(name + ": too few points with z > 0 to tell the camera; give --intrinsics fx,fy,cx,cy");
+    refuse("too few points with z > 0 to tell the camera", name, "give `intrinsics` fx,fy,cx,cy");
   }
   const Intrinsics k{across.focal(), down.focal(), across.centre(), down.centre()};
   const Residual residual = largest_residual(points, k);
   if (!(k.fx > 0 && k.fy > 0 && residual.largest <= kPinholeTolerance)) {
-    refuse(name + ": the organised cloud fits no pinhole camera with x right, y down, z forward: " +
-           describe(residual, points, k));
+    refuse("the organised cloud fits no pinhole camera with x right, y down, z forward: " +
+               describe(residual, points, k),
+           name);
   }
   return k;
 }
@@ -84,8 +85,9 @@ Intrinsics fit_pinhole(const PointSet& points, const std::string& name) {
 void check_pinhole(const PointSet& points, const Intrinsics& k, const std::string& name) {
   const Residual residual = largest_residual(points, k);
   if (!(residual.largest <= kPinholeTolerance)) {
-    refuse(name + ": the organised cloud does not fit the intrinsics given: " +
-           describe(residual, points, k) + "; leave --intrinsics out to have them recovered");
+    refuse(
+        "the organised cloud does not fit the intrinsics given: " + describe(residual, points, k),
+        name, "leave `intrinsics` out to have them recovered");
   }
 }
 

@@ -70,7 +70,7 @@ class PlyParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& defect) const { refuse(name_ + ": PLY " + defect); }
+  [[noreturn]] void fail(const std::string& defect) const { refuse("PLY " + defect, name_); }
 
   void read_header();
   void read_property(const std::vector<std::string_view>& words);

@@ -84,29 +84,30 @@ constexpr std::uint64_t kMaxDeflateRatio = 1100;
 void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name) {
   if (width == 0 || height == 0 || width > kMaxPoints || height > kMaxPoints ||
       width * height > kMaxPoints) {
-    refuse(name + ": an image of " + std::to_string(width) + " x " + std::to_string(height) +
-           " pixels is not read; at most " + std::to_string(kMaxPoints) + " pixels are");
+    refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) +
+               " pixels is not read",
+           name, "at most " + std::to_string(kMaxPoints) + " pixels are");
   }
 }
 
 DepthImage parse_png_depth(std::span<const std::byte> bytes, const std::string& name,
                            double units_per_metre) {
   PngReader png(bytes);
-  if (!png.read_header()) refuse(name + ": not a sound PNG: " + png.fault());
+  if (!png.read_header()) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   if (!png.is_gray16()) {
-    refuse(name + ": a PNG with " + std::to_string(png.channels()) + " channels of " +
-           std::to_string(png.bit_depth()) +
-           " bits is no depth image; depth needs one gray channel of 16 bits");
+    refuse("a PNG with " + std::to_string(png.channels()) + " channels of " +
+               std::to_string(png.bit_depth()) + " bits is no depth image",
+           name, "depth needs one gray channel of 16 bits");
   }
   check_image_size(png.width(), png.height(), name);
   DepthImage image{png.width(), png.height(), {}};
   const std::size_t count = std::size_t{image.width} * image.height;
-  if (2 * count > bytes.size() * kMaxDeflateRatio) refuse(name + ": the PNG is truncated");
+  if (2 * count > bytes.size() * kMaxDeflateRatio) refuse("the PNG is truncated", name);
   std::vector<std::uint16_t> values(count);
   std::vector<png_bytep> rows(image.height);
   for (std::uint32_t v = 0; v < image.height; ++v)
     rows[v] = reinterpret_cast<png_bytep>(values.data() + image.index(0, v));
-  if (!png.read_rows(rows)) refuse(name + ": not a sound PNG: " + png.fault());
+  if (!png.read_rows(rows)) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   image.depth.resize(count);
   for (std::size_t i = 0; i < count; ++i)
     image.depth[i] = depth_in_metres(values[i], units_per_metre);

@@ -62,7 +62,7 @@ enum class ClusterClass : std::uint8_t {
 
 // Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
 // plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
-template <Body Surface>
+template <MeasuredBody Surface>
 VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface::Look& look,
                                   Vec3 center, double radius, double tool_radius) {
   switch (look.side) {
@@ -80,7 +80,7 @@ VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface
 }
 
 // Returns the class of a whole cluster: class_of_ball(), but uniform where it is small enough.
-template <Body Surface>
+template <MeasuredBody Surface>
 VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surface::Look& look,
                                      Vec3 center, double radius, double tool_radius) {
   const ClusterClass found = class_of_ball(surface, look, center, radius, tool_radius);
@@ -91,7 +91,7 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surf
 
 // Returns the class of a planar cluster without a surface in it, by the surface sample at its
 // middle.
-template <Body Surface>
+template <MeasuredBody Surface>
 VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middle, Vec3 center,
                                     double radius, double tool_radius) {
   if (!(middle.known && middle.distance < 0)) return ClusterClass::free;
@@ -105,7 +105,7 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middl
 
 // True if a plane as which the surface passes through a cluster is the cluster's: it passes no
 // further away than kSheetReach of its radii, and no second surface is near.
-template <Body Surface>
+template <MeasuredBody Surface>
 VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::Look& look,
                                 Vec3 center, double radius, const TangentPlane& plane) {
   const double near = kSheetReach * radius;
@@ -116,7 +116,7 @@ VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
 // `plane`. `read_all` is ReadInTurn, or reads the same places side by side.
-template <Body Surface, class ReadAll>
+template <MeasuredBody Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::Look& look,
                                 Vec3 center, double radius, double tool_radius,
                                 const ReadAll& read_all, TangentPlane& plane) {
@@ -157,7 +157,7 @@ enum class BlockClass : std::uint8_t {
 // Returns the class of a block about `center` whose ball was looked at, and the plane of one that
 // is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
 // be.
-template <Body Surface, class Read>
+template <MeasuredBody Surface, class Read>
 VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::Look& look,
                                  Vec3 center, double radius, const ToolReach& tool,
                                  const Read& read, TangentPlane& plane) {

@@ -68,7 +68,7 @@ class Check {
   }
 
   CheckedSolid run() {
-    if (triangles().empty()) refuse(mesh_.name + ": the mesh has no faces");
+    if (triangles().empty()) refuse("the mesh has no faces", mesh_.name);
     check_extent();
     const std::size_t repeated = drop_collapsed(triangles());
     facts().collapsed_triangles += repeated;
@@ -105,10 +105,11 @@ class Check {
                                                        std::abs(box.low.z), std::abs(box.high.x),
                                                        std::abs(box.high.y), std::abs(box.high.z)});
     diagonal_ = norm(box.high - box.low);
-    if (extent == 0) refuse(mesh_.name + ": all triangles lie in one point");
+    if (extent == 0) refuse("all triangles lie in one point", mesh_.name);
     if (!(extent >= kSmallestExtent && farthest <= kLargestExtent)) {
-      refuse(mesh_.name + ": the mesh reaches from " + text_of(box.low) + " to " +
-             text_of(box.high) + ", which leaves the range of 1e-30 to 1e30 m; give --scale");
+      refuse("the mesh reaches from " + text_of(box.low) + " to " + text_of(box.high) +
+                 ", which leaves the range of 1e-30 to 1e30 m",
+             mesh_.name, "give `scale`");
     }
   }
 
@@ -128,7 +129,7 @@ class Check {
   }
 
   [[noreturn]] void refuse_empty() const {
-    refuse(mesh_.name + ": every triangle has two equal corners; the mesh has no surface");
+    refuse("every triangle has two equal corners; the mesh has no surface", mesh_.name);
   }
 
   // Formats with indices may still list a point twice, e.g. at a seam of textures.
@@ -160,10 +161,10 @@ class Check {
       char text[160];
       std::snprintf(
           text, sizeof text,
-          "--max-hole %.3g m is more than the mesh is across, %.3g m: nothing of it would "
+          "`max_hole` %.3g m is more than the mesh is across, %.3g m: nothing of it would "
           "be reached from outside; is it in metres?",
           options_.scale * max_hole, options_.scale * diagonal_);
-      throw Error(ErrorKind::usage, text);
+      throw Error(ErrorKind::invalid_argument, text);
     }
     refuse_wide_holes(max_hole);
     VoxelRepair done;
@@ -172,17 +173,16 @@ class Check {
     } else if (orient_outward(result_.solid)) {
       result_.solid = repair_by_winding_number(result_.solid, options_.repair_voxels, done);
     } else {
-      refuse(mesh_.name +
-             ": the surface is one-sided (like a Moebius band), and has no winding number; where "
-             "it encloses something all the same, give --repair flood");
+      refuse("the surface is one-sided (like a Moebius band), and has no winding number",
+             mesh_.name, "where it encloses something all the same, give `repair` flood");
     }
     if (triangles().empty()) {
       const std::string voxel =
           "no voxel of 1/" + std::to_string(options_.repair_voxels) + " of the longest side ";
-      refuse(mesh_.name + ": " + voxel +
-             (is_flood ? "is closed off from outside; give a wider --max-hole, or more voxels"
-                       : "lies inside of the mesh; give more voxels (--repair voxel=N), or turn "
-                         "triangles that face inward"));
+      refuse(voxel + (is_flood ? "is closed off from outside" : "lies inside of the mesh"),
+             mesh_.name,
+             is_flood ? "give a wider `max_hole`, or more voxels"
+                      : "give more voxels (`repair_voxels`), or turn triangles that face inward");
     }
     done.max_hole = std::isfinite(max_hole) ? options_.scale * max_hole : 0;
     done.voxel *= options_.scale;
@@ -203,9 +203,9 @@ class Check {
       const double width = width_of(loop, vertices());
       if (width <= max_hole) continue;
       char text[160];
-      std::snprintf(text, sizeof text, ": a hole is %.3g m wide, more than %.3g m, through ",
+      std::snprintf(text, sizeof text, "a hole is %.3g m wide, more than %.3g m, through ",
                     options_.scale * width, options_.scale * max_hole);
-      refuse(mesh_.name + text + text_of_rim(loop) + "; close it, or give a wider --max-hole");
+      refuse(text + text_of_rim(loop), mesh_.name, "close it, or give a wider `max_hole`");
     }
   }
 
@@ -284,10 +284,11 @@ class Check {
     }
     const char* const advice =
         options_.repair == Repair::none
-            ? "give --repair to fill planar and small holes, --repair voxel for a new surface, or "
-              "--weld if parts should meet and do not"
-            : "give --repair voxel for a new surface, or mend it in a mesh editor";
-    refuse(mesh_.name + ": " + defects + ". Only a closed surface has an inside: " + advice);
+            ? "give `repair` to fill planar and small holes, `repair` voxel for a new surface, or "
+              "`weld` if parts should meet and do not"
+            : "give `repair` voxel for a new surface, or mend it in a mesh editor";
+    refuse(defects + ".", mesh_.name,
+           std::string("Only a closed surface has an inside: ") + advice);
   }
 
   void orient() {
@@ -296,7 +297,7 @@ class Check {
     const std::vector<Triangle> given = triangles();
     const bool consistent = topology_.conflicting.empty();
     if (!consistent && orient_consistently(topology_, triangles()) == kNotOrientable) {
-      refuse(mesh_.name + ": the surface is one-sided (like a Klein bottle); it has no inside");
+      refuse("the surface is one-sided (like a Klein bottle); it has no inside", mesh_.name);
     }
     const ShellOrientation done =
         orient_shells(vertices(), shell, shell_count, consistent, triangles());
@@ -385,8 +386,9 @@ class Check {
                     static_cast<std::int64_t>(triangles().size() / 2);
     facts().area = area_of(result_.solid);
     if (!(facts().volume > kFlat * facts().area * norm(box.high - box.low))) {
-      refuse(mesh_.name + ": the mesh is degenerate: it is closed, but encloses no volume (" +
-             std::to_string(facts().volume) + " m^3)");
+      refuse("the mesh is degenerate: it is closed, but encloses no volume (" +
+                 std::to_string(facts().volume) + " m^3)",
+             mesh_.name);
     }
   }
 
@@ -405,12 +407,12 @@ class Check {
 
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale)))
-    throw Error(ErrorKind::usage, "scale: must be a positive number");
+    throw Error(ErrorKind::invalid_argument, "must be a positive number", "scale");
   if (options.max_hole && !(*options.max_hole > 0))
-    throw Error(ErrorKind::usage, "max-hole: must be a positive number");
+    throw Error(ErrorKind::invalid_argument, "must be a positive number", "max-hole");
   if (options.weld && !(*options.weld >= 0 && *options.weld <= kLargestWeld)) {
-    throw Error(ErrorKind::usage,
-                "weld: must lie between 0 and 0.1; it is a share of the mesh's diagonal");
+    throw Error(ErrorKind::invalid_argument,
+                "must lie between 0 and 0.1; it is a share of the mesh's diagonal", "weld");
   }
   return Check(mesh, options).run();
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/include/vpm/solid.h"
 #include "libvpm/mesh/fill_holes.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/raw_mesh.h"
@@ -15,26 +16,6 @@
 #include "libvpm/model/solid.h"
 
 namespace vpm {
-
-enum class Repair {
-  none,   // refuse what is not a solid
-  holes,  // drop repeated triangles, fill planar and small holes (fill_holes.h)
-  voxel,  // new surface about the voxels that the mesh encloses (voxel_repair.h)
-  flood,  // new surface about the voxels that a ball of max_hole cannot reach
-};
-
-struct SolidOptions {
-  double scale = 1;  // unit of the file in metres
-  // Vertices nearer than this, relative to the bounding box's diagonal, are joined. If unset:
-  // kDefaultWeld for STL; for formats with indices too, but only if the mesh is open before and
-  // closed after.
-  std::optional<double> weld = std::nullopt;
-  Repair repair = Repair::none;
-  int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel and flood
-  // m; wider holes (width_of in boundary_loops.h) are refused. If unset: no limit for
-  // Repair::voxel, kDefaultMaxHole for Repair::flood.
-  std::optional<double> max_hole = std::nullopt;
-};
 
 // Default of SolidOptions::weld: CAD exporters write the same coordinate as 0 and as -2.7e-16.
 inline constexpr double kDefaultWeld = 1e-9;
@@ -75,8 +56,8 @@ struct CheckedSolid {
 
 // Checks, repairs and orients a mesh. Throws Error(refused) for meshes that are empty; open,
 // non-manifold or one-sided beyond the requested repair (naming rims of holes by their first
-// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws Error(usage) for
-// options out of range.
+// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws
+// Error(invalid_argument) for options out of range.
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
 
 }  // namespace vpm

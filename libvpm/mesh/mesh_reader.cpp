@@ -50,13 +50,14 @@ const char* name_of(MeshFormat format) {
 void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
                          std::size_t file_bytes) {
   if (least_bytes > static_cast<double>(file_bytes)) {
-    refuse(name + ": the header says " + what + ", but the file has only " +
-           std::to_string(file_bytes) + " bytes; it is truncated or damaged");
+    refuse("the header says " + what + ", but the file has only " + std::to_string(file_bytes) +
+               " bytes; it is truncated or damaged",
+           name);
   }
 }
 
 RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
-  if (bytes.empty()) refuse(name + ": the file is empty");
+  if (bytes.empty()) refuse("the file is empty", name);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
@@ -72,7 +73,7 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (extension == "stl") return parse_stl(text, name);
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
-  refuse(name + ": this is no mesh in a format that is read here: OBJ, OFF, PLY, STL or OM");
+  refuse("this is no mesh in a format that is read here: OBJ, OFF, PLY, STL or OM", name);
 }
 
 RawMesh read_mesh(const std::string& path) {

@@ -52,9 +52,10 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
     }
   }
   if (!mesh.corners.empty() && largest >= mesh.vertices.size()) {
-    refuse(name + ": line " + std::to_string(largest_line) + ": vertex index " +
-           std::to_string(std::size_t{largest} + 1) + " is out of range; the file has " +
-           std::to_string(mesh.vertices.size()) + " vertices");
+    refuse("line " + std::to_string(largest_line) + ": vertex index " +
+               std::to_string(std::size_t{largest} + 1) + " is out of range; the file has " +
+               std::to_string(mesh.vertices.size()) + " vertices",
+           name);
   }
   return mesh;
 }

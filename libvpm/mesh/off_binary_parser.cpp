@@ -79,15 +79,16 @@ RawMesh parse_off_binary(std::string_view body, const std::string& name) {
       std::optional<RawMesh> mesh = attempt(body, big_endian, has_colors);
       if (!mesh) continue;
       for (const Vec3& p : mesh->vertices) {
-        if (!is_finite(p)) refuse(name + ": a coordinate is not finite");
+        if (!is_finite(p)) refuse("a coordinate is not finite", name);
       }
       mesh->format = MeshFormat::off;
       mesh->name = name;
       return *std::move(mesh);
     }
   }
-  refuse(name + ": the counts of this binary OFF file do not fit its " +
-         std::to_string(body.size()) + " bytes in either byte order; it is truncated or damaged");
+  refuse("the counts of this binary OFF file do not fit its " + std::to_string(body.size()) +
+             " bytes in either byte order; it is truncated or damaged",
+         name);
 }
 
 }  // namespace vpm

@@ -62,8 +62,9 @@ void walk_faces(Collector& found, const std::string& name) {
     do {
       const auto k = static_cast<std::size_t>(at);
       if (at < 0 || k >= used.size() || used[k] != 0)
-        refuse(name + ": the half-edges of face " + std::to_string(found.polygons.size() - 1) +
-               " do not close; the file is damaged");
+        refuse("the half-edges of face " + std::to_string(found.polygons.size() - 1) +
+                   " do not close; the file is damaged",
+               name);
       used[k] = 1;
       found.polygons.back().push_back(found.to_vertex[k]);
       at = found.next[k];
@@ -122,21 +123,22 @@ void check_chunks(std::string_view bytes, const Header& header, const std::strin
   while (true) {
     std::uint16_t word = 0;
     if (bytes.size() < at + sizeof word)
-      refuse(name + ": the file ends without its last chunk; it is truncated");
+      refuse("the file ends without its last chunk; it is truncated", name);
     std::memcpy(&word, bytes.data() + at, sizeof word);
     Chunk::Header chunk{};
     chunk << word;
     if (chunk.entity_ == Chunk::Entity_Sentinel) return;
     const std::size_t element = element_bytes(chunk);
     if (chunk.name_ != 0 || element == 0) {
-      refuse(name + ": the chunk at byte " + std::to_string(at) +
-             " is none of positions, connectivity, normals, colours and texture coordinates; save "
-             "the mesh without other properties");
+      refuse("the chunk at byte " + std::to_string(at) +
+                 " is none of positions, connectivity, normals, colours and texture coordinates",
+             name, "save the mesh without other properties");
     }
     at += sizeof word;
     if ((bytes.size() - at) / element < elements(chunk, header))
-      refuse(name + ": the chunk before byte " + std::to_string(at) +
-             " is longer than the file; it is truncated or damaged");
+      refuse("the chunk before byte " + std::to_string(at) +
+                 " is longer than the file; it is truncated or damaged",
+             name);
     at += element * elements(chunk, header);
   }
 }
@@ -153,7 +155,7 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
   RawMesh mesh;
   mesh.format = MeshFormat::om;
   mesh.name = name;
-  if (!looks_like_om(bytes)) refuse(name + ": an OM file must begin with OMT, OMQ or OMP");
+  if (!looks_like_om(bytes)) refuse("an OM file must begin with OMT, OMQ or OMP", name);
   const Header header = header_of(bytes);
   // A vertex takes three floats, a face at least one byte, an edge six indices.
   check_header_counts(name,
@@ -162,7 +164,7 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
                           std::to_string(header.edges) + " edges",
                       12.0 * header.vertices + header.faces + 6.0 * header.edges, bytes.size());
   if (header.version < OpenMesh::IO::OMFormat::mk_version(2, 0))
-    refuse(name + ": an OM file of a version before 2.0; save it again with a newer OpenMesh");
+    refuse("an OM file of a version before 2.0", name, "save it again with a newer OpenMesh");
   check_chunks(bytes, header, name);
   Mesh empty;
   Collector found(empty);
@@ -172,18 +174,18 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
   const bool is_read = OpenMesh::IO::OMReader().read(stream, found, options);
   omerr().enable();
   if (!is_read || found.vertices.size() != header.vertices)
-    refuse(name + ": OpenMesh cannot read this OM file; it is damaged, or of a newer version");
+    refuse("OpenMesh cannot read this OM file; it is damaged, or of a newer version", name);
   walk_faces(found, name);
   if (found.polygons.size() != header.faces)
-    refuse(name + ": the file has fewer faces than its header says; it is truncated or damaged");
+    refuse("the file has fewer faces than its header says; it is truncated or damaged", name);
   for (const Vec3& p : found.vertices) {
-    if (!is_finite(p)) refuse(name + ": a coordinate is not finite");
+    if (!is_finite(p)) refuse("a coordinate is not finite", name);
   }
   for (const std::vector<int>& polygon : found.polygons) {
-    if (polygon.size() < 3) refuse(name + ": a face has fewer than 3 corners");
+    if (polygon.size() < 3) refuse("a face has fewer than 3 corners", name);
     for (const int corner : polygon) {
       if (corner < 0 || static_cast<std::size_t>(corner) >= found.vertices.size())
-        refuse(name + ": vertex index " + std::to_string(corner) + " is out of range");
+        refuse("vertex index " + std::to_string(corner) + " is out of range", name);
       mesh.corners.push_back(static_cast<std::uint32_t>(corner));
     }
     mesh.polygon_end.push_back(mesh.corners.size());

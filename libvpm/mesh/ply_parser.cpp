@@ -120,7 +120,7 @@ Header parse_header(std::string_view bytes, const std::string& name) {
       lines.refuse_here("not a statement of a PLY header");
     }
   }
-  if (!has_format) refuse(name + ": the header has no 'format' line");
+  if (!has_format) refuse("the header has no 'format' line", name);
   header.body = lines.offset();
   header.lines = lines.line_number();
   return header;
@@ -141,7 +141,7 @@ void check_counts(const Header& header, std::size_t file_bytes, const std::strin
     }
     // An element without properties would take no bytes, so its count could be anything.
     if (element.properties.empty() && element.count > 0)
-      refuse(name + ": the element '" + element.name + "' has no properties");
+      refuse("the element '" + element.name + "' has no properties", name);
     least += each * static_cast<double>(element.count);
     what += (what.empty() ? "" : ", ") + std::to_string(element.count) + " x " + element.name;
   }
@@ -176,8 +176,9 @@ class BinaryBody {
     std::array<char, 8> raw{};
     const std::size_t size = size_of(type);
     if (bytes_.size() - at_ < size) {
-      refuse(name_ + ": the file ends at byte " + std::to_string(bytes_.size()) +
-             " within an element; it is truncated");
+      refuse("the file ends at byte " + std::to_string(bytes_.size()) +
+                 " within an element; it is truncated",
+             name_);
     }
     std::memcpy(raw.data(), bytes_.data() + at_, size);
     at_ += size;
@@ -203,7 +204,7 @@ class BinaryBody {
     return 0;
   }
   [[noreturn]] void refuse_here(const std::string& defect) const {
-    refuse(name_ + ": at byte " + std::to_string(at_) + ": " + defect);
+    refuse(defect, name_ + ": at byte " + std::to_string(at_));
   }
   bool holds(std::size_t count, Type type) const {
     return count <= (bytes_.size() - at_) / size_of(type);
@@ -326,20 +327,22 @@ void check_elements(const Header& header, const std::string& name) {
       for (const char* const axis : {"x", "y", "z"}) {
         const auto is_axis = [&](const Property& p) { return p.name == axis && !p.is_list; };
         if (std::count_if(element.properties.begin(), element.properties.end(), is_axis) != 1)
-          refuse(name + ": the header must give the vertices one property '" + axis + "'");
+          refuse(std::string("the header must give the vertices one property '") + axis + "'",
+                 name);
       }
-      if (element.count > kMaxVertices) refuse(name + ": more than 2^32 - 2 vertices");
+      if (element.count > kMaxVertices) refuse("more than 2^32 - 2 vertices", name);
     }
     if (element.name == "face") {
       ++face_elements;
       if (std::count_if(element.properties.begin(), element.properties.end(), is_corner_list) != 1)
-        refuse(name + ": the header must give the faces one list 'vertex_indices'");
+        refuse("the header must give the faces one list 'vertex_indices'", name);
     }
   }
   if (vertex_elements != 1 || face_elements != 1) {
-    refuse(
-        name + ": the header must have one element 'vertex' and one element 'face'" +
-        (face_elements == 0 ? "; this is a cloud of points or strips, not a mesh of faces" : ""));
+    refuse(std::string("the header must have one element 'vertex' and one element 'face'") +
+               (face_elements == 0 ? "; this is a cloud of points or strips, not a mesh of faces"
+                                   : ""),
+           name);
   }
 }
 
@@ -350,7 +353,7 @@ bool looks_like_ply(std::string_view bytes) {
 }
 
 RawMesh parse_ply(std::string_view bytes, const std::string& name) {
-  if (!looks_like_ply(bytes)) refuse(name + ": line 1: a PLY file must begin with 'ply'");
+  if (!looks_like_ply(bytes)) refuse("line 1: a PLY file must begin with 'ply'", name);
   RawMesh mesh;
   mesh.format = MeshFormat::ply;
   mesh.name = name;

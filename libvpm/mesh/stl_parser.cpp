@@ -66,7 +66,7 @@ void parse_ascii(std::string_view text, RawMesh& mesh) {
       lines.refuse_here("not a statement of an STL file");
     }
   }
-  if (open || !ended) refuse(mesh.name + ": the file ends without 'endsolid'; it is truncated");
+  if (open || !ended) refuse("the file ends without 'endsolid'; it is truncated", mesh.name);
 }
 
 void parse_binary(std::string_view bytes, RawMesh& mesh) {
@@ -75,7 +75,7 @@ void parse_binary(std::string_view bytes, RawMesh& mesh) {
                       static_cast<double>(kFacetsAt) +
                           static_cast<double>(kFacetBytes) * static_cast<double>(count),
                       bytes.size());
-  if (3 * count > kMaxVertices) refuse(mesh.name + ": more than 2^32 - 2 corners");
+  if (3 * count > kMaxVertices) refuse("more than 2^32 - 2 corners", mesh.name);
   mesh.vertices.reserve(3 * count);
   mesh.corners.reserve(3 * count);
   mesh.polygon_end.reserve(count);
@@ -85,8 +85,9 @@ void parse_binary(std::string_view bytes, RawMesh& mesh) {
     std::memcpy(corner, bytes.data() + at + kCornersAt, sizeof corner);
     for (const Vec3f& p : corner) {
       if (!is_finite(p)) {
-        refuse(mesh.name + ": triangle " + std::to_string(k) + " (at byte " + std::to_string(at) +
-               "): a coordinate is not finite");
+        refuse("triangle " + std::to_string(k) + " (at byte " + std::to_string(at) +
+                   "): a coordinate is not finite",
+               mesh.name);
       }
       add_corner(mesh, widen(p));
     }
@@ -109,8 +110,9 @@ RawMesh parse_stl(std::string_view bytes, const std::string& name) {
   if (!has_binary_size(bytes) && looks_like_ascii(bytes)) {
     parse_ascii(bytes, mesh);
   } else if (bytes.size() < kFacetsAt) {
-    refuse(name + ": " + std::to_string(bytes.size()) +
-           " bytes are too few for a binary STL file; it is truncated");
+    refuse(
+        std::to_string(bytes.size()) + " bytes are too few for a binary STL file; it is truncated",
+        name);
   } else {
     parse_binary(bytes, mesh);
   }

@@ -49,8 +49,9 @@ bool TextLines::next_line() {
 
 void TextLines::require_line(const char* what) {
   if (!next_line()) {
-    refuse(name_ + ": the file ends after line " + std::to_string(line_number_) + " where " + what +
-           " should follow; it is truncated");
+    refuse("the file ends after line " + std::to_string(line_number_) + " where " + what +
+               " should follow; it is truncated",
+           name_);
   }
 }
 
@@ -102,7 +103,7 @@ Vec3 TextLines::point() {
 }
 
 void TextLines::refuse_here(const std::string& defect) const {
-  refuse(name_ + ": line " + std::to_string(line_number_) + ": " + defect);
+  refuse(defect, name_ + ": line " + std::to_string(line_number_));
 }
 
 }  // namespace vpm

@@ -143,7 +143,7 @@ struct TriangleBvh::Build {
 
 TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
                          const std::vector<Triangle>& triangles) {
-  if (triangles.empty()) refuse("the mesh has no triangles; a solid needs at least four");
+  if (triangles.empty()) refuse("the mesh has no triangles", {}, "a solid needs at least four");
   Box box;
   std::vector<Build::Item> items;
   items.reserve(triangles.size());
@@ -151,8 +151,8 @@ TriangleBvh::TriangleBvh(const std::vector<Vec3>& vertices,
     for (const std::uint32_t v : triangles[i]) {
       if (v >= vertices.size() || !is_finite(vertices[v])) {
         refuse("triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
-               (v < vertices.size() ? ", which is not finite" : ", which does not exist") +
-               "; repair the mesh");
+                   (v < vertices.size() ? ", which is not finite" : ", which does not exist"),
+               {}, "repair the mesh");
       }
       box.add(vertices[v]);
     }

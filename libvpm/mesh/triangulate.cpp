@@ -94,8 +94,8 @@ std::vector<Triangle> triangulate(const RawMesh& mesh) {
       triangles.push_back({index[0], index[1], index[2]});
     } else {
       if (end - begin > kMostCorners) {
-        refuse(mesh.name + ": a polygon has " + std::to_string(end - begin) +
-               " corners; cut it into triangles");
+        refuse("a polygon has " + std::to_string(end - begin) + " corners", mesh.name,
+               "cut it into triangles");
       }
       corners.clear();
       for (std::size_t k = begin; k < end; ++k) corners.push_back(mesh.vertices[mesh.corners[k]]);

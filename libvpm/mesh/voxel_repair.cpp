@@ -124,9 +124,10 @@ Solid outermost_shells(const Solid& surface) {
 
 void check_resolution(int voxels) {
   if (voxels >= kFewestRepairVoxels && voxels <= kMostRepairVoxels) return;
-  throw Error(ErrorKind::usage, "repair: the voxels along the longest side must lie between " +
-                                    std::to_string(kFewestRepairVoxels) + " and " +
-                                    std::to_string(kMostRepairVoxels));
+  throw Error(ErrorKind::invalid_argument,
+              "the voxels along the longest side must lie between " +
+                  std::to_string(kFewestRepairVoxels) + " and " + std::to_string(kMostRepairVoxels),
+              "repair");
 }
 
 void compare(const Solid& solid, const Solid& mesh, VoxelRepair& done) {
@@ -163,9 +164,8 @@ Solid repair_by_flood(const Solid& mesh, int voxels, double width, VoxelRepair& 
   done.max_hole = width;
   const double radius = 0.5 * width;
   if (!(width >= kNarrowestFlood * box.voxel)) {
-    throw Error(ErrorKind::usage,
-                "repair: a flood closes holes of at least two voxels; give a wider hole or more "
-                "voxels");
+    throw Error(ErrorKind::invalid_argument, "a flood closes holes of at least two voxels",
+                "repair", "give a wider hole or more voxels");
   }
   // The coat is the surface of the centres of balls that touch the mesh from outside.
   const Vec3 around = radius * Vec3{1, 1, 1};

@@ -6,12 +6,13 @@
 // given width cannot reach is inside, however triangles face.
 #pragma once
 
+#include "libvpm/include/vpm/solid.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
 
-// Number of voxels along the longest side of the mesh's bounding box.
-inline constexpr int kRepairVoxels = 128, kFewestRepairVoxels = 8, kMostRepairVoxels = 1024;
+// Limits of the number of voxels along the longest side of the mesh's bounding box.
+inline constexpr int kFewestRepairVoxels = 8, kMostRepairVoxels = 1024;
 // Least width of a flood's ball in voxels; smaller ones would slip through the lattice.
 inline constexpr double kNarrowestFlood = 2;
 
@@ -30,7 +31,7 @@ bool orient_outward(Solid& mesh);
 
 // The repairs return a closed, oriented surface made by OpenVDB, empty if no voxel lies inside.
 // Details below a voxel vanish. Lengths in the mesh's unit. Identical for any number of threads.
-// Throw Error(usage) for a resolution or width out of range.
+// Throw Error(invalid_argument) for a resolution or width out of range.
 
 // Takes as inside what has a generalised winding number above one half; most triangles must face
 // outward.

@@ -15,17 +15,20 @@ static_assert(sizeof(Sphere) == 32 && sizeof(Vec3) == 24 && sizeof(Triangle) == 
               "chunks hold these types as they lie in memory");
 
 void check_solid(const Solid& solid, const std::string& name) {
-  if (solid.triangles.empty()) refuse(name + ": the solid has no triangles");
+  if (solid.triangles.empty()) refuse("the solid has no triangles", name);
   for (std::size_t i = 0; i < solid.vertices.size(); ++i) {
     if (!is_in_range(solid.vertices[i]))
-      refuse(name + ": vertex " + std::to_string(i) +
-             " of the solid is not finite, or further than 2^100 m from the origin");
+      refuse("vertex " + std::to_string(i) +
+                 " of the solid is not finite, or further than 2^100 m from the origin",
+             name);
   }
   for (std::size_t i = 0; i < solid.triangles.size(); ++i) {
     for (const std::uint32_t vertex : solid.triangles[i]) {
       if (vertex < solid.vertices.size()) continue;
-      refuse(name + ": triangle " + std::to_string(i) + " of the solid names vertex " +
-             std::to_string(vertex) + ", but there are " + std::to_string(solid.vertices.size()));
+      refuse("triangle " + std::to_string(i) + " of the solid names vertex " +
+                 std::to_string(vertex) + ", but there are " +
+                 std::to_string(solid.vertices.size()),
+             name);
     }
   }
 }
@@ -39,7 +42,7 @@ void check_within(const std::vector<Sphere>& spheres, const Solid& solid, const 
     const auto& [c, r] = spheres[i];
     if (c.x < box.low.x - r || c.y < box.low.y - r || c.z < box.low.z - r || c.x > box.high.x + r ||
         c.y > box.high.y + r || c.z > box.high.z + r)
-      refuse(name + ": sphere " + std::to_string(i) + " lies outside of the solid");
+      refuse("sphere " + std::to_string(i) + " lies outside of the solid", name);
   }
 }
 

@@ -4,12 +4,6 @@
 
 namespace vpm {
 
-struct Sphere {
-  Vec3 center;
-  double radius = 0;
-  friend constexpr bool operator==(const Sphere&, const Sphere&) = default;
-};
-
 inline constexpr double kPi = 3.14159265358979323846;
 
 VPM_HD constexpr double volume(const Sphere& s) {

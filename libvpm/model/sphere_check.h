@@ -17,13 +17,13 @@ namespace vpm {
 // finite, beyond kLargestLength, not positive or larger than its predecessor; the message names the
 // first such sphere.
 inline void check_spheres(const std::vector<Sphere>& spheres, const std::string& name) {
-  if (spheres.empty()) refuse(name + ": there are no spheres");
+  if (spheres.empty()) refuse("there are no spheres", name);
   if (spheres.size() >= std::numeric_limits<std::uint32_t>::max())
-    refuse(name + ": more than 2^32 - 2 spheres");
+    refuse("more than 2^32 - 2 spheres", name);
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     const Sphere& s = spheres[i];
     const auto refuse_sphere = [&](const char* defect) {
-      refuse(name + ": sphere " + std::to_string(i) + " " + defect);
+      refuse("sphere " + std::to_string(i) + " " + defect, name);
     };
     if (!is_finite(s.center) || !std::isfinite(s.radius)) refuse_sphere("is not finite");
     if (!is_in_range(s.center) || s.radius > kLargestLength)

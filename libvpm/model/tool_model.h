@@ -96,8 +96,8 @@ struct ToolModel {
   std::vector<LevelError> calibration;  // one entry per level, or empty if not measured
   nlohmann::json provenance;
 
-  // Returns the level with this many spheres, or the finest for 0. Throws Error(usage) that lists
-  // the levels if there is none.
+  // Returns the level with this many spheres, or the finest for 0. Throws Error(invalid_argument)
+  // that lists the levels if there is none.
   const Level& level(std::uint32_t sphere_count) const;
 };
 

@@ -46,7 +46,7 @@ class LevelCheck {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& defect) const { refuse(where_ + ": " + defect); }
+  [[noreturn]] void fail(const std::string& defect) const { refuse(defect, where_); }
 
   // Checks compressed rows: `count` + 1 offsets that ascend from 0 to `entries`.
   void rows(const Indices& begin, std::uint64_t count, std::size_t entries,
@@ -242,12 +242,13 @@ class LevelCheck {
 void check_calibration(const ToolModel& model, const std::string& name) {
   if (model.calibration.empty()) return;
   if (model.calibration.size() != model.levels.size())
-    refuse(name + ": its calibration has " + std::to_string(model.calibration.size()) +
-           " entries for " + std::to_string(model.levels.size()) + " levels");
+    refuse("its calibration has " + std::to_string(model.calibration.size()) + " entries for " +
+               std::to_string(model.levels.size()) + " levels",
+           name);
   for (const LevelError& error : model.calibration) {
     if (!(error.mean >= 0 && error.p95 >= 0 && error.mean <= error.worst &&
           error.p95 <= error.worst && std::isfinite(error.worst)))
-      refuse(name + ": its calibration is negative, not finite or exceeds its own worst case");
+      refuse("its calibration is negative, not finite or exceeds its own worst case", name);
   }
 }
 
@@ -256,22 +257,23 @@ void check_calibration(const ToolModel& model, const std::string& name) {
 void validate(const ToolModel& model, const std::string& name) {
   if (!(model.volume > 0) || !std::isnormal(model.volume) || !is_finite(model.center_of_mass) ||
       !std::isfinite(model.reach))
-    refuse(name + ": volume, centre of mass and reach must be finite, and the volume positive");
+    refuse("volume, centre of mass and reach must be finite, and the volume positive", name);
   if (!(model.reach >= kSmallestLength && model.reach <= kLargestLength) ||
       !is_in_range(model.center_of_mass))
-    refuse(name +
-           ": the tool is smaller than 2^-100 m, larger than 2^100 m or further than that from its "
-           "origin; scale it");
+    refuse(
+        "the tool is smaller than 2^-100 m, larger than 2^100 m or further than that from its "
+        "origin",
+        name, "scale it");
   check_spheres(model.spheres, name);
-  if (model.levels.empty()) refuse(name + ": the tool model has no levels");
+  if (model.levels.empty()) refuse("the tool model has no levels", name);
   std::uint32_t previous = 0;
   for (std::size_t k = 0; k < model.levels.size(); ++k) {
     const std::string where = name + ": level " + std::to_string(k);
     const std::uint32_t count = model.levels[k].sphere_count;
     if (count <= previous || count > model.spheres.size()) {
-      refuse(where + ": " + std::to_string(count) +
-             " spheres; levels must ascend and not exceed the model's " +
-             std::to_string(model.spheres.size()));
+      refuse(
+          std::to_string(count) + " spheres", where,
+          "levels must ascend and not exceed the model's " + std::to_string(model.spheres.size()));
     }
     LevelCheck(model, model.levels[k], where).run();
     previous = count;

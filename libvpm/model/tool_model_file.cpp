@@ -1,5 +1,7 @@
 #include "libvpm/model/tool_model_file.h"
 
+#include <algorithm>
+
 #include "libvpm/core/error.h"
 #include "libvpm/file/container.h"
 
@@ -12,6 +14,7 @@ constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
 constexpr file::ChunkId kShareVolume("SHRV"), kShareCentroid("SHRC"), kShareReach("SHRR");
 constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
 constexpr file::ChunkId kCalibration("CALB");
+constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
 
 struct ToolRecord {
   double volume;
@@ -28,7 +31,7 @@ struct LevelRecord {
 static_assert(sizeof(ToolRecord) == 40 && sizeof(LevelRecord) == 64 &&
                   sizeof(HierarchyNode) == 48 && sizeof(CellBlock) == 24 &&
                   sizeof(CellSample) == 24 && sizeof(Sphere) == 32 && sizeof(Vec3) == 24 &&
-                  sizeof(LevelError) == 24,
+                  sizeof(LevelError) == 24 && sizeof(Vec3f) == 12 && sizeof(Triangle) == 12,
               "chunks hold these types as they lie in memory");
 
 LevelRecord record_of(const Level& level) {
@@ -78,14 +81,15 @@ void add_level(file::Writer& writer, const Level& level, std::uint32_t k) {
 
 ToolModel model_of(const file::Reader& reader) {
   const std::vector<ToolRecord> tool = reader.read<ToolRecord>(kTool, 0);
-  if (tool.size() != 1) reader.refuse_file("chunk TOOL must hold one record; make the file again");
+  if (tool.size() != 1)
+    reader.refuse_file("chunk TOOL must hold one record", "make the file again");
   ToolModel model;
   model.volume = tool[0].volume;
   model.center_of_mass = tool[0].center_of_mass;
   model.reach = tool[0].reach;
   const nlohmann::json& header = reader.header();
   const nlohmann::json hash = header.value("solid_hash", nlohmann::json());
-  if (!hash.is_string()) reader.refuse_file("the header has no solid_hash; make the file again");
+  if (!hash.is_string()) reader.refuse_file("the header has no solid_hash", "make the file again");
   model.solid_hash = hash.get<std::string>();
   model.provenance = header.value("provenance", nlohmann::json());
   model.spheres = reader.read<Sphere>(kSpheres, 0);
@@ -95,6 +99,13 @@ ToolModel model_of(const file::Reader& reader) {
   if (reader.has(kCalibration, 0)) model.calibration = reader.read<LevelError>(kCalibration, 0);
   validate(model, reader.name());
   return model;
+}
+
+void add_mesh(file::Writer& writer, const Solid& mesh, Vec3 center_of_mass) {
+  std::vector<Vec3f> vertices;
+  for (const Vec3& p : mesh.vertices) vertices.push_back(narrow(p - center_of_mass));
+  writer.add(kMeshVertices, 0, std::span(std::as_const(vertices)));
+  writer.add(kMeshTriangles, 0, std::span(mesh.triangles));
 }
 
 }  // namespace
@@ -107,7 +118,25 @@ ToolModel parse_tool_model(std::vector<std::byte> bytes, const std::string& name
   return model_of(file::Reader(std::move(bytes), name, file::Kind::tool_model));
 }
 
-void write_tool_model(const std::string& path, const ToolModel& model) {
+Solid read_display_mesh(const std::string& path) {
+  const file::Reader reader(path, file::Kind::tool_model);
+  Solid mesh;
+  if (!reader.has(kMeshVertices, 0)) return mesh;
+  const std::vector<ToolRecord> tool = reader.read<ToolRecord>(kTool, 0);
+  if (tool.size() != 1) reader.refuse_file("chunk TOOL must hold one record; make the file again");
+  for (const Vec3f& p : reader.read<Vec3f>(kMeshVertices, 0)) {
+    if (!is_finite(p)) reader.refuse_file("a vertex of its mesh for views is not finite");
+    mesh.vertices.push_back(tool[0].center_of_mass + widen(p));
+  }
+  mesh.triangles = reader.read<Triangle>(kMeshTriangles, 0);
+  for (const Triangle& t : mesh.triangles) {
+    if (std::ranges::max(t) >= mesh.vertices.size())
+      reader.refuse_file("a triangle of its mesh for views has a vertex that is not there");
+  }
+  return mesh;
+}
+
+void write_tool_model(const std::string& path, const ToolModel& model, const Solid& mesh) {
   validate(model, path);
   file::Writer writer(
       file::Kind::tool_model,
@@ -120,6 +149,7 @@ void write_tool_model(const std::string& path, const ToolModel& model) {
   writer.add(kLevels, 0, std::span(std::as_const(records)));
   for (std::uint32_t k = 0; k < model.levels.size(); ++k) add_level(writer, model.levels[k], k);
   if (!model.calibration.empty()) writer.add(kCalibration, 0, std::span(model.calibration));
+  if (!mesh.triangles.empty()) add_mesh(writer, mesh, model.center_of_mass);
   writer.write(path);
 }
 

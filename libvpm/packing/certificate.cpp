@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/winding_number.h"
@@ -135,6 +136,19 @@ Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres,
   certificate.holds = certificate.max_protrusion <= certificate.tolerance &&
                       certificate.max_overlap <= certificate.tolerance;
   return certificate;
+}
+
+void refuse_uncertified(const std::string& name, double coverage, const Certificate& certificate) {
+  if (coverage > 1 + kCertificateTolerance)
+    refuse("the spheres hold " + std::to_string(coverage) +
+               " times the volume of the mesh, which intersects itself so that its inside is "
+               "ambiguous; nothing is written.",
+           name, "Give `repair` voxel");
+  if (certificate.holds) return;
+  refuse("the packing does not hold its certificate (protrusion " +
+             std::to_string(certificate.max_protrusion) + " m, overlap " +
+             std::to_string(certificate.max_overlap) + " m); nothing is written.",
+         name, "This is a bug of `pack`: please report it with the mesh");
 }
 
 }  // namespace vpm

@@ -1,6 +1,7 @@
 // Proof that spheres are a packing of a solid, independent of how they were found.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "libvpm/mesh/outer_surface.h"
@@ -31,5 +32,9 @@ inline constexpr double kCertificateTolerance = 1e-9;
 // or null to compute it.
 Certificate certify(const Solid& solid, const std::vector<Sphere>& spheres,
                     const Enclosure* enclosure = nullptr);
+
+// Throws Error(refused), naming `name`, unless the certificate holds and `coverage`, the spheres'
+// volume / the solid's, is at most 1 to its tolerance: more shows that the mesh crosses itself.
+void refuse_uncertified(const std::string& name, double coverage, const Certificate& certificate);
 
 }  // namespace vpm

@@ -341,7 +341,7 @@ class Growth {
 std::vector<Sphere> grow(const Solid& solid, const std::vector<Sphere>& spheres,
                          const GrowOptions& options) {
   if (!(options.min_radius >= 0) || !(options.max_radius > 0)) {
-    throw Error(ErrorKind::usage, "the limits of radii must be positive numbers");
+    throw Error(ErrorKind::invalid_argument, "the limits of radii must be positive numbers");
   }
   if (spheres.empty()) return spheres;
   Growth growth(solid, spheres, options);

@@ -31,7 +31,8 @@ struct GrowOptions {
 // where larger ones fit by now, and all grow again.
 //
 // Deterministic for any number of threads; scaling by 2^k changes exponents only. Throws
-// Error(usage) for limits that are not numbers, Error(refused) for a solid without extent.
+// Error(invalid_argument) for limits that are not numbers, Error(refused) for a solid without
+// extent.
 std::vector<Sphere> grow(const Solid& solid, const std::vector<Sphere>& spheres,
                          const GrowOptions& options);
 

@@ -30,7 +30,9 @@ constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
 constexpr double kApollonianPower = 4.7;
 
 void check(const PackOptions& options) {
-  const auto wrong = [](const std::string& what) { throw Error(ErrorKind::usage, what); };
+  const auto wrong = [](const std::string& what) {
+    throw Error(ErrorKind::invalid_argument, what);
+  };
   if (!(options.coverage > 0 && options.coverage <= 1))
     wrong("the coverage to reach must be above 0 and at most 1");
   if (!(options.inertia_error >= 0)) wrong("the inertia error must be 0 or a positive number");
@@ -56,7 +58,8 @@ class Packer {
         space_(distance_, smallest_,
                kBlocks + kBlocksPerSphere * std::min(options.spheres, kMostSpheres)) {
     if (options.inertia_error > 0) no_inertia_.emplace(solid);
-    if (!(volume_ > 0)) refuse("the solid has no volume; check that its triangles face outward");
+    if (!(volume_ > 0))
+      refuse("the solid has no volume", {}, "check that its triangles face outward");
   }
 
   PackResult run() {

@@ -57,8 +57,9 @@ struct PackResult {
 //
 // Deterministic for any number of threads; a solid scaled by 2^k gives spheres scaled by 2^k to the
 // bit. A result with fewer spheres is a prefix of one with more under the same other options,
-// except for solids that hold more than twice as many spheres of equal size. Throws Error(usage)
-// for limits that are not positive numbers, Error(refused) for a solid without volume.
+// except for solids that hold more than twice as many spheres of equal size. Throws
+// Error(invalid_argument) for limits that are not positive numbers, Error(refused) for a solid
+// without volume.
 PackResult pack(const Solid& solid, const PackOptions& options);
 
 }  // namespace vpm

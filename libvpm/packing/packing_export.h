@@ -9,24 +9,18 @@
 namespace vpm {
 
 // File formats by extension of the path; lengths in metres.
-//   .csv         a line "x,y,z,r", then one line per sphere
+//   .csv .ply .points.ply .glb   spheres (sphere_files.h), coloured by radius
 //   .json        {"centers": [[x, y, z], ...], "radii": [r, ...]}, to the last bit
-//   .ply         every sphere as an icosphere of 80 triangles, binary, for viewers
-//   .points.ply  every sphere as a point with its radius, binary
 //   .vtk         legacy VTK: points with their radii
 //   .yml .yaml   cuRobo's robot description: collision_spheres of a link
 //   .urdf        a robot of one link whose collision geometry is the spheres
 //   .srdf        link_sphere_approximation of a link
-// Text has 9 significant digits, JSON as many as are exact. PLY is coloured by radius, from blue
-// (smallest) over green to red (largest), logarithmically. `link` names the link in YAML, URDF and
-// SRDF. export_format throws Error(usage) for any other extension.
-enum class ExportFormat { csv, json, ply, points, vtk, yml, urdf, srdf };
+// Text has 9 significant digits, JSON as many as are exact. `link` names the link in YAML, URDF and
+// SRDF. export_format throws Error(invalid_argument) for any other extension.
+enum class ExportFormat { spheres, json, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 
-std::string packing_as_csv(const std::vector<Sphere>& spheres);
 std::string packing_as_json(const std::vector<Sphere>& spheres);
-std::string packing_as_ply(const std::vector<Sphere>& spheres);
-std::string packing_as_points(const std::vector<Sphere>& spheres);
 std::string packing_as_vtk(const std::vector<Sphere>& spheres);
 std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link);
 std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link);

@@ -24,14 +24,14 @@ constexpr double kMargin = 1e-12;
 UnitFrame unit_frame(const Solid& solid) {
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for (const Vec3 p : solid.vertices) {
-    if (!is_finite(p)) refuse("the solid has a vertex that is not finite; repair the mesh");
+    if (!is_finite(p)) refuse("the solid has a vertex that is not finite", {}, "repair the mesh");
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
   const Vec3 side = high - low;
   const double longest = std::max({side.x, side.y, side.z});
   if (!(longest > 0) || !std::isfinite(longest)) {
-    refuse("the solid has no extent; a packing needs a mesh that encloses a volume");
+    refuse("the solid has no extent", {}, "a packing needs a mesh that encloses a volume");
   }
   UnitFrame frame;
   frame.center = low + 0.5 * side;

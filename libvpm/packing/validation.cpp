@@ -49,7 +49,7 @@ struct Lattice {
 };
 
 Lattice lattice_of(const Solid& solid, int voxels) {
-  if (solid.vertices.empty()) refuse("validation: the solid has no vertices");
+  if (solid.vertices.empty()) refuse("the solid has no vertices", "validation");
   Lattice lattice;
   const Vec3 first = solid.vertices.front();
   Box box{first, first}, turned{lattice.turn * first, lattice.turn * first};
@@ -58,7 +58,7 @@ Lattice lattice_of(const Solid& solid, int voxels) {
     turned.add(lattice.turn * p);
   }
   lattice.voxel = std::max({box.size().x, box.size().y, box.size().z}) / voxels;
-  if (!(lattice.voxel > 0)) refuse("validation: the solid has no extent");
+  if (!(lattice.voxel > 0)) refuse("the solid has no extent", "validation");
   lattice.low = turned.low;
   const auto count = [&](double side) {
     return static_cast<int>(std::ceil(side / lattice.voxel)) + 2 * kMargin;

@@ -33,7 +33,7 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass, const Cro
   if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
 }
 
-template <Body Surface>
+template <MeasuredBody Surface>
 class CellMeasure {
  public:
   // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the

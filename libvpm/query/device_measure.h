@@ -1,65 +1,49 @@
-// Measures computed on a CUDA device: the same bits as PaperMeasure and RefinedMeasure.
+// Measures computed on CUDA devices: the same bits as PaperMeasure and RefinedMeasure.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "libvpm/core/pose.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/query_options.h"
-#include "libvpm/query/result.h"
-#include "libvpm/query/tool_pose.h"
-#include "libvpm/surface/depth_frames.h"
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/query/scene_view.h"
 
 namespace vpm {
 
-// The tool's level stays on the device; a cloud is copied there when it is first queried.
+// Keeps the tool's level on the device. Belongs to one thread at a time.
 class DeviceMeasure {
  public:
   virtual ~DeviceMeasure() = default;
 
-  // Of a prepared cloud, one launch at most and one wait; allocates nothing after the first call on
-  // a cloud. Poses must be valid (query.h). Throw Error(unavailable) where the device fails.
-  virtual Result run(const PreparedCloud& cloud, const Pose& pose) = 0;
+  // Stores the results of `jobs`, whose tools are places in `measures`: this one and others that
+  // were made with the same options, except the level. Poses must be exact (tool_query.h). A single
+  // job of a single measure takes one launch at most and one wait, and allocates nothing after the
+  // first call on a scene; many are cut into launches that fit the device's memory. A cloud is
+  // copied to the device when first asked; a frame made for this device lies there already. Throws
+  // Error(unavailable) if the device fails.
+  virtual void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+                   std::span<const Job> jobs, std::span<Result> results) = 0;
 
-  // Results in the order of the poses; from any thread. Poses are cut into launches that fit the
-  // device's memory.
-  virtual void run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                   std::span<Result> results) = 0;
-
-  // The same of frames, which lie on the device already.
-  virtual Result run_frame(const DepthFrame& frame, const Pose& pose) {
-    return run(frame.cloud(), pose);
-  }
-  virtual void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
-                         std::span<Result> results) {
-    run(frame.cloud(), poses, results);
-  }
-
-  // Of several tools: `measures` are this one and others that were made with the same options, but
-  // for the level. Poses of many tools share a launch.
-  virtual void run_together(std::span<DeviceMeasure* const> measures, const PreparedCloud& cloud,
-                            std::span<const ToolPose> poses, std::span<Result> results) {
-    for (std::size_t k = 0; k < poses.size(); ++k)
-      results[k] = measures[poses[k].tool]->run(cloud, poses[k].pose);
-  }
-  virtual void run_frame_together(std::span<DeviceMeasure* const> measures, const DepthFrame& frame,
-                                  std::span<const ToolPose> poses, std::span<Result> results) {
-    run_together(measures, frame.cloud(), poses, results);
+  // Returns the result of a single job.
+  Result run(const SceneView& scene, const Pose& pose) {
+    DeviceMeasure* const self = this;
+    const Job job{pose, 0};
+    Result result;
+    run(scene, {&self, 1}, {&job, 1}, {&result, 1});
+    return result;
   }
 
-  // Of the last single run.
+  // Reads the states of the spheres at the last single job.
   virtual void read_states(std::vector<SphereState>& states) = 0;
-  // What came after the boundary was known, by the device's clock: next to nothing where a camera
-  // tells what is inside.
+  // Returns the time of the last single job after the boundary was known, by the device's clock:
+  // next to nothing if a camera tells the inside.
   virtual double flood_microseconds() const = 0;
 };
 
-// Of the options, what speaks of measure, points and device. On Device::kAll, single poses go to
-// the first device. Throws Error(unavailable) where libvpm was built without CUDA, or the device
-// has too little memory.
+// Returns the measure of the options' measure, points and device. On Device::kAll single jobs go to
+// the first device. Throws Error(unavailable) in builds without CUDA, or if the device has too
+// little memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    const QueryOptions& options);
 

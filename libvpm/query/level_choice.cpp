@@ -20,21 +20,21 @@ std::string percent(double fraction) {
 
 std::size_t coarsest_level_within(const ToolModel& tool, double max_error) {
   if (!(max_error > 0 && max_error < 1)) {
-    throw Error(ErrorKind::usage, "the error must lie between 0 and 1 (0 % and 100 %)");
+    throw Error(ErrorKind::invalid_argument, "the error must lie between 0 and 1 (0 % and 100 %)");
   }
   if (tool.calibration.size() != tool.levels.size()) {
-    refuse("the tool model has no calibration; make it again with vpm-graph --calibrate");
+    refuse("the tool model has no calibration", {}, "make it again with `calibrate`");
   }
   if (tool.levels.size() < 2) {
-    refuse("the tool model has one level only; make it again with vpm-graph --levels");
+    refuse("the tool model has one level only", {}, "make it again with `levels`");
   }
   double best = 1;
   for (std::size_t k = 0; k < tool.levels.size(); ++k) {
     if (tool.calibration[k].worst <= max_error) return k;
     best = std::min(best, tool.calibration[k].worst);
   }
-  refuse("no level of the tool model keeps an error of " + percent(max_error) + "; the best has " +
-         percent(best) + ": allow more, or pack more spheres");
+  refuse("no level of the tool model keeps an error of " + percent(max_error), {},
+         "the best has " + percent(best) + ": allow more, or pack more spheres");
 }
 
 DeadlineLevel::DeadlineLevel(std::vector<double> probed, double deadline, std::size_t finest)

@@ -11,8 +11,8 @@
 namespace vpm {
 
 // Index of the coarsest level whose worst calibrated error is at most `max_error` (a fraction of
-// the tool's volume). Errors: usage for an error that is no fraction; refused for a model without a
-// calibration, with one level only, or none of whose levels is that accurate.
+// the tool's volume). Errors: invalid_argument for an error that is no fraction; refused for a
+// model without a calibration, with one level only, or none of whose levels is that accurate.
 std::size_t coarsest_level_within(const ToolModel& tool, double max_error);
 
 // The finest level that keeps a deadline, from the times of queries. Knows no clock: the caller

@@ -27,7 +27,7 @@ class RefinedMeasure {
   // Returns the answer for one body of the scene. `to_world` maps its frame to the world's;
   // `points` counts the points in spheres, null where nobody asks. Defined in
   // measure_refined_run.h.
-  template <Body Surface>
+  template <MeasuredBody Surface>
   Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
                 const PointsOfSphere* points);
 

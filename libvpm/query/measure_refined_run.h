@@ -16,7 +16,7 @@ template <class Surface>
 using InsideOf =
     std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, ShareFlood<Surface>>;
 
-template <Body Surface>
+template <MeasuredBody Surface>
 Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
                               const PointsOfSphere* points) {
   ToolSum sum;

@@ -1,35 +1,4 @@
-// The answer of a query.
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "libvpm/core/vec3.h"
-
-namespace vpm {
-
-enum class Measure { refined, paper };
-
-enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
-
-// Force and torque in world axes, the torque about the tool's centre of mass; both push the tool
-// into free space. N and N m, or m^3 and m^4 where QueryOptions::stiffness is 1, its default.
-struct Wrench {
-  Vec3 force, torque;
-
-  friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
-};
-
-struct Result {
-  double volume = 0;           // m^3 of the tool that is inside the cloud's solid
-  double volume_fraction = 0;  // volume / volume of the tool
-  Wrench wrench;
-  std::uint32_t boundary = 0;  // spheres that the surface cuts
-  std::uint32_t inside = 0;    // spheres behind the surface that count
-  // Distinct cloud points strictly inside a sphere of the tool; none where they were not counted.
-  std::optional<std::uint32_t> points;
-
-  friend constexpr bool operator==(const Result&, const Result&) = default;
-};
-
-}  // namespace vpm
+#include "libvpm/include/vpm/query_types.h"

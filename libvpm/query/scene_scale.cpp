@@ -108,8 +108,8 @@ double SceneScale::largest_radius() const {
 SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place) {
   const std::size_t points = cloud.positions().size();
   if (points < kFewestPoints) {
-    refuse("the cloud has " + std::to_string(points) + " points; its scale can be told from " +
-           std::to_string(kFewestPoints) + " on");
+    refuse("the cloud has " + std::to_string(points) + " points", {},
+           "its scale can be told from " + std::to_string(kFewestPoints) + " on");
   }
   std::vector<std::uint32_t> near;
   if (place) near = points_near(cloud, *place, kNear * reach);

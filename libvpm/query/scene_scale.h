@@ -5,24 +5,11 @@
 #include <cstddef>
 #include <optional>
 
+#include "libvpm/include/vpm/level_query.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/surface/prepared_cloud.h"
 
 namespace vpm {
-
-// Metres; medians over the surface, but for the curvature.
-struct SceneScale {
-  double spacing = 0;    // of neighbouring points
-  double noise = 0;      // standard deviation of the points about a smooth surface
-  double curvature = 0;  // 1/m: larger principal curvature, which nine tenths of the surface keep
-
-  // The smallest sphere that the points resolve: centred on the surface it holds a point, and
-  // centred its radius behind it, it is on the wrong side of the points less than once in 40 cases.
-  double smallest_radius() const;
-  // The largest sphere within which the surface is a plane but for what the points do not resolve;
-  // infinite for a plane.
-  double largest_radius() const;
-};
 
 // Of the surface within kNear reaches of `place` (world), or of the whole cloud where that holds
 // too few points or no place is given. `reach` is that of the tool, m. Same bits for any thread

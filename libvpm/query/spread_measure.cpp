@@ -33,36 +33,33 @@ class Rest {
 
 }  // namespace
 
-template <class Run>
-void SpreadMeasure::deal_out(std::size_t poses, const Run& run) {
-  Rest rest(poses, measures_.size());
-  std::vector<std::future<void>> runs;
-  for (std::size_t device = 0; device < measures_.size(); ++device) {
-    runs.push_back(std::async(std::launch::async, [&, device] {
-      for (auto part = rest.take(); part.count > 0; part = rest.take())
-        run(device, part.begin, part.count);
-    }));
-  }
-  for (auto& each : runs) each.get();  // throws what the run threw
-}
-
-void SpreadMeasure::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                        std::span<Result> results) {
-  deal_out(poses.size(), [&](std::size_t device, std::size_t begin, std::size_t count) {
-    measures_[device]->run(cloud, poses.subspan(begin, count), results.subspan(begin, count));
-  });
-}
-
-void SpreadMeasure::run_together(std::span<DeviceMeasure* const> measures,
-                                 const PreparedCloud& cloud, std::span<const ToolPose> poses,
-                                 std::span<Result> results) {
-  deal_out(poses.size(), [&](std::size_t device, std::size_t begin, std::size_t count) {
+void SpreadMeasure::run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+                        std::span<const Job> jobs, std::span<Result> results) {
+  const auto on_device = [&](std::size_t device) {
     std::vector<DeviceMeasure*> there;
     for (DeviceMeasure* measure : measures)
       there.push_back(dynamic_cast<SpreadMeasure&>(*measure).measures_[device].get());
-    measures_[device]->run_together(there, cloud, poses.subspan(begin, count),
-                                    results.subspan(begin, count));
-  });
+    return there;
+  };
+  if (jobs.size() == 1) {
+    DeviceMeasure* const first =
+        dynamic_cast<SpreadMeasure&>(*measures[jobs.front().tool]).measures_.front().get();
+    const Job job{jobs.front().pose, 0};
+    first->run(scene, {&first, 1}, {&job, 1}, results);
+    return;
+  }
+  const SceneView cloud = scene.cloud();
+  Rest rest(jobs.size(), measures_.size());
+  std::vector<std::future<void>> runs;
+  for (std::size_t device = 0; device < measures_.size(); ++device) {
+    runs.push_back(std::async(std::launch::async, [&, device] {
+      const std::vector<DeviceMeasure*> there = on_device(device);
+      for (auto part = rest.take(); part.count > 0; part = rest.take())
+        there.front()->run(cloud, there, jobs.subspan(part.begin, part.count),
+                           results.subspan(part.begin, part.count));
+    }));
+  }
+  for (auto& each : runs) each.get();  // throws what the run threw
 }
 
 }  // namespace vpm

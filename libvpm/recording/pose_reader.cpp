@@ -75,7 +75,7 @@ PoseReader::PoseReader(const std::string& path)
 }
 
 void PoseReader::refuse_empty() const {
-  refuse(name_ + ": no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON");
+  refuse("no pose in it", name_, "each line gives one: tx ty tz qx qy qz qw, or JSON");
 }
 
 std::optional<std::string> PoseReader::next_line() {
@@ -95,13 +95,14 @@ std::optional<Pose> PoseReader::next() {
   try {
     return is_json(*line) ? parse_json(*line) : parse_text(*line);
   } catch (const Error& fault) {
-    refuse(place() + ": " + fault.what());
+    const std::string what = fault.where().empty() ? "" : fault.where() + ": ";
+    refuse(what + fault.problem(), place(), fault.hint());
   }
 }
 
 Pose PoseReader::parse_json(const std::string& line) {
   const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
-  if (json.is_discarded()) refuse("not JSON; a line must be one whole pose");
+  if (json.is_discarded()) refuse("not JSON", {}, "a line must be one whole pose");
   if (json.is_array()) return from_numbers(numbers_of(json));
   if (json.contains("time")) {
     if (!json["time"].is_number()) refuse("\"time\" must be a number of seconds");
@@ -143,12 +144,12 @@ Pose PoseReader::from_numbers(std::vector<double> n) {
         rotation_from_matrix({n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10]}, &deviation),
         {n[3], n[7], n[11]}};
   } else {
-    refuse("found " + std::to_string(n.size()) +
-           " numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, "
-           "row by row)");
+    refuse(
+        "found " + std::to_string(n.size()) + " numbers", {},
+        "a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row)");
   }
   if (!is_in_range(pose.translation))
-    refuse("pose: the translation is not finite, or further than 2^100 m from the origin");
+    refuse("the translation is not finite, or further than 2^100 m from the origin", "pose");
   largest_deviation_ = std::max(largest_deviation_, deviation);
   return pose;
 }

@@ -60,12 +60,12 @@ void read_list(const fs::path& list, Recording& recording) {
         ++recording.missing;
       }
     } catch (const Error& fault) {
-      refuse(list.string() + ", line " + std::to_string(number) + ": " + fault.what());
+      refuse(fault.problem(), list.string() + ", line " + std::to_string(number), fault.hint());
     }
   }
   if (recording.frames.empty())
-    refuse(list.string() + ": none of the " + std::to_string(recording.missing) +
-           " files that it names is there");
+    refuse("none of the " + std::to_string(recording.missing) + " files that it names is there",
+           list.string());
 }
 
 bool is_frame(const fs::path& path) {
@@ -122,9 +122,8 @@ void number_frames(const std::vector<fs::path>& files, double frame_rate, Record
   for (const fs::path& path : files) {
     const std::optional<std::uint64_t> number = number_in(path);
     if (!number)
-      refuse(path.string() +
-             ": its name is neither a time (12.345.png) nor has it a number "
-             "(frame-000001.png); give a list of \"time file\" lines instead");
+      refuse("its name is neither a time (12.345.png) nor has it a number (frame-000001.png)",
+             path.string(), "give a list of \"time file\" lines instead");
     numbered.emplace_back(*number, path);
   }
   std::sort(numbered.begin(), numbered.end());
@@ -133,8 +132,8 @@ void number_frames(const std::vector<fs::path>& files, double frame_rate, Record
   for (std::size_t k = 1; k < numbered.size(); ++k) {
     const std::uint64_t gap = numbered[k].first - numbered[k - 1].first;
     if (gap == 0)
-      refuse(numbered[k].second.string() + ": has the number of " +
-             numbered[k - 1].second.filename().string() + "; give a list of \"time file\" lines");
+      refuse("has the number of " + numbered[k - 1].second.filename().string(),
+             numbered[k].second.string(), "give a list of \"time file\" lines");
     stride = stride == 0 ? gap : std::min(stride, gap);
   }
   recording.has_clock = false;
@@ -152,9 +151,8 @@ void read_folder(const fs::path& folder, double frame_rate, Recording& recording
   }
   const std::vector<fs::path> files = files_of(folder);
   if (files.empty())
-    refuse(folder.string() +
-           ": no frames in it; wanted are .png, .exr, .pcd or .ply files, or "
-           "depth.txt with \"time file\" lines");
+    refuse("no frames in it", folder.string(),
+           "wanted are .png, .exr, .pcd or .ply files, or depth.txt with \"time file\" lines");
   const bool timed = std::all_of(files.begin(), files.end(),
                                  [](const fs::path& path) { return time_in(path).has_value(); });
   if (!timed) return number_frames(files, frame_rate, recording);
@@ -168,8 +166,9 @@ void place_by_path(const std::string& name, Recording& recording) {
   recording.largest_deviation = reader.largest_deviation();
   recording.camera_source = name;
   if (!path.has_times() && path.poses().size() != recording.frames.size())
-    refuse(name + ": " + std::to_string(path.poses().size()) + " poses without times for " +
-           std::to_string(recording.frames.size()) + " frames; give one for each, or times");
+    refuse(std::to_string(path.poses().size()) + " poses without times for " +
+               std::to_string(recording.frames.size()) + " frames",
+           name, "give one for each, or times");
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
     RecordedFrame& frame = recording.frames[k];
     if (!path.has_times()) {
@@ -226,7 +225,7 @@ void read_intrinsics(const fs::path& path, Recording& recording) {
   for (const std::string_view word : split_words(as_text(bytes)))
     n.push_back(to_number(word).value_or(NAN));
   if (n.size() != 9 || n[1] != 0 || n[3] != 0 || n[6] != 0 || n[7] != 0 || n[8] != 1)
-    refuse(path.string() + ": not a camera's matrix fx 0 cx 0 fy cy 0 0 1; give --intrinsics");
+    refuse("not a camera's matrix fx 0 cx 0 fy cy 0 0 1", path.string(), "give `intrinsics`");
   recording.intrinsics = Intrinsics{n[0], n[4], n[2], n[5]};
 }
 

@@ -12,13 +12,13 @@ TimedPath::TimedPath(PoseReader& reader) {
   while (const std::optional<Pose> pose = reader.next()) {
     if (reader.time()) {
       times_.push_back(*reader.time());
-      if (!std::isfinite(times_.back())) refuse(reader.place() + ": the time is not finite");
+      if (!std::isfinite(times_.back())) refuse("the time is not finite", reader.place());
       if (times_.size() > 1 && !(times_.back() > times_[times_.size() - 2]))
-        refuse(reader.place() + ": times must ascend");
+        refuse("times must ascend", reader.place());
     }
     poses_.push_back(*pose);
     if (!times_.empty() && times_.size() != poses_.size())
-      refuse(reader.place() + ": either every pose has a time or none");
+      refuse("either every pose has a time or none", reader.place());
   }
   if (poses_.empty()) reader.refuse_empty();
 }
@@ -40,7 +40,7 @@ SampledPath::SampledPath(TimedPath path, double rate) : path_(std::move(path)), 
                            ? std::floor((path_.end() - path_.start()) * rate * (1 + 1e-12)) + 1
                            : static_cast<double>(path_.poses().size());
   if (!(steps <= kMostSteps))
-    refuse("the path is longer than 10^9 steps at this rate; are its times seconds?");
+    refuse("the path is longer than 10^9 steps at this rate", {}, "are its times seconds?");
   steps_ = static_cast<std::size_t>(steps);
 }
 

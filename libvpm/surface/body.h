@@ -1,6 +1,6 @@
 // Defines what the measure asks of a body of the scene: a depth image, points, a solid.
 //
-// Body is the concept; SeesFreeSpace, BoundsGap and HasOtherWalls are what some bodies know
+// MeasuredBody is the concept; SeesFreeSpace, BoundsGap and HasOtherWalls are what some bodies know
 // besides. The functions below ask for these and answer for bodies that do not have them; such an
 // answer costs work or leaves a refinement out, and is never wrong. All members are const and may
 // be called by many threads at once. Places are in the body's own frame, m.
@@ -33,8 +33,9 @@ namespace vpm {
 // flood decides; kSearchesFoot, that closest_normal() searches, so that neighbours share its
 // result.
 template <class B>
-concept Body = requires(const B& body, Vec3 x, double length, Reading reading, TangentPlane plane,
-                        const typename B::Look& look, Reading (*read)()) {
+concept MeasuredBody = requires(const B& body, Vec3 x, double length, Reading reading,
+                                TangentPlane plane, const typename B::Look& look,
+                                Reading (*read)()) {
   { body.look_at_ball(x, length) } -> std::same_as<typename B::Look>;
   { look.side } -> std::convertible_to<Side>;
   { look.point } -> std::convertible_to<std::uint32_t>;
@@ -52,7 +53,7 @@ concept Body = requires(const B& body, Vec3 x, double length, Reading reading, T
 // A body that has seen free space, pixel by pixel: what it saw to be free is free, whatever a mean
 // of the surface says.
 template <class B>
-concept SeesFreeSpace = Body<B> &&
+concept SeesFreeSpace = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::Look& look) {
   { body.side_of(look, x, length) } -> std::same_as<Side>;
   { body.tells_of_parts(x, length) } -> std::same_as<bool>;
@@ -65,7 +66,7 @@ concept SeesFreeSpace = Body<B> &&
 
 // A body that bounds how far places of a ball behind it are from the surface.
 template <class B>
-concept BoundsGap = Body<B> &&
+concept BoundsGap = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::Look& look) {
   { body.largest_gap(look, x, length) } -> std::same_as<double>;
 };
@@ -79,7 +80,7 @@ concept HasOtherWalls = requires(const B& body, Vec3 x, double length, TangentPl
 
 // Returns the side of a ball that was looked at; where its look does not decide, what was seen of
 // it alone may show it to be free.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD Side side_of(const B& body, const typename B::Look& look, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.side_of(look, center, radius);
@@ -87,7 +88,7 @@ VPM_HD Side side_of(const B& body, const typename B::Look& look, Vec3 center, do
     return look.side;
 }
 // True if a look at a ball tells of the balls in it (is_free_part).
-template <Body B>
+template <MeasuredBody B>
 VPM_HD bool tells_of_parts(const B& body, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.tells_of_parts(center, radius);
@@ -95,7 +96,7 @@ VPM_HD bool tells_of_parts(const B& body, Vec3 center, double radius) {
     return false;
 }
 // True if such a look shows a ball in the one that was looked at to be free.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD bool is_free_part(const B& body, const typename B::Look& look, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.is_free_part(look, center, radius);
@@ -103,7 +104,7 @@ VPM_HD bool is_free_part(const B& body, const typename B::Look& look, Vec3 cente
     return false;
 }
 // False if the surface surely does not touch a ball in the one that was looked at.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD bool may_touch(const B& body, const typename B::Look& look, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.may_touch(look, center, radius);
@@ -112,7 +113,7 @@ VPM_HD bool may_touch(const B& body, const typename B::Look& look, Vec3 center, 
 }
 // Returns the least inverse depth, 1/m, of the surface in a ball that was looked at; 0 of a body
 // that has seen no free space.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD float least_inverse_depth(const typename B::Look& look) {
   if constexpr (SeesFreeSpace<B>)
     return B::least_inverse_depth(look);
@@ -121,7 +122,7 @@ VPM_HD float least_inverse_depth(const typename B::Look& look) {
 }
 // True if a ball may have been seen to be free though the plane of the surface about it says no.
 // `least` is least_inverse_depth() of a ball that holds it.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD bool may_be_free(const B& body, float least, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.may_be_free(least, center, radius);
@@ -129,7 +130,7 @@ VPM_HD bool may_be_free(const B& body, float least, Vec3 center, double radius) 
     return false;
 }
 // False if may_be_free() says so of every ball in this one, which lies in one that was looked at.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD bool may_hold_free(const B& body, const typename B::Look& look, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
     return body.may_hold_free(look, center, radius);
@@ -138,7 +139,7 @@ VPM_HD bool may_hold_free(const B& body, const typename B::Look& look, Vec3 cent
 }
 // Returns a bound of the distance, m, from any place of a ball that was looked at to the foot of
 // its surface sample; without end where the body knows none.
-template <Body B>
+template <MeasuredBody B>
 VPM_HD double gap_bound(const B& body, const typename B::Look& look, Vec3 center, double radius) {
   if constexpr (BoundsGap<B>)
     return body.largest_gap(look, center, radius);

@@ -34,7 +34,7 @@ DepthImage depth_of(const FrameSlot& slot) {
 
 void check_options(const DepthFrameOptions& options) {
   const auto wrong = [](const std::string& what) {
-    throw Error(ErrorKind::usage, "depth frames: " + what);
+    throw Error(ErrorKind::invalid_argument, what, "depth frames");
   };
   check_intrinsics(options.intrinsics);
   check_normal_options(options.normals);
@@ -84,14 +84,16 @@ FrameSlot& DepthFrames::next() {
 
 std::span<std::uint16_t> DepthFrames::counts() {
   if (!options_.counts_per_metre)
-    throw Error(ErrorKind::usage, "depth frames: these are in metres; write to metres()");
+    throw Error(ErrorKind::invalid_argument, "these are in metres", "depth frames",
+                "write to metres()");
   FrameSlot& slot = next();
   return {reinterpret_cast<std::uint16_t*>(slot.image()), slot.pixels()};
 }
 
 std::span<float> DepthFrames::metres() {
   if (options_.counts_per_metre)
-    throw Error(ErrorKind::usage, "depth frames: these are in counts; write to counts()");
+    throw Error(ErrorKind::invalid_argument, "these are in counts", "depth frames",
+                "write to counts()");
   FrameSlot& slot = next();
   return {reinterpret_cast<float*>(slot.image()), slot.pixels()};
 }

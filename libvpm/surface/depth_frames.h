@@ -56,8 +56,8 @@ class DepthFrame {
 
 class DepthFrames {
  public:
-  // Throws Error(usage) for intrinsics or normals out of range, an image without pixels or counts
-  // per metre that are not positive; Error(unavailable) where the device is not there.
+  // Throws Error(invalid_argument) for intrinsics or normals out of range, an image without pixels
+  // or counts per metre that are not positive; Error(unavailable) where the device is not there.
   explicit DepthFrames(const DepthFrameOptions& options);
 
   // Where the next image belongs, row by row: one of them, as the options say. Pinned memory, so

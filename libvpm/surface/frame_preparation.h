@@ -12,7 +12,7 @@ namespace vpm {
 
 class FramePreparation {
  public:
-  // Throws Error(usage) for options out of range.
+  // Throws Error(invalid_argument) for options out of range.
   explicit FramePreparation(const NormalOptions& options,
                             PointReading points = PointReading::settled);
 

@@ -44,9 +44,10 @@ void check_extent(const Cloud& cloud) {
   if (!cloud.sensor) return;
   const auto& [intrinsics, width, height, to_world] = cloud.sensor->camera;
   if (std::uint64_t{width} * height > kMaxPixels)
-    refuse("the cloud's image has more than 2^31 - 1 pixels; crop it, or take every second one");
+    refuse("the cloud's image has more than 2^31 - 1 pixels", {},
+           "crop it, or take every second one");
   if (std::max(width, height) > DepthSurface::kMostPixelsASide)
-    refuse("the cloud's image is more than 65536 pixels wide or high; crop it");
+    refuse("the cloud's image is more than 65536 pixels wide or high", {}, "crop it");
 }
 
 }  // namespace
@@ -59,8 +60,9 @@ std::uint64_t PreparedCloud::next_serial() {
 PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
     : serial_(next_serial()), origin_(cloud.origin) {
   if (cloud.size() > kMaxPoints) {
-    refuse("the cloud has " + std::to_string(cloud.size()) + " points; at most " +
-           std::to_string(kMaxPoints) + " can be counted exactly: thin it out, or split it");
+    refuse("the cloud has " + std::to_string(cloud.size()) + " points", {},
+           "at most " + std::to_string(kMaxPoints) +
+               " can be counted exactly: thin it out, or split it");
   }
   validate(cloud, "the cloud");
   check_extent(cloud);

@@ -1,11 +1,11 @@
-// What a query asks of the scanned surface. Two kinds of cloud answer: DepthSurface (a camera's
+// The scanned surface as a query asks it. Two kinds of cloud answer: DepthSurface (a camera's
 // image, by projection) and DiskSurface (points without a camera, by the nearest disk). README.md
 // has the reasons.
 #pragma once
 
 #include <cstdint>
 
-#include "libvpm/core/vec3.h"
+#include "libvpm/core/vector_width.h"
 
 namespace vpm {
 
@@ -21,17 +21,20 @@ enum class Side : std::uint8_t {
 // A point of the cloud by its index, for surfaces that have such.
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
-// The surface as seen from one place x.
-struct Reading {
-  bool known = false;   // false: nothing was measured in this direction
-  double distance = 0;  // signed distance to the surface along its normal; negative inside
-  Vec3 normal;          // unit, into free space
-  Vec3 foot;            // the surface point that was read
-  std::uint32_t point = kNoPoint;  // the same, by index: a good place to begin the next search
+// The surface as seen from one place x, or from as many as a Real has lanes.
+template <class Real>
+struct ReadingOf {
+  MaskOf<Real> known{};    // false: nothing was measured in this direction
+  Real distance{};         // signed distance to the surface along its normal; negative inside
+  PlaceOf<Real> normal{};  // unit, into free space
+  PlaceOf<Real> foot{};    // the surface point that was read
+  IndexOf<Real> point =
+      ~IndexOf<Real>{};  // the same, by index (or kNoPoint): a good place to begin the next search
 };
+using Reading = ReadingOf<double>;
 
-// Reads a surface at several places, one after the other, as long as `take` says to go on. Whether
-// it has taken all.
+// Reads a surface at several places, one after the other, as long as `take` says to go on. Returns
+// true if it has taken all.
 struct ReadInTurn {
   template <class Surface, int kPlaces, class Take>
   VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
@@ -43,21 +46,29 @@ struct ReadInTurn {
 };
 
 // The surface in a ball, where it is flat: a plane.
-struct TangentPlane {
-  Vec3 normal;  // unit, into free space
-  Vec3 foot;    // a point of the plane
+template <class Real>
+struct TangentPlaneOf {
+  PlaceOf<Real> normal;  // unit, into free space
+  PlaceOf<Real> foot;    // a point of the plane
 
-  VPM_HD double distance(Vec3 x) const { return dot(normal, x - foot); }
+  [[gnu::always_inline]] VPM_HD Real distance(const PlaceOf<Real>& x) const {
+    return dot(normal, x - foot);
+  }
 };
+using TangentPlane = TangentPlaneOf<double>;
 
-// Of a solid that lies behind either of two planes, for a place behind both: the direction to its
-// nearest place, which is that of one of the planes, or where they meet.
-VPM_HD inline Vec3 normal_below_groove(Vec3 x, const TangentPlane& one, const TangentPlane& other) {
-  const double a = one.distance(x), b = other.distance(x), cosine = dot(one.normal, other.normal);
-  const double along_one = b * cosine - a, along_other = a * cosine - b;
-  if (along_one <= 0) return other.normal;
-  if (along_other <= 0) return one.normal;
-  return normalized_or_zero(along_one * one.normal + along_other * other.normal);
+// Returns the direction from a place x behind both of two planes to the nearest place of the solid
+// that lies behind either: that of one of the planes, or to where they meet.
+template <class Real>
+[[gnu::always_inline]] VPM_HD inline PlaceOf<Real> normal_below_groove(
+    const PlaceOf<Real>& x, const TangentPlaneOf<Real>& one, const TangentPlaneOf<Real>& other) {
+  const Real a = one.distance(x), b = other.distance(x), cosine = dot(one.normal, other.normal);
+  const Real along_one = b * cosine - a, along_other = a * cosine - b;
+  const MaskOf<Real> is_other = along_one <= 0, is_one_plane = is_other | (along_other <= 0);
+  const PlaceOf<Real> normal = choose(is_other, other.normal, one.normal);
+  if (all(is_one_plane)) return normal;
+  return choose(is_one_plane, normal,
+                normalized_or_zero(along_one * one.normal + along_other * other.normal));
 }
 
 // A wall to which a part of a body is nearer than to the wall that its middle is nearest to. That

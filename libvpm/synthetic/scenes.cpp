@@ -80,7 +80,8 @@ Scene make_scene(const std::string& name) {
     if (candidate == name) return {name, maker(), default_camera()};
     known += (known.empty() ? "" : ", ") + candidate;
   }
-  throw Error(ErrorKind::usage, "there is no scene '" + name + "'; the scenes are " + known);
+  throw Error(ErrorKind::invalid_argument, "there is no scene '" + name + "'", {},
+              "the scenes are " + known);
 }
 
 const std::vector<std::string>& scene_names() {

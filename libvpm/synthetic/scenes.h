@@ -23,7 +23,7 @@ struct Scene {
 // step           the wall, 0.05 m nearer left of x = -0.03 m
 // plate          a plate 4 mm thick and 0.4 m wide, half a metre before a wall
 // block          a free-standing cube of 0.2 m before a wall
-// Throws Error(usage), listing the scenes, for any other name.
+// Throws Error(invalid_argument), listing the scenes, for any other name.
 Scene make_scene(const std::string& name);
 const std::vector<std::string>& scene_names();
 

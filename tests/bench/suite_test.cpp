@@ -12,7 +12,7 @@ TEST(Suite, UnknownOrMissingNameIsWrongUsage) {
   for (const char* name : {"", "speed"}) {
     const auto fault = test::fault_of([&] { run_suite(name, {}); });
     ASSERT_TRUE(fault);
-    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_EQ(fault->kind(), ErrorKind::invalid_argument);
     EXPECT_NE(std::string(fault->what()).find("accuracy"), std::string::npos);
   }
 }
@@ -39,7 +39,7 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
     set(options);
     const auto fault = test::fault_of([&] { run_suite(name, options); });
     ASSERT_TRUE(fault) << name;
-    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_EQ(fault->kind(), ErrorKind::invalid_argument);
     EXPECT_NE(std::string(fault->what()).find(who_takes_it), std::string::npos) << fault->what();
   };
   refuses(
@@ -66,7 +66,7 @@ TEST(Suite, SaysWhereAFolderHoldsNoRecordedImages) {
     options.data = "/nowhere";
     const auto fault = test::fault_of([&] { run_suite(name, options); });
     ASSERT_TRUE(fault) << name;
-    EXPECT_EQ(fault->kind(), ErrorKind::usage);
+    EXPECT_EQ(fault->kind(), ErrorKind::invalid_argument);
     EXPECT_NE(std::string(fault->what()).find("/nowhere"), std::string::npos);
   }
 }
@@ -78,7 +78,7 @@ TEST(Suite, ScalingTimesOneDevice) {
     SuiteOptions options;
     options.device = device;
     EXPECT_EQ(test::kind_of_fault([&] { run_suite("scaling", options); }),
-              cuda_device_count() == 0 ? ErrorKind::unavailable : ErrorKind::usage);
+              cuda_device_count() == 0 ? ErrorKind::unavailable : ErrorKind::invalid_argument);
   }
 }
 

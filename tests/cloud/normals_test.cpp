@@ -311,11 +311,11 @@ TEST(NormalOptions, OutOfRangeIsWrongUsage) {
   };
   constexpr auto kMethod = NormalMethod::inverse_depth;
   for (const int window : {-1, 0, 1, 2, 8, 33})
-    EXPECT_EQ(kind(k, {kMethod, window, kEdgeGate}), ErrorKind::usage) << window;
+    EXPECT_EQ(kind(k, {kMethod, window, kEdgeGate}), ErrorKind::invalid_argument) << window;
   for (const double gate : {-0.1, 1.0, std::nan("")})
-    EXPECT_EQ(kind(k, {kMethod, 7, gate}), ErrorKind::usage) << gate;
-  EXPECT_EQ(kind({0, 525, 0, 0}, {}), ErrorKind::usage);
-  EXPECT_EQ(kind({525, std::nan(""), 0, 0}, {}), ErrorKind::usage);
+    EXPECT_EQ(kind(k, {kMethod, 7, gate}), ErrorKind::invalid_argument) << gate;
+  EXPECT_EQ(kind({0, 525, 0, 0}, {}), ErrorKind::invalid_argument);
+  EXPECT_EQ(kind({525, std::nan(""), 0, 0}, {}), ErrorKind::invalid_argument);
   EXPECT_THROW(estimate_normals({4, 4, std::vector<float>(15)}, k, {}), Error);
   EXPECT_THROW(normal_method_from_text("svd"), Error);
   EXPECT_EQ(normal_method_from_text(to_text(NormalMethod::pca)), NormalMethod::pca);

@@ -152,7 +152,7 @@ TEST(PoseText, IsRead) {
 TEST(PoseText, WrongFormIsWrongUsage) {
   for (const char* text : {"", "1,2,3", "1,2,3,0,0,0,1,", "1,2,3,0,0,0,one", "1,2,3,0,0,0,1,0",
                            "1 2 3 0 0 0 1", "0x1,2,3,0,0,0,1", "1,,3,0,0,0,1"}) {
-    EXPECT_EQ(kind_of_fault([&] { pose_from_text(text); }), ErrorKind::usage) << text;
+    EXPECT_EQ(kind_of_fault([&] { pose_from_text(text); }), ErrorKind::invalid_argument) << text;
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -28,7 +28,7 @@ Met expect_same(const PreparedCloud& cloud, const ToolModel& tool, int poses,
                 bench::Traversals traversals) {
   QueryOptions options;
   options.measure = Measure::paper;
-  Query on_cpu(tool, options);
+  ToolQuery on_cpu(tool, options);
   const auto baseline = bench::make_paper_baseline(tool, on_cpu.level(), cloud, traversals, 0);
   Met met;
   for (int k = 0; k < poses; ++k) {

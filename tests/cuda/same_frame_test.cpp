@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cuda/effort.h"
 #include "tests/cuda/frame_memory.h"
@@ -182,7 +182,7 @@ TEST_P(SameFrame, OrTheSameRefusal) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
   QueryOptions query_options;
   query_options.device = kDevice;
-  Query query(tool, query_options);
+  ToolQuery query(tool, query_options);
   const Intrinsics all_intrinsics[] = {{525, 525, 20, 10},
                                        {1e-3, 1e-3, 20, 10},
                                        {1e-35, 9, 3, 10},
@@ -200,7 +200,7 @@ TEST_P(SameFrame, OrTheSameRefusal) {
         const Pose pose{testing::generic_rotation(), {0, 0, 0.9}};
         try {
           const PreparedCloud cloud = prepared(image, options, {});
-          at_host = Query(tool, {}).run(cloud, pose);
+          at_host = ToolQuery(tool, {}).run(cloud, pose);
         } catch (const Error& fault) {
           expected = fault.what();
         }
@@ -231,9 +231,9 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   for (std::uint64_t k = 0; k < 4; ++k)
     images.push_back(synthetic::render_with_kinect_noise(*scene.surface, camera, k));
   QueryOptions options;
-  Query on_cpu(tool, options);
+  ToolQuery on_cpu(tool, options);
   options.device = kDevice;
-  Query first(tool, options), second(tool, options);
+  ToolQuery first(tool, options), second(tool, options);
   std::uint32_t boundary = 0;
   DepthFrame frame = frame_of(frames, images[0], camera.to_world);
   for (int k = 0; k < testing::effort(12); ++k) {
@@ -245,7 +245,7 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
     expect_equal(expected, first.run(frame, pose_of(k)));
     const Pose poses[] = {pose_of(k), pose_of(k)};
     Result results[2];
-    first.run(frame, poses, results);
+    first.run(frame, jobs_of(poses), results);
     expect_equal(expected, results[1]);
     other.join();
     EXPECT_EQ(frame.points(), cloud.positions().size());
@@ -265,13 +265,13 @@ TEST_P(SameFrame, EachImageAnew) {
   const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.9}};
-  Query on_cpu(tool, {.counts_points = false});
+  ToolQuery on_cpu(tool, {.counts_points = false});
   std::vector<Result> expected;
   for (int k = 0; k < 6; ++k)
     expected.push_back(
         on_cpu.run(prepared(images[k % 3], options, cameras[k % 2]), cameras[k % 2] * pose));
   for (const std::uint32_t standby_us : {0U, 2000U}) {
-    Query query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
+    ToolQuery query(tool, {.device = kDevice, .counts_points = false, .standby_us = standby_us});
     DepthFrames frames(options);
     for (int k = 0; k < testing::effort(120); ++k) {
       SCOPED_TRACE(k);
@@ -289,7 +289,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0, 0, 0.8}};
   const ToolModel tool = testing::lattice_cube(0.3, 9, 3);
-  Query on_cpu(tool, {.counts_points = false}),
+  ToolQuery on_cpu(tool, {.counts_points = false}),
       query(tool, {.device = kDevice, .counts_points = false});
   Result expected[2];
   for (int k = 0; k < 2; ++k)
@@ -319,11 +319,11 @@ TEST(FramesOnDevice, SmallQuery) {
   const ToolModel tool = testing::lattice_cube(0.05, 4, 3);
   QueryOptions options;
   options.device = kDevice;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   DepthFrames frames(options_of(image, {}));
   const DepthFrame frame = frame_of(frames, image, {});
   const Pose pose{testing::generic_rotation(), {0, 0, 0.95}};
-  const Result expected = Query(tool, {}).run(frame.cloud(), pose);
+  const Result expected = ToolQuery(tool, {}).run(frame.cloud(), pose);
   EXPECT_GT(expected.boundary, 0U);
   expect_equal(expected, query.run(frame, pose));
 }

@@ -7,7 +7,7 @@
 #include <deque>
 #include <set>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/cuda/effort.h"
 #include "tests/cuda/taken_memory.h"
@@ -41,10 +41,10 @@ std::vector<Pose> poses_of(int count) {
 }
 
 // Where there are more poses than results, they begin again.
-void expect_same_batch(Query& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
+void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
   std::vector<Result> batch(poses.size());
-  query.run(cloud, poses, batch);
+  query.run(cloud, jobs_of(poses), batch);
   for (std::size_t k = 0; k < batch.size(); ++k) {
     SCOPED_TRACE(k);
     expect_equal(expected[k % expected.size()], batch[k]);
@@ -77,11 +77,11 @@ TEST_P(SameQuery, OnCpuAndDevice) {
     QueryOptions options;
     options.measure = measure;
     options.counts_points = true;
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     options.counts_points = false;
-    Query without_points(tool, options);
+    ToolQuery without_points(tool, options);
     std::vector<Pose> poses;
     std::vector<Result> expected;
     for (int k = 0; k < kPoses; ++k) {
@@ -127,9 +127,9 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
         testing::lattice_cube(0.05, 20, 2), testing::lattice_cube(0.03, 9, 1)}) {
     for (const bool counts_points : {true, false}) {
       QueryOptions options{.counts_points = counts_points};
-      Query on_cpu(tool, options);
+      ToolQuery on_cpu(tool, options);
       options.device = {Device::Kind::cuda, 0};
-      Query on_device(tool, options);
+      ToolQuery on_device(tool, options);
       std::vector<Result> expected;
       for (const Pose& pose : poses) {
         expected.push_back(on_cpu.run(cloud, pose));
@@ -150,9 +150,9 @@ TEST(ImagesAndPoints, GiveTheSameByTurns) {
   for (const ToolModel& tool :
        {testing::lattice_cube(0.3, 6, 3), testing::lattice_cube(0.25, 20, 1)}) {
     QueryOptions options{.counts_points = true};
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     for (int k = 0; k < testing::effort(64); ++k) {
       SCOPED_TRACE(k);
       const PreparedCloud& cloud = k % 3 == 0 ? points : image;
@@ -188,9 +188,9 @@ void expect_same_at_hub(std::uint32_t n) {
   const ToolModel tool = lattice_with_hub(n);
   QueryOptions options;
   options.measure = Measure::paper;
-  Query on_cpu(tool, options);
+  ToolQuery on_cpu(tool, options);
   options.device = {Device::Kind::cuda, 0};
-  Query on_device(tool, options);
+  ToolQuery on_device(tool, options);
   std::vector<Pose> poses(kPoses);
   std::vector<Result> expected(kPoses), batch(kPoses);
   int cut = 0, reached = 0;
@@ -203,7 +203,7 @@ void expect_same_at_hub(std::uint32_t n) {
     reached += hub == SphereState::inside;
     expect_equal(expected[k], on_device.run(cloud, poses[k]));
   }
-  on_device.run(cloud, poses, batch);
+  on_device.run(cloud, jobs_of(poses), batch);
   for (int k = 0; k < kPoses; ++k) expect_equal(expected[k], batch[k]);
   EXPECT_GT(cut, 0);
   EXPECT_GT(reached, 0);
@@ -236,9 +236,9 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
     QueryOptions options;
     options.measure = measure;
     options.counts_points = true;
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     std::vector<Pose> poses;
     std::vector<Result> expected;
     for (int k = 0; k < 4; ++k) {
@@ -258,7 +258,7 @@ TEST(RoundedPosesOnDevice, GiveTheSame) {
   for (const bool camera : {true, false}) {
     const PreparedCloud cloud(camera ? seen : without_camera(seen));
     for (const Measure measure : {Measure::refined, Measure::paper}) {
-      Query on_cpu(tool, {.measure = measure}),
+      ToolQuery on_cpu(tool, {.measure = measure}),
           on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
       std::vector<Pose> poses;
       std::vector<Result> expected;
@@ -285,18 +285,18 @@ TEST(SolidShadowsOnDevice, GiveTheSame) {
                                 testing::lattice_cube(0.25, 20, 1)}) {
     QueryOptions options;
     options.counts_points = false;
-    Query near(tool, options);
+    ToolQuery near(tool, options);
     options.device = {Device::Kind::cuda, 0};
     options.standby_us = kStandbyMicroseconds;
-    Query near_standing_by(tool, options);
+    ToolQuery near_standing_by(tool, options);
     options.standby_us = 0;
     options.device = {};
     options.shadows = Shadows::solid;
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     options.standby_us = kStandbyMicroseconds;
-    Query standing_by(tool, options);
+    ToolQuery standing_by(tool, options);
     std::vector<Pose> poses;
     std::vector<Result> expected;
     for (int k = 0; k < testing::effort(100); ++k) {
@@ -329,8 +329,8 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
   const PreparedCloud cloud(camera ? seen : without_camera(seen));
   constexpr std::uint32_t kTools = 19;
   std::deque<ToolModel> tools;
-  std::deque<Query> on_cpu, on_device;
-  std::vector<Query*> together;
+  std::deque<ToolQuery> on_cpu, on_device;
+  std::vector<ToolQuery*> together;
   for (std::uint32_t t = 0; t < kTools; ++t) {
     const std::uint32_t side = 2 + 5 * t % 12;
     tools.push_back(testing::lattice_cube(0.15 + 0.01 * t, side, side < 6 ? 4 : 1));
@@ -340,14 +340,14 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
     on_device.emplace_back(tools.back(), options);
     together.push_back(&on_device.back());
   }
-  std::vector<ToolPose> poses;
+  std::vector<Job> poses;
   std::vector<Result> expected;
   std::set<std::uint32_t> touching;
   constexpr std::uint32_t kPoses = testing::effort(3000), kNever = 7;
   for (std::uint32_t k = 0; k < kPoses; ++k) {
     const std::uint32_t tool = k * k % kTools;
     if (tool == kNever) continue;
-    poses.push_back({tool, pose_of(static_cast<int>(k))});
+    poses.push_back({pose_of(static_cast<int>(k)), tool});
     expected.push_back(on_cpu[tool].run(cloud, poses.back().pose));
     if (expected.back().volume > 0) touching.insert(tool);
   }
@@ -356,7 +356,7 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
   // has room for larger ones.
   for (int turn = 0; turn < 2; ++turn) {
     std::vector<Result> results(poses.size());
-    Query::run_together(together, cloud, poses, results);
+    ToolQuery::run(together, cloud, poses, results);
     for (std::size_t k = 0; k < poses.size(); ++k) {
       SCOPED_TRACE(k);
       expect_equal(expected[k], results[k]);
@@ -388,17 +388,17 @@ TEST(ToolsTogetherSmall, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   std::deque<ToolModel> tools;
-  std::deque<Query> queries;
-  std::vector<Query*> together;
+  std::deque<ToolQuery> queries;
+  std::vector<ToolQuery*> together;
   for (const std::uint32_t side : {2U, 4U, 3U}) {
     tools.push_back(testing::lattice_cube(0.2, side, 1));
     queries.emplace_back(tools.back(), QueryOptions{.device = {Device::Kind::cuda, 0}});
     together.push_back(&queries.back());
   }
-  std::vector<ToolPose> poses;
-  for (std::uint32_t k = 0; k < 12; ++k) poses.push_back({k % 3, pose_of(static_cast<int>(k))});
+  std::vector<Job> poses;
+  for (std::uint32_t k = 0; k < 12; ++k) poses.push_back({pose_of(static_cast<int>(k)), k % 3});
   std::vector<Result> results(poses.size());
-  Query::run_together(together, cloud, poses, results);
+  ToolQuery::run(together, cloud, poses, results);
   for (std::size_t k = 0; k < poses.size(); ++k)
     expect_equal(queries[poses[k].tool].run(cloud, poses[k].pose), results[k]);
 }
@@ -411,8 +411,8 @@ TEST(TakenDevice, AnswersABatch) {
   const std::vector<Pose> poses = poses_of(96);
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     std::vector<Result> expected(poses.size());
-    Query(tool, {.measure = measure}).run(cloud, poses, expected);
-    Query on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
+    ToolQuery(tool, {.measure = measure}).run(cloud, jobs_of(poses), expected);
+    ToolQuery on_device(tool, {.measure = measure, .device = {Device::Kind::cuda, 0}});
     expect_equal(expected[0], on_device.run(cloud, poses[0]));
     const testing::TakenMemory others(std::size_t{256} << 20);
     expect_same_batch(on_device, cloud, poses, expected);
@@ -437,10 +437,10 @@ TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
     options.measure = measure;
     std::vector<Result> of_one(poses.size()), of_all(poses.size());
     options.device = {Device::Kind::cuda, 0};
-    Query(tool, options).run(cloud, poses, of_one);
+    ToolQuery(tool, options).run(cloud, jobs_of(poses), of_one);
     options.device.index = Device::kAll;
-    Query on_all(tool, options);
-    on_all.run(cloud, poses, of_all);
+    ToolQuery on_all(tool, options);
+    on_all.run(cloud, jobs_of(poses), of_all);
     for (std::size_t k = 0; k < poses.size(); ++k) {
       SCOPED_TRACE(k);
       expect_equal(of_one[k], of_all[k]);
@@ -460,7 +460,7 @@ TEST(SameQueryOnDevice, InAnEmptyCloud) {
     options.measure = measure;
     Result nothing;
     nothing.points = 0;
-    expect_equal(nothing, Query(tool, options).run(cloud, {}));
+    expect_equal(nothing, ToolQuery(tool, options).run(cloud, {}));
   }
 }
 

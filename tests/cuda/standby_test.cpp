@@ -11,7 +11,7 @@
 #include <optional>
 #include <thread>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/cuda/effort.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
@@ -45,11 +45,11 @@ class Standby : public ::testing::Test {
   const Cloud seen_ = testing::see(synthetic::make_scene("block"));
   const PreparedCloud cloud_{seen_};
   const ToolModel tool_ = testing::lattice_cube(0.2, 9, 3);
-  Query on_cpu_{tool_, {.counts_points = false}};
+  ToolQuery on_cpu_{tool_, {.counts_points = false}};
 };
 
 TEST_F(Standby, GivesTheSameWithStates) {
-  Query query(tool_, standing_by());
+  ToolQuery query(tool_, standing_by());
   std::uint32_t touched = 0;
   for (int k = 0; k < testing::effort(300); ++k) {
     SCOPED_TRACE(k);
@@ -65,13 +65,13 @@ TEST_F(Standby, GivesTheSameWithStates) {
 
 TEST_F(Standby, TakesToolsAndCloudsByTurns) {
   const ToolModel large = testing::lattice_cube(0.25, 20, 1);
-  Query small_query(tool_, standing_by()), large_query(large, standing_by()),
+  ToolQuery small_query(tool_, standing_by()), large_query(large, standing_by()),
       large_on_cpu(large, {.counts_points = false});
   std::vector<PreparedCloud> clouds;
   for (const char* scene : {"wall", "groove", "block", "plate", "step", "ball"})
     clouds.emplace_back(testing::see(synthetic::make_scene(scene)));
   // They hold the clouds on the device, so that nothing is copied between the poses.
-  std::deque<Query> holders;
+  std::deque<ToolQuery> holders;
   for (const PreparedCloud& cloud : clouds)
     holders.emplace_back(tool_, standing_by()).run(cloud, pose_of(0));
   for (int k = 0; k < testing::effort(120); ++k) {
@@ -84,7 +84,7 @@ TEST_F(Standby, TakesToolsAndCloudsByTurns) {
 }
 
 TEST_F(Standby, LeavesWhenNoPoseComesAndIsBackForTheNext) {
-  Query query(tool_, standing_by());
+  ToolQuery query(tool_, standing_by());
   for (int k = 0; k < testing::effort(12); ++k) {
     SCOPED_TRACE(k);
     if (k % 4 == 3) std::this_thread::sleep_for(kLonger);
@@ -98,7 +98,7 @@ TEST_F(Standby, LosesNoPoseThatComesAsItLeaves) {
   constexpr int kPoses = testing::effort(40);
   std::vector<Result> expected(kPoses);
   for (int k = 0; k < kPoses; ++k) expected[k] = on_cpu_.run(cloud_, pose_of(k));
-  Query query(tool_, standing_by(30));
+  ToolQuery query(tool_, standing_by(30));
   for (int k = 0; k < testing::effort(6000); ++k) {
     SCOPED_TRACE(k);
     const Result result = query.run(cloud_, pose_of(k % kPoses));
@@ -110,11 +110,11 @@ TEST_F(Standby, LosesNoPoseThatComesAsItLeaves) {
 }
 
 TEST_F(Standby, MakesWayForWhatIsLaunched) {
-  Query query(tool_, standing_by());
+  ToolQuery query(tool_, standing_by());
   QueryOptions counting_options = standing_by(), paper_options = standing_by();
   counting_options.counts_points = true;
   paper_options.measure = Measure::paper;
-  Query counting(tool_, counting_options), paper(tool_, paper_options),
+  ToolQuery counting(tool_, counting_options), paper(tool_, paper_options),
       counting_on_cpu(tool_, {.counts_points = true}),
       paper_on_cpu(tool_, {.measure = Measure::paper, .counts_points = false});
   const PreparedCloud points(without_camera(seen_));
@@ -129,17 +129,17 @@ TEST_F(Standby, MakesWayForWhatIsLaunched) {
     if (k % 5 == 1) expect_equal(paper_on_cpu.run(cloud_, pose), paper.run(cloud_, pose));
     if (k % 5 == 2) expect_equal(on_cpu_.run(points, pose), query.run(points, pose));
     if (k % 10 == 3) {
-      query.run(cloud_, poses, batch);
+      query.run(cloud_, jobs_of(poses), batch);
       expect_equal(on_cpu_.run(cloud_, poses[k]), batch[k]);
     }
-    if (k % 10 == 8) Query(tool_, standing_by()).run(cloud_, pose);  // comes and goes
+    if (k % 10 == 8) ToolQuery(tool_, standing_by()).run(cloud_, pose);  // comes and goes
   }
 }
 
 TEST_F(Standby, MakesWayForNewFrames) {
   const Camera& camera = seen_.sensor->camera;
   DepthFrames frames({camera.intrinsics, camera.width, camera.height, {}, {}, kDevice});
-  Query query(tool_, standing_by());
+  ToolQuery query(tool_, standing_by());
   std::optional<DepthFrame> last;
   for (int f = 0; f < 12; ++f) {
     std::vector<float> depth = seen_.sensor->depth.depth;
@@ -161,13 +161,13 @@ TEST_F(Standby, MakesWayForNewFrames) {
 TEST_F(Standby, HindersNobodyElse) {
   std::atomic<bool> ends = false;
   std::thread loop([&] {
-    Query query(tool_, standing_by(QueryOptions::kLongestStandby));
+    ToolQuery query(tool_, standing_by(QueryOptions::kLongestStandby));
     while (!ends) query.run(cloud_, pose_of(3));
   });
   // Would wait for as long as the loop goes on.
-  const Result expected = Query(tool_, {.counts_points = true}).run(cloud_, pose_of(5));
+  const Result expected = ToolQuery(tool_, {.counts_points = true}).run(cloud_, pose_of(5));
   for (int k = 0; k < testing::effort(20); ++k) {
-    Query counting(tool_, {.device = kDevice, .counts_points = true});
+    ToolQuery counting(tool_, {.device = kDevice, .counts_points = true});
     expect_equal(expected, counting.run(cloud_, pose_of(5)));
     const PreparedCloud another(seen_);
     expect_equal(expected, counting.run(another, pose_of(5)));
@@ -184,7 +184,7 @@ TEST_F(Standby, ServesSeveralThreads) {
   threads.reserve(3);
   for (int t = 0; t < 3; ++t) {
     threads.emplace_back([&, t] {
-      Query query(tool_, standing_by(t == 2 ? 0 : kStandbyMicroseconds));
+      ToolQuery query(tool_, standing_by(t == 2 ? 0 : kStandbyMicroseconds));
       for (int k = 0; k < 5 * kPoses; ++k)
         expect_equal(expected[k % kPoses], query.run(cloud_, pose_of(k % kPoses)));
     });
@@ -195,7 +195,7 @@ TEST_F(Standby, ServesSeveralThreads) {
 // For compute-sanitizer.
 TEST_F(Standby, SmallQuery) {
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
-  Query query(tool, standing_by()), on_cpu(tool, {.counts_points = false});
+  ToolQuery query(tool, standing_by()), on_cpu(tool, {.counts_points = false});
   for (int k = 0; k < testing::effort(6); ++k)
     expect_equal(on_cpu.run(cloud_, pose_of(4 * k)), query.run(cloud_, pose_of(4 * k)));
 }

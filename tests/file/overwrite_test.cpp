@@ -15,33 +15,34 @@ class Overwrite : public test::InTemporaryFolder {
     write_all(path("empty"), std::string_view());
   }
 
-  // Returns the exit code of the refusal, or 0 if there is none.
+  // Returns the kind of the refusal, or none if the check passes.
+  using Outcome = std::optional<ErrorKind>;
   template <class Check>
-  static int outcome(const Check& check) {
-    const std::optional<ErrorKind> kind = test::kind_of_fault(check);
-    return kind ? static_cast<int>(*kind) : 0;
+  static Outcome outcome(const Check& check) {
+    return test::kind_of_fault(check);
   }
-  int container(const std::string& name) const {
+  Outcome container(const std::string& name) const {
     return outcome([&] { check_container_output(path(name), Kind::cloud); });
   }
-  int text(const std::string& name) const {
+  Outcome text(const std::string& name) const {
     return outcome([&] { check_text_output(path(name)); });
   }
 };
 
 TEST_F(Overwrite, AContainerReplacesOnlyItsOwnKind) {
-  EXPECT_EQ(container("cloud"), 0);
-  EXPECT_EQ(container("empty"), 0);
-  EXPECT_EQ(container("new"), 0);
-  EXPECT_EQ(container("text"), 2);
-  EXPECT_EQ(outcome([&] { check_container_output(path("cloud"), Kind::packing); }), 2);
+  EXPECT_EQ(container("cloud"), std::nullopt);
+  EXPECT_EQ(container("empty"), std::nullopt);
+  EXPECT_EQ(container("new"), std::nullopt);
+  EXPECT_EQ(container("text"), ErrorKind::invalid_argument);
+  EXPECT_EQ(outcome([&] { check_container_output(path("cloud"), Kind::packing); }),
+            ErrorKind::invalid_argument);
 }
 
 TEST_F(Overwrite, TextReplacesAnythingButAContainer) {
-  EXPECT_EQ(text("text"), 0);
-  EXPECT_EQ(text("empty"), 0);
-  EXPECT_EQ(text("new"), 0);
-  EXPECT_EQ(text("cloud"), 2);
+  EXPECT_EQ(text("text"), std::nullopt);
+  EXPECT_EQ(text("empty"), std::nullopt);
+  EXPECT_EQ(text("new"), std::nullopt);
+  EXPECT_EQ(text("cloud"), ErrorKind::invalid_argument);
 }
 
 TEST_F(Overwrite, KnowsOneFileByManyNames) {
@@ -57,17 +58,17 @@ TEST_F(Overwrite, KnowsOneFileByManyNames) {
 }
 
 TEST_F(Overwrite, FoldersMustBeThere) {
-  EXPECT_EQ(container("missing/cloud"), 4);
-  EXPECT_EQ(text("missing/text"), 4);
-  EXPECT_EQ(text("text/file"), 4);
-  EXPECT_EQ(text("."), 4);
-  EXPECT_EQ(outcome([&] { check_folder_of(path("missing/text")); }), 4);
+  EXPECT_EQ(container("missing/cloud"), ErrorKind::cannot_write);
+  EXPECT_EQ(text("missing/text"), ErrorKind::cannot_write);
+  EXPECT_EQ(text("text/file"), ErrorKind::cannot_write);
+  EXPECT_EQ(text("."), ErrorKind::cannot_write);
+  EXPECT_EQ(outcome([&] { check_folder_of(path("missing/text")); }), ErrorKind::cannot_write);
 }
 
 TEST_F(Overwrite, StreamsAndDevicesPass) {
   for (const char* name : {"-", "", "/dev/null", "/dev/stdout"}) {
-    EXPECT_EQ(outcome([&] { check_container_output(name, Kind::cloud); }), 0) << name;
-    EXPECT_EQ(outcome([&] { check_text_output(name); }), 0) << name;
+    EXPECT_EQ(outcome([&] { check_container_output(name, Kind::cloud); }), std::nullopt) << name;
+    EXPECT_EQ(outcome([&] { check_text_output(name); }), std::nullopt) << name;
   }
 }
 

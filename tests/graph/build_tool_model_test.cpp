@@ -139,8 +139,8 @@ TEST(BuildToolModel, RefusesWhatIsNoPacking) {
   EXPECT_EQ(kind_of(bad, {}), ErrorKind::refused);
   GraphOptions negative;
   negative.epsilon = -1;
-  EXPECT_EQ(kind_of(good, negative), ErrorKind::usage);
-  EXPECT_EQ(kind_of(good, with_levels({0})), ErrorKind::usage);
+  EXPECT_EQ(kind_of(good, negative), ErrorKind::invalid_argument);
+  EXPECT_EQ(kind_of(good, with_levels({0})), ErrorKind::invalid_argument);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/haptics/gyration.h"
 #include "libvpm/haptics/rotation_vector.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/query/lattice_model.h"
 
@@ -181,7 +181,7 @@ TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {
   const PreparedCloud cloud(testing::see(scene));
   QueryOptions options;
   options.stiffness = kPerVolume;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   const CouplingParameters p{kStiffness, kDamping, 0.2, radius_of_gyration(tool), 1000};
   VirtualCoupling coupling(p, tool.center_of_mass, at({0, 0, 0.8}));
   Result contact;

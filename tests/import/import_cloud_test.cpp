@@ -75,7 +75,7 @@ TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
 }
 
 TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {
-  EXPECT_EQ(test::kind_of_fault([] { import(depth_png()); }), ErrorKind::usage);
+  EXPECT_EQ(test::kind_of_fault([] { import(depth_png()); }), ErrorKind::invalid_argument);
   ImportOptions options;
   options.intrinsics = kCamera;
   options.to_world = Pose{{}, {1, 2, 3}};

@@ -102,7 +102,7 @@ struct Both {
   VPM_HD const Both& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };
 
-static_assert(Body<HalfSpace> && !SeesFreeSpace<HalfSpace> && !HasOtherWalls<HalfSpace>);
-static_assert(Body<Both<HalfSpace, HalfSpace>>);
+static_assert(MeasuredBody<HalfSpace> && !SeesFreeSpace<HalfSpace> && !HasOtherWalls<HalfSpace>);
+static_assert(MeasuredBody<Both<HalfSpace, HalfSpace>>);
 
 }  // namespace vpm::testing

@@ -16,9 +16,9 @@ using testing::below;
 using testing::Both;
 using testing::HalfSpace;
 
-static_assert(Body<DepthSurface> && SeesFreeSpace<DepthSurface> && BoundsGap<DepthSurface>);
+static_assert(MeasuredBody<DepthSurface> && SeesFreeSpace<DepthSurface> && BoundsGap<DepthSurface>);
 static_assert(!HasOtherWalls<DepthSurface>);
-static_assert(Body<DiskSurface> && HasOtherWalls<DiskSurface>);
+static_assert(MeasuredBody<DiskSurface> && HasOtherWalls<DiskSurface>);
 static_assert(!SeesFreeSpace<DiskSurface> && !BoundsGap<DiskSurface>);
 
 constexpr double kEdge = 0.2;

@@ -189,7 +189,7 @@ TEST(MeshCheck, RefusesWrongOptionsAsUsage) {
   for (const SolidOptions& options :
        {SolidOptions{.scale = 0}, SolidOptions{.scale = -1}, SolidOptions{.scale = NAN},
         SolidOptions{.scale = 1, .weld = -1e-9}, SolidOptions{.scale = 1, .weld = 0.5}}) {
-    EXPECT_EQ(kind_of_fault([&] { solid_of(make_cube(1), options); }), ErrorKind::usage);
+    EXPECT_EQ(kind_of_fault([&] { solid_of(make_cube(1), options); }), ErrorKind::invalid_argument);
   }
 }
 

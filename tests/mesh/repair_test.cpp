@@ -158,7 +158,7 @@ TEST(RepairHoles, SmallOnesAreClosedAndLargeOnesRefused) {
   for (Vec3& p : bent.vertices) p.z += 0.4 * p.x * p.x;
   const std::string message = refusal_of(as_off(bent), "a.off", repair(Repair::holes));
   EXPECT_TRUE(contains(message, "around 1 hole")) << message;
-  EXPECT_TRUE(contains(message, "--repair voxel")) << message;
+  EXPECT_TRUE(contains(message, "`repair` voxel")) << message;
 }
 
 TEST(RepairHoles, AreFilledWhereTrianglesFaceTheOtherWay) {
@@ -309,7 +309,7 @@ TEST(RepairByVoxels, RefusesWhatHoldsNoVoxelAndWrongResolutions) {
   EXPECT_TRUE(contains(message, "a.off: no voxel of 1/16")) << message;
   for (const int voxels : {0, -5, 7, 1025}) {
     const auto kind = kind_of_fault([&] { solid_of(make_cube(1), repair(Repair::voxel, voxels)); });
-    EXPECT_EQ(kind, ErrorKind::usage) << voxels;
+    EXPECT_EQ(kind, ErrorKind::invalid_argument) << voxels;
   }
 }
 

@@ -20,7 +20,7 @@ TEST(ToolModel, LevelsAreFoundBySphereCount) {
 TEST(ToolModel, AMissingLevelIsWrongUsageAndTheLevelsAreListed) {
   const auto fault = test::fault_of([] { golden::cube_model().level(5); });
   ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->kind(), ErrorKind::usage);
+  EXPECT_EQ(fault->kind(), ErrorKind::invalid_argument);
   EXPECT_STREQ(fault->what(), "the tool model has no level of 5 spheres; it has 4, 8");
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "libvpm/core/parallel.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/counted_allocation.h"
 #include "tests/query/lattice_model.h"
 
@@ -28,8 +28,8 @@ TEST_P(Allocation, NoneAfterTheFirstQuery) {
   const Cloud seen = testing::see(synthetic::make_scene("inverted-ball"));
   const PreparedCloud cloud(tested.camera ? seen : without_camera(seen));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
-  Query query(tool,
-              {.measure = tested.measure, .coherent = tested.coherent, .counts_points = true});
+  ToolQuery query(tool,
+                  {.measure = tested.measure, .coherent = tested.coherent, .counts_points = true});
   const auto pose = [](int k) {  // moves from free space into contact
     return Pose{testing::generic_rotation(), {0.01, -0.02, 0.8 + 0.015 * k}};
   };

@@ -4,7 +4,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/query/lattice_model.h"
@@ -36,7 +36,7 @@ std::vector<Pose> through_the_wall(double deepest) {
 TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  Query query(tool, coherent()), alone(tool, {});
+  ToolQuery query(tool, coherent()), alone(tool, {});
   int near = 0, far = 0;  // poses wholly behind the wall, within reach of it and beyond
   for (const Pose& pose : through_the_wall(1.6)) {
     const double z = pose.translation.z;
@@ -60,7 +60,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
 TEST(CoherentPoses, ForgetWhenTold) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  Query query(tool, coherent());
+  ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.3);
   for (std::size_t k = 0; k < path.size() / 2; ++k) query.run(cloud, path[k]);
   const Pose& deep = path[path.size() / 2];
@@ -75,7 +75,7 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(0.05, 5, 3);
-  Query query(tool, coherent()), alone(tool, {});
+  ToolQuery query(tool, coherent()), alone(tool, {});
   for (double x = -0.4; x < 0.4; x += kStep) {
     const Pose pose{generic_rotation(), {x, 0.01, 1.25}};
     EXPECT_TRUE(query.run(cloud, pose) == alone.run(cloud, pose)) << x;
@@ -87,7 +87,7 @@ TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
 TEST(CoherentPoses, DoNotRememberWhatIsMerelyHidden) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 5, 3);
-  Query query(tool, coherent()), alone(tool, {});
+  ToolQuery query(tool, coherent()), alone(tool, {});
   int hidden = 0;
   const auto expect_nothing_remembered = [&](Vec3 at) {
     const Pose pose{generic_rotation(), at};
@@ -112,7 +112,7 @@ TEST(CoherentPoses, DoNotRememberWhatAnotherObjectHides) {
   const Camera camera{{131.25, 131.25, 79.5, 59.5}, 160, 120, {}};
   const PreparedCloud cloud(make_cloud(depth, camera, NormalOptions{}));
   const ToolModel tool = lattice_cube(0.2, 10, 2);
-  Query query(tool, coherent()), alone(tool, {});
+  ToolQuery query(tool, coherent()), alone(tool, {});
   int cut = 0, hidden = 0;
   const auto run = [&](double x, double z) {
     const Pose pose{generic_rotation(), {x, 0, z}};
@@ -137,7 +137,7 @@ Cloud wall_at(double z) {
 // Shows a moving wall, a frame every 33 poses, and then a hand in front of the lens.
 TEST(CoherentPoses, FollowFramesThatChange) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  Query query(tool, coherent());
+  ToolQuery query(tool, coherent());
   const std::vector<Pose> path = through_the_wall(1.4);
   PreparedCloud cloud(wall_at(1));
   std::size_t k = 0;
@@ -166,7 +166,7 @@ void expect_right_in_a_moving_scene(const MakeFrame& make_frame) {
   constexpr int kQueriesPerFrame = 33;
   constexpr double kWallStep = 0.015;
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  Query query(tool, coherent()), alone(tool, {});
+  ToolQuery query(tool, coherent()), alone(tool, {});
   int cut = 0, wholly_behind = 0, lost = 0, k = 0;
   const auto query_frame = [&](double z) {
     const PreparedCloud cloud(make_frame(z));
@@ -218,7 +218,7 @@ TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
   ASSERT_GT(wall.positions().size(), 0u);
   ASSERT_EQ(nothing.positions().size(), 0u);
   for (const PreparedCloud* other : {&far_wall, &hand, &nothing}) {
-    Query query(tool, coherent());
+    ToolQuery query(tool, coherent());
     for (double z = 0.85; z < 1.2; z += kStep) query.run(wall, {generic_rotation(), {0, 0, z}});
     ASSERT_NEAR(query.run(wall, deep).volume_fraction, 1, 1e-12);
     EXPECT_EQ(query.run(*other, deep).volume, 0);
@@ -230,7 +230,7 @@ TEST(CoherentPoses, StateEndsWithTheFrameThatContradictsIt) {
 // A wall that jumps over the tool within a frame was not seen to pass it.
 TEST(CoherentPoses, DoNotTakeAnObjectThatAppearsForTheOneBefore) {
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
-  Query query(tool, coherent());
+  ToolQuery query(tool, coherent());
   const Pose pose{generic_rotation(), {0, 0, 1}};
   EXPECT_EQ(query.run(PreparedCloud(small_view(1.2)), pose).volume, 0);
   EXPECT_EQ(query.run(PreparedCloud(small_view(0.8)), pose).volume, 0);
@@ -240,7 +240,7 @@ TEST(CoherentPoses, AreRefusedWhereTheyMeanNothing) {
   const ToolModel tool = lattice_cube(kEdge, 2, 2);
   QueryOptions options = coherent();
   options.measure = Measure::paper;
-  EXPECT_THROW(Query(tool, options), Error);
+  EXPECT_THROW(ToolQuery(tool, options), Error);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/expect_equal.h"
@@ -30,7 +30,7 @@ DepthImage wall() {
 
 Result query_in(const DepthImage& image, const Pose& camera, const Pose& pose) {
   const PreparedCloud cloud(make_cloud(image, {kIntrinsics, 80, 60, camera}, {}));
-  return Query(testing::lattice_cube(0.1, 6, 2), {}).run(cloud, pose);
+  return ToolQuery(testing::lattice_cube(0.1, 6, 2), {}).run(cloud, pose);
 }
 
 const Pose kPose{testing::generic_rotation(), {0, 0, 0.98}};
@@ -38,7 +38,7 @@ const Pose kPose{testing::generic_rotation(), {0, 0, 0.98}};
 TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
   const DepthImage image = wall();
   const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   DepthFrames frames(options_of());
   std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
   const DepthFrame frame = frames.prepare({});
@@ -48,7 +48,7 @@ TEST(DepthFrames, AnswerAsACloudOfTheSameImage) {
   EXPECT_EQ(frame.points(), image.depth.size());
   const Pose poses[] = {kPose, kPose};
   Result results[2];
-  query.run(frame, poses, results);
+  query.run(frame, jobs_of(poses), results);
   testing::expect_equal(expected, results[1]);
 }
 
@@ -64,9 +64,9 @@ TEST(DepthFrames, AreReadAsMeasuredWhereThatIsAsked) {
     DepthFrames frames(options);
     std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
     Result& result = found[points == PointReading::settled ? 0 : 1];
-    result = Query(tool, {}).run(frames.prepare({}), kPose);
-    testing::expect_equal(
-        result, Query(tool, {}).run(PreparedCloud(make_cloud(image, camera, {}), points), kPose));
+    result = ToolQuery(tool, {}).run(frames.prepare({}), kPose);
+    testing::expect_equal(result, ToolQuery(tool, {}).run(
+                                      PreparedCloud(make_cloud(image, camera, {}), points), kPose));
   }
   EXPECT_NE(found[0].volume, found[1].volume);
 }
@@ -80,7 +80,8 @@ TEST(DepthFrames, OfCountsAreThoseOfTheirMetres) {
     image.depth[i] = static_cast<float>(counts[i] / 4000.0);
   }
   const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
-  testing::expect_equal(query_in(image, {}, kPose), Query(tool, {}).run(frames.prepare({}), kPose));
+  testing::expect_equal(query_in(image, {}, kPose),
+                        ToolQuery(tool, {}).run(frames.prepare({}), kPose));
 }
 
 TEST(DepthFrames, StayAsTheyWereWhileOthersCome) {
@@ -113,13 +114,13 @@ TEST(DepthFrames, RefuseWhatTheyCannotBeMadeOf) {
     change(options);
     return test::kind_of_fault([&] { DepthFrames frames(options); });
   };
-  EXPECT_EQ(made_with([](auto& o) { o.width = 0; }), ErrorKind::usage);
-  EXPECT_EQ(made_with([](auto& o) { o.intrinsics.fx = 0; }), ErrorKind::usage);
-  EXPECT_EQ(made_with([](auto& o) { o.normals.window = 4; }), ErrorKind::usage);
-  EXPECT_EQ(made_with([](auto& o) { o.counts_per_metre = 0; }), ErrorKind::usage);
+  EXPECT_EQ(made_with([](auto& o) { o.width = 0; }), ErrorKind::invalid_argument);
+  EXPECT_EQ(made_with([](auto& o) { o.intrinsics.fx = 0; }), ErrorKind::invalid_argument);
+  EXPECT_EQ(made_with([](auto& o) { o.normals.window = 4; }), ErrorKind::invalid_argument);
+  EXPECT_EQ(made_with([](auto& o) { o.counts_per_metre = 0; }), ErrorKind::invalid_argument);
   DepthFrames metres(options_of()), counts(options_of(1000.0));
-  EXPECT_EQ(test::kind_of_fault([&] { metres.counts(); }), ErrorKind::usage);
-  EXPECT_EQ(test::kind_of_fault([&] { counts.metres(); }), ErrorKind::usage);
+  EXPECT_EQ(test::kind_of_fault([&] { metres.counts(); }), ErrorKind::invalid_argument);
+  EXPECT_EQ(test::kind_of_fault([&] { counts.metres(); }), ErrorKind::invalid_argument);
   Pose mirrored;
   mirrored.rotation.row0.x = -1;
   EXPECT_EQ(test::kind_of_fault([&] { metres.prepare(mirrored); }), ErrorKind::refused);

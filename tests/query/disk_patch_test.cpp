@@ -6,7 +6,7 @@
 #include <random>
 
 #include "libvpm/measure/classify.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
@@ -129,7 +129,7 @@ TEST(PatchOfPoints, CountsWhatIsBehindANoisyWall) {
   constexpr double kEdge = 0.08;
   const PreparedCloud prepared(noisy_wall(0.001, 0.1));
   const ToolModel tool = testing::lattice_cube(kEdge, 24, 2);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   for (const double depth : {0.01, 0.02, 0.04}) {
     const Result result = query.run(prepared, {{}, {0.001, 0.002, kEdge / 2 - depth}});
     EXPECT_NEAR(result.volume_fraction, depth / kEdge, 0.001) << depth;

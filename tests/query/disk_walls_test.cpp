@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
@@ -212,7 +212,7 @@ TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
   seen.radii.push_back(0.2f);
   const PreparedCloud with_wide(seen);
   const ToolModel cube = testing::lattice_cube(0.06, 3, 4);
-  Query query(cube, {});
+  ToolQuery query(cube, {});
   for (int k = 0; k < 40; ++k) {
     const double half = 0.2 * k, sine = std::sin(half);
     const Pose pose{rotation_from_quaternion({0.6 * sine, 0, 0.8 * sine, std::cos(half)}),
@@ -265,7 +265,7 @@ TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
   const TwoWalls roof{true};
   const PreparedCloud cloud(roof.seen());
   const ToolModel piece = testing::lattice_cube(kEdge, 1, 1);
-  Query query(piece, {});
+  ToolQuery query(piece, {});
   for (const double x : {-0.001, 0.0, 0.0015}) {
     const Pose pose{{}, {x, 0.0013, -0.004}};
     const Vec3 force = query.run(cloud, pose).wrench.force;
@@ -278,7 +278,7 @@ TEST(TwoWallsOfPoints, WhatTheyCutIsSharedOutToo) {
 TEST(TwoWallsOfPoints, AToolIsSharedOutBetweenThem) {
   constexpr double kEdge = 0.06;
   const ToolModel cube = testing::lattice_cube(kEdge, 3, 4);
-  Query query(cube, {});
+  ToolQuery query(cube, {});
   for (const bool is_roof : {true, false}) {
     const TwoWalls walls{is_roof};
     const PreparedCloud cloud(walls.seen());

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/lattice_model.h"
 #include "tests/refusal.h"
 
@@ -34,7 +34,7 @@ Result ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pos
   QueryOptions options;
   options.measure = measure;
   options.counts_points = true;
-  return Query(tool, options).run(PreparedCloud(cloud), pose);
+  return ToolQuery(tool, options).run(PreparedCloud(cloud), pose);
 }
 
 void expect_sound(const Result& r) {
@@ -129,7 +129,7 @@ TEST(ExtremePoses, WhatIsNoRigidMotionIsRefused) {
   const Rotation mirror{{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, zero{{}, {}, {}};
   const Rotation stretched{{1.1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Rotation not_finite{{kNan, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   for (const Rotation& r : {mirror, zero, stretched, not_finite})
     EXPECT_NE(refusal([&] { query.run(cloud, {r, {}}); }).find("rotation"), std::string::npos);
   for (const double t : {kNan, kInfinity, -kInfinity, 1e31})
@@ -145,7 +145,7 @@ TEST(ExtremeOptions, AStiffnessThatOverflowsIsRefused) {
   for (const double stiffness : {0.0, -1.0, kNan, kInfinity, 1e305}) {
     QueryOptions options;
     options.stiffness = stiffness;
-    EXPECT_NE(refusal([&] { Query(tool, options); }).find("stiffness"), std::string::npos);
+    EXPECT_NE(refusal([&] { ToolQuery(tool, options); }).find("stiffness"), std::string::npos);
   }
 }
 

@@ -36,7 +36,7 @@ TEST(MaxError, SaysWhyItCannotBeKept) {
   EXPECT_NE(refusal(calibrated({0.03}), 0.1).find("one level only"), std::string::npos);
   ToolModel tool = calibrated({0.03, 0.004});
   tool.calibration.clear();
-  EXPECT_NE(refusal(tool, 0.1).find("vpm-graph --calibrate"), std::string::npos);
+  EXPECT_NE(refusal(tool, 0.1).find("`calibrate`"), std::string::npos);
   for (const double error : {0.0, -1.0, 1.0, std::nan("")})
     EXPECT_NE(refusal(calibrated({0.03, 0.004}), error), "");
 }

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
@@ -24,7 +24,7 @@ Cloud points(std::vector<Vec3f> positions, Vec3f normal) {
 Result paper(const ToolModel& tool, const Cloud& cloud, const Pose& pose = {}) {
   QueryOptions options;
   options.measure = Measure::paper;
-  return Query(tool, options).run(PreparedCloud(cloud), pose);
+  return ToolQuery(tool, options).run(PreparedCloud(cloud), pose);
 }
 
 TEST(PaperMeasure, OnePointInOneSphereGivesItsCap) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/synthetic/truth.h"
@@ -42,7 +42,7 @@ TEST_P(RefinedScene, FollowsTheTruthAlongASweep) {
   const PreparedCloud cloud(c.camera ? seen : without_camera(seen));
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double last_error = 0;
   for (int k = 0; k <= 24; ++k) {
     const Pose pose{generic_rotation(), {0.012, -0.007, 0.80 + 0.01 * k}};
@@ -86,7 +86,7 @@ TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 2, 8);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   for (int k = 0; k < 40; ++k) {
     const Pose pose{generic_rotation(), {-0.07 + 0.004 * k, 0.01, 0.93 + 0.002 * (k % 7)}};
     const double truth = solid.penetration(pose, *scene.surface).volume;
@@ -101,7 +101,7 @@ TEST(RefinedMeasure, CountsWhatIsNoDeeperThanTheToolsReach) {
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(0.1, 2, 8);
   const synthetic::TrueSolid solid(synthetic::make_cube(0.1));
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   int poses = 0;
   for (int k = 0; k < 10 * 14; ++k) {
     const int column = k % 10, row = k / 10;
@@ -123,7 +123,7 @@ TEST(RefinedMeasure, NothingIsCountedBeforeContact) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
   const Result r =
-      Query(tool, {.counts_points = true}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
+      ToolQuery(tool, {.counts_points = true}).run(cloud, {generic_rotation(), {0, 0, 0.8}});
   EXPECT_EQ(r.volume, 0);
   EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
   EXPECT_EQ(norm(r.wrench.force), 0);
@@ -135,7 +135,7 @@ TEST(RefinedMeasure, SeenFreeSpaceNeverCounts) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(0.1, 6, 2);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double before = 0;
   for (int k = 0; k <= 60; ++k) {
     // The tool crosses the silhouette, in the gap between block (ends at 1.2) and wall (1.5).
@@ -163,7 +163,7 @@ TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
   const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
   for (const double z : {0.98, 1.0, 1.18, 1.23}) {
-    Query query(tool, {});
+    ToolQuery query(tool, {});
     double before = 0, expected_before = 0, most = 0;
     const double near = z > 1 + tool.reach ? tool.reach : 2 * tool.reach;
     for (double x = 0.3; x > 0; x -= 0.002) {
@@ -188,7 +188,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 10, 2);
   const synthetic::TrueSolid solid(synthetic::make_cube(kEdge));
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   for (int k = 0; k <= 20; ++k) {
     const Pose pose{generic_rotation(), {0.15, 0.01, 1.36 + 0.005 * k}};
     const double truth = solid.penetration(pose, *scene.surface).volume;
@@ -203,7 +203,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
 TEST(RefinedMeasure, DoesNotJumpWhileAToolInTheWallPassesBehindAnObject) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 2);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double before = 0;
   for (int k = 0; k <= 80; ++k) {
     const double v =
@@ -222,7 +222,7 @@ TEST(RefinedMeasure, PushesWithTheGradientOfItsEnergy) {
   // every pose.
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 8, 3);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   for (int k = 0; k < 10; ++k) {
     const Result r = query.run(cloud, {generic_rotation(), {0, 0, 0.9 + 0.02 * k}});
     EXPECT_NEAR(-r.wrench.force.z, r.volume, 1e-6 * tool.volume);
@@ -241,7 +241,7 @@ TEST(RefinedMeasure, AveragesTheNoiseOfPixels) {
         synthetic::render_with_kinect_noise(*scene.surface, scene.camera, static_cast<unsigned>(k)),
         scene.camera, NormalOptions{}));
     const Vec3 force =
-        Query(tool, {}).run(cloud, {generic_rotation(), {0.01, 0, 0.95}}).wrench.force;
+        ToolQuery(tool, {}).run(cloud, {generic_rotation(), {0.01, 0, 0.95}}).wrench.force;
     sum += std::asin(std::min(1.0, norm(cross(force, normal)) / norm(force))) * 180 / kPi;
   }
   EXPECT_LE(sum / kPoses, 0.2);
@@ -311,7 +311,7 @@ Rotation turn_about(Vec3 axis, double angle) {
 // Small motions and turns of the tool take as much from the energy as force and torque do work.
 TEST(RefinedMeasure, ForceAndTorqueDoTheWorkOfTheEnergy) {
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   constexpr double kMove = 0.004, kTurn = 0.02;  // metres, radians
   for (const char* name : {"tilted-wall", "inverted-ball", "ball", "groove"}) {
     const synthetic::Scene scene = synthetic::make_scene(name);
@@ -338,10 +338,11 @@ TEST(RefinedMeasure, HolesDoNotLeak) {
   Cloud cloud = see(synthetic::make_scene("wall"));
   const ToolModel tool = lattice_cube(kEdge, 10, 4);
   const Pose pose{generic_rotation(), {0, 0, 0.95}};
-  const double whole = Query(tool, {}).run(PreparedCloud(cloud), pose).volume;
+  const double whole = ToolQuery(tool, {}).run(PreparedCloud(cloud), pose).volume;
   for (std::size_t i = 0; i < cloud.sensor->depth.depth.size(); i += 7)
     cloud.sensor->depth.depth[i] = 0;
-  EXPECT_NEAR(Query(tool, {}).run(PreparedCloud(cloud), pose).volume, whole, 1e-4 * tool.volume);
+  EXPECT_NEAR(ToolQuery(tool, {}).run(PreparedCloud(cloud), pose).volume, whole,
+              1e-4 * tool.volume);
 }
 
 }  // namespace

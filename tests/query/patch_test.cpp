@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libvpm/measure/classify.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
@@ -128,7 +128,7 @@ TEST(Patch, SharesThatAreSeenFreeDoNotCount) {
   }
   const PreparedCloud cloud(seen);
   const ToolModel tool = testing::lattice_cube(0.2, 24, 2);
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   int free = 0;
   for (int k = 0; k < 20; ++k) {
     const Pose pose{testing::generic_rotation(), {0.003 * k, 0.002 * k, 0.88 + 0.001 * k}};

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
@@ -16,7 +16,7 @@ TEST(QueryOptions, CountingPointsChangesNothingElse) {
   const ToolModel tool = testing::lattice_cube(0.2, 6, 4);
   for (const bool camera : {true, false}) {
     const PreparedCloud cloud(camera ? seen : without_camera(seen));
-    Query counting(tool, {.counts_points = true}), query(tool, {});
+    ToolQuery counting(tool, {.counts_points = true}), query(tool, {});
     for (const double z : {0.7, 0.9, 0.96, 1.0}) {
       const Pose pose{testing::generic_rotation(), {0.01, 0.02, z}};
       Result counted = counting.run(cloud, pose);
@@ -30,7 +30,7 @@ TEST(QueryOptions, CountingPointsChangesNothingElse) {
 TEST(QueryOptions, ThePrintedMeasureCountsPointsAnyway) {
   const PreparedCloud cloud(see(synthetic::make_scene("step")));
   const ToolModel tool = testing::lattice_cube(0.2, 6, 4);
-  Query counting(tool, {.measure = Measure::paper, .counts_points = true}),
+  ToolQuery counting(tool, {.measure = Measure::paper, .counts_points = true}),
       query(tool, {.measure = Measure::paper});
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.96}};
   const Result result = query.run(cloud, pose);
@@ -40,12 +40,12 @@ TEST(QueryOptions, ThePrintedMeasureCountsPointsAnyway) {
 
 TEST(QueryOptions, NoDeviceStandsByForLongerThanASecond) {
   const ToolModel tool = testing::lattice_cube(0.2, 2, 1);
-  EXPECT_NO_THROW(const Query query(tool, {.standby_us = QueryOptions::kLongestStandby}));
+  EXPECT_NO_THROW(const ToolQuery query(tool, {.standby_us = QueryOptions::kLongestStandby}));
   try {
-    const Query query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
+    const ToolQuery query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
     FAIL() << "stands by for too long";
   } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::usage);
+    EXPECT_EQ(fault.kind(), ErrorKind::invalid_argument);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/lattice_model.h"
 
@@ -102,7 +102,7 @@ void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure
   options.measure = measure;
   options.device = device;
   options.counts_points = true;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   for (int k = 0; k < kPosesPerPath; ++k) {
     bytes.add(query.run(cloud, pose(numbers, at)));
     bytes.add(std::vector<SphereState>(query.states().begin(), query.states().end()));

@@ -9,7 +9,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/query/expect_equal.h"
@@ -64,7 +64,7 @@ class Pipeline {
       QueryOptions options;
       options.measure = measure;
       options.counts_points = true;
-      Query query(tool, options);
+      ToolQuery query(tool, options);
       for (int k = 0; k < 4; ++k)
         results.push_back(query.run(cloud, {turned(), scale * Vec3{0.01, -0.02, 0.9 + 0.04 * k}}));
     }

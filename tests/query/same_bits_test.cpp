@@ -9,7 +9,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 #include "tests/query/replay.h"
@@ -38,7 +38,7 @@ class SameBits : public ::testing::TestWithParam<Variant> {
     QueryOptions options;
     options.measure = GetParam().measure;
     options.counts_points = true;
-    Query query(tool, options);
+    ToolQuery query(tool, options);
     const PreparedCloud prepared(cloud);
     std::vector<Result> results(12);
     for (int k = 0; k < 12; ++k) {
@@ -71,7 +71,7 @@ TEST_P(SameBits, ForARoundedRotationAndTheNearestOne) {
   QueryOptions options;
   options.measure = GetParam().measure;
   options.counts_points = true;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   for (int k = 0; k < 12; ++k) {
     const Pose rounded = in_floats({generic_rotation(), {0.01, -0.02, 0.84 + 0.015 * k}});
     const Pose nearest{exact_rotation(rounded.rotation), rounded.translation};
@@ -120,7 +120,7 @@ struct Step {
   std::vector<SphereState> states;
 };
 std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) {
-  Query query(tool, {.coherent = true, .counts_points = true});
+  ToolQuery query(tool, {.coherent = true, .counts_points = true});
   std::vector<Step> steps(12);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Pose pose{generic_rotation(), {0.01, -0.02, 0.84 + 0.03 * static_cast<double>(k)}};

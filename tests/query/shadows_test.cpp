@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
@@ -41,7 +41,7 @@ TEST(SolidShadows, CountAllThatIsBehindTheImage) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(kEdge, 10, 3);
   const std::vector<Vec3> places = testing::places_in_cube(kEdge, 40);
-  Query query(tool, solid()), near(tool, {});
+  ToolQuery query(tool, solid()), near(tool, {});
   int hidden = 0;
   for (int k = 0; k < 300; ++k) {
     // The tool passes through the block, its shadow, the gap beside it and the wall.
@@ -59,7 +59,7 @@ TEST(SolidShadows, CountAllThatIsBehindTheImage) {
 TEST(SolidShadows, PushToTheNearestPlaceThatIsSeen) {
   const PreparedCloud cloud(see(synthetic::make_scene("block")));
   const ToolModel tool = lattice_cube(0.05, 6, 3);
-  const Result r = Query(tool, solid()).run(cloud, {generic_rotation(), {0.002, -0.003, 1.09}});
+  const Result r = ToolQuery(tool, solid()).run(cloud, {generic_rotation(), {0.002, -0.003, 1.09}});
   EXPECT_NEAR(r.volume_fraction, 1, 1e-9);
   EXPECT_GT(dot(normalized_or_zero(r.wrench.force), Vec3{0, 0, -1}), std::cos(0.02));
 }
@@ -69,7 +69,7 @@ TEST(SolidShadows, ChangeNothingNearTheSurface) {
   for (const char* scene : {"wall", "groove", "plate", "block"}) {
     const PreparedCloud cloud(see(synthetic::make_scene(scene)));
     const ToolModel tool = lattice_cube(kEdge, 8, 3);
-    Query query(tool, solid()), near(tool, {});
+    ToolQuery query(tool, solid()), near(tool, {});
     int contacts = 0;
     for (int k = 0; k < 40; ++k) {
       const Pose pose{generic_rotation(), {0.003 * k, 0.01, 0.8 + 0.006 * k}};
@@ -85,9 +85,9 @@ TEST(SolidShadows, NeedNoMemoryOfPosesBefore) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 2);
   QueryOptions options = solid();
-  Query alone(tool, options);
+  ToolQuery alone(tool, options);
   options.coherent = true;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   for (int k = 0; k <= 40; ++k) {
     const Pose pose{generic_rotation(), {0.01, 0, 0.85 + 0.02 * k}};
     const Result r = alone.run(cloud, pose);
@@ -101,14 +101,14 @@ TEST(SolidShadows, NeedNoMemoryOfPosesBefore) {
 TEST(SolidShadows, AreRefusedWhereTheyMeanNothing) {
   const ToolModel tool = lattice_cube(kEdge, 2, 2);
   const PreparedCloud cloud(without_camera(see(synthetic::make_scene("wall"))));
-  Query query(tool, solid());
+  ToolQuery query(tool, solid());
   EXPECT_THROW(query.run(cloud, Pose{}), Error);
   std::vector<Result> results(1);
   EXPECT_THROW(query.run(cloud, std::vector<Pose>(1), results), Error);
 
   QueryOptions options = solid();
   options.measure = Measure::paper;
-  EXPECT_THROW(Query(tool, options), Error);
+  EXPECT_THROW(ToolQuery(tool, options), Error);
 }
 
 }  // namespace

@@ -12,50 +12,34 @@
 namespace vpm {
 namespace {
 
-// Answers with the pose's depth.
+// Answers with the pose's depth and the measure's own place among the tools.
 class EchoMeasure : public DeviceMeasure {
  public:
-  explicit EchoMeasure(std::atomic<std::size_t>& answered) : answered_(answered) {}
+  explicit EchoMeasure(std::atomic<std::size_t>& answered, double place = 0)
+      : answered_(answered), place_(place) {}
 
-  Result run(const PreparedCloud&, const Pose& pose) override {
-    Result result;
-    result.volume = pose.translation.z;
-    return result;
-  }
-  void run(const PreparedCloud& cloud, std::span<const Pose> poses,
+  void run(const SceneView&, std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
            std::span<Result> results) override {
-    ASSERT_EQ(poses.size(), results.size());
-    for (std::size_t k = 0; k < poses.size(); ++k) results[k] = run(cloud, poses[k]);
-    answered_ += poses.size();
+    ASSERT_EQ(jobs.size(), results.size());
+    for (std::size_t k = 0; k < jobs.size(); ++k) {
+      results[k].volume = jobs[k].pose.translation.z;
+      results[k].volume_fraction = dynamic_cast<const EchoMeasure&>(*measures[jobs[k].tool]).place_;
+    }
+    answered_ += jobs.size();
   }
   void read_states(std::vector<SphereState>&) override {}
   double flood_microseconds() const override { return 0; }
 
  private:
   std::atomic<std::size_t>& answered_;
-};
-
-// Answers with the tool's index too.
-class EchoTool : public EchoMeasure {
- public:
-  EchoTool(std::atomic<std::size_t>& answered, double place)
-      : EchoMeasure(answered), place_(place) {}
-  using EchoMeasure::run;
-  Result run(const PreparedCloud& cloud, const Pose& pose) override {
-    Result result = EchoMeasure::run(cloud, pose);
-    result.volume_fraction = place_;
-    return result;
-  }
-
- private:
   double place_;
 };
 
 class BrokenMeasure : public DeviceMeasure {
  public:
-  Result run(const PreparedCloud&, const Pose&) override { return {}; }
-  void run(const PreparedCloud&, std::span<const Pose>, std::span<Result>) override {
-    throw Error(ErrorKind::unavailable, "the device fell off the bus");
+  void run(const SceneView&, std::span<DeviceMeasure* const>, std::span<const Job> jobs,
+           std::span<Result>) override {
+    if (jobs.size() > 1) throw Error(ErrorKind::unavailable, "the device fell off the bus");
   }
   void read_states(std::vector<SphereState>&) override {}
   double flood_microseconds() const override { return 0; }
@@ -70,10 +54,13 @@ TEST(SpreadMeasure, AnswersEveryPoseOnceInItsPlace) {
       std::vector<std::unique_ptr<DeviceMeasure>> measures;
       for (std::size_t k = 0; k < devices; ++k)
         measures.push_back(std::make_unique<EchoMeasure>(answered));
-      std::vector<Pose> poses(count);
-      for (std::size_t k = 0; k < count; ++k) poses[k].translation.z = static_cast<double>(k) + 1;
+      std::vector<Job> jobs(count);
+      for (std::size_t k = 0; k < count; ++k)
+        jobs[k].pose.translation.z = static_cast<double>(k) + 1;
       std::vector<Result> results(count);
-      SpreadMeasure(std::move(measures)).run(cloud, poses, results);
+      SpreadMeasure spread(std::move(measures));
+      DeviceMeasure* const all = &spread;
+      spread.run(cloud, {&all, 1}, jobs, results);
       EXPECT_EQ(answered, count);
       for (std::size_t k = 0; k < count; ++k)
         ASSERT_EQ(results[k].volume, static_cast<double>(k) + 1);
@@ -90,17 +77,17 @@ TEST(SpreadMeasure, AsksEveryToolForItsPoses) {
   for (std::size_t t = 0; t < kTools; ++t) {
     std::vector<std::unique_ptr<DeviceMeasure>> measures;
     for (std::size_t k = 0; k < kDevices; ++k)
-      measures.push_back(std::make_unique<EchoTool>(answered, static_cast<double>(t)));
+      measures.push_back(std::make_unique<EchoMeasure>(answered, static_cast<double>(t)));
     tools.push_back(std::make_unique<SpreadMeasure>(std::move(measures)));
     together.push_back(tools.back().get());
   }
-  std::vector<ToolPose> poses(kPoses);
+  std::vector<Job> poses(kPoses);
   for (std::size_t k = 0; k < kPoses; ++k) {
     poses[k].tool = static_cast<std::uint32_t>(k * k % kTools);
     poses[k].pose.translation.z = static_cast<double>(k);
   }
   std::vector<Result> results(kPoses);
-  together.back()->run_together(together, cloud, poses, results);
+  together.back()->run(cloud, together, poses, results);
   for (std::size_t k = 0; k < kPoses; ++k) {
     ASSERT_EQ(results[k].volume, static_cast<double>(k));
     ASSERT_EQ(results[k].volume_fraction, static_cast<double>(poses[k].tool));
@@ -113,9 +100,10 @@ TEST(SpreadMeasure, ThrowsWhatADeviceThrows) {
   measures.push_back(std::make_unique<BrokenMeasure>());
   measures.push_back(std::make_unique<BrokenMeasure>());
   SpreadMeasure spread(std::move(measures));
-  const std::vector<Pose> poses(5000);
-  std::vector<Result> results(poses.size());
-  EXPECT_THROW(spread.run(cloud, poses, results), Error);
+  DeviceMeasure* const all = &spread;
+  const std::vector<Job> jobs(5000);
+  std::vector<Result> results(jobs.size());
+  EXPECT_THROW(spread.run(cloud, {&all, 1}, jobs, results), Error);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <deque>
 
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 
@@ -22,16 +22,16 @@ class ToolsTogether : public ::testing::Test {
     }
     for (std::uint32_t k = 0; k < 30; ++k)
       poses_.push_back(
-          {k * k % 3, {testing::generic_rotation(), {0.01 * k, 0.02, 0.8 + 0.01 * k}}});
+          {{testing::generic_rotation(), {0.01 * k, 0.02, 0.8 + 0.01 * k}}, k * k % 3});
     results_.resize(poses_.size());
   }
 
   // Returns the message of the usage error.
   std::string refusal() {
     try {
-      Query::run_together(together_, cloud_, poses_, results_);
+      ToolQuery::run(together_, cloud_, poses_, results_);
     } catch (const Error& fault) {
-      EXPECT_EQ(fault.kind(), ErrorKind::usage);
+      EXPECT_EQ(fault.kind(), ErrorKind::invalid_argument);
       return fault.what();
     }
     return "";
@@ -39,14 +39,14 @@ class ToolsTogether : public ::testing::Test {
 
   PreparedCloud cloud_;
   std::deque<ToolModel> tools_;
-  std::deque<Query> queries_;
-  std::vector<Query*> together_;
-  std::vector<ToolPose> poses_;
+  std::deque<ToolQuery> queries_;
+  std::vector<ToolQuery*> together_;
+  std::vector<Job> poses_;
   std::vector<Result> results_;
 };
 
 TEST_F(ToolsTogether, AnswerAsOneByOne) {
-  Query::run_together(together_, cloud_, poses_, results_);
+  ToolQuery::run(together_, cloud_, poses_, results_);
   double volume = 0;
   for (std::size_t k = 0; k < poses_.size(); ++k) {
     SCOPED_TRACE(k);
@@ -57,8 +57,8 @@ TEST_F(ToolsTogether, AnswerAsOneByOne) {
 }
 
 TEST_F(ToolsTogether, NoPoseIsNoQuestion) {
-  Query::run_together({}, cloud_, {}, {});
-  Query::run_together(together_, cloud_, {}, {});
+  ToolQuery::run({}, cloud_, {}, {});
+  ToolQuery::run(together_, cloud_, {}, {});
 }
 
 TEST_F(ToolsTogether, SayWhatIsWrong) {
@@ -68,10 +68,10 @@ TEST_F(ToolsTogether, SayWhatIsWrong) {
   results_.pop_back();
   EXPECT_NE(refusal().find("room for 29"), std::string::npos);
   results_.resize(poses_.size());
-  Query paper(tools_[1], {.measure = Measure::paper});
+  ToolQuery paper(tools_[1], {.measure = Measure::paper});
   together_[1] = &paper;
   EXPECT_NE(refusal().find("same measure"), std::string::npos);
-  Query coherent(tools_[1], {.coherent = true});
+  ToolQuery coherent(tools_[1], {.coherent = true});
   together_[1] = &coherent;
   EXPECT_NE(refusal().find("one by one"), std::string::npos);
 }

@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scene_names()),
 TEST(Scenes, UnknownNameIsRefusedWithTheKnownOnes) {
   const auto fault = test::fault_of([] { make_scene("cellar"); });
   ASSERT_TRUE(fault);
-  EXPECT_EQ(fault->kind(), ErrorKind::usage);
+  EXPECT_EQ(fault->kind(), ErrorKind::invalid_argument);
   EXPECT_NE(std::string(fault->what()).find("inverted-ball"), std::string::npos);
 }
 

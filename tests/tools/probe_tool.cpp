@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   return tool.run(argc, argv, [&] {
     vpm::tools::check_files({input}, {{"--output", output, std::nullopt}}, tool.common());
     if (act == "refuse") vpm::refuse("input.off: refused as asked");
-    if (act == "usage") throw vpm::Error(vpm::ErrorKind::usage, "wrong as asked");
+    if (act == "usage") throw vpm::Error(vpm::ErrorKind::invalid_argument, "wrong as asked");
     if (act == "unavailable") throw vpm::Error(vpm::ErrorKind::unavailable, "not there as asked");
     if (act == "throw") throw std::runtime_error("thrown as asked");
     if (act == "exhaust") throw std::bad_alloc();

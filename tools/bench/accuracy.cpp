@@ -6,7 +6,6 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
 #include "tools/bench/random_poses.h"
-#include "tools/bench/real_frames.h"
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/silhouettes.h"
 #include "tools/bench/suite.h"
@@ -307,7 +306,8 @@ class Accuracy {
 
 Report run_accuracy(const SuiteOptions& options) {
   if (!options.data.empty() && !options.all)
-    throw Error(ErrorKind::usage, "accuracy asks recorded images with --all only; give it, too");
+    throw Error(ErrorKind::invalid_argument,
+                "accuracy asks recorded images with --all only; give it, too");
   if (!options.data.empty()) require_recorded_images(options.data);
   return Accuracy(options).run();
 }

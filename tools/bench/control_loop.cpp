@@ -27,7 +27,7 @@
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/depth_frames.h"
 
 namespace {
@@ -60,7 +60,7 @@ struct Path {
 };
 
 // Returns the height at which this fraction of the tool is inside, by bisection.
-double height_for(Query& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
+double height_for(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
                   double fraction) {
   double low = -tool.reach, high = tool.reach;
   for (int step = 0; step < 24; ++step) {
@@ -82,7 +82,7 @@ std::size_t middle_of(const std::vector<Vec3f>& points) {
                                   points.begin());
 }
 
-Path make_path(Query& query, const PreparedCloud& cloud, const ToolModel& tool) {
+Path make_path(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool) {
   const std::size_t middle = middle_of(cloud.positions());
   Path path;
   path.place = cloud.origin() + widen(cloud.positions()[middle]);
@@ -130,23 +130,23 @@ Figures figures_of(std::vector<double> microseconds, const std::vector<double>& 
 }
 
 // Returns poses per second, asked `batch` at a time. Several tools take turns.
-double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const ToolModel& tool,
+double run_batches(std::deque<ToolQuery>& tools, const PreparedCloud& cloud, const ToolModel& tool,
                    const Path& path, int count, int batch) {
-  std::vector<Query*> together;
-  for (Query& query : tools) together.push_back(&query);
+  std::vector<ToolQuery*> together;
+  for (ToolQuery& query : tools) together.push_back(&query);
   std::vector<Pose> poses;
-  std::vector<ToolPose> of_tools;
+  std::vector<Job> of_tools;
   for (int k = 0; k < batch; ++k) {
     poses.push_back(path.at(tool, k));
     of_tools.push_back(
-        {static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(tools.size()), poses.back()});
+        {poses.back(), static_cast<std::uint32_t>(k) % static_cast<std::uint32_t>(tools.size())});
   }
   std::vector<Result> results(poses.size());
   const auto run = [&] {
     if (tools.size() == 1)
-      tools.front().run(cloud, poses, results);
+      tools.front().run(cloud, jobs_of(poses), results);
     else
-      Query::run_together(together, cloud, of_tools, results);
+      ToolQuery::run(together, cloud, of_tools, results);
   };
   run();
   const auto begin = Clock::now();
@@ -155,7 +155,7 @@ double run_batches(std::deque<Query>& tools, const PreparedCloud& cloud, const T
   return 1e6 * batches * batch / microseconds_since(begin);
 }
 
-Figures run(std::deque<Query>& queries, const std::deque<PreparedCloud>& clouds,
+Figures run(std::deque<ToolQuery>& queries, const std::deque<PreparedCloud>& clouds,
             const ToolModel& tool, const Path& path, int count) {
   // Computes this many poses and asks the last, since one takes no longer than reading the clock.
   constexpr int kPaceOf = 32;
@@ -209,7 +209,7 @@ class CameraStream {
 };
 
 // Times queries with a new image for each. Copies of the camera take turns like those of the tool.
-Figures run_frames(std::deque<Query>& queries, std::deque<CameraStream>& cameras,
+Figures run_frames(std::deque<ToolQuery>& queries, std::deque<CameraStream>& cameras,
                    const ToolModel& tool, const Path& path, int count, bool behind) {
   std::vector<double> microseconds, host_us;
   double fraction = 0;
@@ -328,7 +328,7 @@ Options parse(int argc, char** argv) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || options.count(text.substr(0, equals)) == 0)
-      throw Error(ErrorKind::usage,
+      throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
                       "rotate= frames= behind= method= batch= points= standby= json= poses= path=");
@@ -340,7 +340,8 @@ Options parse(int argc, char** argv) {
 int number(const Options& options, const std::string& name, int least) {
   const int value = std::atoi(options.at(name).c_str());
   if (value < least)
-    throw Error(ErrorKind::usage, name + "= must be a number of at least " + std::to_string(least));
+    throw Error(ErrorKind::invalid_argument,
+                name + "= must be a number of at least " + std::to_string(least));
   return value;
 }
 
@@ -357,7 +358,7 @@ Measure measure_of(const Options& options) {
   const std::string& measure = options.at("measure");
   if (measure == "paper") return Measure::paper;
   if (measure == "refined") return Measure::refined;
-  throw Error(ErrorKind::usage, "measure=" + measure + ": there are refined and paper");
+  throw Error(ErrorKind::invalid_argument, "measure=" + measure + ": there are refined and paper");
 }
 
 // Makes one camera for each copy of the tool, or none with frames=none.
@@ -367,7 +368,7 @@ std::deque<CameraStream> make_cameras(const Options& options, const Cloud& cloud
   const std::string& frames = options.at("frames");
   if (frames == "none") return cameras;
   if (!cloud.sensor || (frames != "counts" && frames != "metres"))
-    throw Error(ErrorKind::usage, "frames= takes counts or metres, and a cloud with a camera");
+    throw Error(ErrorKind::invalid_argument, "frames= takes counts or metres, and a cloud with a camera");
   const NormalOptions normals{normal_method_from_text(options.at("method"))};
   for (int k = number(options, "rotate", 1); k > 0; --k)
     cameras.emplace_back(*cloud.sensor, frames == "counts", normals, device);
@@ -375,7 +376,7 @@ std::deque<CameraStream> make_cameras(const Options& options, const Cloud& cloud
 }
 
 // Times single queries, in new images where there are cameras, and adds the figures to `json`.
-void time_single(const Options& options, std::deque<Query>& queries,
+void time_single(const Options& options, std::deque<ToolQuery>& queries,
                  const std::deque<PreparedCloud>& clouds, std::deque<CameraStream>& cameras,
                  const ToolModel& tool, const Path& path, nlohmann::json& json) {
   const int count = number(options, "queries", 1), behind = number(options, "behind", 0);
@@ -396,7 +397,7 @@ void time_single(const Options& options, std::deque<Query>& queries,
 
 void control(int argc, char** argv) {
   if (argc < 3)
-    throw Error(ErrorKind::usage, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
+    throw Error(ErrorKind::invalid_argument, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
   const Options options = parse(argc, argv);
   QueryOptions asked = query_options(options);
   const int copies = number(options, "rotate", 1), batch = number(options, "batch", 1);
@@ -404,10 +405,10 @@ void control(int argc, char** argv) {
   const Cloud cloud = read_cloud(argv[2]);
   if (cloud.size() == 0) refuse(std::string(argv[2]) + ": the cloud has no points");
   std::deque<PreparedCloud> clouds{PreparedCloud(cloud)};
-  Query refined(tool, asked);
+  ToolQuery refined(tool, asked);
   const Path path = make_path(refined, clouds[0], tool);
   asked.measure = measure_of(options);
-  std::deque<Query> queries;
+  std::deque<ToolQuery> queries;
   for (int k = 0; k < copies; ++k) {
     if (k > 0) clouds.emplace_back(cloud);
     queries.emplace_back(tool, asked);

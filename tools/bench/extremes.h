@@ -9,7 +9,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/model/packing.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/surface.h"
 
 namespace vpm::bench {

@@ -53,7 +53,7 @@ Deviation touch_of_the_smallest(const Device& device) {
   const Sphere& smallest = packing.spheres.back();
   Cloud cloud = plane_points({{}}, {{0, 0, 1}});
   cloud.origin = smallest.center;
-  Query query(tool, {.measure = Measure::paper, .device = device});
+  ToolQuery query(tool, {.measure = Measure::paper, .device = device});
   const Result r = query.run(PreparedCloud(cloud), {});
   if (r.boundary != 1) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   constexpr double kResolution = 0x1p-60;

@@ -64,7 +64,7 @@ Solid make_shape(const std::string& name) {
   if (name == "torus") return synthetic::make_torus(0.35 * kSize, 0.15 * kSize, 64, 32);
   if (name == "twisted-torus")
     return synthetic::make_twisted_torus(0.35 * kSize, 0.2 * kSize, 3, 96);
-  throw Error(ErrorKind::usage, "there is no shape '" + name + "'");
+  throw Error(ErrorKind::invalid_argument, "there is no shape '" + name + "'");
 }
 
 ToolModel make_tool(const Solid& solid, const std::vector<std::uint32_t>& levels) {

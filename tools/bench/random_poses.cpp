@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/sight.h"
@@ -58,9 +58,9 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
   std::uint64_t tried = 0;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const PackedSolid& tool = *tools[t];
-    Query queries[2] = {
-        Query(tool.model, {.level = level, .device = device, .shadows = shadows}),
-        Query(tool.model, {.measure = Measure::paper, .level = level, .device = device})};
+    ToolQuery queries[2] = {
+        ToolQuery(tool.model, {.level = level, .device = device, .shadows = shadows}),
+        ToolQuery(tool.model, {.measure = Measure::paper, .level = level, .device = device})};
     const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
     while (found.poses < last) {
       const Pose pose = random_pose(seed, tried++, tool.model.reach);

@@ -7,7 +7,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -32,7 +32,7 @@ DepthImage noisy_depth(const synthetic::Scene& scene) {
 
 // Returns the pose along the optical axis at which kInside of the tool is inside, by bisection.
 Pose pose_inside(const ToolModel& tool, const PreparedCloud& cloud) {
-  Query query(tool, {});
+  ToolQuery query(tool, {});
   double clear = 1 - 2 * tool.reach, deep = 1 + tool.reach;
   constexpr int kHalvings = 30;
   for (int k = 0; k < kHalvings; ++k) {
@@ -132,59 +132,94 @@ Durations timed(int calls, int warm_up, const std::function<void(int call)>& bod
   return Durations(std::move(seconds));
 }
 
+namespace {
+
+// Frame, poses and hand-written alternatives of the timed queries.
+struct QueryScene {
+  explicit QueryScene(const ReplayTool& tool, const SuiteOptions& suite)
+      : scene(the_scene()),
+        depth(noisy_depth(scene)),
+        cloud(make_cloud(depth, scene.camera, NormalOptions{})),
+        prepared(cloud),
+        poses(circle(pose_inside(tool.model, prepared), kRadius, 64)),
+        calls(suite.quick ? 64 : 1280),
+        few(suite.quick ? 3 : 31) {}
+
+  Pose pose(int k) const { return poses[static_cast<std::size_t>(k) % poses.size()]; }
+
+  static constexpr double kRadius = 1e-3;  // m
+  static constexpr int kWarmUp = 16;
+  synthetic::Scene scene;
+  DepthImage depth;
+  Cloud cloud;
+  PreparedCloud prepared;
+  std::vector<Pose> poses;
+  int calls, few;  // calls of fast and of slow queries
+};
+
+void time_level(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
+                std::uint32_t level, int threads, Report& report) {
+  ToolQuery query(tool.model, {.level = level, .device = suite.device}),
+      counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
+  Result result;
+  const auto add = [&](const char* what, const Durations& durations) {
+    add_query(report, what, level, threads, durations, result.volume_fraction);
+  };
+  add("refined", timed(seen.calls, QueryScene::kWarmUp,
+                       [&](int k) { result = query.run(seen.prepared, seen.pose(k)); }));
+  add("refined, points counted", timed(seen.calls, QueryScene::kWarmUp, [&](int k) {
+        result = counting.run(seen.prepared, seen.pose(k));
+      }));
+  add("refined, cold cloud", timed(seen.few, 1, [&](int k) {
+        const PreparedCloud anew(seen.cloud);
+        result = query.run(anew, seen.pose(k));
+      }));
+}
+
+void time_sparse_points(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
+                        const PreparedCloud& sparse, int threads, Report& report) {
+  ToolQuery query(tool.model, {.level = tool.levels.front(), .device = suite.device});
+  Result result;
+  const Durations durations = timed(seen.few, 1, [&](int k) {
+    result = query.run(sparse, {seen.pose(k).rotation, {0, 0, 1}});
+  });
+  add_query(report, "refined, sparse points", tool.levels.front(), threads, durations,
+            result.volume_fraction);
+}
+
+void time_peers(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
+                const Peers& peers, const PixelCloud& pixels, int threads, Report& report) {
+  const auto to_camera = [&](int k) {
+    return relative_to(seen.scene.camera.to_world, seen.pose(k));
+  };
+  Wrench force;
+  const Durations of_grid = timed(seen.calls, QueryScene::kWarmUp,
+                                  [&](int k) { force = peers.penalty(pixels, to_camera(k)); });
+  add_query(report, "distance grid", 0, threads, of_grid, 0);
+  double volume = 0;
+  const Durations of_count = timed(suite.quick ? 16 : 320, QueryScene::kWarmUp, [&](int k) {
+    volume = peers.count_voxels(pixels, to_camera(k));
+  });
+  add_query(report, "voxel count", 0, threads, of_count, volume / tool.model.volume);
+}
+
+}  // namespace
+
 void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
-  const synthetic::Scene scene = the_scene();
-  const DepthImage depth = noisy_depth(scene);
-  const Cloud cloud = make_cloud(depth, scene.camera, NormalOptions{});
-  const PreparedCloud prepared(cloud);
+  const QueryScene seen(tool, suite);
   const PreparedCloud sparse(sparse_grazing_view());
   const Peers peers(tool.solid);
-  const PixelCloud pixels = make_pixel_cloud(depth, scene.camera);
-  constexpr double kRadius = 1e-3;
-  const std::vector<Pose> poses = circle(pose_inside(tool.model, prepared), kRadius, 64);
-  const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
-  const int calls = suite.quick ? 64 : 1280, few = suite.quick ? 3 : 31, warm_up = 16;
+  const PixelCloud pixels = make_pixel_cloud(seen.depth, seen.scene.camera);
   for (int threads = 1; threads <= (suite.device.is_cuda() ? 1 : 2); ++threads) {
     set_thread_count(threads);
-    for (const std::uint32_t level : tool.levels) {
-      Query query(tool.model, {.level = level, .device = suite.device}),
-          counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
-      Result result;
-      const auto warm = [&](int k) { result = query.run(prepared, pose(k)); };
-      const Durations of_warm = timed(calls, warm_up, warm);
-      add_query(report, "refined", level, threads, of_warm, result.volume_fraction);
-      const Durations of_counting =
-          timed(calls, warm_up, [&](int k) { result = counting.run(prepared, pose(k)); });
-      add_query(report, "refined, points counted", level, threads, of_counting,
-                result.volume_fraction);
-      const Durations of_cold = timed(few, 1, [&](int k) {
-        const PreparedCloud anew(cloud);
-        result = query.run(anew, pose(k));
-      });
-      add_query(report, "refined, cold cloud", level, threads, of_cold, result.volume_fraction);
-    }
-    Query query(tool.model, {.level = tool.levels.front(), .device = suite.device});
-    Result result;
-    const Durations of_sparse = timed(few, 1, [&](int k) {
-      result = query.run(sparse, {pose(k).rotation, {0, 0, 1}});
-    });
-    add_query(report, "refined, sparse points", tool.levels.front(), threads, of_sparse,
-              result.volume_fraction);
-    const Camera& camera = scene.camera;
-    const auto to_camera = [&](int k) { return relative_to(camera.to_world, pose(k)); };
-    Wrench force;
-    add_query(report, "distance grid", 0, threads,
-              timed(calls, warm_up, [&](int k) { force = peers.penalty(pixels, to_camera(k)); }),
-              0);
-    double volume = 0;
-    const Durations of_count = timed(suite.quick ? 16 : 320, warm_up, [&](int k) {
-      volume = peers.count_voxels(pixels, to_camera(k));
-    });
-    add_query(report, "voxel count", 0, threads, of_count, volume / tool.model.volume);
+    for (const std::uint32_t level : tool.levels)
+      time_level(tool, suite, seen, level, threads, report);
+    time_sparse_points(tool, suite, seen, sparse, threads, report);
+    time_peers(tool, suite, seen, peers, pixels, threads, report);
   }
   set_thread_count(0);
-  report.settings["query"] = {{"points", prepared.positions().size()},
-                              {"scene", scene.name},
+  report.settings["query"] = {{"points", seen.prepared.positions().size()},
+                              {"scene", seen.scene.name},
                               {"noise", "kinect"},
                               {"inside", kInside},
                               {"peer_voxels", kPeerVoxels}};
@@ -199,7 +234,7 @@ struct CoherentPath {
 void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const CoherentPath& path,
                     std::uint32_t level, int rounds, Report& report) {
   const int poses = static_cast<int>(path.poses.size());
-  Query stateless(tool.model, {.level = level}),
+  ToolQuery stateless(tool.model, {.level = level}),
       coherent(tool.model, {.level = level, .coherent = true});
   Result alone, following;
   bool same = true;
@@ -257,7 +292,7 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
     const std::vector<Pose> poses = circle(pose_inside(tool.model, once), 1e-3, 64);
     const QueryOptions options{.level = level, .device = suite.device};
     // Keeps a query for each cloud, since a device holds one cloud per query.
-    Query of_once(tool.model, options), of_twice(tool.model, options);
+    ToolQuery of_once(tool.model, options), of_twice(tool.model, options);
     const auto pose = [&](int k) { return poses[static_cast<std::size_t>(k) % poses.size()]; };
     const auto [a, b] = timed_in_turn(
         suite.quick ? 64 : 1280, 8, [&](int k) { of_once.run(once, pose(k)); },

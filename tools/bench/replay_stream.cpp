@@ -10,7 +10,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/haptics/rotation_vector.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/bench/peak_memory.h"
@@ -96,7 +96,7 @@ struct Pass {
   FrameCounts frames;
 };
 
-Pass pass_over(const Stream& stream, const SampledPath& path, Query& query) {
+Pass pass_over(const Stream& stream, const SampledPath& path, ToolQuery& query) {
   Pass pass;
   FrameFeed feed(stream.recording,
                  {kRate, path.steps(), stream.recording.frames.front().time, 0, true},
@@ -182,7 +182,7 @@ class ResultHash {
 // Queries every frame of the recording once, prepared anew, along its part of the path. Returns the
 // hash of the results.
 std::string soak_round(const Stream& stream, FrameReader& reader, const SampledPath& path,
-                       Query& query) {
+                       ToolQuery& query) {
   ResultHash hash;
   query.forget();
   const std::size_t frames = stream.recording.frames.size();
@@ -204,8 +204,8 @@ void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOp
   set_thread_count(1);  // for the loop; another thread prepares frames
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
-    Query query(tool.model,
-                {.level = level, .device = suite.device, .coherent = !suite.device.is_cuda()});
+    ToolQuery query(tool.model,
+                    {.level = level, .device = suite.device, .coherent = !suite.device.is_cuda()});
     add_pass(pass_over(stream, path, query), level, report);
   }
   set_thread_count(0);
@@ -217,7 +217,7 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, so it shows a leak of frames
-  Query query(tool.model, {.level = tool.soak_level,
+  ToolQuery query(tool.model, {.level = tool.soak_level,
                            .device = suite.device,
                            .coherent = !suite.device.is_cuda(),
                            .counts_points = true});

@@ -13,7 +13,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -54,7 +54,7 @@ std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) 
 
 // Returns the z at which this fraction of the tool is inside, by bisection from far in front of the
 // wall.
-double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
+double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
                      double fraction) {
   const auto is_deeper = [&](double z) {
     return query.run(cloud, {rotation, {aside.x, aside.y, z}}).volume_fraction > fraction;
@@ -78,7 +78,7 @@ double z_of_fraction(Query& query, const PreparedCloud& cloud, const Rotation& r
 std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud, int count) {
   QueryOptions options;
   options.level = tool.levels.front().sphere_count;
-  Query query(tool, options);
+  ToolQuery query(tool, options);
   std::vector<Pose> path;
   for (int k = 0; k < count; ++k) {
     const double along = 2 * kPi * k / count;
@@ -147,7 +147,7 @@ Device device_of(const SuiteOptions& options) {
                     : "scaling: this build has no CUDA; build with cmake --preset cuda");
   }
   if (!options.device.is_cuda() || options.device.index == Device::kAll) {
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::invalid_argument,
                 "scaling times one CUDA device; use --device cuda or cuda:N, or leave the option "
                 "out");
   }
@@ -232,8 +232,8 @@ class Scaling {
                          const std::vector<Pose>& path) {
     std::vector<double> flood;
     for (const Pose& pose : path) {
-      query.run(cloud, pose);
-      flood.push_back(query.flood_microseconds());
+      measure.run(cloud, pose);
+      flood.push_back(measure.flood_microseconds());
     }
     return median_of(flood);
   }
@@ -265,9 +265,9 @@ class Scaling {
     QueryOptions options;
     options.measure = Measure::paper;
     options.level = level.sphere_count;
-    Query on_cpu(tool, options);
+    ToolQuery on_cpu(tool, options);
     options.device = device_;
-    Query on_device(tool, options);
+    ToolQuery on_device(tool, options);
     std::size_t same_of_ours = 0, same = 0;
     for (const Pose& pose : path) {
       const Result expected = on_cpu.run(cloud, pose);
@@ -291,7 +291,7 @@ class Scaling {
                   const std::vector<Pose>& path, const std::vector<Contender>& contenders) {
     QueryOptions options;
     options.level = level.sphere_count;
-    Query query(tool, options);
+    ToolQuery query(tool, options);
     for (std::size_t k = 0; k < path.size(); ++k) {
       nlohmann::json frame = {{"part", "frame"},
                               {"spheres", level.sphere_count},

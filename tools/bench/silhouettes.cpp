@@ -84,7 +84,7 @@ void follow_solid(const Path& path, const std::vector<Pose>& along, const Prepar
                   const PackedSolid& tool, std::uint32_t level, const Device& device,
                   SilhouetteResult& result) {
   const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
-  Query query(tool.model, {.level = level, .device = device, .shadows = Shadows::solid});
+  ToolQuery query(tool.model, {.level = level, .device = device, .shadows = Shadows::solid});
   double volume_before = 0, count_before = 0;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const double volume = query.run(cloud, along[k]).volume_fraction;
@@ -119,7 +119,7 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
 
   SilhouetteResult result{.path = path.name};
   for (const Measure measure : {Measure::refined, Measure::paper}) {
-    Query query(tool.model, {.measure = measure, .level = level, .device = device});
+    ToolQuery query(tool.model, {.measure = measure, .level = level, .device = device});
     std::vector<Result> measured;
     for (const Pose& pose : along) {
       measured.push_back(query.run(cloud, pose));

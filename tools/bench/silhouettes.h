@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tools/bench/penetration_case.h"
 
 namespace vpm::bench {

@@ -53,7 +53,7 @@ std::string names_of(const std::function<bool(const Suite&)>& is_meant) {
 void check_options(const Suite& suite, const SuiteOptions& given) {
   const auto check = [&](bool is_given, Option option, const std::string& name) {
     if (is_given && (suite.options & option) == 0) {
-      throw Error(ErrorKind::usage,
+      throw Error(ErrorKind::invalid_argument,
                   std::string(suite.name) + " takes no " + name + ", which is for " +
                       names_of([&](const Suite& other) { return (other.options & option) != 0; }) +
                       "; leave it out");
@@ -85,7 +85,7 @@ bool needs_device(const std::string& name) {
 Report run_suite(const std::string& name, const SuiteOptions& options) {
   const Suite* const suite = find_suite(name);
   if (suite == nullptr) {
-    throw Error(ErrorKind::usage,
+    throw Error(ErrorKind::invalid_argument,
                 (name.empty() ? std::string("name a suite") : "there is no suite '" + name + "'") +
                     "; the suites are " + suite_names());
   }

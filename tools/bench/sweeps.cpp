@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 
 namespace vpm::bench {
 namespace {
@@ -97,10 +97,10 @@ void Sweeps::measure(const SweepCase& c, const Path& path, const std::vector<Uns
                      CloudKind kind, Noise noise, Measure measure, std::uint32_t spheres) {
   const PackedSolid& tool = tool_(c.shape);
   const View& seen = view(synthetic::make_scene(c.scene), kind, noise);
-  Query query(tool.model, {.measure = measure,
-                           .level = spheres,
-                           .device = device_,
-                           .shadows = measure == Measure::refined ? shadows_ : Shadows::near});
+  ToolQuery query(tool.model, {.measure = measure,
+                               .level = spheres,
+                               .device = device_,
+                               .shadows = measure == Measure::refined ? shadows_ : Shadows::near});
   std::vector<Result> measured;
   for (const Pose& pose : path.poses) measured.push_back(query.run(seen.cloud, pose));
   const Errors errors = compare(measured, path.truth, unseen, tool.solid);

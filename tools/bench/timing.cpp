@@ -12,7 +12,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/surface/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
@@ -135,7 +135,7 @@ class Timing {
   // Prepares recorded rooms and random poses in them, since a query's time depends on what is near.
   void prepare_recorded() {
     const ToolModel tool = make_tool(solid_, {kScoutSpheres});
-    Query query(tool, {});
+    ToolQuery query(tool, {});
     for (const RecordedImage& image : recorded_images(options_.data)) {
       recorded_.push_back({PreparedCloud(image.cloud),
                            PreparedCloud(image.cloud, PointReading::as_measured),
@@ -176,7 +176,7 @@ class Timing {
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
                                 Measure measure = Measure::refined) {
-      Query query(model, {.measure = measure});
+      ToolQuery query(model, {.measure = measure});
       time(stage, spheres, runs_.fast, [&] { query.run(seen, at); });
     };
     time_query("query refined", cloud, pose);
@@ -191,7 +191,7 @@ class Timing {
   // Times queries in the recorded rooms, by their image, as measured, and by their points alone.
   void time_rooms(const ToolModel& model, std::size_t spheres) {
     const auto time_room = [&](const char* stage, const auto& cloud_of) {
-      Query query(model, {});
+      ToolQuery query(model, {});
       time(
           stage, spheres, runs_.slow,
           [&] {

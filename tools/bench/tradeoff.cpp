@@ -13,15 +13,15 @@
 #include "libvpm/graph/calibration.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/query/level_choice.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/level_tool_query.h"
 #include "libvpm/query/scene_scale.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/suite.h"
 #include "tools/bench/tradeoff_report.h"
 #include "tools/bench/view.h"
-#include "tools/query/level_query.h"
 
 namespace vpm::bench {
 namespace {
@@ -142,7 +142,7 @@ class Tradeoff {
                  const Sensing& sensing, double& median_us) {
     const Run& run = path(c);
     const PreparedCloud& seen = cloud(c.scene, sensing);
-    Query query(model, query_options);
+    ToolQuery query(model, query_options);
     query.run(seen, run.path.back());  // allocates its memory
     std::vector<Result> results;
     std::vector<double> times;
@@ -263,7 +263,7 @@ class Tradeoff {
       for (const double asked_us : {200.0, 1000.0}) {
         tools::LevelRequest request;
         request.deadline_seconds = 1e-6 * asked_us;
-        tools::LevelQuery query(t.model, {.device = options_.device}, request, seen, in.front());
+        LevelToolQuery query(t.model, {.device = options_.device}, request, seen, in.front());
         Deadline d{c.shape, c.scene, to_text(Noise::kinect), asked_us, queries, 0, 0, 0};
         d.coarsest = t.model.levels.back().sphere_count;
         for (std::size_t k = 0; k < queries; ++k) {

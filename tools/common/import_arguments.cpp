@@ -34,7 +34,7 @@ void declare(CLI::App& app, ImportArguments& a) {
 
 ImportOptions import_options(const Tool& tool, const ImportArguments& a) {
   if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
-    throw Error(ErrorKind::usage, "--depth-scale must be finite and greater than 0");
+    throw Error(ErrorKind::invalid_argument, "--depth-scale must be finite and greater than 0");
   ImportOptions options;
   options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
   check_normal_options(options.normals);

@@ -22,8 +22,8 @@ struct ImportArguments {
 // Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, ImportArguments& arguments);
 
-// Returns the values as libvpm takes them. Throws Error(usage) where one is out of range; notes a
-// quaternion that had to be normalised.
+// Returns the values as libvpm takes them. Throws Error(invalid_argument) where one is out of
+// range; notes a quaternion that had to be normalised.
 ImportOptions import_options(const Tool& tool, const ImportArguments& arguments);
 
 }  // namespace vpm::tools

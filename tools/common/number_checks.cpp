@@ -1,9 +1,13 @@
 #include "tools/common/number_checks.h"
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <string_view>
+
+#include "libvpm/core/error.h"
 
 namespace vpm::tools {
 namespace {
@@ -53,6 +57,18 @@ NumberCheck whole_number_in(long long low, long long high) {
     return text + " is not a whole number from " + std::to_string(low) + " to " +
            std::to_string(high);
   };
+}
+
+double fraction_from_text(const std::string& text, const std::string& option) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, fault] = std::from_chars(text.data(), end, value);
+  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
+  if (fault != std::errc() || (!unit.empty() && unit != "%") || !(value > 0)) {
+    throw Error(ErrorKind::invalid_argument,
+                option + " " + text + ": give a share of the tool's volume like 0.5% or 0.005");
+  }
+  return unit.empty() ? value : value / 100;
 }
 
 }  // namespace vpm::tools

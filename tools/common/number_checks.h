@@ -17,4 +17,8 @@ NumberCheck positive_number();
 NumberCheck number_in(double low, double high);
 NumberCheck whole_number_in(long long low, long long high);
 
+// Returns a fraction as users write it, "0.5%" or "0.005". Throws Error(invalid_argument) naming
+// `option`.
+double fraction_from_text(const std::string& text, const std::string& option);
+
 }  // namespace vpm::tools

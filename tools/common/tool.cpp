@@ -16,6 +16,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
+#include "tools/common/error_text.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
 
@@ -62,8 +63,9 @@ void refuse_cut_options(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view argument = argv[k];
     if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
-      throw Error(ErrorKind::usage, std::string(argument.substr(0, argument.size() - 1)) +
-                                        ": its value is empty; give one, or leave the option out");
+      throw Error(ErrorKind::invalid_argument,
+                  std::string(argument.substr(0, argument.size() - 1)) +
+                      ": its value is empty; give one, or leave the option out");
   }
 }
 
@@ -116,7 +118,10 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
     std::cerr << name_ << ": error: " << message << '\n';
-    return static_cast<int>(kind);
+    return exit_code(kind);
+  };
+  const auto has_option = [&](const std::string& option) {
+    return app_.get_option_no_throw(option) != nullptr;
   };
   try {
     // Lets --dump-config pass without required options: inputs may not be known yet.
@@ -145,9 +150,9 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return std::cout.flush() ? code
                              : fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
-    return fail(ErrorKind::usage, message_of(fault) + " (see " + name_ + " --help)");
+    return fail(ErrorKind::invalid_argument, message_of(fault) + " (see " + name_ + " --help)");
   } catch (const Error& fault) {
-    return fail(fault.kind(), fault.what());
+    return fail(fault.kind(), in_words_of_tools(fault.what(), has_option));
   } catch (const std::bad_alloc&) {
     return fail(ErrorKind::refused, "not enough memory for this input");
   } catch (const std::exception& fault) {
@@ -161,7 +166,7 @@ void Tool::refuse_empty_values() const {
     const std::vector<std::string>& values = option->results();
     if (option->get_expected_max() > 0 &&
         std::find(values.begin(), values.end(), "") != values.end())
-      throw Error(ErrorKind::usage,
+      throw Error(ErrorKind::invalid_argument,
                   option->get_name() + ": its value is empty; give one, or leave the option out");
   }
 }
@@ -184,7 +189,7 @@ nlohmann::json Tool::parameters() const {
     if (option->get_positional()) all.erase(config_key(*option));
   }
   for (const char* name : {"device", "threads", "quiet", "verbose", "force",  // change no result
-                           "output", "report", "export", "stats", "spheres-out", "out",  // outputs
+                           "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
                            "mesh", "for-scene", "tool", "cloud", "poses"}) {             // inputs
     all.erase(name);
   }
@@ -193,7 +198,9 @@ nlohmann::json Tool::parameters() const {
 
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   for (auto a = outputs.begin(); a < outputs.end(); ++a) {
     for (auto b = outputs.begin(); b < a; ++b) {
       const std::optional<int> descriptor = file::descriptor_of(a->path);

@@ -69,9 +69,9 @@ struct OutputFile {
   std::optional<file::Kind> kind;
 };
 
-// Throws Error(usage) if two outputs would be one file, or an output an input. Without --force a
-// container replaces only a container of its kind, and a text output (report, table, mesh) anything
-// but a container (libvpm/file/overwrite.h). Tools call it before the work begins.
+// Throws Error(invalid_argument) if two outputs would be one file, or an output an input. Without
+// --force a container replaces only a container of its kind, and a text output (report, table,
+// mesh) anything but a container (libvpm/file/overwrite.h). Tools call it before the work begins.
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common);
 

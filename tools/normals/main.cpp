@@ -8,14 +8,16 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
+#include "libvpm/view/page.h"
 #include "tools/common/import_arguments.h"
 #include "tools/common/tool.h"
+#include "tools/normals/scan_view.h"
 
 namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string depth, output, report, export_path;
+  std::string depth, output, report, export_path, view;
   ImportArguments import;
 };
 
@@ -26,18 +28,24 @@ void declare(CLI::App& app, Arguments& a) {
   declare(app, a.import);
   app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
   app.add_option("--export", a.export_path, "Write the points with normals here too: .ply or .pcd");
+  app.add_option("--view", a.view,
+                 "Write a page (.html) here that shows surface, normals and unset pixels in a "
+                 "browser");
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   if (a.depth.empty()) wrong("no depth image is given: name a file, or - for a pipe");
-  if (a.output.empty() && a.export_path.empty() && a.report.empty())
-    wrong("nothing would be written: give -o OUT.vpmc, --export or --report");
+  if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
+    wrong("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
   if (!a.export_path.empty()) check_points_path(a.export_path);
   check_files({a.depth},
               {{"--output", a.output, file::Kind::cloud},
                {"--report", a.report, std::nullopt},
-               {"--export", a.export_path, std::nullopt}},
+               {"--export", a.export_path, std::nullopt},
+               {"--view", a.view, std::nullopt}},
               common);
 }
 
@@ -84,6 +92,7 @@ void say_notes(const Tool& tool, const std::string& name, const ImportArguments&
 
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
+  if (!a.view.empty()) view::check_available();
   const ImportOptions options = import_options(tool, a.import);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
@@ -97,6 +106,7 @@ void run(const Tool& tool, const Arguments& a) {
                                {"parameters", tool.parameters()},
                                {"input_hash", file::content_hash({bytes})}};
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
+  if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
   if (!a.export_path.empty()) write_points(a.export_path, imported.cloud);
   if (!a.output.empty()) write_cloud(a.output, imported.cloud);
 }

@@ -21,11 +21,13 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
+#include "libvpm/view/page.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/pack/pack_report.h"
+#include "tools/pack/pack_view.h"
 
 namespace vpm::tools {
 namespace {
@@ -33,7 +35,7 @@ namespace {
 constexpr long long kMostSpheres = 0xFFFFFFFE;  // a packing file counts them in 32 bits
 
 struct Arguments {
-  std::string mesh, repair, output, report, export_path, link, for_scene;
+  std::string mesh, repair, output, report, export_path, link, for_scene, view;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld, max_hole;
@@ -65,8 +67,11 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--validate", a.validate,
                "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
   app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
+  app.add_option("--view", a.view,
+                 "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
+                 "the defects of a mesh that is refused");
   app.add_option("--export", a.export_path,
-                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .vtk, .yml "
+                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
                  "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
                  "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
@@ -92,8 +97,9 @@ void declare(CLI::App& app, Arguments& a) {
 SolidOptions solid_options(const Arguments& a) {
   SolidOptions options{.scale = a.scale, .weld = a.weld, .max_hole = a.max_hole};
   if (a.repair.empty() || parse_repair(a.repair, options)) return options;
-  throw Error(ErrorKind::usage, "--repair: '" + a.repair +
-                                    "' is none of holes, voxel, voxel=RES, flood and flood=RES");
+  throw Error(
+      ErrorKind::invalid_argument,
+      "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
 }
 
 // Returns the arguments with a bare --repair replaced by `holes`, since CLI11 would take a mesh
@@ -110,14 +116,16 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
     wrong("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
     wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
-  if (a.output.empty() && a.export_path.empty() && a.report.empty())
-    wrong("nothing would be written: give -o OUT.vpmp, --export or --report");
+  if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
+    wrong("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
     wrong("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
@@ -126,7 +134,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt},
-               {"--export", a.export_path, std::nullopt}},
+               {"--export", a.export_path, std::nullopt},
+               {"--view", a.view, std::nullopt}},
               common);
 }
 
@@ -136,6 +145,17 @@ std::string link_name(const Arguments& a) {
   if (!a.link.empty()) return a.link;
   const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
   return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
+}
+
+// Makes the solid; of a mesh that is refused, --view shows why.
+CheckedSolid checked_solid(const Arguments& a, const RawMesh& mesh) {
+  try {
+    return make_solid(mesh, solid_options(a));
+  } catch (const Error& fault) {
+    if (!a.view.empty() && fault.kind() == ErrorKind::refused)
+      write_defects_view(a.view, mesh, solid_options(a), fault.what());
+    throw;
+  }
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
@@ -220,19 +240,6 @@ void say_validation(const Tool& tool, const Validation& v) {
     tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
 }
 
-void refuse_uncertified(const Arguments& a, double coverage, const Certificate& certificate) {
-  if (coverage > 1 + kCertificateTolerance)
-    refuse(
-        a.mesh + ": the spheres hold " + std::to_string(coverage) +
-        " times the volume of the mesh, which intersects itself so that its inside is ambiguous; "
-        "nothing is written. Give --repair voxel");
-  if (certificate.holds) return;
-  refuse(a.mesh + ": the packing does not hold its certificate (protrusion " +
-         std::to_string(certificate.max_protrusion) + " m, overlap " +
-         std::to_string(certificate.max_overlap) +
-         " m); nothing is written. This is a bug of vpm-pack: please report it with the mesh");
-}
-
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
                      std::vector<Sphere> spheres) {
   nlohmann::json parameters = tool.parameters();
@@ -250,10 +257,11 @@ Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSol
 
 void run(const Tool& tool, Arguments a) {
   check(a, tool.common());
+  if (!a.view.empty()) view::check_available();
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = make_solid(parse_mesh(bytes, name), solid_options(a));
+  CheckedSolid checked = checked_solid(a, parse_mesh(bytes, name));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
@@ -263,7 +271,7 @@ void run(const Tool& tool, Arguments a) {
   PackResult result = pack_checked(tool, a, checked);
   if (a.grow) grow_together(tool, a, checked, result);
   const Certificate certificate = certify(checked.solid, result.spheres, &checked.enclosure);
-  refuse_uncertified(a, result.coverage, certificate);
+  refuse_uncertified(a.mesh, result.coverage, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   say_result(tool, a, result);
@@ -278,6 +286,7 @@ void run(const Tool& tool, Arguments a) {
     if (scene) report["scene"] = scene_report(*scene);
     file::write_all(a.report, report.dump(2) + "\n");
   }
+  if (!a.view.empty()) write_packing_view(a.view, a.mesh, checked, result);
   if (!a.export_path.empty()) export_packing(a.export_path, result.spheres, link_name(a));
   if (!a.output.empty()) {
     Packing packing =

@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void wrong(const std::string& text) {
   throw Error(
-      ErrorKind::usage,
+      ErrorKind::invalid_argument,
       "--coupling " + text + ": give stiffness=N/m,damping=N s/m and, if wanted, mass=kg,rate=Hz");
 }
 

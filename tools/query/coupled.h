@@ -8,7 +8,8 @@
 namespace vpm::tools {
 
 // Parses "stiffness=500,damping=5,mass=0.0125,rate=1000" in N/m, N s/m, kg and Hz. If left out, the
-// mass is the critically damped one, and the rate is `rate`. Throws Error(usage) naming the option.
+// mass is the critically damped one, and the rate is `rate`. Throws Error(invalid_argument) naming
+// the option.
 CouplingParameters coupling_from_text(const std::string& text, const ToolModel& tool, double rate);
 
 // Returns a warning if the parameters are unstable in a scene of this stiffness (N/m^3), otherwise

@@ -10,14 +10,15 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/level_tool_query.h"
+#include "libvpm/query/tool_query.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
-#include "tools/query/level_query.h"
 #include "tools/query/pose_batches.h"
+#include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay.h"
 #include "tools/query/several_tools.h"
@@ -29,7 +30,7 @@ namespace {
 struct Arguments {
   std::vector<std::string> tools;
   std::string cloud, pose, poses, measure = "refined", shadows = "near", output = "-", spheres_out,
-                                  stats;
+                                  stats, view;
   std::uint32_t level = 0;
   std::string max_error;
   std::optional<double> deadline_us;
@@ -104,12 +105,16 @@ void declare(CLI::App& app, Arguments& a) {
   declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
-                 "The spheres of the last pose by state (.ply or .csv)");
+                 "The spheres of the last pose by state: .csv, .ply (balls), .points.ply or .glb");
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
+  app.add_option("--view", a.view,
+                 "A page (.html) that shows scene, tool, answers and path in any browser");
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) { throw Error(ErrorKind::usage, message); };
+  const auto wrong = [](const std::string& message) {
+    throw Error(ErrorKind::invalid_argument, message);
+  };
   if (a.tools.empty()) wrong("--tool is missing: give the .vpmg that vpm-graph wrote");
   const bool replays = !a.replay.frames.empty();
   if (!replays && a.cloud.empty())
@@ -154,7 +159,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   check_files(inputs,
               {{"--output", a.output, std::nullopt},
                {"--spheres-out", a.spheres_out, std::nullopt},
-               {"--stats", a.stats, std::nullopt}},
+               {"--stats", a.stats, std::nullopt},
+               {"--view", a.view, std::nullopt}},
               common);
 }
 
@@ -188,36 +194,39 @@ struct Run {
   file::Output& output;
   std::vector<double> seconds;  // of each
   Pose last;
+  std::optional<PoseView>& view;
 
-  Result ask(LevelQuery& query, const Pose& pose) {
+  Result ask(LevelToolQuery& query, const Pose& pose) {
     const Result result = query.run(cloud, pose);
     seconds.push_back(query.seconds());
     last = pose;
+    if (view) view->add(0, pose, result, query.query());
     return result;
   }
-  void pose(LevelQuery& query, const Pose& pose, Measure measure) {
+  void pose(LevelToolQuery& query, const Pose& pose, Measure measure) {
     const std::size_t index = seconds.size();
     const Result result = ask(query, pose);
     output.append(result_line(index, result, query.query().level(), measure, query.reason(), {}));
   }
-  void batch(LevelQuery& query, const std::vector<Pose>& poses, Measure measure) {
+  void batch(LevelToolQuery& query, const std::vector<Pose>& poses, Measure measure) {
     std::vector<Result> results(poses.size());
-    query.run(cloud, poses, results);
+    query.run(cloud, jobs_of(poses), results);
     for (const Result& result : results) {
       output.append(
           result_line(seconds.size(), result, query.query().level(), measure, query.reason(), {}));
       seconds.push_back(query.seconds());
     }
     last = poses.back();
+    if (view) view->add_batch(query.query(), cloud, poses);
   }
   // From the first pose on all of the reader, if there is one.
-  void all(LevelQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
+  void all(LevelToolQuery& query, std::optional<Pose> next, std::optional<PoseReader>& reader,
            std::size_t at_once, Measure measure) {
     in_batches(next, reader, at_once, [&](const std::vector<Pose>& poses) {
       at_once == 1 ? pose(query, poses.front(), measure) : batch(query, poses, measure);
     });
   }
-  void coupled(LevelQuery& query, VirtualCoupling coupling, const SampledPath& path) {
+  void coupled(LevelToolQuery& query, VirtualCoupling coupling, const SampledPath& path) {
     for (std::size_t k = 0; k < path.steps(); ++k) {
       CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
       step.contact = ask(query, step.tool);
@@ -243,7 +252,7 @@ void write_stats(const Arguments& a, const Device& device, nlohmann::json stats)
   file::write_all(a.stats, stats.dump(2) + "\n");
 }
 
-void write_rest(const Arguments& a, const ToolModel& model, const LevelQuery& query,
+void write_rest(const Arguments& a, const ToolModel& model, const LevelToolQuery& query,
                 const Device& device, const Pose& last, nlohmann::json stats) {
   const Level& level = query.query().level();
   if (!a.spheres_out.empty())
@@ -263,13 +272,14 @@ PointReading reading_of_points(const Arguments& a) {
 nlohmann::json ask_several(const Tool& tool, const Arguments& a,
                            const std::vector<ToolModel>& models, const QueryOptions& options,
                            const PreparedCloud& cloud, const Pose& pose,
-                           std::optional<PoseReader>& reader, double prepare_seconds) {
+                           std::optional<PoseReader>& reader, double prepare_seconds,
+                           std::optional<PoseView>& view) {
   file::Output output(a.output);
   SeveralTools several(models, options, level_request(a), cloud, pose);
   for (std::size_t t = 0; t < models.size(); ++t)
     if (several.query(t).scale())
       note_scale(tool, *several.query(t).scale(), several.query(t).finest());
-  several.run(pose, reader, a.batch, output);
+  several.run(pose, reader, a.batch, output, view);
   output.finish();
   nlohmann::json stats = query_stats(several.seconds(), prepare_seconds, {});
   stats["levels"] = several.levels();
@@ -277,7 +287,7 @@ nlohmann::json ask_several(const Tool& tool, const Arguments& a,
 }
 
 void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel>& models,
-               const QueryOptions& options) {
+               const QueryOptions& options, std::optional<PoseView>& view) {
   const ToolModel& model = models.front();
   double deviation = 0;
   std::optional<Pose> pose;
@@ -286,6 +296,7 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
   const auto start = std::chrono::steady_clock::now();
   const PreparedCloud prepared(cloud, reading_of_points(a));
   const double prepare_seconds = seconds_since(start);
+  if (view) view->add_cloud(a.cloud, cloud);
 
   std::optional<PoseReader> reader;
   if (!pose) reader.emplace(a.poses);
@@ -293,14 +304,15 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
     if (reader) pose = reader->next();
     if (!pose) reader->refuse_empty();
     nlohmann::json stats =
-        ask_several(tool, a, models, options, prepared, *pose, reader, prepare_seconds);
+        ask_several(tool, a, models, options, prepared, *pose, reader, prepare_seconds, view);
     note_deviation(tool, "", reader ? reader->largest_deviation() : deviation);
     stats["cloud_points"] = prepared.positions().size();
     write_stats(a, options.device, std::move(stats));
+    if (view) view->write();
     return;
   }
   file::Output output(a.output);
-  Run run{prepared, output, {}, {}};
+  Run run{prepared, output, {}, {}, view};
   std::optional<CouplingParameters> coupling;
   std::optional<SampledPath> path;
   if (!a.coupling.empty()) {
@@ -311,7 +323,7 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
     pose = reader->next();
     if (!pose) reader->refuse_empty();
   }
-  LevelQuery query(model, options, level_request(a), prepared, *pose);
+  LevelToolQuery query(model, options, level_request(a), prepared, *pose);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   if (coupling) {
     say_limits(tool, *coupling, model, options.stiffness);
@@ -326,21 +338,23 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
   nlohmann::json stats = query_stats(std::move(run.seconds), prepare_seconds, a.deadline_us);
   stats["cloud_points"] = prepared.positions().size();
   write_rest(a, model, query, options.device, run.last, std::move(stats));
+  if (view) view->write();
 }
 
 void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
-                const QueryOptions& options) {
+                const QueryOptions& options, std::optional<PoseView>& view) {
   std::optional<CouplingParameters> parameters;
   double rate = a.replay.rate.value_or(ReplayArguments::kRate);
   if (!a.coupling.empty()) {
     parameters = coupling_from_text(a.coupling, model, rate);
     if (a.replay.rate && rate != parameters->rate)
-      throw Error(ErrorKind::usage, "--rate and the rate of --coupling differ; give one of them");
+      throw Error(ErrorKind::invalid_argument,
+                  "--rate and the rate of --coupling differ; give one of them");
     rate = parameters->rate;
   }
   Replay replay(tool, a.replay, rate, options.device, reading_of_points(a));
   const Pose first = replay.path().pose(0);
-  LevelQuery query(model, options, level_request(a), replay.first_cloud(), first);
+  LevelToolQuery query(model, options, level_request(a), replay.first_cloud(), first);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
   std::optional<VirtualCoupling> coupling;
   if (parameters) {
@@ -348,13 +362,14 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   file::Output output(a.output);
-  replay.run(query, coupling, options.measure, output);
+  replay.run(query, coupling, options.measure, output, view);
   output.finish();
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_cloud().positions().size();
   stats["replay"] = replay.report(a.deadline_us ? 1e-6 * *a.deadline_us : 1 / rate);
   write_rest(a, model, query, options.device, replay.last_pose(), std::move(stats));
+  if (view) view->write();
 }
 
 void run(const Tool& tool, const Arguments& a) {
@@ -372,8 +387,10 @@ void run(const Tool& tool, const Arguments& a) {
   options.counts_points = a.count_points;
   options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);
-  a.replay.frames.empty() ? run_poses(tool, a, models, options)
-                          : run_replay(tool, a, models.front(), options);
+  std::optional<PoseView> view;
+  if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);
+  a.replay.frames.empty() ? run_poses(tool, a, models, options, view)
+                          : run_replay(tool, a, models.front(), options, view);
 }
 
 }  // namespace

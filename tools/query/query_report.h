@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 #include "tools/common/tool.h"
 
 namespace vpm::tools {

@@ -28,7 +28,7 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
 
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
   if (!a.camera_poses.empty() && import.to_world)
-    throw Error(ErrorKind::usage, "give either --camera-poses or --camera-pose");
+    throw Error(ErrorKind::invalid_argument, "give either --camera-poses or --camera-pose");
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 
@@ -141,8 +141,9 @@ void Replay::find_first_cloud() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
-void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-                 file::Output& output) {
+void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+                 file::Output& output, std::optional<PoseView>& view) {
+  if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
   clock_.emplace(rate_, arguments_.realtime);
@@ -163,6 +164,8 @@ void Replay::run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Mea
     }
     clock_->end_step();
     query_seconds_.push_back(query.seconds());
+    if (view) view->see_frame(feed_->frame());
+    if (view) view->add(0, step.tool, step.contact, query.query());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     output.append(coupling ? coupled_line(step, frame_name())

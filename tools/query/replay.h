@@ -7,11 +7,13 @@
 
 #include "libvpm/file/stream.h"
 #include "libvpm/haptics/virtual_coupling.h"
+#include "libvpm/query/level_tool_query.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/import_arguments.h"
-#include "tools/query/level_query.h"
+#include "libvpm/query/level_tool_query.h"
+#include "tools/query/pose_view.h"
 
 namespace vpm::tools {
 
@@ -44,8 +46,8 @@ class Replay {
 
   // Queries step by step and writes a line of results for each; notes and warnings about frames
   // come as they happen.
-  void run(LevelQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-           file::Output& output);
+  void run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+           file::Output& output, std::optional<PoseView>& view);
 
   // Return values that are complete after run().
   const Pose& last_pose() const { return last_pose_; }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libvpm/core/pose.h"
-#include "libvpm/query/query.h"
+#include "libvpm/query/tool_query.h"
 
 namespace vpm::tools {
 

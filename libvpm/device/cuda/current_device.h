@@ -11,8 +11,8 @@ namespace vpm::cuda {
 
 inline void check(cudaError_t status) {
   if (status == cudaSuccess) return;
-  throw Error(ErrorKind::unavailable, std::string("CUDA device: ") + cudaGetErrorString(status) +
-                                          "; use --device cpu if this persists");
+  throw Error(ErrorKind::unavailable, cudaGetErrorString(status), "CUDA device",
+              "use `device` cpu if this persists");
 }
 
 inline int current_device() {

@@ -355,14 +355,14 @@ __device__ Vec3 ImageChunk<Found>::measure_piece(const SharePiece& piece, Vec3 x
   bool is_inside = false, searches = false, wants = exists;
   Vec3 place = x;
   PieceLook look;
-  DepthSurface::FootSearch search;
+  FootSearch<double> search;
 #pragma unroll 1
   for (bool is_first = true;; is_first = false) {
     Reading reading;
-    DepthSurface::Neighbors beside;
+    FootSearch<double>::Neighbors beside;
     if (wants) {
       reading = work_.surface.read_and(place, [&](std::int32_t u, std::int32_t v) {
-        beside = work_.surface.neighbors_of(u, v);
+        beside = FootSearch<double>::neighbors_of(work_.surface, u, v);
       });
     }
     if (is_first) {
@@ -372,7 +372,7 @@ __device__ Vec3 ImageChunk<Found>::measure_piece(const SharePiece& piece, Vec3 x
       const unsigned sharing = __ballot_sync(~0U, shares);
       if (shares) leader = direction_leader(lane, sharing);
       searches = wants = is_inside && !Measure::is_cut(piece, look) && leader == lane;
-      if (wants) search = DepthSurface::FootSearch(work_.surface, x, reading, beside);
+      if (wants) search = FootSearch<double>(work_.surface, x, reading, beside);
     } else if (wants) {
       search.take(work_.surface, reading, beside);
     }

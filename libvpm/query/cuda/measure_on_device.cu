@@ -4,53 +4,20 @@
 
 namespace vpm::cuda {
 
+void MeasureOnDevice::run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+                          std::span<const Job> jobs, std::span<Result> results) {
+  if (scene.frame() != nullptr) {
+    if (const CloudSlot* const slot = bring(*scene.frame())) {
+      ask(measures, jobs, results);
+      if (slot->is_sound()) return;
+    }
+  }
+  bring(scene.cloud());
+  ask(measures, jobs, results);
+}
+
 // One pose may be answered without a word to the driver: who talks to it makes the device the
 // current one.
-Result MeasureOnDevice::run(const PreparedCloud& cloud, const Pose& pose) {
-  bring(cloud);
-  return ask(pose);
-}
-
-void MeasureOnDevice::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                          std::span<Result> results) {
-  bring(cloud);
-  ask(poses, results);
-}
-
-Result MeasureOnDevice::run_frame(const DepthFrame& frame, const Pose& pose) {
-  if (const CloudSlot* const slot = bring(frame)) {
-    const Result result = ask(pose);
-    if (slot->is_sound()) return result;
-  }
-  return run(frame.cloud(), pose);
-}
-
-void MeasureOnDevice::run_frame(const DepthFrame& frame, std::span<const Pose> poses,
-                                std::span<Result> results) {
-  if (const CloudSlot* const slot = bring(frame)) {
-    ask(poses, results);
-    if (slot->is_sound()) return;
-  }
-  run(frame.cloud(), poses, results);
-}
-
-void MeasureOnDevice::run_together(std::span<DeviceMeasure* const> measures,
-                                   const PreparedCloud& cloud, std::span<const ToolPose> poses,
-                                   std::span<Result> results) {
-  bring(cloud);
-  ask(measures, poses, results);
-}
-
-void MeasureOnDevice::run_frame_together(std::span<DeviceMeasure* const> measures,
-                                         const DepthFrame& frame, std::span<const ToolPose> poses,
-                                         std::span<Result> results) {
-  if (const CloudSlot* const slot = bring(frame)) {
-    ask(measures, poses, results);
-    if (slot->is_sound()) return;
-  }
-  run_together(measures, frame.cloud(), poses, results);
-}
-
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
   const RawResult raw = answer(frame);
@@ -114,20 +81,14 @@ std::span<const RawResult> MeasureOnDevice::answers_of(std::span<const ToolPart>
   return {batch_->answers.data(), poses.size()};
 }
 
-void MeasureOnDevice::ask(std::span<const Pose> poses, std::span<Result> results) {
-  in_launches(poses.size(), [&](std::size_t begin, std::size_t count) {
-    const std::span<const Pose> asked = poses.subspan(begin, count);
-    const ToolPart all{this, static_cast<unsigned>(count)};
-    const std::span<const RawResult> answers = answers_of({&all, 1}, asked);
-    for (std::size_t k = 0; k < count; ++k)
-      results[begin + k] = result_of(answers[k], tool_, asked[k].rotation);
-  });
-}
-
-void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses,
+void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
                           std::span<Result> results) {
-  in_launches(poses.size(), [&](std::size_t begin, std::size_t count) {
-    order_by_tool(measures, poses.subspan(begin, count));
+  if (measures.size() == 1 && jobs.size() == 1) {
+    results.front() = ask(jobs.front().pose);
+    return;
+  }
+  in_launches(jobs.size(), [&](std::size_t begin, std::size_t count) {
+    order_by_tool(measures, jobs.subspan(begin, count));
     const std::span<const RawResult> answers = answers_of(batch_->tools, batch_->ordered);
     std::size_t k = 0;
     for (const ToolPart& part : batch_->tools)
@@ -139,9 +100,9 @@ void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<co
 
 // A counting sort: tools that have poses, in their order, and of each the poses in theirs.
 void MeasureOnDevice::order_by_tool(std::span<DeviceMeasure* const> measures,
-                                    std::span<const ToolPose> poses) {
+                                    std::span<const Job> jobs) {
   std::vector<std::uint32_t> next(measures.size() + 1, 0);
-  for (const ToolPose& pose : poses) ++next[pose.tool + 1];
+  for (const Job& job : jobs) ++next[job.tool + 1];
   batch_->tools.clear();
   for (std::size_t t = 0; t < measures.size(); ++t) {
     const bool has_poses = next[t + 1] > 0;
@@ -149,11 +110,11 @@ void MeasureOnDevice::order_by_tool(std::span<DeviceMeasure* const> measures,
     if (has_poses)
       batch_->tools.push_back({&dynamic_cast<MeasureOnDevice&>(*measures[t]), next[t + 1]});
   }
-  batch_->ordered.resize(poses.size());
-  batch_->places.resize(poses.size());
-  for (std::uint32_t k = 0; k < poses.size(); ++k) {
-    const std::uint32_t place = next[poses[k].tool]++;
-    batch_->ordered[place] = poses[k].pose;
+  batch_->ordered.resize(jobs.size());
+  batch_->places.resize(jobs.size());
+  for (std::uint32_t k = 0; k < jobs.size(); ++k) {
+    const std::uint32_t place = next[jobs[k].tool]++;
+    batch_->ordered[place] = jobs[k].pose;
     batch_->places[place] = k;
   }
 }

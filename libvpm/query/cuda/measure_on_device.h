@@ -15,16 +15,8 @@ class MeasureOnDevice : public DeviceMeasure {
   // The device must be the current one.
   MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
 
-  Result run(const PreparedCloud& cloud, const Pose& pose) final;
-  void run(const PreparedCloud& cloud, std::span<const Pose> poses,
-           std::span<Result> results) final;
-  Result run_frame(const DepthFrame& frame, const Pose& pose) final;
-  void run_frame(const DepthFrame& frame, std::span<const Pose> poses,
-                 std::span<Result> results) final;
-  void run_together(std::span<DeviceMeasure* const> measures, const PreparedCloud& cloud,
-                    std::span<const ToolPose> poses, std::span<Result> results) final;
-  void run_frame_together(std::span<DeviceMeasure* const> measures, const DepthFrame& frame,
-                          std::span<const ToolPose> poses, std::span<Result> results) final;
+  void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+           std::span<const Job> jobs, std::span<Result> results) final;
   void read_states(std::vector<SphereState>& states) final;
   double flood_microseconds() const final { return flood_microseconds_; }
 
@@ -81,8 +73,7 @@ class MeasureOnDevice : public DeviceMeasure {
   RawResult answer_standing_by(const void* launch, const PoseFrame& frame, unsigned sequence);
   // The kernel of the last launched query clears what it has noted after its answer.
   void end_launched();
-  void ask(std::span<const Pose> poses, std::span<Result> results);
-  void ask(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses,
+  void ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
            std::span<Result> results);
   // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
   template <class AnswerPart>
@@ -90,7 +81,7 @@ class MeasureOnDevice : public DeviceMeasure {
   // The answers to poses of one launch.
   std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
                                         std::span<const Pose> poses);
-  void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const ToolPose> poses);
+  void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs);
 
   int device_;
   const ToolModel& tool_;

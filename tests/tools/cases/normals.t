@@ -30,7 +30,7 @@ $ vpm-normals
 2> vpm-normals: error: no depth image is given: name a file, or - for a pipe
 [2]
 $ vpm-normals wall.png
-2> vpm-normals: error: nothing would be written: give -o OUT.vpmc, --export or --report
+2> vpm-normals: error: nothing would be written: give -o OUT.vpmc, --export, --report or --view
 [2]
 $ vpm-normals wall.png -o x.vpmc
 2> vpm-normals: error: wall.png: a depth image needs --intrinsics fx,fy,cx,cy (pixels)

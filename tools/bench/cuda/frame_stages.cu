@@ -131,6 +131,6 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const Error& fault) {
     std::cerr << "frame-stages: " << fault.what() << '\n';
-    return static_cast<int>(fault.kind());
+    return 1;
   }
 }

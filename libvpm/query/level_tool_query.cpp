@@ -1,13 +1,12 @@
-#include "tools/query/level_query.h"
+#include "libvpm/query/level_tool_query.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 
 #include "libvpm/core/error.h"
 
-namespace vpm::tools {
+namespace vpm {
 namespace {
 
 // Places of the cloud on which the levels are timed, and runs at each, of which the middle counts.
@@ -17,31 +16,18 @@ constexpr double kShortest = 1e-8;
 
 }  // namespace
 
-double fraction_from_text(const std::string& text, const std::string& option) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, fault] = std::from_chars(text.data(), end, value);
-  const std::string_view unit(stop, static_cast<std::size_t>(end - stop));
-  if (fault != std::errc() || (!unit.empty() && unit != "%") || !(value > 0)) {
-    throw Error(ErrorKind::usage,
-                option + " " + text + ": give a share of the tool's volume like 0.5% or 0.005");
-  }
-  return unit.empty() ? value : value / 100;
-}
-
-LevelQuery::LevelQuery(const ToolModel& tool, const QueryOptions& options,
-                       const LevelRequest& request, const PreparedCloud& cloud,
-                       const Pose& first_pose)
+LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& options,
+                               const LevelRequest& request, const SceneView& scene,
+                               const Pose& first_pose)
     : request_(request) {
   if (!request.asks()) {
     queries_.emplace_back(tool, options);
     return;
   }
-  const std::size_t finest = finest_wanted(tool, options, cloud, first_pose);
+  const std::size_t finest = finest_wanted(tool, options, scene, first_pose);
   if (request.deadline_seconds && tool.levels.size() < 2) {
-    refuse(
-        "the tool model has one level only, so that a deadline cannot choose; make it again "
-        "with vpm-graph --levels");
+    refuse("the tool model has one level only, so that a deadline cannot choose", {},
+           "make it again with `levels`");
   }
   for (std::size_t k = request.deadline_seconds ? 0 : finest; k <= finest; ++k) {
     QueryOptions of_level = options;
@@ -49,37 +35,35 @@ LevelQuery::LevelQuery(const ToolModel& tool, const QueryOptions& options,
     queries_.emplace_back(tool, of_level);
   }
   if (request.deadline_seconds)
-    deadline_.emplace(probe(tool, cloud), *request.deadline_seconds, finest);
+    deadline_.emplace(probe(tool, scene), *request.deadline_seconds, finest);
   reason_ = reason_now();
 }
 
 // The finest level to be used, by index: the finest there is for nothing but a deadline.
-std::size_t LevelQuery::finest_wanted(const ToolModel& tool, const QueryOptions& options,
-                                      const PreparedCloud& cloud, const Pose& pose) {
+std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOptions& options,
+                                          const SceneView& scene, const Pose& pose) {
   if (request_.max_error) {
     if (options.measure == Measure::paper) {
-      throw Error(ErrorKind::usage,
-                  "--max-error is about the refined measure, which calibrations measure; leave "
-                  "--measure paper out");
+      throw Error(ErrorKind::invalid_argument,
+                  "`max_error` is about the refined measure, which calibrations measure", {},
+                  "leave `measure` paper out");
     }
     return coarsest_level_within(tool, *request_.max_error);
   }
   if (request_.for_scene) {
-    scale_ = scene_scale(cloud, tool.reach, pose * tool.center_of_mass);
+    scale_ = scene_scale(scene.cloud(), tool.reach, pose * tool.center_of_mass);
     return level_for_scene(tool, *scale_);
   }
   return tool.levels.size() - 1;
 }
 
-template <class Scene>
-double LevelQuery::timed_run(std::size_t k, const Scene& scene, const Pose& pose) {
+double LevelToolQuery::timed_run(std::size_t k, const SceneView& scene, const Pose& pose) {
   const auto begin = std::chrono::steady_clock::now();
   result_ = queries_[k].run(scene, pose);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-template <class Scene>
-Result LevelQuery::run_in(const Scene& scene, const Pose& pose) {
+Result LevelToolQuery::run(const SceneView& scene, const Pose& pose) {
   used_ = deadline_ ? deadline_->level() : 0;
   reason_ = reason_now();
   seconds_ = timed_run(used_, scene, pose);
@@ -87,24 +71,16 @@ Result LevelQuery::run_in(const Scene& scene, const Pose& pose) {
   return result_;
 }
 
-Result LevelQuery::run(const PreparedCloud& cloud, const Pose& pose) {
-  return run_in(cloud, pose);
-}
-
-Result LevelQuery::run(const DepthFrame& frame, const Pose& pose) {
-  return run_in(frame, pose);
-}
-
-void LevelQuery::run(const PreparedCloud& cloud, std::span<const Pose> poses,
-                     std::span<Result> results) {
+void LevelToolQuery::run(const SceneView& scene, std::span<const Job> jobs,
+                         std::span<Result> results) {
   reason_ = reason_now();
   const auto begin = std::chrono::steady_clock::now();
-  queries_[used_].run(cloud, poses, results);
+  queries_[used_].run(scene, jobs, results);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  seconds_ = took.count() / static_cast<double>(std::max<std::size_t>(poses.size(), 1));
+  seconds_ = took.count() / static_cast<double>(std::max<std::size_t>(jobs.size(), 1));
 }
 
-std::string LevelQuery::reason_now() const {
+std::string LevelToolQuery::reason_now() const {
   std::string wanted = request_.max_error ? "max-error" : request_.for_scene ? "scene" : "";
   if (!deadline_) return wanted;
   if (!deadline_->keeps()) return "deadline missed";
@@ -112,7 +88,8 @@ std::string LevelQuery::reason_now() const {
   return used_ + 1 < queries_.size() ? "deadline over " + wanted : wanted;
 }
 
-std::vector<double> LevelQuery::probe(const ToolModel& tool, const PreparedCloud& cloud) {
+std::vector<double> LevelToolQuery::probe(const ToolModel& tool, const SceneView& scene) {
+  const PreparedCloud& cloud = scene.cloud();
   std::vector<double> slowest(queries_.size(), kShortest);
   const std::size_t points = cloud.positions().size();
   for (std::size_t k = 0; k < queries_.size(); ++k) {
@@ -129,4 +106,4 @@ std::vector<double> LevelQuery::probe(const ToolModel& tool, const PreparedCloud
   return slowest;
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm

@@ -1,0 +1,21 @@
+#include "libvpm/include/vpm/import.h"
+
+#include "libvpm/file/stream.h"
+#include "libvpm/import/import_cloud.h"
+
+namespace vpm {
+
+PointCloud import_cloud(const std::string& path, const ImportParameters& parameters) {
+  ImportOptions options;
+  options.intrinsics = parameters.intrinsics;
+  options.units_per_metre = parameters.units_per_metre;
+  options.to_world = parameters.to_world;
+  options.normals = parameters.normals;
+  check_normal_options(options.normals);
+  if (options.intrinsics) check_intrinsics(*options.intrinsics);
+  const std::string name = path == "-" ? "standard input" : path;
+  ImportedCloud imported = import_cloud(file::read_all(path), name, options);
+  return PointCloud(std::make_shared<const Cloud>(std::move(imported.cloud)));
+}
+
+}  // namespace vpm

@@ -1,0 +1,54 @@
+#include "libvpm/include/vpm/query.h"
+
+#include <deque>
+
+#include "libvpm/api/scene_body.h"
+#include "libvpm/core/error.h"
+#include "libvpm/query/tool_query.h"
+
+namespace vpm {
+
+struct Query::Impl {
+  Impl(std::span<const Tool> handles, const QueryOptions& options)
+      : tools(handles.begin(), handles.end()) {
+    if (tools.empty()) throw Error(ErrorKind::invalid_argument, "a query needs a tool");
+    for (const Tool& tool : tools) queries.emplace_back(tool.model(), options);
+    for (ToolQuery& query : queries) pointers.push_back(&query);
+  }
+
+  std::vector<Tool> tools;  // the queries refer to their models
+  std::deque<ToolQuery> queries;
+  std::vector<ToolQuery*> pointers;
+};
+
+Query::Query(const Tool& tool, const QueryOptions& options)
+    : Query(std::span<const Tool>(&tool, 1), options) {}
+Query::Query(std::span<const Tool> tools, const QueryOptions& options)
+    : impl_(std::make_unique<Impl>(tools, options)) {}
+Query::~Query() = default;
+Query::Query(Query&&) noexcept = default;
+Query& Query::operator=(Query&&) noexcept = default;
+
+Result Query::run(const Scene& scene, const Pose& pose) {
+  return impl_->queries.front().run(view_of(scene), pose);
+}
+
+void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
+  ToolQuery::run(impl_->pointers, view_of(scene), jobs, results);
+}
+
+void Query::forget() {
+  for (ToolQuery& query : impl_->queries) query.forget();
+}
+
+std::span<const SphereState> Query::states() const {
+  return impl_->queries.front().states();
+}
+
+std::uint32_t Query::level(std::size_t tool) const {
+  if (tool >= impl_->queries.size())
+    throw Error(ErrorKind::invalid_argument, "the query has no tool " + std::to_string(tool));
+  return impl_->queries[tool].level().sphere_count;
+}
+
+}  // namespace vpm

@@ -1,0 +1,121 @@
+#include "libvpm/include/vpm/solid.h"
+
+#include "libvpm/core/error.h"
+#include "libvpm/graph/build_tool_model.h"
+#include "libvpm/graph/calibration.h"
+#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/packing/certificate.h"
+#include "libvpm/packing/grow.h"
+#include "libvpm/packing/packer.h"
+
+namespace vpm {
+namespace {
+
+SolidMesh handle_of(const RawMesh& mesh, const SolidOptions& options) {
+  return SolidMesh(std::make_shared<const CheckedSolid>(make_solid(mesh, options)));
+}
+
+// Says who made a file; the provenance of executables also has their options.
+nlohmann::json made_by_library(const char* what) {
+  return {{"tool", what}, {"version", VPM_VERSION}, {"parameters", nlohmann::json::object()}};
+}
+
+}  // namespace
+
+SolidMesh SolidMesh::read(const std::string& path, const SolidOptions& options) {
+  return handle_of(read_mesh(path), options);
+}
+
+SolidMesh SolidMesh::from_triangles(std::span<const Vec3> vertices,
+                                    std::span<const std::array<std::uint32_t, 3>> triangles,
+                                    const SolidOptions& options) {
+  RawMesh mesh;
+  mesh.name = "the triangles";
+  mesh.vertices.assign(vertices.begin(), vertices.end());
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    if (!is_finite(vertices[k]))
+      refuse("vertex " + std::to_string(k) + " is not finite", mesh.name);
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t vertex : triangle)
+      if (vertex >= vertices.size())
+        refuse("vertex index " + std::to_string(vertex) + " is out of range; there are " +
+                   std::to_string(vertices.size()) + " vertices",
+               mesh.name);
+    mesh.corners.insert(mesh.corners.end(), triangle.begin(), triangle.end());
+    mesh.polygon_end.push_back(mesh.corners.size());
+  }
+  return handle_of(mesh, options);
+}
+
+double SolidMesh::volume() const {
+  return solid_->facts.volume;
+}
+std::size_t SolidMesh::vertices() const {
+  return solid_->solid.vertices.size();
+}
+std::size_t SolidMesh::triangles() const {
+  return solid_->solid.triangles.size();
+}
+std::vector<std::string> SolidMesh::notes() const {
+  return solid_->notes;
+}
+std::vector<std::string> SolidMesh::warnings() const {
+  return solid_->warnings;
+}
+
+SpherePacking SpherePacking::read(const std::string& path) {
+  return SpherePacking(std::make_shared<const Packing>(read_packing(path)));
+}
+
+void SpherePacking::write(const std::string& path) const {
+  write_packing(path, *packing_);
+}
+
+std::vector<Sphere> SpherePacking::spheres() const {
+  return packing_->spheres;
+}
+
+SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters) {
+  const CheckedSolid& checked = solid.solid();
+  PackOptions options;
+  options.spheres = parameters.spheres;
+  options.coverage = parameters.coverage;
+  options.min_radius = parameters.min_radius;
+  options.max_radius = parameters.max_radius;
+  options.enclosure = &checked.enclosure;
+  options.progress = parameters.progress;
+  PackResult result = pack(checked.solid, options);
+  if (result.spheres.empty())
+    refuse("no sphere fits into the solid", {}, "give a smaller `min_radius`");
+  if (parameters.grow) {
+    GrowOptions growing;
+    growing.enclosure = &checked.enclosure;
+    growing.min_radius = parameters.min_radius;
+    growing.max_radius = parameters.max_radius;
+    growing.progress = parameters.progress;
+    result.spheres = grow(checked.solid, result.spheres, growing);
+  }
+  double volume_of_spheres = 0;
+  for (const Sphere& sphere : result.spheres) volume_of_spheres += volume(sphere);
+  refuse_uncertified("the solid", volume_of_spheres / checked.facts.volume,
+                     certify(checked.solid, result.spheres, &checked.enclosure));
+  Packing packing{std::move(result.spheres), checked.solid, made_by_library("vpm::pack")};
+  packing.provenance["solid_hash"] = content_hash(packing.solid);
+  return SpherePacking(std::make_shared<const Packing>(std::move(packing)));
+}
+
+Tool build_tool(const SpherePacking& packing, const ToolParameters& parameters) {
+  GraphOptions options;
+  options.epsilon = parameters.epsilon;
+  options.levels = parameters.levels;
+  options.progress = parameters.progress;
+  ToolModel model = build_tool_model(packing.packing(), options);
+  if (parameters.calibrate) model.calibration = calibrate(model, packing.packing().solid);
+  model.provenance = made_by_library("vpm::build_tool");
+  model.provenance["packing"] = packing.packing().provenance;
+  return Tool(std::make_shared<const ToolModel>(std::move(model)));
+}
+
+}  // namespace vpm

@@ -1,0 +1,73 @@
+// Queries that choose the tool's level of detail by what is asked of them.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "vpm/query.h"
+
+namespace vpm {
+
+struct LevelRequest {
+  // Fraction of the tool's volume: the coarsest level whose calibrated worst error is at most this.
+  std::optional<double> max_error;
+  // Time of each query, s: the finest level that keeps it on this machine. Wins over the others,
+  // and makes results depend on the machine's speed.
+  std::optional<double> deadline_seconds;
+  // The finest level without spheres that the scene's points cannot resolve.
+  bool for_scene = false;
+
+  bool asks() const { return max_error || deadline_seconds || for_scene; }
+};
+
+// How finely a scene's points tell its surface, m; medians over the surface.
+struct SceneScale {
+  double spacing = 0;    // of neighbouring points
+  double noise = 0;      // standard deviation of the points about a smooth surface
+  double curvature = 0;  // 1/m; larger principal curvature that nine tenths of the surface keep
+
+  // Returns the radius of the smallest sphere that the points resolve: centred its radius behind
+  // the surface it is on the wrong side of the points less than once in 40 cases.
+  VPM_API double smallest_radius() const;
+  // Returns the radius of the largest sphere within which the surface is a plane to the points'
+  // resolution; infinite for a plane.
+  VPM_API double largest_radius() const;
+};
+
+// A Query at the level that a request chooses; thread-safety and errors as for Query.
+class VPM_API LevelQuery {
+ public:
+  // Chooses the level for the scene. With a deadline the levels are timed here first, the tool put
+  // on places of the scene. `first_pose` says where the tool will be, for the scene's scale. Throws
+  // Error(refused) if the tool has no calibration, no level as accurate, or one level only where
+  // several are needed; Error(invalid_argument) as Query, and for an error that is no fraction.
+  LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
+             const Scene& scene, const Pose& first_pose);
+  ~LevelQuery();
+  LevelQuery(LevelQuery&&) noexcept;
+  LevelQuery& operator=(LevelQuery&&) noexcept;
+
+  // Returns the answer at the level of the moment, and with a deadline chooses the next one from
+  // the time that it took.
+  Result run(const Scene& scene, const Pose& pose);
+
+  // Returns the number of spheres of the level last used.
+  std::uint32_t level() const;
+  // Returns the seconds that the last run took.
+  double seconds() const;
+  // Returns why this level: "max-error", "scene", "deadline", "deadline over max-error", "deadline
+  // over scene", "deadline missed"; empty if nothing was requested.
+  std::string reason() const;
+  // Returns the scene's scale, if the request is for it.
+  std::optional<SceneScale> scale() const;
+  // Returns the state of each sphere, as Query::states().
+  std::span<const SphereState> states() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vpm

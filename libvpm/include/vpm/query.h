@@ -1,0 +1,65 @@
+// How much of a tool is inside a scene's solid, and which wrench pushes it out.
+//
+//   const vpm::Tool tool = vpm::Tool::read("tool.vpmg");
+//   const vpm::Scene scene = vpm::PointCloud::read("scene.vpmc");   // once per frame
+//   vpm::Query query(tool);
+//   const vpm::Result r = query.run(scene, pose);                   // a thousand times a second
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "vpm/query_types.h"
+#include "vpm/scene.h"
+#include "vpm/tool.h"
+
+namespace vpm {
+
+// Measures tools against scenes, by Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure
+// for 6-DOF Haptic Rendering of Streaming Point Clouds" (2017), sections 3 and 4, as printed or
+// refined. Shares its tools, so nothing dangles. Belongs to one thread at a time, and may use
+// several inside; tools and scenes may be shared between threads. The same input gives the same
+// bits on every device, for any number of threads and any order of a cloud's points.
+class VPM_API Query {
+ public:
+  // Throws Error(invalid_argument) for options out of range or that exclude each other,
+  // Error(unavailable) if the device is not there or has too little memory.
+  explicit Query(const Tool& tool, const QueryOptions& options = {});
+  // The same for several tools, which may have different levels: jobs name them by their place.
+  // options.level must be a level of each. Coherent queries take one tool.
+  explicit Query(std::span<const Tool> tools, const QueryOptions& options = {});
+  ~Query();
+  Query(Query&&) noexcept;
+  Query& operator=(Query&&) noexcept;
+
+  // Returns the answer for the first tool at `pose` (tool to world coordinates). A rotation that is
+  // off by rounding (1e-5) is taken for the nearest one. Allocates nothing after the first call on
+  // a scene with one thread. Throws Error(refused) for a pose that is not finite, not rigid or
+  // further than 2^100 m from the origin, and for solid shadows of points without a camera;
+  // Error(unavailable) if the device fails.
+  Result run(const Scene& scene, const Pose& pose);
+
+  // Stores the answers of many jobs in their order: the bits of one by one, while a device takes
+  // thousands of poses of up to 16 tools at once. `results` must have the size of `jobs`, else
+  // throws Error(invalid_argument), as for a job without such a tool and for coherent queries of
+  // several tools; otherwise as for one pose. After an error the results are unspecified.
+  void run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results);
+
+  // Ends a motion of coherent poses: the next pose does not follow from the last.
+  void forget();
+
+  // Returns the state of each sphere of the level at the last single pose; unspecified after jobs.
+  // Valid until the next call. A device's states are fetched here.
+  std::span<const SphereState> states() const;
+
+  // Returns the number of spheres of the level that is used of a tool.
+  std::uint32_t level(std::size_t tool = 0) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vpm

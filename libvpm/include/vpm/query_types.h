@@ -1,0 +1,68 @@
+// What a query is asked for, and what it answers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "vpm/device.h"
+#include "vpm/pose.h"
+
+namespace vpm {
+
+// refined: each part of the tool belongs to its nearest sphere, surfaces are planes within it, and
+// noise is taken out. paper: the algorithm as printed in 2017.
+enum class Measure { refined, paper };
+
+// What counts of places that a depth image does not show, since something hides them: those up to
+// the tool's bounding radius behind what is seen, and those further behind for which the surface
+// that cuts the tool speaks; or all, as in a count of what is behind the image.
+enum class Shadows { near, solid };
+
+struct QueryOptions {
+  Measure measure = Measure::refined;
+  std::uint32_t level = 0;  // number of spheres; 0: the finest level of the tool
+  Device device = {};       // the tool's level is copied there
+  // The poses are those of one motion: a tool that passes wholly behind the surface stays inside
+  // until it comes out. Refined measure on the CPU only.
+  bool coherent = false;
+  // The refined measure counts Result::points, which takes up to 2.5 times as long; the printed one
+  // counts them anyway.
+  bool counts_points = false;
+  // Microseconds, at most kLongestStandby, that a device stays ready for the next pose, which then
+  // needs no launch, and does nothing else of this process. Refined measure, in depth images,
+  // without counted points.
+  std::uint32_t standby_us = 0;
+  static constexpr std::uint32_t kLongestStandby = 1'000'000;
+  Shadows shadows = Shadows::near;  // solid: refined measure, in depth images
+  double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+};
+
+// Question of a batch: a pose (tool to world coordinates) of one of the query's tools.
+struct Job {
+  Pose pose;
+  std::uint32_t tool = 0;  // place in the list of tools
+};
+
+// State of a sphere of the tool at the pose last asked: free, cut by the surface, or behind it.
+enum class SphereState : std::uint8_t { outside = 0, boundary = 1, inside = 2 };
+
+// Force and torque in world axes, the torque about the tool's centre of mass; both push the tool
+// into free space. Units are N and N m, or m^3 and m^4 if QueryOptions::stiffness is 1.
+struct Wrench {
+  Vec3 force, torque;
+  friend constexpr bool operator==(const Wrench&, const Wrench&) = default;
+};
+
+struct Result {
+  double volume = 0;           // m^3 of the tool inside the scene's solid
+  double volume_fraction = 0;  // volume / volume of the tool
+  Wrench wrench;
+  std::uint32_t boundary = 0;  // spheres that the surface cuts
+  std::uint32_t inside = 0;    // spheres behind the surface that count
+  // Distinct points of the scene strictly inside a sphere of the tool; empty if not counted.
+  std::optional<std::uint32_t> points;
+
+  friend constexpr bool operator==(const Result&, const Result&) = default;
+};
+
+}  // namespace vpm

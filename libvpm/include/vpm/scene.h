@@ -1,0 +1,92 @@
+// What a tool is measured against: bodies in one world frame.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vpm/camera.h"
+#include "vpm/export.h"
+
+namespace vpm {
+
+struct Cloud;  // the library's own
+class SceneBody;
+
+// Handle of immutable measured points with normals into free space; copies share it. Thread-safe.
+class VPM_API PointCloud {
+ public:
+  // Reads a .vpmc file (formats/cloud.md) whole and checks every number in it; "-" is standard
+  // input. Throws Error(refused) naming the file and the first defect.
+  static PointCloud read(const std::string& path);
+
+  // Makes the cloud of a depth image: `depth` has width * height values in metres along the optical
+  // axis, row by row; values that are not finite and positive mean that nothing was measured.
+  // Throws Error(invalid_argument) for a camera or options out of range, Error(refused) if the
+  // image has another size or no pixel has a normal.
+  static PointCloud from_depth(std::span<const float> depth, const Camera& camera,
+                               const NormalOptions& options = {});
+
+  // Makes the cloud of points that no camera's image holds: positions in the world, m, and as
+  // many normals of any length that point into free space. Points that are not finite are left out.
+  // Throws Error(invalid_argument) if the numbers differ, Error(refused) if fewer than two places
+  // remain.
+  static PointCloud from_points(std::span<const Vec3> positions, std::span<const Vec3> normals);
+
+  // Writes a .vpmc file, replacing it in one step; "-" is standard output. Throws
+  // Error(cannot_write).
+  void write(const std::string& path) const;
+
+  // Returns the number of points that have a normal.
+  std::size_t size() const;
+  // Returns the camera, if the cloud keeps its depth image.
+  std::optional<Camera> camera() const;
+
+  // Makes the handle of a cloud that the library has built.
+  explicit PointCloud(std::shared_ptr<const Cloud> cloud) : cloud_(std::move(cloud)) {}
+  const Cloud& cloud() const { return *cloud_; }
+
+ private:
+  std::shared_ptr<const Cloud> cloud_;  // never null
+};
+
+// Handle of an immutable body made ready for queries; copies share it. Thread-safe.
+class VPM_API Body {
+ public:
+  // Prepares a cloud for queries: a millisecond for a depth image of 300 000 pixels on one core, a
+  // second or two for as many points without a camera. Throws Error(refused) for more than 2^24
+  // points, or places further than 2^100 m from the origin.
+  Body(const PointCloud& cloud, PointReading points = PointReading::settled);
+
+  // Returns the number of points with a normal; waits for a depth image that is being prepared.
+  std::size_t points() const;
+
+  // Makes the handle of a body that the library has prepared.
+  explicit Body(std::shared_ptr<const SceneBody> body) : body_(std::move(body)) {}
+  const SceneBody& body() const { return *body_; }
+
+ private:
+  std::shared_ptr<const SceneBody> body_;  // never null
+};
+
+// List of bodies in one world frame; copies share the bodies. Thread-safe.
+class VPM_API Scene {
+ public:
+  // Makes a scene of one body.
+  Scene(const Body& body);
+  Scene(const PointCloud& cloud) : Scene(Body(cloud)) {}
+
+  // Makes a scene of several bodies. Throws Error(unavailable) for more than one: this version
+  // measures a tool against one body at a time; Error(invalid_argument) for none.
+  explicit Scene(std::vector<Body> bodies);
+
+  const std::vector<Body>& bodies() const { return *bodies_; }
+
+ private:
+  std::shared_ptr<const std::vector<Body>> bodies_;  // never null or empty
+};
+
+}  // namespace vpm

@@ -1,0 +1,128 @@
+// From a mesh to a tool: reading, packing with spheres, levels of detail. Library vpm::solid.
+//
+//   const vpm::SolidMesh mesh = vpm::SolidMesh::read("gripper.stl", {.scale = 0.001});
+//   const vpm::Tool tool = vpm::build_tool(vpm::pack(mesh, {.spheres = 1000}), {.levels = {250}});
+//
+// All functions are thread-safe and use several threads inside; the same input gives the same
+// bytes, for any number of threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "vpm/pose.h"
+#include "vpm/tool.h"
+
+namespace vpm {
+
+// What is done to a mesh that is no solid.
+enum class Repair {
+  none,   // refuse what is not a solid
+  holes,  // drop repeated triangles, fill planar and small holes
+  voxel,  // new surface about the voxels that the mesh encloses
+  flood,  // new surface about the voxels that a ball of max_hole cannot reach
+};
+
+// Number of voxels along the longest side for Repair::voxel and flood, unless said otherwise.
+inline constexpr int kRepairVoxels = 128;
+
+struct SolidOptions {
+  double scale = 1;  // unit of the file in metres
+  // Vertices nearer than this, relative to the bounding box's diagonal, are joined. If unset:
+  // 1e-9 for STL; for formats with indices too, but only if the mesh is open before and
+  // closed after.
+  std::optional<double> weld = std::nullopt;
+  Repair repair = Repair::none;
+  int repair_voxels = kRepairVoxels;  // along the longest side, for Repair::voxel and flood
+  // m; wider holes are refused. If unset: no limit for
+  // Repair::voxel, a sixteenth of the longest side for Repair::flood.
+  std::optional<double> max_hole = std::nullopt;
+};
+
+struct CheckedSolid;  // the library's own
+struct Packing;       // the library's own
+
+// Handle of an immutable closed mesh, oriented outward, in metres; copies share it.
+class VPM_API SolidMesh {
+ public:
+  // Reads an OBJ, OFF, PLY, STL or OM file, told by its content, and makes a solid of it; "-" is
+  // standard input. Throws Error(refused) naming the file with line, byte or element for what is
+  // damaged, and the rims of holes, edges or vertices where it is no solid beyond the repair of the
+  // options; Error(invalid_argument) for options out of range.
+  static SolidMesh read(const std::string& path, const SolidOptions& options = {});
+
+  // Makes a solid of triangles, counter-clockwise seen from outside, by the same rules.
+  static SolidMesh from_triangles(std::span<const Vec3> vertices,
+                                  std::span<const std::array<std::uint32_t, 3>> triangles,
+                                  const SolidOptions& options = {});
+
+  // Returns the volume that is enclosed at least once, m^3.
+  double volume() const;
+  std::size_t vertices() const;
+  std::size_t triangles() const;
+  // Returns what was mended, and what was accepted though it may surprise, in sentences.
+  std::vector<std::string> notes() const;
+  std::vector<std::string> warnings() const;
+
+  // Makes the handle of a solid that the library has checked.
+  explicit SolidMesh(std::shared_ptr<const CheckedSolid> solid) : solid_(std::move(solid)) {}
+  const CheckedSolid& solid() const { return *solid_; }
+
+ private:
+  std::shared_ptr<const CheckedSolid> solid_;  // never null
+};
+
+// Handle of an immutable packing: spheres that neither overlap nor leave the solid, largest first,
+// with the solid; copies share it.
+class VPM_API SpherePacking {
+ public:
+  // Reads and writes .vpmp files (formats/packing.md); errors as for Tool.
+  static SpherePacking read(const std::string& path);
+  void write(const std::string& path) const;
+
+  std::vector<Sphere> spheres() const;
+
+  // Makes the handle of a packing that the library has made.
+  explicit SpherePacking(std::shared_ptr<const Packing> packing) : packing_(std::move(packing)) {}
+  const Packing& packing() const { return *packing_; }
+
+ private:
+  std::shared_ptr<const Packing> packing_;  // never null
+};
+
+struct PackingParameters {
+  std::size_t spheres = 1000;  // as many are placed unless another limit comes first
+  double coverage = 1;         // stops where the spheres fill this fraction of the solid's volume
+  double min_radius = 0;       // m
+  double max_radius = std::numeric_limits<double>::infinity();  // m
+  bool grow = false;  // all spheres grow together afterwards: more coverage with as many
+  // Called between steps on the calling thread; fraction from 0 to 1.
+  std::function<void(double fraction)> progress = nullptr;
+};
+
+// Returns a packing with always the largest sphere that fits into what is left of the solid. Holds
+// a certificate, checked before it is returned: no overlap and no protrusion beyond 1e-9 of the
+// longest side. Throws Error(refused) if no sphere fits or the mesh crosses itself in ways that
+// leave open what is inside; Error(invalid_argument) for limits out of range.
+VPM_API SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters = {});
+
+struct ToolParameters {
+  std::vector<std::uint32_t> levels;  // spheres of further levels; the whole packing always is one
+  double epsilon = 0;      // m, largest gap of an edge; 0: a tenth of a level's smallest radius
+  bool calibrate = false;  // measures each level's error against the solid, for LevelRequest
+  std::function<void(double fraction)> progress = nullptr;  // as PackingParameters::progress
+};
+
+// Returns the tool of a packing: every point of the solid's volume belongs to its nearest sphere
+// (additively weighted Voronoi cells), so no volume is lost between spheres. Throws Error(refused)
+// for a packing that is none, Error(invalid_argument) for parameters out of range.
+VPM_API Tool build_tool(const SpherePacking& packing, const ToolParameters& parameters = {});
+
+}  // namespace vpm

@@ -1,0 +1,56 @@
+// Queries of one tool at the level that a request chooses. vpm/level_query.h is what programs see.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libvpm/include/vpm/level_query.h"
+#include "libvpm/query/level_choice.h"
+#include "libvpm/query/scene_scale.h"
+#include "libvpm/query/tool_query.h"
+
+namespace vpm {
+
+// Refers to its model, which must outlive it.
+class LevelToolQuery {
+ public:
+  // Chooses the level; contract as LevelQuery.
+  LevelToolQuery(const ToolModel& tool, const QueryOptions& options, const LevelRequest& request,
+                 const SceneView& scene, const Pose& first_pose);
+
+  // Returns the answer at the level of the moment, and chooses the next one if there is a deadline.
+  Result run(const SceneView& scene, const Pose& pose);
+  // Stores the answers of many jobs; needs a request without a deadline. seconds() is then the mean
+  // time of a job.
+  void run(const SceneView& scene, std::span<const Job> jobs, std::span<Result> results);
+
+  // Returns the query that ran last; without a deadline there is no other.
+  const ToolQuery& query() const { return queries_[used_]; }
+  ToolQuery& query() { return queries_[used_]; }
+  // Returns the finest level that the request allows.
+  const Level& finest() const { return queries_.back().level(); }
+  double seconds() const { return seconds_; }
+  const std::string& reason() const { return reason_; }
+  const std::optional<SceneScale>& scale() const { return scale_; }
+
+ private:
+  std::size_t finest_wanted(const ToolModel& tool, const QueryOptions& options,
+                            const SceneView& scene, const Pose& pose);
+  std::string reason_now() const;
+  double timed_run(std::size_t k, const SceneView& scene, const Pose& pose);
+  std::vector<double> probe(const ToolModel& tool, const SceneView& scene);
+
+  LevelRequest request_;
+  std::optional<SceneScale> scale_;
+  std::deque<ToolQuery> queries_;  // coarsest first; one, without a deadline
+  std::optional<DeadlineLevel> deadline_;
+  std::size_t used_ = 0;
+  double seconds_ = 0;
+  Result result_;
+  std::string reason_;
+};
+
+}  // namespace vpm

@@ -1,0 +1,66 @@
+// Queries of one tool at one level: checks what is asked, and leaves the measure to its backend.
+// vpm/query.h is what programs see.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libvpm/query/device_measure.h"
+#include "libvpm/query/measure_paper.h"
+#include "libvpm/query/measure_refined.h"
+#include "libvpm/query/query_options.h"
+#include "libvpm/query/scene_view.h"
+
+namespace vpm {
+
+// Refers to its model, which must outlive it and be one that validate() of tool_model.h accepts.
+class ToolQuery {
+ public:
+  // Throws what Query throws (vpm/query.h).
+  ToolQuery(const ToolModel& tool, const QueryOptions& options);
+
+  // Returns the answer for one pose; contract as Query::run.
+  Result run(const SceneView& scene, const Pose& pose);
+
+  // Stores the answers of many jobs, whose tools are places in `queries`; contract as Query::run.
+  // The queries must have been made with the same options, except level and stiffness, else throws
+  // Error(invalid_argument). A device puts up to 16 tools in one launch of the refined measure, one
+  // in one of the measure as printed.
+  static void run(std::span<ToolQuery* const> queries, const SceneView& scene,
+                  std::span<const Job> jobs, std::span<Result> results);
+
+  void run(const SceneView& scene, std::span<const Job> jobs, std::span<Result> results) {
+    ToolQuery* const self = this;
+    run({&self, 1}, scene, jobs, results);
+  }
+
+  // Ends a motion of coherent poses.
+  void forget();
+
+  const Level& level() const { return level_; }
+  // Returns the state of each sphere of the level at the last single pose; undefined after a batch.
+  std::span<const SphereState> states() const;
+
+ private:
+  void check(const SceneView& scene) const;
+  void finish(Result& result) const;
+
+  const Level& level_;
+  QueryOptions options_;
+  // One of these.
+  std::unique_ptr<PaperMeasure> paper_;
+  std::unique_ptr<RefinedMeasure> refined_;
+  std::unique_ptr<DeviceMeasure> device_;
+  mutable std::vector<SphereState> states_;
+};
+
+// Returns the job of each pose for a single tool.
+inline std::vector<Job> jobs_of(std::span<const Pose> poses) {
+  std::vector<Job> jobs;
+  jobs.reserve(poses.size());
+  for (const Pose& pose : poses) jobs.push_back({pose, 0});
+  return jobs;
+}
+
+}  // namespace vpm

@@ -1,0 +1,28 @@
+// Spheres as files that other programs show: one meaning of a suffix for all tools.
+// formats/spheres.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "libvpm/model/sphere.h"
+
+namespace vpm::view {
+
+// .csv, .ply (balls), .points.ply, .glb
+enum class SphereFormat { csv, ply, points, glb };
+
+// The format that the name's suffix asks for; none for other suffixes.
+std::optional<SphereFormat> sphere_format(const std::string& path);
+
+// Returns the content of the file. With `states` (SphereState, one per sphere) colours tell the
+// state and tables name it; without, colours tell the radius on a logarithmic scale from dark
+// violet (smallest) to yellow. Tables have nine digits, with states as many as the numbers need,
+// since spheres that were moved may lie far from the origin. Throws Error(refused) for more balls
+// than 32-bit indices reach.
+std::string spheres_as(SphereFormat format, std::span<const Sphere> spheres,
+                       std::span<const std::uint8_t> states = {});
+
+}  // namespace vpm::view

@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Makes the pictures of the pages: the tools show the bundled example, headless Chromium photographs it.
+
+usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and pictures
+"""
+import io
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image
+
+import headless_page
+
+REPOSITORY = pathlib.Path(__file__).resolve().parents[1]
+LARGEST = 200_000  # bytes
+COLORS = 128       # enough for shaded surfaces, and small
+
+
+def save(png, path):
+    """Writes the picture with as few colours as it needs to be small."""
+    picture = Image.open(io.BytesIO(png)).convert("RGB")
+    colors = COLORS
+    while True:
+        picture.quantize(colors, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+        if path.stat().st_size <= LARGEST or colors <= 16:
+            break
+        colors //= 2
+    print(f"{path}: {path.stat().st_size // 1000} kB")
+
+
+def make_pages(tools, folder):
+    def run(tool, *arguments):
+        subprocess.run([tools / tool, *map(str, arguments)], cwd=folder, check=True)
+
+    run("make-example", ".")
+    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 1000, "--view", "pack.html", "--quiet")
+    run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", "100", "--view", "graph.html", "--quiet")
+    run("vpm-normals", "depth.png", "-o", "scene.vpmc", "--intrinsics", "525,525,319.5,239.5", "--depth-scale", 5000,
+        "--view", "normals.html", "--quiet")
+    run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", "poses.jsonl", "-o", "results.jsonl",
+        "--view", "query.html", "--quiet")
+
+
+# What is done with each page before its picture is taken.
+PICTURES = {
+    "query": "vpm.setView('contact')",
+    "pack": "vpm.setStep(150)",
+    "graph": "vpm.setStep(0); vpm.showSphereCell(3)",
+    "normals": "vpm.setView('overview')",
+}
+
+
+def main():
+    tools = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else REPOSITORY / "build/release/bin").resolve()
+    output = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else REPOSITORY / "pictures")
+    if not headless_page.program():
+        sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
+    output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, headless_page.Browser() as browser:
+        make_pages(tools, folder)
+        for name, action in PICTURES.items():
+            page = browser.open(f"{folder}/{name}.html", 1120, 630)
+            page.evaluate(action)
+            save(page.screenshot(), output / f"{name}.png")
+            if page.faults:
+                sys.exit(f"view_pictures.py: {name}: {page.faults}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+// The library as programs see it: these tests include nothing but <vpm/...>.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+#include <vpm/depth_stream.h>
+#include <vpm/error.h>
+#include <vpm/import.h>
+#include <vpm/level_query.h>
+#include <vpm/query.h>
+#include <vpm/solid.h>
+#include <vpm/virtual_coupling.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+namespace {
+
+constexpr std::uint32_t kSide = 60;  // pixels of the camera
+constexpr double kWall = 1;          // depth of the wall that it sees, m
+constexpr double kCube = 0.2;        // side of the tool, m
+constexpr vpm::Camera kCamera{{60, 60, 29.5, 29.5}, kSide, kSide, {}};
+
+std::vector<float> wall_image() {
+  return std::vector<float>(std::size_t{kSide} * kSide, static_cast<float>(kWall));
+}
+
+vpm::Scene wall() {
+  return vpm::PointCloud::from_depth(wall_image(), kCamera);
+}
+
+vpm::SolidMesh cube(bool is_open = false) {
+  std::vector<vpm::Vec3> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.push_back(
+        {kCube * ((k & 1) - 0.5), kCube * ((k >> 1 & 1) - 0.5), kCube * ((k >> 2 & 1) - 0.5)});
+  std::vector<std::array<std::uint32_t, 3>> triangles = {
+      {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  if (is_open) triangles.pop_back();
+  return vpm::SolidMesh::from_triangles(corners, triangles);
+}
+
+const vpm::Tool& tool() {
+  static const vpm::Tool made =
+      vpm::build_tool(vpm::pack(cube(), {.spheres = 120}), {.levels = {40}, .calibrate = true});
+  return made;
+}
+
+// The tool's centre so far behind the wall, m; turned so that no face is parallel to it.
+vpm::Pose behind(double depth) {
+  return {vpm::rotation_from_quaternion({0.1825742, 0.3651484, 0.5477226, 0.7302967}),
+          {0, 0, kWall + depth}};
+}
+
+template <class Action>
+std::optional<vpm::Error> error_of(const Action& action) {
+  try {
+    action();
+  } catch (const vpm::Error& error) {
+    return error;
+  }
+  return std::nullopt;
+}
+
+TEST(PublicApi, MeshToAnswer) {
+  EXPECT_NEAR(tool().volume(), kCube * kCube * kCube, 1e-15);
+  vpm::Query query(tool());
+  const vpm::Result half = query.run(wall(), behind(0));
+  EXPECT_NEAR(half.volume_fraction, 0.5, 0.01);
+  EXPECT_LT(half.wrench.force.z, 0);  // back to the camera
+  EXPECT_EQ(query.run(wall(), behind(-0.2)).volume, 0);
+  EXPECT_EQ(query.states().size(), query.level());
+  EXPECT_EQ(query.level(), 120U);
+}
+
+TEST(PublicApi, AQueryOutlivesItsToolAndScenesTheirClouds) {
+  vpm::Query kept(tool());
+  std::optional<vpm::Tool> temporary =
+      vpm::build_tool(vpm::pack(cube(), {.spheres = 120}), {.levels = {40}, .calibrate = true});
+  vpm::Query query(*temporary);
+  temporary.reset();
+  std::optional<vpm::PointCloud> cloud = vpm::PointCloud::from_depth(wall_image(), kCamera);
+  const vpm::Scene scene = *cloud;
+  cloud.reset();
+  EXPECT_EQ(query.run(scene, behind(0.03)), kept.run(wall(), behind(0.03)));
+}
+
+TEST(PublicApi, JobsHaveTheBitsOfSinglePoses) {
+  const vpm::Tool large = vpm::build_tool(vpm::pack(cube(), {.spheres = 60}));
+  const std::vector<vpm::Tool> tools{tool(), large};
+  vpm::Query together(tools), first(tool()), second(large);
+  std::vector<vpm::Job> jobs;
+  for (int k = 0; k < 40; ++k) jobs.push_back({behind(0.01 * (k - 20)), k % 3 == 0 ? 1U : 0U});
+  std::vector<vpm::Result> results(jobs.size());
+  const vpm::Scene scene = wall();
+  together.run(scene, jobs, results);
+  for (std::size_t k = 0; k < jobs.size(); ++k)
+    EXPECT_EQ(results[k], (jobs[k].tool == 0 ? first : second).run(scene, jobs[k].pose)) << k;
+}
+
+TEST(PublicApi, ThreadsShareToolAndScene) {
+  const vpm::Scene scene = wall();
+  constexpr int kPoses = 50;
+  const auto answers = [&] {
+    vpm::Query query(tool());
+    std::vector<vpm::Result> results;
+    for (int k = 0; k < kPoses; ++k) results.push_back(query.run(scene, behind(0.004 * (k - 25))));
+    return results;
+  };
+  const std::vector<vpm::Result> expected = answers();
+  std::vector<vpm::Result> of_thread[2];
+  std::thread one([&] { of_thread[0] = answers(); }), other([&] { of_thread[1] = answers(); });
+  one.join();
+  other.join();
+  EXPECT_EQ(of_thread[0], expected);
+  EXPECT_EQ(of_thread[1], expected);
+}
+
+TEST(PublicApi, AStreamOfImagesHasTheBitsOfClouds) {
+  vpm::DepthStream stream({kCamera.intrinsics, kSide, kSide, std::nullopt});
+  vpm::Query query(tool());
+  const std::vector<float> image = wall_image();
+  std::copy(image.begin(), image.end(), stream.metres().begin());
+  const vpm::Scene scene = stream.prepare({});
+  EXPECT_EQ(scene.bodies().front().points(), image.size());
+  EXPECT_EQ(query.run(scene, behind(0.02)), query.run(wall(), behind(0.02)));
+  EXPECT_EQ(error_of([&] { stream.counts(); })->kind(), vpm::ErrorKind::invalid_argument);
+}
+
+TEST(PublicApi, FilesComeBackTheSame) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("vpm-api-" + std::to_string(::getpid()));
+  std::filesystem::create_directory(folder);
+  const std::string tool_file = folder / "tool.vpmg", cloud_file = folder / "wall.vpmc";
+  tool().write(tool_file);
+  const vpm::PointCloud cloud = vpm::PointCloud::from_depth(wall_image(), kCamera);
+  cloud.write(cloud_file);
+  vpm::Query query(vpm::Tool::read(tool_file)), original(tool());
+  EXPECT_EQ(query.run(vpm::PointCloud::read(cloud_file), behind(0.01)),
+            original.run(cloud, behind(0.01)));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(PublicApi, ALevelIsChosenByItsCalibration) {
+  const std::vector<vpm::ToolLevel> levels = tool().levels();
+  ASSERT_EQ(levels.size(), 2U);
+  ASSERT_TRUE(levels[0].worst_error && levels[1].worst_error);
+  ASSERT_GT(*levels[0].worst_error, *levels[1].worst_error);
+  const auto level_for = [&](double max_error) {
+    vpm::LevelRequest request;
+    request.max_error = max_error;
+    vpm::LevelQuery query(tool(), {}, request, wall(), behind(0));
+    query.run(wall(), behind(0));
+    EXPECT_EQ(query.reason(), "max-error");
+    return query.level();
+  };
+  EXPECT_EQ(level_for(*levels[0].worst_error), levels[0].spheres);
+  EXPECT_EQ(level_for(*levels[1].worst_error), levels[1].spheres);
+}
+
+TEST(PublicApi, ErrorsSayKindPlaceAndRemedy) {
+  const auto missing = error_of([] { vpm::Tool::read("not-there.vpmg"); });
+  ASSERT_TRUE(missing);
+  EXPECT_EQ(missing->kind(), vpm::ErrorKind::refused);
+  EXPECT_NE(std::string(missing->what()).find("not-there.vpmg"), std::string::npos);
+
+  const auto open = error_of([] { cube(true); });
+  ASSERT_TRUE(open);
+  EXPECT_EQ(open->kind(), vpm::ErrorKind::refused);
+  EXPECT_EQ(open->where(), "the triangles");
+  EXPECT_NE(open->problem().find("the mesh is open"), std::string::npos);
+  EXPECT_NE(open->hint().find("`repair`"), std::string::npos);
+
+  const auto option = error_of([] { vpm::Query(tool(), {.stiffness = -1}); });
+  ASSERT_TRUE(option);
+  EXPECT_EQ(option->kind(), vpm::ErrorKind::invalid_argument);
+
+  const auto unwritten = error_of([] { tool().write("no-such-folder/tool.vpmg"); });
+  ASSERT_TRUE(unwritten);
+  EXPECT_EQ(unwritten->kind(), vpm::ErrorKind::cannot_write);
+
+  const vpm::Body body = wall().bodies().front();
+  const auto several = error_of([&] { vpm::Scene({body, body}); });
+  ASSERT_TRUE(several);
+  EXPECT_EQ(several->kind(), vpm::ErrorKind::unavailable);
+  EXPECT_FALSE(several->hint().empty());
+  EXPECT_EQ(error_of([] { vpm::Scene(std::vector<vpm::Body>{}); })->kind(),
+            vpm::ErrorKind::invalid_argument);
+}
+
+TEST(PublicApi, AnErrorsTextIsPlaceProblemAndHint) {
+  const vpm::Error error(vpm::ErrorKind::refused, "is broken", "file", "mend it");
+  EXPECT_STREQ(error.what(), "file: is broken; mend it");
+  EXPECT_STREQ(vpm::Error(vpm::ErrorKind::refused, "is broken").what(), "is broken");
+}
+
+TEST(PublicApi, ARunRefusesWhatItCannotAnswer) {
+  vpm::Query query(tool());
+  const vpm::Scene scene = wall();
+  vpm::Result result;
+  const auto kind_of = [&](const vpm::Job& job, std::span<vpm::Result> results) {
+    const auto error = error_of([&] { query.run(scene, {&job, 1}, results); });
+    return error ? std::optional(error->kind()) : std::nullopt;
+  };
+  EXPECT_EQ(kind_of({behind(0), 0}, {&result, 1}), std::nullopt);
+  EXPECT_EQ(kind_of({behind(0), 1}, {&result, 1}), vpm::ErrorKind::invalid_argument);
+  EXPECT_EQ(kind_of({behind(0), 0}, {}), vpm::ErrorKind::invalid_argument);
+  EXPECT_EQ(kind_of({{{}, {std::nan(""), 0, 0}}, 0}, {&result, 1}), vpm::ErrorKind::refused);
+}
+
+TEST(PublicApi, ACoupledToolPushesBack) {
+  vpm::CouplingParameters coupling{.stiffness = 500, .damping = 5, .gyration = tool().gyration()};
+  coupling.mass = vpm::critical_mass(coupling.stiffness, coupling.damping);
+  const vpm::Pose hand = behind(-0.05);
+  vpm::VirtualCoupling held(coupling, tool().center_of_mass(), hand);
+  vpm::Query query(tool(), {.stiffness = 1e4});
+  vpm::Wrench felt;
+  for (int k = 0; k < 200; ++k) felt = held.advance(hand, query.run(wall(), held.tool()).wrench);
+  EXPECT_LT(felt.force.z, 0);
+}
+
+}  // namespace

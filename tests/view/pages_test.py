@@ -1,0 +1,304 @@
+#!/usr/bin/python3
+"""Opens the pages that the tools write with --view in headless Chromium: what they show is what the results say.
+
+usage: pages_test.py BIN     exit code 77: skipped, no Chromium or no drawing library
+"""
+import io
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+import numpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+import headless_page  # noqa: E402
+
+BIN, FOLDER, BROWSER = pathlib.Path(), pathlib.Path(), None
+NAME = "<script>alert(1)</script>.vpmg"  # of a file, as a page must show it
+INTRINSICS = ("--intrinsics", "525,525,319.5,239.5", "--depth-scale", "5000")
+
+
+def run(tool, *arguments, code=0):
+    done = subprocess.run([str(BIN / tool), *map(str, arguments)], cwd=FOLDER, capture_output=True, text=True)
+    if done.returncode != code:
+        raise AssertionError(f"{tool} {arguments}: exit code {done.returncode}: {done.stderr}")
+    return done
+
+
+def results(name):
+    return [json.loads(line) for line in (FOLDER / name).open()]
+
+
+def pixels(png):
+    import matplotlib.image
+    return matplotlib.image.imread(io.BytesIO(png))[:, :, :3].astype(float)
+
+
+def share(image, condition):
+    red, green, blue = image[:, :, 0], image[:, :, 1], image[:, :, 2]
+    return float(numpy.mean(condition(red, green, blue)))
+
+
+# Areas by colour: hues survive shading.
+def surface(r, g, b):
+    return (b > 1.12 * r) & (b > g) & (g > r) & (b > 0.3) & (r > 0.18) & (r < 0.75)
+
+
+def inside(r, g, b):
+    return (r > 0.35) & (r > 3 * g) & (r > 3 * b)
+
+
+def boundary(r, g, b):
+    return (r > 0.45) & (g > 0.4 * r) & (g < 0.68 * r) & (b < 0.25 * r)
+
+
+def write_depth(name, depth):
+    """Writes a 16-bit grey PNG."""
+    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in depth)
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    header = struct.pack(">IIBBBBB", depth.shape[1], depth.shape[0], 16, 0, 0, 0, 0)
+    (FOLDER / name).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) +
+                                chunk(b"IEND", b""))
+
+
+def make_demo():
+    run("make-example", FOLDER)
+    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 300, "--report", "pack.json", "--view", "pack.html")
+    run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", 50, "--report", "graph.json", "--view", "graph.html")
+    run("vpm-normals", "depth.png", "-o", "scene.vpmc", *INTRINSICS, "--report", "normals.json", "--view",
+        "normals.html")
+    run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses", "poses.jsonl", "-o", "results.jsonl",
+        "--view", "query.html")
+
+
+class PageTest(unittest.TestCase):
+    def open(self, name, width=1280, height=720, phone=False):
+        page = BROWSER.open(FOLDER / name, width, height, phone)
+        self.addCleanup(page.close)
+        self.assertEqual(page.faults, [])
+        self.assertEqual([url for url in page.requests if not url.startswith(("file:", "data:", "blob:"))], [])
+        return page
+
+    def layer(self, page, name):
+        return next(layer for layer in page.report()["layers"] if layer["name"] == name)
+
+    def numbers(self, page, body=0):
+        return {n["name"]: n["values"] for n in page.report()["numbers"] if n["body"] == body}
+
+    def assert_shows(self, page, result, body=0):
+        numbers = self.numbers(page, body)
+        for name, key, size in (("volume", "volume", 1), ("of the tool", "volume_fraction", 100),
+                                ("boundary spheres", "boundary", 1), ("inside spheres", "inside", 1)):
+            self.assertAlmostEqual(numbers[name][0], size * result[key], delta=1e-6 * abs(size * result[key]))
+        for shown, true in zip(numbers["force / stiffness"], result["force"]):
+            self.assertAlmostEqual(shown, true, delta=1e-6 * abs(true))
+
+    def assert_fits(self, page):
+        """Nothing is wider than the window, and each part has a place."""
+        self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth - innerWidth"), 0)
+        for part in ("scene", "panel", "layers", "numbers"):
+            self.assertGreater(page.evaluate(f"document.getElementById('{part}').getBoundingClientRect().height"), 40)
+
+
+class Query(PageTest):
+    def test_shows_the_counts_and_numbers_of_the_results(self):
+        page = self.open("query.html")
+        lines = results("results.jsonl")
+        self.assertEqual(page.report()["steps"], len(lines))
+        for step in (0, 60, len(lines) - 1):
+            page.evaluate(f"vpm.setStep({step})")
+            self.assert_shows(page, lines[step])
+            counts = self.layer(page, "spheres by state")["counts"]
+            self.assertEqual(counts[1:3], [lines[step]["boundary"], lines[step]["inside"]])
+            self.assertEqual(sum(counts), 300)
+        depth = json.loads((FOLDER / "normals.json").read_text())
+        self.assertEqual(self.layer(page, "measured surface")["count"], 640 * 480 - depth["invalid"])
+
+    def test_slider_changes_pose_and_numbers(self):
+        page = self.open("query.html")
+        before = page.report()["texts"]
+        page.evaluate("slider = document.getElementById('slider'); slider.value = 3;"
+                      "slider.dispatchEvent(new Event('input'))")
+        report = page.report()
+        self.assertEqual((report["step"], report["where"]), (3, "pose 3 of 120"))
+        self.assertNotEqual(report["texts"], before)
+        self.assertIn("volume0 ", report["texts"][0])
+        page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight")
+        self.assertEqual(page.report()["step"], 4)
+
+    def test_screenshots_show_tool_and_surface_on_desks_and_phones(self):
+        for width, height, phone in ((1280, 720, False), (390, 844, True)):
+            page = self.open("query.html", width, height, phone)
+            self.assert_fits(page)
+            for view in ("overview", "side", "contact"):
+                page.evaluate(f"vpm.setView('{view}')")
+                image = pixels(page.screenshot())
+                self.assertGreater(share(image, inside), 0.002, f"{view} {width}")
+                self.assertGreater(share(image, boundary), 0.0005, f"{view} {width}")
+            page.evaluate("vpm.setView('camera')")
+            self.assertGreater(share(pixels(page.screenshot()), surface), 0.15)
+
+    def test_mouse_and_touch_turn_the_scene(self):
+        page = self.open("query.html")
+        before = pixels(page.screenshot())
+        page.mouse("mousePressed", 800, 400)
+        for x in (820, 860, 900):
+            page.mouse("mouseMoved", x, 420, buttons=1)
+        page.mouse("mouseReleased", 900, 420)
+        turned = pixels(page.screenshot())
+        self.assertGreater(numpy.abs(turned - before).mean(), 0.005)
+        page.call("Input.dispatchMouseEvent", type="mouseWheel", x=800, y=400, deltaX=0, deltaY=-300)
+        self.assertGreater(numpy.abs(pixels(page.screenshot()) - turned).mean(), 0.005)
+        phone = self.open("query.html", 390, 844, True)
+        before = pixels(phone.screenshot())
+        for kind, x in (("touchStart", 150), ("touchMove", 190), ("touchMove", 240), ("touchEnd", None)):
+            points = [] if x is None else [{"x": x, "y": 250}]
+            phone.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        self.assertGreater(numpy.abs(pixels(phone.screenshot()) - before).mean(), 0.005)
+
+    def test_switches_hide_layers(self):
+        page = self.open("query.html")
+        page.evaluate("vpm.setView('side')")
+        self.assertGreater(share(pixels(page.screenshot()), inside), 0.002)
+        page.evaluate("vpm.setLayer('spheres by state', false)")
+        self.assertLess(share(pixels(page.screenshot()), inside), 0.0005)
+        without = pixels(page.screenshot())
+        page.evaluate("vpm.setLayer('not seen by the camera', true)")
+        self.assertGreater(numpy.mean(without - pixels(page.screenshot()) > 0.05), 0.01)  # it is darker
+
+    def test_names_are_text(self):
+        (FOLDER / "scripts").mkdir(exist_ok=True)
+        (FOLDER / "scripts" / NAME.replace("/", "_")).write_bytes((FOLDER / "tool.vpmg").read_bytes())
+        run("vpm-query", "--tool", "scripts/" + NAME.replace("/", "_"), "--cloud", "scene.vpmc", "--pose",
+            "0,0,0.97,0,0,0,1", "-o", "named.jsonl", "--view", "named.html")
+        page = self.open("named.html")
+        self.assertIn("<script>alert(1)<_script>", page.evaluate("document.getElementById('title').textContent"))
+        self.assertEqual(page.evaluate("document.querySelectorAll('h1 script, td script, span script').length"), 0)
+
+    def test_several_tools(self):
+        run("vpm-query", "--tool", "tool.vpmg", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--poses",
+            "poses.jsonl", "--batch", 50, "-o", "two.jsonl", "--view", "two.html")
+        page, lines = self.open("two.html"), results("two.jsonl")
+        page.evaluate("vpm.setStep(110)")
+        for tool in (0, 1):
+            self.assert_shows(page, lines[2 * 110 + tool], tool)
+
+    def test_frames_follow_the_steps(self):
+        folder = FOLDER / "frames"
+        folder.mkdir(exist_ok=True)
+        for k, z in enumerate((5000, 5200, 5400)):
+            write_depth(f"frames/frame-{k:06}.depth.png", numpy.full((480, 640), z))
+        (FOLDER / "path.txt").write_text("".join(f"{k / 30} 0 0 1 0 0 0 1\n" for k in range(4)))
+        run("vpm-query", "--tool", "tool.vpmg", "--frames", "frames", "--trajectory", "path.txt", "--rate", 90,
+            *INTRINSICS, "--quiet", "-o", "frames.jsonl", "--view", "frames.html")
+        page, lines = self.open("frames.html"), results("frames.jsonl")
+        self.assertEqual(page.report()["steps"], len(lines))
+        for step in (0, len(lines) - 1):
+            page.evaluate(f"vpm.setStep({step})")
+            self.assert_shows(page, lines[step])
+        self.assertEqual(len({line["frame"] for line in lines}), 3)
+        self.assertGreater(lines[0]["volume"], lines[-1]["volume"])
+
+    def test_a_tool_that_no_camera_sees_is_said(self):
+        run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--pose", "0,0,-3,0,0,0,1", "-o",
+            "behind.jsonl", "--view", "behind.html")
+        page = self.open("behind.html")
+        notes = page.evaluate("document.getElementById('notes').textContent")
+        self.assertIn("No camera sees the tool", notes)
+        self.assertIn("touches nothing", notes)
+        self.assertTrue(page.evaluate("document.getElementById('bar').hidden"))
+        page.evaluate("vpm.setView('contact')")
+        page.evaluate("vpm.setView('all')")
+        self.assertEqual(page.report()["faults"], [])
+
+
+class OtherTools(PageTest):
+    def test_a_packing_grows_with_the_slider(self):
+        page, report = self.open("pack.html"), json.loads((FOLDER / "pack.json").read_text())
+        self.assert_fits(page)
+        self.assertAlmostEqual(self.numbers(page, -1)["covered"][0], 100 * report["coverage"], places=3)
+        full = page.screenshot()
+        left = self.layer(page, "not covered")["count"]
+        page.evaluate("vpm.setStep(0)")
+        self.assertEqual(page.report()["where"], "1 of 300 spheres")
+        self.assertGreater(self.layer(page, "not covered")["count"], 2 * left)
+        self.assertGreater(numpy.abs(pixels(page.screenshot()) - pixels(full)).mean(), 0.01)
+
+    def test_a_refused_mesh_shows_its_defects(self):
+        (FOLDER / "open.off").write_text("OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n"
+                                         "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 4\n")
+        done = run("vpm-pack", "open.off", "-o", "open.vpmp", "--view", "open.html", code=1)
+        self.assertIn("the mesh is open", done.stderr)
+        page = self.open("open.html")
+        self.assertEqual(self.layer(page, "holes")["count"], 1)
+        self.assertIn("the mesh is open", page.evaluate("document.getElementById('notes').textContent"))
+        orange = lambda r, g, b: (r > 0.7) & (g > 0.2) & (g < 0.55) & (b < 0.25)
+        self.assertGreater(share(pixels(page.screenshot()), orange), 0.0003)
+
+    def test_a_scan_tells_which_pixels_have_no_normal(self):
+        page, report = self.open("normals.html"), json.loads((FOLDER / "normals.json").read_text())
+        facts = page.evaluate("document.getElementById('facts').textContent")
+        for name, key in (("points with normals", "points"), ("not measured", "invalid"),
+                          ("measured, no normal", "without_normal")):
+            self.assertIn(f"{name}{report[key]}", facts)
+        self.assertEqual(page.evaluate("document.querySelectorAll('.picture, .chart').length"), 2)
+        image = pixels(page.screenshot())[:, 340:]
+        self.assertGreater(numpy.std(image), 0.05)
+
+    def test_a_graph_has_its_edges_bridges_and_cells(self):
+        page, report = self.open("graph.html"), json.loads((FOLDER / "graph.json").read_text())
+        for level, facts in enumerate(report["levels"]):
+            page.evaluate(f"vpm.setStep({level})")
+            shown = {layer["name"]: layer["count"] for layer in page.report()["layers"] if layer["visible"]}
+            self.assertEqual(shown["edges"] + shown.get("bridges", 0), facts["edges"])
+            self.assertEqual(shown.get("bridges", 0), facts["bridges"])
+            self.assertEqual(shown["spheres by radius"], facts["spheres"])
+        page.evaluate("vpm.showSphereCell(0)")
+        self.assertGreater(page.report()["cell"]["samples"], 0)
+        page.evaluate("vpm.showSphereCell(-1)")
+        page.evaluate("vpm.setLayer('solid', false)")
+        for x in range(500, 1200, 20):  # somewhere on the ring
+            page.mouse("mousePressed", x, 330)
+            page.mouse("mouseReleased", x, 330)
+            if page.report()["cell"]:
+                break
+        self.assertGreater(page.report()["cell"]["samples"], 0)
+
+    def test_a_million_pixels(self):
+        v, u = numpy.mgrid[0:1000, 0:1000]
+        write_depth("million.png", (2000 + 200 * numpy.sin(u / 50) * numpy.cos(v / 70)).astype(int))
+        run("vpm-normals", "million.png", "-o", "million.vpmc", "--intrinsics", "900,900,499.5,499.5", "--view",
+            "million.html", "--quiet")
+        self.assertLess((FOLDER / "million.html").stat().st_size, 5_000_000)
+        page = self.open("million.html")
+        self.assertEqual(self.layer(page, "surface by normal")["count"], 500 * 500)
+
+
+def main():
+    global BIN, FOLDER, BROWSER
+    BIN = pathlib.Path(sys.argv.pop(1)).resolve()
+    with tempfile.TemporaryDirectory() as folder:
+        FOLDER = pathlib.Path(folder)
+        (FOLDER / "cube.off").write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+        try:
+            run("vpm-pack", "cube.off", "--spheres", 4, "--view", "cube.html")
+        except AssertionError:
+            done = run("vpm-pack", "cube.off", "--spheres", 4, "--view", "cube.html", code=3)
+            print("skipped: this build has no drawing library:", done.stderr)
+            return 77
+        if not headless_page.program():
+            print("skipped: there is no Chromium (Debian: chromium)")
+            return 77
+        make_demo()
+        with headless_page.Browser() as browser:
+            BROWSER = browser
+            return 0 if unittest.main(exit=False).result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,340 @@
+#include "tools/query/pose_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/model/tool_model_file.h"
+
+namespace vpm::tools {
+namespace {
+
+// Bytes of states that a page holds, and the bounds of its steps.
+constexpr std::size_t kStateBytes = 1'300'000, kFewestSteps = 50, kMostSteps = 1000;
+// Images of a recording that a page holds, and their pixels in all.
+constexpr std::size_t kMostFrames = 24, kFramePixels = 1'000'000;
+// A state of a sphere beyond the level that a step used.
+constexpr std::uint8_t kUnused = 3;
+
+constexpr std::array<const char*, 4> kToolColors{"#b08d57", "#6b8e23", "#8968a8", "#4f8a8b"};
+constexpr const char *kForceColor = "#009e73", *kTorqueColor = "#aa4499", *kPathColor = "#0072b2";
+
+std::string base_name(const std::string& path) {
+  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+std::string maker_of(const nlohmann::json& provenance) {
+  if (!provenance.is_object()) return "";
+  const auto text = [&](const char* key) {
+    return provenance.contains(key) && provenance.at(key).is_string()
+               ? provenance.at(key).get<std::string>()
+               : std::string();
+  };
+  const std::string tool = text("tool");
+  return tool.empty() ? "" : " (" + tool + " " + text("version") + ")";
+}
+
+bool sees(const Camera& camera, Vec3 world) {
+  const Vec3 at = relative_to(camera.to_world, Pose{{}, world}).translation;
+  if (!(at.z > 0)) return false;
+  const Intrinsics& k = camera.intrinsics;
+  const double u = k.fx * at.x / at.z + k.cx, v = k.fy * at.y / at.z + k.cy;
+  return u >= -0.5 && v >= -0.5 && u < camera.width - 0.5 && v < camera.height - 0.5;
+}
+
+Vec3 image_up(const Camera& camera) {
+  return camera.to_world.rotation * Vec3{0, -1, 0};
+}
+
+}  // namespace
+
+PoseView::PoseView(std::string path, std::span<const ToolModel> models,
+                   std::vector<std::string> names, const QueryOptions& options)
+    : path_(std::move(path)),
+      models_(models),
+      names_(std::move(names)),
+      options_(options),
+      levels_(models.size(), 0) {
+  view::check_available();
+  for (std::string& name : names_) {
+    meshes_.push_back(name == "-" ? Solid{} : read_display_mesh(name));
+    name = base_name(name);
+  }
+  std::size_t row = 0;
+  for (const ToolModel& model : models_) row += model.spheres.size() / 4 + 1;
+  most_steps_ = std::clamp(kStateBytes / row, kFewestSteps, kMostSteps);
+}
+
+void PoseView::add_cloud(const std::string& name, Cloud cloud) {
+  clouds_.emplace_back(base_name(name), std::move(cloud));
+}
+
+void PoseView::set_frames(const std::string& name, const Recording& recording,
+                          const ImportOptions& options) {
+  recording_name_ = base_name(name);
+  recording_ = &recording;
+  import_ = options;
+}
+
+void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query) {
+  Answer answer{pose, result, {}};
+  for (const SphereState state : query.states())
+    answer.states.push_back(static_cast<std::uint8_t>(state));
+  levels_[tool] = std::max(levels_[tool], query.level().sphere_count);
+  if (tool == 0) current_ = {seen_, frame_, {}};
+  current_.answers.push_back(std::move(answer));
+  if (tool + 1 == models_.size()) keep(std::move(current_));
+}
+
+void PoseView::add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses) {
+  ToolQuery* const only = &query;
+  add_batch(std::span(&only, 1), cloud, poses);
+}
+
+void PoseView::add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
+                         std::span<const Pose> poses) {
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (!keeps_next() && k + 1 < poses.size()) {
+      ++seen_;
+      continue;
+    }
+    for (std::size_t t = 0; t < queries.size(); ++t) {
+      const Result result = queries[t]->run(cloud, poses[k]);
+      add(t, poses[k], result, *queries[t]);
+    }
+  }
+}
+
+// Where there are too many, every second of those that were kept goes.
+void PoseView::keep(Step step) {
+  const bool is_kept = keeps_next();
+  ++seen_;
+  last_ = step;
+  if (!is_kept) return;
+  steps_.push_back(std::move(step));
+  if (steps_.size() <= most_steps_) return;
+  every_ *= 2;
+  std::erase_if(steps_, [&](const Step& s) { return s.index % every_ != 0; });
+}
+
+std::vector<PoseView::Step> PoseView::kept() const {
+  std::vector<Step> steps = steps_;
+  if (!steps.empty() && last_.index > steps.back().index) steps.push_back(last_);
+  return steps;
+}
+
+void PoseView::add_facts(view::Page& page) const {
+  std::string summary = options_.measure == Measure::paper ? "paper" : "refined";
+  for (std::size_t t = 0; t < models_.size(); ++t)
+    summary += ", " + std::to_string(levels_[t]) + " of " +
+               std::to_string(models_[t].spheres.size()) + " spheres";
+  page.set_summary(summary);
+  for (std::size_t t = 0; t < models_.size(); ++t) {
+    page.add_fact("tool", names_[t] + maker_of(models_[t].provenance));
+    page.add_fact("level", std::to_string(levels_[t]) + " of " +
+                               std::to_string(models_[t].spheres.size()) + " spheres");
+  }
+  for (const auto& [name, cloud] : clouds_)
+    page.add_fact("cloud", name + maker_of(cloud.provenance));
+  if (recording_ != nullptr) page.add_fact("frames", recording_name_);
+  page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
+  if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
+  if (options_.stiffness != 1) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.6g N/m³", options_.stiffness);
+    page.add_fact("stiffness", text);
+  }
+  if (every_ > 1)
+    page.add_fact("poses", "one in " + std::to_string(every_) + " of " + std::to_string(seen_));
+}
+
+void PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const {
+  for (const auto& [name, cloud] : clouds_) {
+    const std::string of = clouds_.size() > 1 ? " of " + name : "";
+    if (cloud.sensor) {
+      const view::ImageView image{&cloud.sensor->depth, cloud.sensor->camera};
+      page.add_image("measured surface" + of, {&image, 1}, {});
+    } else {
+      page.add_points("measured points" + of, cloud);
+    }
+  }
+  if (recording_ != nullptr) add_frames(page, steps);
+}
+
+// Reads again the frames that the steps saw, as many as a page holds.
+void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) const {
+  std::set<std::size_t> seen;
+  for (const Step& step : steps)
+    if (step.frame) seen.insert(*step.frame);
+  std::vector<std::size_t> frames(seen.begin(), seen.end());
+  const std::size_t every = (frames.size() + kMostFrames - 1) / kMostFrames;
+  std::vector<std::size_t> shown;
+  std::vector<ImportedScan> scans;
+  for (std::size_t k = 0; k < frames.size(); k += every) {
+    const RecordedFrame& frame = recording_->frames[frames[k]];
+    ImportOptions options = import_;
+    if (frame.camera) options.to_world = frame.camera;
+    ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
+    if (!scan.image) {
+      page.add_points("measured points of " + base_name(frame.path), scan.points);
+      page.add_note("The frames are clouds without a camera: the first one is shown.");
+      return;
+    }
+    shown.push_back(frames[k]);
+    scans.push_back(std::move(scan));
+  }
+  if (scans.empty()) return;
+  std::vector<view::ImageView> images;
+  for (const ImportedScan& scan : scans) images.push_back({&scan.image->depth, scan.image->camera});
+  std::vector<std::uint32_t> of_step;
+  for (const Step& step : steps) {
+    const auto after = std::ranges::upper_bound(shown, step.frame.value_or(0));
+    of_step.push_back(
+        static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - shown.begin() - 1, 0)));
+  }
+  std::uint32_t stride = 1;
+  const std::size_t pixels = scans.size() * scans[0].image->depth.depth.size();
+  while (pixels / stride / stride > kFramePixels) ++stride;
+  page.add_image("measured surface", images, of_step, false, stride);
+  if (every > 1)
+    page.add_fact("frames shown",
+                  std::to_string(shown.size()) + " of " + std::to_string(frames.size()));
+}
+
+std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& steps,
+                                  std::size_t tool, std::size_t body) const {
+  const bool has_stiffness = options_.stiffness != 1;
+  view::Column volume{"volume", "m3", 1, {}, body}, share{"of the tool", "%", 1, {}, body},
+      force{has_stiffness ? "force" : "force / stiffness", has_stiffness ? "N" : "m3", 3, {}, body},
+      torque{has_stiffness ? "torque" : "torque / stiffness",
+             has_stiffness ? "Nm" : "m4",
+             3,
+             {},
+             body},
+      boundary{"boundary spheres", "", 1, {}, body}, inside{"inside spheres", "", 1, {}, body},
+      points{"points in spheres", "", 1, {}, body};
+  const auto add = [](view::Column& column, std::initializer_list<double> values) {
+    for (const double x : values) column.values.push_back(static_cast<float>(x));
+  };
+  for (const Step& step : steps) {
+    const Result& r = step.answers[tool].result;
+    add(volume, {r.volume});
+    add(share, {100 * r.volume_fraction});
+    add(force, {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z});
+    add(torque, {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z});
+    add(boundary, {1.0 * r.boundary});
+    add(inside, {1.0 * r.inside});
+    if (r.points) add(points, {1.0 * *r.points});
+  }
+  const std::size_t volume_column = page.add_column(volume);
+  page.add_column(share);
+  const std::size_t force_column = page.add_column(force);
+  const std::size_t torque_column = page.add_column(torque);
+  page.add_column(boundary);
+  page.add_column(inside);
+  if (points.values.size() == steps.size()) page.add_column(points);
+  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  page.add_arrow("force" + of, kForceColor, body, force_column, false);
+  page.add_arrow("torque" + of, kTorqueColor, body, torque_column, true);
+  return volume_column;
+}
+
+std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
+                               std::size_t tool) const {
+  const ToolModel& model = models_[tool];
+  std::vector<Pose> poses;
+  std::vector<std::uint8_t> bits;
+  for (const Step& step : steps) {
+    poses.push_back(step.answers[tool].pose);
+    std::vector<std::uint8_t> states = step.answers[tool].states;
+    states.resize(levels_[tool], kUnused);
+    view::append_bits(states, bits);
+  }
+  const std::size_t body = page.add_body(names_[tool], model.center_of_mass, model.reach, poses);
+  const std::string of = models_.size() > 1 ? " of " + names_[tool] : "";
+  page.add_spheres({.name = "spheres by state" + of,
+                    .spheres = {model.spheres.data(), levels_[tool]},
+                    .body = body,
+                    .states = bits});
+  if (!meshes_[tool].triangles.empty()) {
+    page.add_mesh({.name = "tool's mesh" + of,
+                   .color = kToolColors[tool % kToolColors.size()],
+                   .solid = &meshes_[tool],
+                   .body = body,
+                   .opacity = 0.3});
+  }
+  if (steps.size() > 1) page.add_path("path of the tool" + of, kPathColor, body);
+  return add_numbers(page, steps, tool, body);
+}
+
+// Says what a glance at the numbers does not tell: a tool that nobody sees, and empty answers.
+void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps) const {
+  const bool has_camera =
+      std::ranges::any_of(clouds_, [](const auto& c) { return c.second.sensor.has_value(); });
+  bool is_seen = !has_camera, touches = false;
+  for (const Step& step : steps) {
+    for (std::size_t t = 0; t < models_.size(); ++t) {
+      const Answer& answer = step.answers[t];
+      touches = touches || answer.result.volume > 0;
+      for (const auto& [name, cloud] : clouds_)
+        is_seen = is_seen || (cloud.sensor &&
+                              sees(cloud.sensor->camera, answer.pose * models_[t].center_of_mass));
+    }
+  }
+  if (!is_seen)
+    page.add_note(
+        "No camera sees the tool's centre at any pose. Poses map the tool to the world (x right, "
+        "y down, z forward from a camera without --camera-pose): is one of them inverted, or in "
+        "millimetres?");
+  if (!touches) page.add_note("The tool touches nothing at any pose: the volume is 0 everywhere.");
+}
+
+void PoseView::write() const {
+  const std::vector<Step> steps = kept();
+  if (steps.empty()) refuse("--view " + path_ + ": there is no pose to show");
+  std::string title = names_[0];
+  for (std::size_t t = 1; t < names_.size(); ++t) title += ", " + names_[t];
+  title += " in " + (clouds_.empty() ? recording_name_ : clouds_.front().first);
+  view::Page page("vpm-query", title);
+  page.set_origin(clouds_.empty() ? steps.front().answers[0].pose.translation
+                                  : clouds_.front().second.origin);
+  for (const auto& [name, cloud] : clouds_)
+    if (cloud.sensor) page.set_up(image_up(cloud.sensor->camera));
+  if (recording_ != nullptr) {
+    const Pose camera = recording_->frames[steps.front().frame.value_or(0)].camera.value_or(
+        import_.to_world.value_or(Pose{}));
+    page.set_up(camera.rotation * Vec3{0, -1, 0});
+  }
+  add_facts(page);
+  view::Json volumes = view::Json::array();
+  for (std::size_t t = 0; t < models_.size(); ++t) volumes.push_back(add_tool(page, steps, t));
+  add_scene(page, steps);
+  say_what_is_odd(page, steps);
+
+  std::vector<std::uint32_t> numbers;
+  std::size_t deepest = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    numbers.push_back(static_cast<std::uint32_t>(steps[k].index));
+    if (steps[k].answers[0].result.volume > steps[deepest].answers[0].result.volume) deepest = k;
+  }
+  page.steps() = {
+      {"name", "pose"},    {"count", steps.size()},
+      {"start", deepest},  {"moves", true},
+      {"last", seen_ - 1}, {"numbers", view::packed(std::span<const std::uint32_t>(numbers))}};
+  if (steps.size() > 1)
+    page.add_chart({{"type", "curve"},
+                    {"title", "Volume along the path"},
+                    {"x", "pose"},
+                    {"y", "volume"},
+                    {"every", every_},
+                    {"columns", volumes},
+                    {"names", names_}});
+  page.set_views({"overview", "camera", "side", "contact", "all"});
+  page.write(path_);
+}
+
+}  // namespace vpm::tools
