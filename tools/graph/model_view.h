@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "libvpm/model/solid.h"
 #include "libvpm/model/tool_model.h"
 
 namespace vpm::tools {
