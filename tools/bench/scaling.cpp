@@ -228,7 +228,7 @@ class Scaling {
   }
 
   // Returns the median time of the flood on the device's clock, microseconds.
-  static double flood_of(DeviceMeasure& query, const PreparedCloud& cloud,
+  static double flood_of(DeviceMeasure& measure, const PreparedCloud& cloud,
                          const std::vector<Pose>& path) {
     std::vector<double> flood;
     for (const Pose& pose : path) {

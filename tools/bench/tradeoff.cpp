@@ -261,7 +261,7 @@ class Tradeoff {
       const std::vector<Pose> in = make_sweep(t.solid, {turned, {}}, *scene.surface, kSteps);
       const PreparedCloud& seen = cloud(c.scene, sensing(Noise::kinect));
       for (const double asked_us : {200.0, 1000.0}) {
-        tools::LevelRequest request;
+        LevelRequest request;
         request.deadline_seconds = 1e-6 * asked_us;
         LevelToolQuery query(t.model, {.device = options_.device}, request, seen, in.front());
         Deadline d{c.shape, c.scene, to_text(Noise::kinect), asked_us, queries, 0, 0, 0};
