@@ -16,6 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using namespace vpm;
 
+void write_model(const std::string& path, const ToolModel& model) {
+  write_tool_model(path, model);
+}
+
 template <class Content>
 void write_pair(const fs::path& path, const Content& content,
                 void (*write)(const std::string&, const Content&)) {
@@ -62,8 +66,8 @@ int main(int argc, char** argv) {
     fs::create_directories(golden);
     fs::create_directories(refused);
     write_pair(golden / "cube.vpmp", golden::cube_packing(), write_packing);
-    write_pair(golden / "cube.vpmg", golden::cube_model(), write_tool_model);
-    write_pair(golden / "calibrated.vpmg", golden::calibrated_cube_model(), write_tool_model);
+    write_pair(golden / "cube.vpmg", golden::cube_model(), write_model);
+    write_pair(golden / "calibrated.vpmg", golden::calibrated_cube_model(), write_model);
     write_pair(golden / "wall.vpmc", golden::wall_cloud(), write_cloud);
     write_pair(golden / "scattered.vpmc", golden::scattered_cloud(), write_cloud);
     write_refused(golden, refused);

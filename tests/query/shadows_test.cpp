@@ -104,7 +104,7 @@ TEST(SolidShadows, AreRefusedWhereTheyMeanNothing) {
   ToolQuery query(tool, solid());
   EXPECT_THROW(query.run(cloud, Pose{}), Error);
   std::vector<Result> results(1);
-  EXPECT_THROW(query.run(cloud, std::vector<Pose>(1), results), Error);
+  EXPECT_THROW(query.run(cloud, jobs_of(std::vector<Pose>(1)), results), Error);
 
   QueryOptions options = solid();
   options.measure = Measure::paper;
