@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libvpm/backend/cpu/share_clusters.h"
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/query/share_clusters.h"
-#include "libvpm/surface/ball_fraction.h"
-#include "libvpm/surface/depth_surface.h"
+#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
 namespace {

@@ -3,9 +3,9 @@
 // choose only which thread asks, and in which order.
 #pragma once
 
-#include "libvpm/query/contact_plane.h"
-#include "libvpm/query/shadows.h"
-#include "libvpm/surface/body.h"
+#include "libvpm/include/vpm/query_types.h"
+#include "libvpm/measure/contact_plane.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm {
 

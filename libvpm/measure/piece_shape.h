@@ -4,7 +4,7 @@
 
 #include "libvpm/core/division.h"
 #include "libvpm/core/vec3.h"
-#include "libvpm/surface/ball_fraction.h"
+#include "libvpm/scene/ball_fraction.h"
 
 namespace vpm {
 

@@ -7,7 +7,7 @@
 
 #include "libvpm/include/vpm/level_query.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm {
 

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/query/device_measure.h"
-#include "libvpm/query/measure_paper.h"
-#include "libvpm/query/measure_refined.h"
-#include "libvpm/query/query_options.h"
-#include "libvpm/query/scene_view.h"
+#include "libvpm/backend/cpu/measure_paper.h"
+#include "libvpm/backend/cpu/measure_refined.h"
+#include "libvpm/backend/device_measure.h"
+#include "libvpm/include/vpm/query_types.h"
+#include "libvpm/scene/scene_view.h"
 
 namespace vpm {
 

@@ -11,8 +11,8 @@
 
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/recording/frame_schedule.h"
-#include "libvpm/surface/depth_frames.h"
-#include "libvpm/surface/frame_preparation.h"
+#include "libvpm/scene/depth_frames.h"
+#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm {
 

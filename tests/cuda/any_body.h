@@ -1,7 +1,7 @@
 // The refined measure on a device, for bodies of the tests.
 #pragma once
 
-#include "libvpm/query/result.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "tests/measure/analytic_bodies.h"
 
 namespace vpm {

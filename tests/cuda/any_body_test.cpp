@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "libvpm/backend/cpu/measure_refined_run.h"
 #include "libvpm/device/device.h"
-#include "libvpm/query/measure_refined_run.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "libvpm/surface/cuda/cloud_slot.h"
+#include "libvpm/scene/cuda/cloud_slot.h"
 #include "tests/cuda/frame_memory.h"
 
 namespace vpm::testing {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "libvpm/surface/depth_frames.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm::testing {
 

@@ -1,5 +1,5 @@
+#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/device/cuda/device_array.h"
-#include "libvpm/query/cuda/launch.h"
 #include "tests/cuda/taken_memory.h"
 
 namespace vpm::testing {

@@ -1,8 +1,8 @@
 // Bodies of the scene whose truth is plain: what the measure asks of any body, in few lines.
 #pragma once
 
-#include "libvpm/surface/ball_fraction.h"
-#include "libvpm/surface/body.h"
+#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm::testing {
 

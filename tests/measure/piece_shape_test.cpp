@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libvpm/query/crossing_plane.h"
+#include "libvpm/measure/crossing_plane.h"
 
 namespace vpm {
 namespace {

@@ -1,5 +1,5 @@
 // Search for the nearest of the cells that a surface cuts.
-#include "libvpm/query/cut_shares.h"
+#include "libvpm/backend/cpu/cut_shares.h"
 
 #include <gtest/gtest.h>
 

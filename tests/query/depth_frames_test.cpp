@@ -1,6 +1,6 @@
 // Depth frames on the CPU; tests/cuda has those on a device.
 
-#include "libvpm/surface/depth_frames.h"
+#include "libvpm/scene/depth_frames.h"
 
 #include <gtest/gtest.h>
 

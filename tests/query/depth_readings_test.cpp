@@ -1,5 +1,5 @@
 // Readings of a camera's surface by vectors have the bits of single readings.
-#include "libvpm/query/depth_readings.h"
+#include "libvpm/backend/cpu/depth_readings.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <random>
 
+#include "libvpm/backend/cpu/cell_samples.h"
+#include "libvpm/backend/cpu/share_clusters.h"
 #include "libvpm/cloud/normals.h"
-#include "libvpm/query/cell_samples.h"
-#include "libvpm/query/share_clusters.h"
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/scene/prepared_cloud.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"

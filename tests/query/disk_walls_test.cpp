@@ -6,7 +6,7 @@
 #include <random>
 
 #include "libvpm/query/tool_query.h"
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/scene/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libvpm/query/result.h"
+#include "libvpm/include/vpm/query_types.h"
 
 namespace vpm::testing {
 

@@ -1,4 +1,4 @@
-#include "libvpm/query/points_inside.h"
+#include "libvpm/backend/cpu/points_inside.h"
 
 #include <gtest/gtest.h>
 

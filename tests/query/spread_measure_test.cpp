@@ -1,7 +1,7 @@
 // Batches spread over several devices: each pose is answered once, in its place, and a device's
 // exception is passed on. These devices are fakes; tests/cuda uses real ones.
 
-#include "libvpm/query/spread_measure.h"
+#include "libvpm/backend/spread_measure.h"
 
 #include <gtest/gtest.h>
 

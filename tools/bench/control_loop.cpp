@@ -28,7 +28,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/model/tool_model_file.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/surface/depth_frames.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace {
 

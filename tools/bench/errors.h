@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "libvpm/query/result.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/synthetic/truth.h"
 #include "tools/bench/sight.h"
 #include "tools/bench/statistics.h"

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/result.h"
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm::bench {
 

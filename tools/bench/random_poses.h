@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libvpm/device/device.h"
-#include "libvpm/query/shadows.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"

@@ -6,8 +6,8 @@
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/cloud/depth_image.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/solid.h"
-#include "libvpm/query/result.h"
 
 namespace vpm::bench {
 

@@ -8,7 +8,7 @@
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/surface/frame_preparation.h"
+#include "libvpm/scene/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"

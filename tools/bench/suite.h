@@ -6,7 +6,7 @@
 #include <string>
 
 #include "libvpm/device/device.h"
-#include "libvpm/query/shadows.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "tools/bench/report.h"
 
 namespace vpm::bench {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "libvpm/device/device.h"
-#include "libvpm/query/shadows.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/report.h"

@@ -13,7 +13,7 @@
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/surface/frame_preparation.h"
+#include "libvpm/scene/frame_preparation.h"
 #include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"

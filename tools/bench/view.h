@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "libvpm/surface/prepared_cloud.h"
+#include "libvpm/scene/prepared_cloud.h"
 #include "libvpm/synthetic/scenes.h"
 
 namespace vpm::bench {

@@ -12,7 +12,6 @@
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/common/import_arguments.h"
-#include "libvpm/query/level_tool_query.h"
 #include "tools/query/pose_view.h"
 
 namespace vpm::tools {

@@ -9,7 +9,6 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/query/level_tool_query.h"
 #include "libvpm/recording/timed_path.h"
-#include "libvpm/query/level_tool_query.h"
 #include "tools/query/pose_view.h"
 
 namespace vpm::tools {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "libvpm/cloud/cloud_file.h"
-#include "libvpm/surface/cuda/cloud_slot.h"
+#include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace {
 

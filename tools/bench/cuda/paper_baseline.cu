@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <string>
 
+#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/device/cuda/device_array.h"
-#include "libvpm/query/cuda/launch.h"
-#include "libvpm/surface/cuda/device_cloud.h"
+#include "libvpm/scene/cuda/device_cloud.h"
 #include "tools/bench/cuda/paper_kernels.h"
 #include "tools/bench/paper_baseline.h"
 

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "libvpm/query/cuda/team.h"
-#include "libvpm/query/cuda/views.h"
-#include "libvpm/query/paper_contact.h"
-#include "libvpm/query/sphere_location.h"
+#include "libvpm/backend/cpu/sphere_location.h"
+#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/views.h"
+#include "libvpm/measure/paper_contact.h"
 
 namespace vpm::bench {
 

@@ -1,0 +1,114 @@
+// The samples of a cell's blocks, many at once: what SamplesInTurn adds, by vectors. On the host.
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <type_traits>
+
+#include "libvpm/backend/cpu/cell.h"
+#include "libvpm/backend/cpu/depth_readings.h"
+
+namespace vpm {
+
+// SamplesInTurn::crossed.
+CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
+
+// A surface that vectors read at several places.
+template <class Surface>
+concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
+                                 Reading (&readings)[4]) {
+  read_four(surface, places, readings);
+};
+
+// Reads a surface at four places by vectors where it can be, others one after the other.
+struct ReadTogether {
+  template <class Surface, class Take>
+  bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
+    if constexpr (ReadsTogether<Surface>) {
+      Reading readings[4];
+      read_four(surface, places, readings);
+      return std::all_of(std::begin(readings), std::end(readings), take);
+    } else {
+      return ReadInTurn{}(surface, places, take);
+    }
+  }
+};
+
+// Adds samples whose surface is searched for one place after another.
+struct SamplesOneByOne : SamplesInTurn {
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, {samples, count});
+  }
+};
+
+// Adds the samples of one cell that a camera sees, four at a time.
+class SamplesTogether {
+ public:
+  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
+                             std::uint32_t count) {
+    return crossed_sums(plane, {samples, count});
+  }
+  template <class Measure>
+  void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+           const DepthSurface& surface, CellResult& result) {
+    neighbors_ = kNone;  // of another block
+    for (std::uint32_t first = 0; first < count; first += kAtOnce) {
+      const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
+      const std::uint32_t found =
+          read_samples(surface, measure.to_surface(), {samples + first, some}, readings_);
+      for (std::uint32_t k = 0; k < found; ++k)
+        add_one(measure, samples, first + readings_[k].sample, readings_[k].at, result);
+    }
+  }
+  // Adds those whose directions were put off, to be found together.
+  template <class Measure>
+  void flush(const Measure& measure, CellResult& result) {
+    if (direction_count_ == 0) return;
+    Vec3 normals[kAtOnce];
+    closest_normals(measure.surface(), {searched_, direction_count_}, normals);
+    for (std::uint32_t k = 0; k < pushed_count_; ++k) {
+      measure.add_pushed(piece_of(*pushed_[k].sample), normals[pushed_[k].direction], result.sum);
+    }
+    direction_count_ = pushed_count_ = 0;
+  }
+
+ private:
+  static constexpr std::uint32_t kAtOnce = 16;
+
+  template <class Measure>
+  void add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
+               const PlaceReading& at, CellResult& result) {
+    const SharePiece piece = piece_of(samples[k]);
+    const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
+    if (!measure.note(piece, look, result)) return;
+    if (!Measure::shares_direction(piece, look)) {
+      measure.add_pushed(measure.part_behind(piece, look), look.reading.normal, result.sum);
+      return;
+    }
+    if (neighbors_ != k / kNeighborSamples) {
+      neighbors_ = k / kNeighborSamples;
+      if (direction_count_ == kAtOnce) flush(measure, result);
+      searched_[direction_count_++] = at;
+    }
+    pushed_[pushed_count_++] = {samples + k, direction_count_ - 1};
+  }
+
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+  struct Pushed {
+    const CellSample* sample;
+    std::uint32_t direction;  // which of those that are searched for
+  };
+
+  SampleReading readings_[kAtOnce];
+  PlaceReading searched_[kAtOnce];
+  Pushed pushed_[kAtOnce * kNeighborSamples];
+  std::uint32_t direction_count_ = 0, pushed_count_ = 0;
+  std::uint32_t neighbors_ = kNone;  // for which the last direction is searched
+};
+
+template <class Surface>
+using SamplesOnHost = std::conditional_t<ReadsTogether<Surface>, SamplesTogether, SamplesOneByOne>;
+
+}  // namespace vpm

@@ -1,0 +1,119 @@
+#include "libvpm/backend/cpu/measure_paper.h"
+
+#include <algorithm>
+
+#include "libvpm/core/atomic_add.h"
+
+namespace vpm {
+
+PaperMeasure::PaperMeasure(const ToolModel& tool, const Level& level) : tool_(tool), level_(level) {
+  contacts_.resize(level.sphere_count);
+  normals_.resize(level.sphere_count);
+  depth_.resize(level.sphere_count);
+  front_.reserve(level.sphere_count);
+  next_front_.reserve(level.sphere_count);
+}
+
+Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,
+                         std::vector<SphereState>& states) {
+  std::fill(contacts_.begin(), contacts_.end(), PaperContact{});
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  const std::uint32_t points = gather(cloud, pose);
+  find_boundary(states);
+  enter(states);
+  flood(states);
+  Result result = total(pose, states);
+  result.points = points;
+  return result;
+}
+
+// Steps 1 and 2: the points strictly inside each sphere, and their caps.
+std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose) {
+  const Rotation to_tool = transpose(pose.rotation);
+  const auto add = [&](std::uint32_t i, std::uint32_t point, Vec3 x) {
+    const Sphere& s = tool_.spheres[i];
+    const Vec3 n = to_tool * widen(cloud.normals()[point]);
+    PaperContact::of_point(s, x, n).add_to(contacts_[i], add_atomically);
+  };
+  return for_points_inside(cloud, tool_, level_, pose, ranges_, add);
+}
+
+// Step 3: a sphere with a point in it is boundary; its normal is the mean of its points'.
+void PaperMeasure::find_boundary(std::vector<SphereState>& states) {
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    if (contacts_[i].points == 0) continue;
+    states[i] = SphereState::boundary;
+    normals_[i] = contacts_[i].mean_normal();
+  }
+}
+
+// Step 4: n_i . (c_j - c_i) <= -r_j. An entry sphere's normal is the mean over the boundary spheres
+// that let it in.
+void PaperMeasure::enter(std::vector<SphereState>& states) {
+  const SphereGraph& graph = level_.graph;
+  front_.clear();
+  for (std::uint32_t j = 0; j < level_.sphere_count; ++j) {
+    if (states[j] == SphereState::boundary) continue;
+    Vec3 normal;
+    bool entered = false;
+    for (std::uint32_t k = graph.begin[j]; k < graph.begin[j + 1]; ++k) {
+      const std::uint32_t i = graph.neighbors[k];
+      if (states[i] != SphereState::boundary) continue;
+      if (!lets_in(tool_.spheres[i], normals_[i], tool_.spheres[j])) continue;
+      entered = true;
+      normal += normals_[i];
+    }
+    if (!entered) continue;
+    normals_[j] = normalized_or_zero(normal);
+    depth_[j] = 1;
+    front_.push_back(j);
+  }
+  for (const std::uint32_t j : front_) states[j] = SphereState::inside;
+}
+
+// Step 5, front by front, so that the normals do not depend on the order of the traversal: a
+// sphere's normal is the mean over its neighbours in the front before.
+void PaperMeasure::flood(std::vector<SphereState>& states) {
+  const SphereGraph& graph = level_.graph;
+  for (std::uint32_t depth = 2; !front_.empty(); ++depth) {
+    next_front_.clear();
+    for (const std::uint32_t i : front_) {
+      for (std::uint32_t k = graph.begin[i]; k < graph.begin[i + 1]; ++k) {
+        const std::uint32_t j = graph.neighbors[k];
+        if (states[j] != SphereState::outside) continue;
+        states[j] = SphereState::inside;
+        depth_[j] = depth;
+        next_front_.push_back(j);
+      }
+    }
+    for (const std::uint32_t j : next_front_) {
+      Vec3 normal;
+      for (std::uint32_t k = graph.begin[j]; k < graph.begin[j + 1]; ++k) {
+        const std::uint32_t i = graph.neighbors[k];
+        if (states[i] == SphereState::inside && depth_[i] + 1 == depth) normal += normals_[i];
+      }
+      normals_[j] = normalized_or_zero(normal);
+    }
+    std::swap(front_, next_front_);
+  }
+}
+
+// Step 6.
+Result PaperMeasure::total(const Pose& pose, const std::vector<SphereState>& states) const {
+  const ToolMeasures measures = measures_of(tool_);
+  ToolSum sum;
+  Result result;
+  for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
+    if (states[i] == SphereState::boundary) {
+      add_boundary(measures, tool_.spheres[i], contacts_[i], normals_[i], sum);
+      ++result.boundary;
+    } else if (states[i] == SphereState::inside) {
+      add_inside(measures, tool_.spheres[i], normals_[i], sum);
+      ++result.inside;
+    }
+  }
+  sum.write(tool_, pose.rotation, result);
+  return result;
+}
+
+}  // namespace vpm

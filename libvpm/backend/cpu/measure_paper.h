@@ -1,0 +1,42 @@
+// The measure as printed: Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure for 6-DOF
+// Haptic Rendering of Streaming Point Clouds" (2017). README.md lists the two misprints that are
+// read as they must be meant.
+#pragma once
+
+#include <vector>
+
+#include "libvpm/backend/cpu/points_inside.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/include/vpm/query_types.h"
+#include "libvpm/measure/paper_contact.h"
+#include "libvpm/model/tool_model.h"
+
+namespace vpm {
+
+class PaperMeasure {
+ public:
+  PaperMeasure(const ToolModel& tool, const Level& level);
+
+  // `states` receives one entry per sphere. Allocates nothing after the first call.
+  Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
+
+ private:
+  std::uint32_t gather(const PreparedCloud& cloud, const Pose& pose);
+  void find_boundary(std::vector<SphereState>& states);
+  void flood(std::vector<SphereState>& states);
+  void enter(std::vector<SphereState>& states);
+  Result total(const Pose& pose, const std::vector<SphereState>& states) const;
+
+  // What the sums of a contact can count.
+  static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << PaperContact::kPointBits);
+
+  const ToolModel& tool_;
+  const Level& level_;
+  std::vector<PaperContact> contacts_;
+  std::vector<Vec3> normals_;  // n_s of boundary, n_j of inside spheres, tool axes
+  std::vector<std::uint32_t> front_, next_front_;
+  PointRanges ranges_;
+  std::vector<std::uint32_t> depth_;  // flood level of inside spheres, 1 at the entry
+};
+
+}  // namespace vpm

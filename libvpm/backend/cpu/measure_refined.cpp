@@ -1,0 +1,36 @@
+#include <algorithm>
+
+#include "libvpm/backend/cpu/measure_refined_run.h"
+
+namespace vpm {
+RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
+                               const QueryOptions& options)
+    : tool_(tool),
+      reach_(tool.reach, options.shadows),
+      counts_points_(options.counts_points),
+      level_(tool, level),
+      shares_(level_) {
+  if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
+}
+
+Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
+  const PointsOfSphere of_cloud(cloud, pose);
+  const PointsOfSphere* const points = counts_points_ ? &of_cloud : nullptr;
+  if (cloud.is_organised())
+    return run_on(cloud.depth_surface(), cloud.camera_to_world(), pose, points);
+  constexpr double kPlaces = 1.25;  // of the tool's radius: where most places lie that are read
+  DiskSurface disks = cloud.disk_surface();
+  disks.feet.enter_near(pose * tool_.center_of_mass - cloud.origin(), kPlaces * tool_.reach);
+  return run_on(disks, Pose{{}, cloud.origin()}, pose, points);
+}
+
+void RefinedMeasure::read_states(std::vector<SphereState>& states) const {
+  std::fill(states.begin(), states.end(), SphereState::outside);
+  for (std::uint32_t i = 0; i < level_.size(); ++i) {
+    if (shares_.counts(i))
+      states[level_.sphere(i)] =
+          shares_.cells[i] == Cell::cut ? SphereState::boundary : SphereState::inside;
+  }
+}
+
+}  // namespace vpm

@@ -1,0 +1,94 @@
+#include "libvpm/backend/cpu/spatial_level.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kFewShares = 8;  // are looked at one by one
+constexpr std::size_t kGroupClusters = 8;
+constexpr double kGroupReach = 2.5 * kPatchReach;  // of the tool's
+// A group's ball holds the shares of its clusters, though not the clusters' own balls, however
+// their projections are rounded.
+constexpr double kGroupRounding = 1 + 1e-9;
+
+}  // namespace
+
+SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
+  ShareClusters clusters = cluster_shares(tool, level);
+  spheres_ = std::move(clusters.shares);
+  for (const ShareCluster& c : clusters.clusters) {
+    root_of_row_.resize(c.end, static_cast<std::uint32_t>(roots_.size()));
+    roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
+    add_nodes(tool, level, c.begin, c.end);
+  }
+  add_groups(tool, level);
+  const std::vector<BlockMass> block_masses = vpm::block_masses(level);
+  for (const std::uint32_t sphere : spheres_) {
+    masses_.push_back(clusters.masses[sphere]);
+    block_masses_.insert(block_masses_.end(), block_masses.begin() + level.block_begin[sphere],
+                         block_masses.begin() + level.block_begin[sphere + 1]);
+    add_share(tool, level, sphere);
+  }
+  add_graph(level.graph);
+}
+
+void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin,
+                             std::uint32_t end) {
+  const std::size_t node = nodes_.size();
+  nodes_.push_back({enclosing_cluster(tool, level, spheres_, begin, end), 0});
+  if (end - begin > kFewShares) {
+    const std::uint32_t middle = halve(tool, spheres_, begin, end);
+    add_nodes(tool, level, begin, middle);
+    add_nodes(tool, level, middle, end);
+  }
+  nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
+}
+
+// As many clusters that follow each other as are no wider than a group may be.
+void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
+  const auto first_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.begin; };
+  const auto end_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.end; };
+  const auto count = static_cast<std::uint32_t>(roots_.size());
+  for (std::uint32_t root = 0; root < count; ++root) {
+    if (!groups_.empty() && root - groups_.back().begin < kGroupClusters) {
+      ShareGroup& last = groups_.back();
+      const ShareCluster ball =
+          enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
+      if (ball.reach <= kGroupReach * tool.reach) {
+        last.ball = ball;
+        last.end = root + 1;
+        continue;
+      }
+    }
+    groups_.push_back({nodes_[roots_[root]].cluster, root, root + 1});
+  }
+  for (ShareGroup& group : groups_) group.ball.reach *= kGroupRounding;
+}
+
+void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
+  Share share{tool.spheres[sphere].center - tool.center_of_mass, level.share_reach[sphere],
+              tool.spheres[sphere].radius, static_cast<std::uint32_t>(blocks_.size()), 0};
+  for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
+    CellBlock block = level.blocks[b];
+    const auto begin = static_cast<std::uint32_t>(samples_.size());
+    samples_.insert(samples_.end(), level.samples.begin() + block.begin,
+                    level.samples.begin() + block.end);
+    block.begin = begin;
+    block.end = static_cast<std::uint32_t>(samples_.size());
+    blocks_.push_back(block);
+  }
+  share.end = static_cast<std::uint32_t>(blocks_.size());
+  shares_.push_back(share);
+}
+
+void SpatialLevel::add_graph(const SphereGraph& graph) {
+  std::vector<std::uint32_t> row_of(size());
+  for (std::uint32_t row = 0; row < size(); ++row) row_of[spheres_[row]] = row;
+  neighbor_begin_.push_back(0);
+  for (const std::uint32_t sphere : spheres_) {
+    for (std::uint32_t k = graph.begin[sphere]; k < graph.begin[sphere + 1]; ++k)
+      neighbors_.push_back(row_of[graph.neighbors[k]]);
+    neighbor_begin_.push_back(static_cast<std::uint32_t>(neighbors_.size()));
+  }
+}
+
+}  // namespace vpm

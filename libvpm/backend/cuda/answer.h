@@ -1,0 +1,101 @@
+// From the threads of a query to the program that waits for it.
+#pragma once
+
+#include <cstddef>
+
+#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/views.h"
+#include "libvpm/device/cuda/numbered_word.h"
+
+namespace vpm::cuda {
+
+// Where the host looks for a result, in its own memory: the words of a RawResult.
+struct Answer {
+  static constexpr unsigned kWords = 18;
+  static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
+
+  NumberedWord words[kWords] = {};
+};
+
+// Nanoseconds of the device's clock, which all blocks share.
+__device__ inline std::uint64_t now() {
+#ifdef __CUDACC__
+  std::uint64_t time;
+  asm volatile("mov.u64 %0, %%globaltimer;" : "=l"(time));
+  return time;
+#else
+  return emulator::nanoseconds();
+#endif
+}
+
+// This thread's word of a result; of the first ones of a block.
+__device__ inline std::uint32_t word_of(const RawResult& result) {
+  const unsigned k = threadIdx.x;
+  return k < Answer::kWords ? reinterpret_cast<const std::uint32_t*>(&result)[k] : 0;
+}
+
+// By the threads of a block, with their words. `flood_ns` goes with the result.
+__device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* answer,
+                            unsigned sequence) {
+  constexpr unsigned kFlood = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t);
+  const unsigned k = threadIdx.x;
+  if (k < Answer::kWords)
+    put(numbered(sequence, k == kFlood ? static_cast<std::uint32_t>(flood_ns) : word),
+        answer->words[k]);
+}
+
+// Sums of one query over its blocks. All 0 between queries: the last block clears them.
+struct Totals {
+  RawResult result;
+  unsigned done = 0;     // blocks that have added their part
+  unsigned arrived = 0;  // of GridTeam
+};
+
+// Adds up eight values over a warp. Each lane has the sum of value lane / 4.
+__device__ inline std::int64_t add_up_over_warp(std::int64_t (&values)[8]) {
+  // Half of the values go to one half of the lanes, and so on.
+#pragma unroll
+  for (unsigned half = 16, kept = 4; kept > 0; half /= 2, kept /= 2) {
+    const bool is_upper = (threadIdx.x & half) != 0;
+#pragma unroll
+    for (unsigned k = 0; k < kept; ++k) {
+      const std::int64_t low = values[k], high = values[k + kept];
+      values[k] = (is_upper ? high : low) + __shfl_xor_sync(~0U, is_upper ? low : high, half);
+    }
+  }
+  std::int64_t sum = values[0];
+  sum += __shfl_xor_sync(~0U, sum, 2);
+  return sum + __shfl_xor_sync(~0U, sum, 1);
+}
+
+// Adds up a block's parts into `total`, which may lie in shared memory.
+__device__ inline void add_block(const RawResult& part, RawResult& total) {
+  constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
+  __shared__ std::int64_t values[kMostWarps][kTerms + 1];
+  const ToolSum& s = part.sum;
+  const std::int64_t counts = std::int64_t{part.inside} << 32 | part.boundary;
+  std::int64_t mine[kTerms + 1] = {
+      s.volume.value,    s.force[0].value,  s.force[1].value,  s.force[2].value,
+      s.torque[0].value, s.torque[1].value, s.torque[2].value, counts};
+  const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+  const std::int64_t sum_of_warp = add_up_over_warp(mine);
+  __syncthreads();
+  if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
+  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom asked for
+    const auto points = static_cast<unsigned>(Tile(32).sum(part.points));
+    if (lane == 0) atomicAdd(&total.points, points);
+  }
+  __syncthreads();
+  if (threadIdx.x > kCounts) return;
+  std::int64_t sum = 0;
+  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum += values[w][threadIdx.x];
+  if (sum == 0) return;
+  if (threadIdx.x < kCounts) {
+    add_term(terms_of(total.sum)[threadIdx.x], sum);
+  } else {
+    atomicAdd(&total.boundary, static_cast<unsigned>(sum));
+    atomicAdd(&total.inside, static_cast<unsigned>(sum >> 32));
+  }
+}
+
+}  // namespace vpm::cuda

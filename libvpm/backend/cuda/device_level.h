@@ -1,0 +1,37 @@
+// A tool's level in the memory of a device.
+#pragma once
+
+#include "libvpm/backend/cuda/views.h"
+#include "libvpm/device/cuda/device_array.h"
+
+namespace vpm::cuda {
+
+// No point of a level's spheres is further from the centre of mass.
+double reach_of_spheres(const ToolModel& tool, const Level& level);
+
+class DeviceLevel {
+ public:
+  DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows)
+      : DeviceLevel(tool, level, {tool.reach, shadows}, cluster_shares(tool, level)) {}
+  const LevelView& view() const { return view_; }
+
+ private:
+  DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
+              const ShareClusters& clusters);
+
+  DeviceArray<Sphere> spheres_;
+  DeviceArray<Vec3> centers_;
+  DeviceArray<double> reach_;
+  DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_;
+  DeviceArray<CellBlock> blocks_;
+  DeviceArray<BlockMass> block_masses_, share_masses_;
+  DeviceArray<CellSample> samples_;
+  DeviceArray<Unit> units_;
+  DeviceArray<WarpUnit> units_of_warps_;
+  DeviceArray<Chunk> chunks_, chunks_of_warps_;
+  DeviceArray<Edge> edges_;
+  DeviceArray<std::uint32_t> edge_begin_;
+  LevelView view_;
+};
+
+}  // namespace vpm::cuda

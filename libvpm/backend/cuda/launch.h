@@ -1,0 +1,75 @@
+// Sizes of launches, and waiting for answers.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#include "libvpm/backend/cuda/answer.h"
+#include "libvpm/device/cuda/launch.h"
+#include "libvpm/device/cuda/stream.h"
+
+namespace vpm::cuda {
+
+// Of the current device.
+inline unsigned processor_count() {
+  int count = 0;
+  check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, current_device()));
+  return static_cast<unsigned>(count);
+}
+
+// Of a kernel, how many blocks the current device holds at once, if so many are wanted of each
+// multiprocessor.
+template <class Kernel>
+unsigned blocks_that_fit(Kernel* kernel, unsigned threads, unsigned wanted) {
+  int blocks = 0;
+  check(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, static_cast<int>(threads), 0));
+  return std::clamp(static_cast<unsigned>(blocks), 1U, wanted) * processor_count();
+}
+
+// Blocks that fill the device, as far as their memory takes no more than a quarter of it, and half
+// of what is free.
+inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_processor) {
+  std::size_t free = 0, total = 0;
+  check(cudaMemGetInfo(&free, &total));
+  const std::size_t fit = std::min(free / 2, total / 4) / std::max<std::size_t>(bytes_of_team, 1);
+  const std::size_t wanted = std::size_t{blocks_per_processor} * processor_count();
+  return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
+}
+
+// Teams(count, arguments...), which takes memory for them: `most`, or half as many again and again
+// where other programs have taken meanwhile what was free.
+template <class Teams, class... Arguments>
+std::unique_ptr<Teams> make_teams(unsigned most, const Arguments&... arguments) {
+  for (unsigned count = most;; count /= 2) {
+    try {
+      return std::make_unique<Teams>(count, arguments...);
+    } catch (const Error&) {
+      if (cudaGetLastError() != cudaErrorMemoryAllocation || count == 1) throw;
+    }
+  }
+}
+
+// Looks at the host's own memory until the device has written the whole answer there; that is
+// quicker than waiting for the stream. Calls meanwhile() between the looks.
+template <class Meanwhile>
+RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
+                   const Meanwhile& meanwhile) {
+  std::uint32_t words[Answer::kWords];
+  unsigned looks = 0;
+  for (unsigned k = 0; k < Answer::kWords;) {
+    const NumberedWord word = look_at(answer.words[k]);
+    if (number_of(word) == sequence) {
+      words[k++] = value_of(word);
+      continue;
+    }
+    meanwhile();
+    if (++looks % kLooksPerCheck == 0) is_done(cudaStreamQuery(stream));
+  }
+  RawResult result;
+  std::memcpy(static_cast<void*>(&result), words, sizeof(words));
+  return result;
+}
+
+}  // namespace vpm::cuda

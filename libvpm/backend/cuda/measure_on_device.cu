@@ -1,0 +1,151 @@
+#include <algorithm>
+
+#include "libvpm/backend/cuda/measure_on_device.h"
+
+namespace vpm::cuda {
+
+void MeasureOnDevice::run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+                          std::span<const Job> jobs, std::span<Result> results) {
+  if (scene.frame() != nullptr) {
+    if (const CloudSlot* const slot = bring(*scene.frame())) {
+      ask(measures, jobs, results);
+      if (slot->is_sound()) return;
+    }
+  }
+  bring(scene.cloud());
+  ask(measures, jobs, results);
+}
+
+// One pose may be answered without a word to the driver: who talks to it makes the device the
+// current one.
+Result MeasureOnDevice::ask(const Pose& pose) {
+  const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
+  const RawResult raw = answer(frame);
+  flood_microseconds_ = 1e-3 * raw.flood_ns;
+  return result_of(raw, tool_, pose.rotation);
+}
+
+RawResult MeasureOnDevice::answer_standing_by(const void* launch, const PoseFrame& frame,
+                                              unsigned sequence) {
+  Order order;
+  order.launch = launch;
+  order.to_surface = frame.to_surface;
+  order.turn = sequence;
+  order.waits_us = standby_us_;
+  return standby_->ask(order, *answer_.host(), sequence);
+}
+
+RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
+  const unsigned sequence = sequence_ + 1;
+  const bool is_there = frame_ == nullptr || frame_->require(stream());
+  if (standby_ && is_there) {  // otherwise the stream comes to it
+    if (const void* const launch = standing_launch(answer_.device())) {
+      end_launched();
+      const RawResult raw = answer_standing_by(launch, frame, sequence);
+      sequence_ = sequence;
+      return raw;
+    }
+  }
+  const CurrentDevice current(device_);
+  const OtherWork other;
+  has_launched_ = true;
+  launch(frame, answer_.device(), sequence);
+  sequence_ = sequence;
+  return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
+}
+
+void MeasureOnDevice::end_launched() {
+  if (!has_launched_) return;
+  check(cudaStreamSynchronize(stream_.get()));
+  has_launched_ = false;
+}
+
+template <class AnswerPart>
+void MeasureOnDevice::in_launches(std::size_t poses, const AnswerPart& answer_part) {
+  const CurrentDevice current(device_);
+  if (!batch_) batch_ = std::make_unique<Batch>();
+  const OtherWork other;
+  if (frame_ != nullptr) frame_->require(stream());
+  for (std::size_t begin = 0; begin < poses; begin += Batch::kPoses)
+    answer_part(begin, std::min(Batch::kPoses, poses - begin));
+}
+
+std::span<const RawResult> MeasureOnDevice::answers_of(std::span<const ToolPart> tools,
+                                                       std::span<const Pose> poses) {
+  check(cudaMemcpyAsync(batch_->poses.get(), poses.data(), poses.size_bytes(),
+                        cudaMemcpyHostToDevice, stream_.get()));
+  launch(tools, batch_->poses.get(), batch_->results.get());
+  check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
+                        poses.size() * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
+  check(cudaStreamSynchronize(stream_.get()));
+  return {batch_->answers.data(), poses.size()};
+}
+
+void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
+                          std::span<Result> results) {
+  if (measures.size() == 1 && jobs.size() == 1) {
+    results.front() = ask(jobs.front().pose);
+    return;
+  }
+  in_launches(jobs.size(), [&](std::size_t begin, std::size_t count) {
+    order_by_tool(measures, jobs.subspan(begin, count));
+    const std::span<const RawResult> answers = answers_of(batch_->tools, batch_->ordered);
+    std::size_t k = 0;
+    for (const ToolPart& part : batch_->tools)
+      for (; k < part.end; ++k)
+        results[begin + batch_->places[k]] =
+            result_of(answers[k], part.measure->tool_, batch_->ordered[k].rotation);
+  });
+}
+
+// A counting sort: tools that have poses, in their order, and of each the poses in theirs.
+void MeasureOnDevice::order_by_tool(std::span<DeviceMeasure* const> measures,
+                                    std::span<const Job> jobs) {
+  std::vector<std::uint32_t> next(measures.size() + 1, 0);
+  for (const Job& job : jobs) ++next[job.tool + 1];
+  batch_->tools.clear();
+  for (std::size_t t = 0; t < measures.size(); ++t) {
+    const bool has_poses = next[t + 1] > 0;
+    next[t + 1] += next[t];
+    if (has_poses)
+      batch_->tools.push_back({&dynamic_cast<MeasureOnDevice&>(*measures[t]), next[t + 1]});
+  }
+  batch_->ordered.resize(jobs.size());
+  batch_->places.resize(jobs.size());
+  for (std::uint32_t k = 0; k < jobs.size(); ++k) {
+    const std::uint32_t place = next[jobs[k].tool]++;
+    batch_->ordered[place] = jobs[k].pose;
+    batch_->places[place] = k;
+  }
+}
+
+void MeasureOnDevice::read_states(std::vector<SphereState>& states) {
+  const CurrentDevice current(device_);
+  check(cudaStreamSynchronize(stream_.get()));
+  std::vector<std::uint32_t> words(states.size());
+  check(cudaMemcpy(words.data(), state_words(sequence_), words.size() * sizeof(std::uint32_t),
+                   cudaMemcpyDeviceToHost));
+  std::transform(words.begin(), words.end(), states.begin(),
+                 [&](std::uint32_t word) { return state_of(word); });
+}
+
+void MeasureOnDevice::bring(const PreparedCloud& cloud) {
+  if (!copy_ || cloud.serial() != serial_) {
+    const CurrentDevice current(device_);
+    copy_ = on_device(cloud);
+    serial_ = cloud.serial();
+  }
+  frame_ = nullptr;
+  cloud_ = copy_.get();
+}
+
+const CloudSlot* MeasureOnDevice::bring(const DepthFrame& frame) {
+  const auto* const slot = dynamic_cast<const CloudSlot*>(&frame.slot());
+  if (slot == nullptr || slot->options().device.first() != device_ || !slot->is_on_device())
+    return nullptr;
+  frame_ = slot;
+  cloud_ = &slot->device_cloud();
+  return slot;
+}
+
+}  // namespace vpm::cuda

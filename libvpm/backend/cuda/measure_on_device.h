@@ -1,0 +1,102 @@
+// What all measures on a device do alike: bring clouds and poses there, wait for the answers.
+#pragma once
+
+#include <memory>
+
+#include "libvpm/backend/cuda/launch.h"
+#include "libvpm/backend/cuda/persistent/standby.h"
+#include "libvpm/backend/device_measure.h"
+#include "libvpm/scene/cuda/cloud_slot.h"
+
+namespace vpm::cuda {
+
+class MeasureOnDevice : public DeviceMeasure {
+ public:
+  // The device must be the current one.
+  MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
+
+  void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+           std::span<const Job> jobs, std::span<Result> results) final;
+  void read_states(std::vector<SphereState>& states) final;
+  double flood_microseconds() const final { return flood_microseconds_; }
+
+ protected:
+  // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
+  virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
+  // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
+  // is launched.
+  virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
+  // Of many poses, those of one tool; they follow those of the tool before.
+  struct ToolPart {
+    MeasureOnDevice* measure = nullptr;  // of the same class
+    unsigned end = 0;
+  };
+  // Many, of poses and to results on the device, in this measure's stream and cloud.
+  virtual void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) = 0;
+  // No point further from the centre of mass matters.
+  virtual double reach() const = 0;
+  // A word for each sphere, of query number `sequence`, and what it says.
+  virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
+  virtual SphereState state_of(std::uint32_t word) const = 0;
+
+  // `waits_us` for each next pose.
+  void stand_by(std::shared_ptr<Standby> standby, std::uint32_t waits_us) {
+    standby_ = std::move(standby);
+    standby_us_ = waits_us;
+  }
+
+  int device() const { return device_; }
+  const ToolModel& tool() const { return tool_; }
+  const DeviceCloud& cloud() const { return *cloud_; }
+  cudaStream_t stream() const { return stream_.get(); }
+
+ private:
+  // The poses of one launch.
+  struct Batch {
+    static constexpr std::size_t kPoses = 16384;
+
+    Batch() : poses(kPoses), results(kPoses), answers(kPoses) {}
+    DeviceArray<Pose> poses;
+    DeviceArray<RawResult> results;
+    std::vector<RawResult> answers;
+    // Of several tools: the poses ordered by them, and from where each comes.
+    std::vector<ToolPart> tools;
+    std::vector<Pose> ordered;
+    std::vector<std::uint32_t> places;
+  };
+
+  void bring(const PreparedCloud& cloud);
+  // Null where the frame's cloud is not made on this device.
+  const CloudSlot* bring(const DepthFrame& frame);
+  Result ask(const Pose& pose);
+  RawResult answer(const PoseFrame& frame);
+  RawResult answer_standing_by(const void* launch, const PoseFrame& frame, unsigned sequence);
+  // The kernel of the last launched query clears what it has noted after its answer.
+  void end_launched();
+  void ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
+           std::span<Result> results);
+  // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
+  template <class AnswerPart>
+  void in_launches(std::size_t poses, const AnswerPart& answer_part);
+  // The answers to poses of one launch.
+  std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
+                                        std::span<const Pose> poses);
+  void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs);
+
+  int device_;
+  const ToolModel& tool_;
+  Stream stream_;
+  MappedArray<Answer> answer_{1};
+  unsigned sequence_ = 0;
+  double flood_microseconds_ = 0;
+  std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
+  std::uint64_t serial_ = 0;
+  const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
+  bool has_launched_ = false;         // a query that may not have ended
+  std::shared_ptr<Standby> standby_;
+  std::uint32_t standby_us_ = 0;
+  const DeviceCloud* cloud_ = nullptr;  // of the queries under way
+  std::unique_ptr<Batch> batch_;
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,330 @@
+// The steps of the measure as printed, numbered as in libvpm/measure/README.md, by many threads: the
+// bits of PaperMeasure, whatever their order.
+#pragma once
+
+#include "libvpm/backend/cuda/points.h"
+#include "libvpm/backend/cuda/shares.h"
+#include "libvpm/measure/paper_contact.h"
+
+namespace vpm::cuda {
+
+// One level of a tool, as this measure sees it.
+struct PaperLevel {
+  // What a few threads go through together; large spheres have thousands of neighbours.
+  static constexpr std::uint32_t kMostNeighbors = 64;
+
+  std::uint32_t count = 0;
+  const Sphere* spheres = nullptr;
+  const std::uint32_t* graph_begin = nullptr;
+  const std::uint32_t* neighbors = nullptr;
+  const std::uint32_t* hubs = nullptr;  // spheres of more than kMostNeighbors
+  std::uint32_t hub_count = 0;
+  GridView grid;
+  ToolMeasures tool;
+  double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
+};
+
+// Memory of one query. Words and contacts are 0 at the start; the lists say which are not.
+struct PaperSpace {
+  // In `words`: 0 outside, the front that reached an inside sphere (1 is the entry), or this.
+  static constexpr std::uint32_t kBoundary = 0xffffffffU;
+
+  std::uint32_t* words = nullptr;
+  PaperContact* contacts = nullptr;
+  Vec3* normals = nullptr;            // of boundary and inside spheres
+  std::uint32_t* boundary = nullptr;  // a list, in any order
+  std::uint32_t* inside = nullptr;    // front after front, each in any order
+};
+
+// Counters of a query; 0 at the start.
+struct PaperCounters {
+  unsigned points = 0, boundary = 0;
+  unsigned fronts[3] = {};  // sizes of a front, the next one, and the one after, by turns
+  unsigned inside = 0;      // written by the flood when it is done
+};
+
+// By a part of the threads: makes `space` as it was before the query that `counters` are of.
+__device__ inline void clear(const PaperSpace& space, const PaperCounters& counters,
+                             std::uint32_t first, std::uint32_t step) {
+  for (std::uint32_t k = first; k < counters.boundary; k += step) {
+    const std::uint32_t i = space.boundary[k];
+    space.words[i] = 0;
+    space.contacts[i] = PaperContact{};
+  }
+  for (std::uint32_t k = first; k < counters.inside; k += step) space.words[space.inside[k]] = 0;
+}
+
+// Steps 1 and 2 for a part of the points, by all threads of a block.
+__device__ inline void gather(const PaperLevel& level, const PointsView& points,
+                              const PoseFrame& frame, Part part, const PaperSpace& space,
+                              PaperCounters& counters) {
+  for_points(
+      points, frame, level.spheres_reach, part, [&](std::uint32_t index, Vec3 point, bool active) {
+        bool inside = false;
+        if (active) {
+          const Vec3 x = frame.to_tool * point;
+          for_spheres_at(level.grid, level.spheres, x, [&](std::uint32_t i) {
+            inside = true;
+            const Vec3 n = frame.to_tool.rotation * widen(points.normals[index]);
+            PaperContact::of_point(level.spheres[i], x, n).add_to(space.contacts[i], add_term);
+            if (atomicExch(&space.words[i], PaperSpace::kBoundary) == 0)
+              space.boundary[atomicAdd(&counters.boundary, 1U)] = i;
+          });
+        }
+        const unsigned found = __ballot_sync(~0U, inside);
+        if (found != 0 && threadIdx.x % 32 == 0) atomicAdd(&counters.points, __popc(found));
+      });
+}
+
+// Memory that the threads of a block share while they pass a hub.
+struct HubShared {
+  static constexpr unsigned kAtOnce = 32 * 32;  // neighbours: each lane of a warp counts 32
+  static constexpr unsigned kOfThread = kAtOnce / kPaperThreads;
+
+  std::uint32_t hubs[kPaperThreads];
+  unsigned hub_count;
+  unsigned counts[kAtOnce / 32];
+  double terms[3][kAtOnce];
+  double sums[3];
+};
+
+// Steps 3 to 6, after all points are gathered and the team has met.
+template <class Team>
+class PaperFlood {
+ public:
+  __device__ PaperFlood(const PaperLevel& level, const PaperSpace& space, PaperCounters& counters,
+                        Team& team, HubShared& shared)
+      : level_(level), space_(space), counters_(counters), team_(team), shared_(shared) {}
+
+  // This thread's part of the result. All threads of the team.
+  __device__ RawResult run() {
+    enter();
+    // A front reads the words and normals of the one before and claims the next: the team meets
+    // between.
+    for (front_ = 1;; ++front_) {
+      team_.sync();
+      const unsigned size = read(counters_.fronts[front_ % 3]);
+      if (size == 0) break;
+      pass_front(size);
+      begin_ += size;
+    }
+    if (team_.thread() == 0) counters_.inside = begin_;
+    add_up();
+    return result_;
+  }
+
+ private:
+  static constexpr unsigned kWidth = 8;  // threads that go through a sphere's neighbours together
+
+  __device__ std::uint32_t degree(std::uint32_t i) const {
+    return level_.graph_begin[i + 1] - level_.graph_begin[i];
+  }
+  // Of the threads of a tile, those for which `value` holds: the first thread is bit 0.
+  __device__ static unsigned ballot(const Tile& tile, bool value) {
+    return (__ballot_sync(tile.mask, value) & tile.mask) >> (threadIdx.x % 32 - tile.lane);
+  }
+  __device__ static unsigned before(const Tile& tile, unsigned ballot) {
+    return __popc(ballot & ((1U << tile.lane) - 1));
+  }
+
+  __device__ void enter();
+  __device__ void pass_front(unsigned size);
+  __device__ Vec3 pass(const Tile& tile, std::uint32_t j);
+  __device__ void claim(const Tile& tile, bool wants, std::uint32_t i);
+  __device__ bool gives_normal(std::uint32_t word, std::uint32_t i, std::uint32_t j) const;
+  template <class Pass>
+  __device__ void for_hubs(std::uint32_t word, const Pass& pass);
+  __device__ void enter_from_hub(std::uint32_t i);
+  __device__ void pass_hub(std::uint32_t j);
+  __device__ void add_up();
+
+  const PaperLevel& level_;
+  const PaperSpace& space_;
+  PaperCounters& counters_;
+  Team& team_;
+  HubShared& shared_;
+  // Of the front: its number, and in the list where its spheres begin and the next front's.
+  std::uint32_t front_ = 0, begin_ = 0, next_ = 0;
+  RawResult result_;
+};
+
+// By a tile: those of its spheres that nobody has claimed yet are in the next front.
+template <class Team>
+__device__ void PaperFlood<Team>::claim(const Tile& tile, bool wants, std::uint32_t i) {
+  const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
+  const unsigned all = ballot(tile, claimed);
+  if (all == 0) return;
+  unsigned slot = 0;
+  if (tile.leads()) slot = atomicAdd(&counters_.fronts[(front_ + 1) % 3], __popc(all));
+  slot = tile.from(slot, 0) + before(tile, all);
+  if (claimed) space_.inside[next_ + slot] = i;
+}
+
+// Steps 3 and 4: a tile for each boundary sphere, a block for each that is a hub.
+template <class Team>
+__device__ void PaperFlood<Team>::enter() {
+  const Tile tile(kWidth);
+  const unsigned count = read(counters_.boundary);
+  for (unsigned k = team_.thread() / kWidth; k < count; k += team_.threads() / kWidth) {
+    const std::uint32_t i = space_.boundary[k];
+    const Vec3 normal = space_.contacts[i].mean_normal();
+    if (tile.leads()) {
+      space_.normals[i] = normal;
+      add_boundary(level_.tool, level_.spheres[i], space_.contacts[i], normal, result_.sum);
+      ++result_.boundary;
+    }
+    const std::uint32_t end = level_.graph_begin[i + 1];
+    if (degree(i) > PaperLevel::kMostNeighbors) continue;
+    for (std::uint32_t n = level_.graph_begin[i] + tile.lane; n - tile.lane < end; n += kWidth) {
+      const std::uint32_t j = n < end ? level_.neighbors[n] : i;
+      claim(tile,
+            read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]), j);
+    }
+  }
+  for_hubs(PaperSpace::kBoundary, [&](std::uint32_t i) { enter_from_hub(i); });
+}
+
+// Step 5 for one front: a tile for each of its spheres, a block for each that is a hub.
+template <class Team>
+__device__ void PaperFlood<Team>::pass_front(unsigned size) {
+  if (team_.thread() == 0) counters_.fronts[(front_ + 2) % 3] = 0;
+  next_ = begin_ + size;
+  const Tile tile(kWidth);
+  for (unsigned k = team_.thread() / kWidth; k < size; k += team_.threads() / kWidth) {
+    const std::uint32_t j = space_.inside[begin_ + k];
+    if (degree(j) > PaperLevel::kMostNeighbors) continue;
+    const Vec3 normal = pass(tile, j);
+    if (tile.leads()) space_.normals[j] = normal;
+  }
+  for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
+}
+
+// Claims what the sphere leads to and returns its normal: normals are added in the order of the
+// neighbours.
+template <class Team>
+__device__ Vec3 PaperFlood<Team>::pass(const Tile& tile, std::uint32_t j) {
+  const std::uint32_t end = level_.graph_begin[j + 1];
+  Vec3 normal;
+  for (std::uint32_t n = level_.graph_begin[j] + tile.lane; n - tile.lane < end; n += kWidth) {
+    const std::uint32_t i = n < end ? level_.neighbors[n] : j;  // itself: neither 0 nor before
+    const std::uint32_t word = read(space_.words[i]);
+    const bool gives = gives_normal(word, i, j);
+    const Vec3 theirs = gives ? space_.normals[i] : Vec3{};
+    claim(tile, word == 0, i);
+    for (unsigned rest = ballot(tile, gives); rest != 0; rest &= rest - 1) {
+      const unsigned from = __ffs(static_cast<int>(rest)) - 1;
+      normal +=
+          Vec3{tile.from(theirs.x, from), tile.from(theirs.y, from), tile.from(theirs.z, from)};
+    }
+  }
+  return normalized_or_zero(normal);
+}
+
+// An entered sphere takes the normals of the boundary spheres that let it in, a later one those of
+// the front before.
+template <class Team>
+__device__ bool PaperFlood<Team>::gives_normal(std::uint32_t word, std::uint32_t i,
+                                               std::uint32_t j) const {
+  if (front_ > 1) return word == front_ - 1;
+  return word == PaperSpace::kBoundary &&
+         lets_in(level_.spheres[i], space_.normals[i], level_.spheres[j]);
+}
+
+// Calls pass(hub) for the hubs that have this word, each by all threads of one block.
+template <class Team>
+template <class Pass>
+__device__ void PaperFlood<Team>::for_hubs(std::uint32_t word, const Pass& pass) {
+  const Part part = team_.block();
+  for (std::uint32_t first = part.part; first < level_.hub_count;
+       first += part.parts * blockDim.x) {
+    const std::uint32_t h = first + threadIdx.x * part.parts;
+    const std::uint32_t hub = h < level_.hub_count ? level_.hubs[h] : 0;
+    const bool found = h < level_.hub_count && read(space_.words[hub]) == word;
+    if (__syncthreads_or(found) == 0) continue;
+    if (threadIdx.x == 0) shared_.hub_count = 0;
+    __syncthreads();
+    if (found) shared_.hubs[atomicAdd(&shared_.hub_count, 1U)] = hub;
+    __syncthreads();
+    for (unsigned k = 0; k < shared_.hub_count; ++k) pass(shared_.hubs[k]);
+    __syncthreads();
+  }
+}
+
+template <class Team>
+__device__ void PaperFlood<Team>::enter_from_hub(std::uint32_t i) {
+  const Tile warp(32);
+  const Vec3 normal = space_.contacts[i].mean_normal();
+  const std::uint32_t end = level_.graph_begin[i + 1];
+  for (std::uint32_t n = level_.graph_begin[i] + threadIdx.x; n - warp.lane < end;
+       n += blockDim.x) {
+    const std::uint32_t j = n < end ? level_.neighbors[n] : i;
+    claim(warp, read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]),
+          j);
+  }
+}
+
+// As pass(): many neighbours at once, of which those that give their normals are put side by side
+// in their order, and added by a thread for each axis.
+template <class Team>
+__device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
+  const Tile warp(32);
+  const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // of 32 neighbours
+  const std::uint32_t end = level_.graph_begin[j + 1];
+  double sum = 0;
+  for (std::uint32_t first = level_.graph_begin[j]; first < end; first += HubShared::kAtOnce) {
+    Vec3 theirs[HubShared::kOfThread];
+    unsigned givers[HubShared::kOfThread];
+    std::uint32_t spheres[HubShared::kOfThread], words[HubShared::kOfThread];
+#pragma unroll
+    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+      const std::uint32_t n = first + 32 * (group + k) + warp.lane;
+      spheres[k] = n < end ? level_.neighbors[n] : j;
+      words[k] = read(space_.words[spheres[k]]);
+    }
+#pragma unroll
+    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+      const bool gives = gives_normal(words[k], spheres[k], j);
+      if (gives) theirs[k] = space_.normals[spheres[k]];
+      givers[k] = ballot(warp, gives);
+      if (warp.leads()) shared_.counts[group + k] = __popc(givers[k]);
+      claim(warp, words[k] == 0, spheres[k]);
+    }
+    __syncthreads();
+    unsigned upto = shared_.counts[warp.lane];
+    for (unsigned step = 1; step < 32; step *= 2) {
+      const unsigned lower = __shfl_up_sync(~0U, upto, step);
+      if (warp.lane >= step) upto += lower;
+    }
+#pragma unroll
+    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+      const unsigned slot =
+          warp.from(upto, group + k) - __popc(givers[k]) + before(warp, givers[k]);
+      if ((givers[k] >> warp.lane & 1) == 0) continue;
+      shared_.terms[0][slot] = theirs[k].x;
+      shared_.terms[1][slot] = theirs[k].y;
+      shared_.terms[2][slot] = theirs[k].z;
+    }
+    const unsigned count = warp.from(upto, 31);
+    __syncthreads();
+    if (threadIdx.x < 3) {
+#pragma unroll 8
+      for (unsigned t = 0; t < count; ++t) sum += shared_.terms[threadIdx.x][t];
+    }
+  }
+  if (threadIdx.x < 3) shared_.sums[threadIdx.x] = sum;
+  __syncthreads();
+  if (threadIdx.x == 0)
+    space_.normals[j] = normalized_or_zero({shared_.sums[0], shared_.sums[1], shared_.sums[2]});
+}
+
+// Step 6: boundary spheres have added their part when they were entered from.
+template <class Team>
+__device__ void PaperFlood<Team>::add_up() {
+  for (unsigned k = team_.thread(); k < begin_; k += team_.threads()) {
+    const std::uint32_t j = space_.inside[k];
+    add_inside(level_.tool, level_.spheres[j], space_.normals[j], result_.sum);
+    ++result_.inside;
+  }
+}
+
+}  // namespace vpm::cuda

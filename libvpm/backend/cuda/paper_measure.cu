@@ -1,0 +1,201 @@
+#include <algorithm>
+
+#include "libvpm/backend/cuda/device_level.h"
+#include "libvpm/backend/cuda/measure_on_device.h"
+#include "libvpm/backend/cuda/paper_flood.h"
+#include "libvpm/backend/cuda/paper_measure.h"
+
+namespace vpm::cuda {
+namespace {
+
+struct PaperLaunch {
+  PaperLevel level;
+  PointsView points;
+  PaperSpace space;  // of the first team; that of team t begins t * count spheres later
+};
+
+__device__ PaperSpace space_of(const PaperSpace& first, std::size_t spheres) {
+  return {first.words + spheres, first.contacts + spheres, first.normals + spheres,
+          first.boundary + spheres, first.inside + spheres};
+}
+
+// One query by all blocks of a cooperative launch. Two spaces take turns: while points are
+// gathered in one, the other is cleared of the query before, whose states could be asked for until
+// now.
+__global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
+    one_pose(const __grid_constant__ PaperLaunch launch, const __grid_constant__ PoseFrame frame,
+             Totals* totals, PaperCounters* counters, Answer* answer, unsigned sequence) {
+  __shared__ HubShared shared;
+  __shared__ RawResult total;
+  const PaperLevel& level = launch.level;
+  const unsigned turn = sequence % 2;
+  const PaperSpace space = space_of(launch.space, std::size_t{turn} * level.count);
+  GridTeam team(&totals->arrived);
+  clear(space_of(launch.space, std::size_t{1 - turn} * level.count), counters[1 - turn],
+        team.thread(), team.threads());
+  gather(level, launch.points, frame, {blockIdx.x, gridDim.x}, space, counters[turn]);
+  team.sync();
+  const std::uint64_t met = now();
+  const RawResult part = PaperFlood<GridTeam>(level, space, counters[turn], team, shared).run();
+  add_block(part, totals->result);
+  if (!is_last_of(totals->done, gridDim.x)) return;
+  if (threadIdx.x == 0) {
+    total = totals->result;
+    total.points = read(counters[turn].points);
+    *totals = Totals{};
+    counters[1 - turn] = PaperCounters{};
+  }
+  __syncthreads();
+  send(word_of(total), now() - met, answer, sequence);
+}
+
+// Each block a query of its own, one after another.
+__global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
+    many_poses(const __grid_constant__ PaperLaunch launch, const __grid_constant__ CloudFrame cloud,
+               const Pose* poses, unsigned count, RawResult* results) {
+  __shared__ HubShared shared;
+  __shared__ PoseFrame frame;
+  __shared__ PaperCounters counters;
+  __shared__ RawResult total;
+  const PaperLevel& level = launch.level;
+  const PaperSpace space = space_of(launch.space, std::size_t{blockIdx.x} * level.count);
+  BlockTeam team;
+  for (unsigned p = blockIdx.x; p < count; p += gridDim.x) {
+    if (threadIdx.x == 0) {
+      frame = frame_of(poses[p], cloud, level.tool.center_of_mass, level.tool.reach);
+      counters = PaperCounters{};
+      total = RawResult{};
+    }
+    __syncthreads();
+    gather(level, launch.points, frame, {}, space, counters);
+    team.sync();
+    const RawResult part = PaperFlood<BlockTeam>(level, space, counters, team, shared).run();
+    add_block(part, total);
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      results[p] = total;
+      results[p].points = counters.points;
+    }
+    clear(space, counters, threadIdx.x, blockDim.x);
+    __syncthreads();
+  }
+}
+
+// Memory of a number of teams.
+class PaperMemory {
+ public:
+  PaperMemory(std::size_t spheres, std::size_t teams)
+      : words_(spheres * teams),
+        boundary_(spheres * teams),
+        inside_(spheres * teams),
+        contacts_(spheres * teams),
+        normals_(spheres * teams) {
+    words_.clear();
+    contacts_.clear();
+  }
+
+  PaperSpace space() const {
+    return {words_.get(), contacts_.get(), normals_.get(), boundary_.get(), inside_.get()};
+  }
+  static constexpr std::size_t kBytesOfSphere =
+      3 * sizeof(std::uint32_t) + sizeof(PaperContact) + sizeof(Vec3);
+
+ private:
+  DeviceArray<std::uint32_t> words_, boundary_, inside_;
+  DeviceArray<PaperContact> contacts_;
+  DeviceArray<Vec3> normals_;
+};
+
+std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
+  std::vector<std::uint32_t> hubs;
+  for (std::uint32_t i = 0; i + 1 < graph.begin.size(); ++i)
+    if (graph.begin[i + 1] - graph.begin[i] > PaperLevel::kMostNeighbors) hubs.push_back(i);
+  return hubs;
+}
+
+class PaperOnDevice : public MeasureOnDevice {
+ public:
+  PaperOnDevice(const ToolModel& tool, const Level& level, int device)
+      : MeasureOnDevice(tool, device),
+        blocks_(blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
+        spheres_(tool.spheres.data(), level.sphere_count),
+        graph_begin_(level.graph.begin),
+        neighbors_(level.graph.neighbors),
+        hubs_(hubs_of(level.graph)),
+        grid_begin_(level.grid.begin),
+        grid_spheres_(level.grid.spheres),
+        level_{level.sphere_count,  spheres_.get(),    graph_begin_.get(),
+               neighbors_.get(),    hubs_.get(),       static_cast<std::uint32_t>(hubs_.size()),
+               view_of(level.grid), measures_of(tool), reach_of_spheres(tool, level)},
+        memory_(level.sphere_count, 2),
+        totals_(1),
+        counters_(2) {
+    level_.grid.begin = grid_begin_.get();
+    level_.grid.spheres = grid_spheres_.get();
+    totals_.clear();
+    counters_.clear();
+  }
+
+ private:
+  // Teams that share the work of a batch.
+  struct Teams {
+    Teams(unsigned teams, std::size_t spheres) : count(teams), memory(spheres, count) {}
+    unsigned count;
+    PaperMemory memory;
+  };
+
+  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
+    const PaperLaunch arguments{level_, cloud().points(), memory_.space()};
+    launch_kernel(one_pose, {blocks_, kPaperThreads}, LaunchKind::cooperative, stream(), arguments,
+                  frame, totals_.get(), counters_.get(), answer, sequence);
+  }
+  // A launch for each tool.
+  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
+    unsigned begin = 0;
+    for (const ToolPart& part : tools) {
+      const unsigned count = part.end - begin;
+      auto& of_tool = static_cast<PaperOnDevice&>(*part.measure);
+      if (!of_tool.teams_) {
+        const std::size_t spheres = of_tool.level_.count;
+        of_tool.teams_ = make_teams<Teams>(
+            teams_that_fit(spheres * PaperMemory::kBytesOfSphere, kPaperBlocksPerProcessor),
+            spheres);
+      }
+      const Teams& teams = *of_tool.teams_;
+      const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.memory.space()};
+      launch_kernel(many_poses, {std::min(teams.count, count), kPaperThreads},
+                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
+                    count, results + begin);
+      begin = part.end;
+    }
+  }
+  // As on the CPU: of an image, the same pixels are looked at.
+  double reach() const override { return level_.tool.reach; }
+  const std::uint32_t* state_words(unsigned sequence) const override {
+    return memory_.space().words + sequence % 2 * level_.count;
+  }
+  SphereState state_of(std::uint32_t word) const override {
+    return word == 0                       ? SphereState::outside
+           : word == PaperSpace::kBoundary ? SphereState::boundary
+                                           : SphereState::inside;
+  }
+
+  unsigned blocks_;  // that answer one pose
+  DeviceArray<Sphere> spheres_;
+  DeviceArray<std::uint32_t> graph_begin_, neighbors_, hubs_, grid_begin_, grid_spheres_;
+  PaperLevel level_;
+  PaperMemory memory_;
+  DeviceArray<Totals> totals_;
+  DeviceArray<PaperCounters> counters_;
+  std::unique_ptr<Teams> teams_;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
+                                                  int device) {
+  const CurrentDevice current(device);
+  return std::make_unique<PaperOnDevice>(tool, level, device);
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,54 @@
+// What the threads that measure shares know of the pose that they work at, and what each kind of
+// cloud has them do with a piece that is inside.
+#pragma once
+
+#include "libvpm/backend/cuda/shares.h"
+
+namespace vpm::cuda {
+
+template <class Surface>
+struct PoseWork {
+  const LevelView& level;
+  const Surface& surface;
+  const Pose& to_surface;
+  const RefinedSpace& space;
+  const ShareNotes& notes;  // of the pose, in that space
+  RefinedCounters& counters;
+  Part part;
+
+  __device__ PoseWork(const LevelView& of_level, const Surface& of_surface, const Pose& pose,
+                      const RefinedSpace& of_space, unsigned turn, RefinedCounters& of_counters,
+                      Part of_part)
+      : level(of_level),
+        surface(of_surface),
+        to_surface(pose),
+        space(of_space),
+        notes(of_space.notes[turn % 2]),
+        counters(of_counters),
+        part(of_part) {}
+
+  __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
+    return {surface, to_surface, level.tool_reach, view};
+  }
+
+  // Adds a piece of a share that is inside, or cut. `normal`: the way out of one that is not cut.
+  // Far ones are listed.
+  __device__ void add_inside(const CellMeasure<Surface>& measure, const SharePiece& piece,
+                             const typename CellMeasure<Surface>::PieceLook& look, Vec3 normal,
+                             std::uint32_t share, ToolSum& total) const {
+    ToolSum sum;
+    measure.add(piece, look, normal, surface, sum);
+    if (!look.is_far) {
+      total.add(sum);
+      return;
+    }
+    // Member by member: the whole would be stored byte by byte.
+    FarPiece& far = space.far[atomicAdd(&counters.far, 1U)];
+    far.at = look.x;
+    far.foot = look.reading.foot;
+    far.sum = sum;
+    far.share = share;
+  }
+};
+
+}  // namespace vpm::cuda

@@ -1,0 +1,254 @@
+// The kernels of the refined measure: one pose by all blocks, and many poses by a block each. For
+// refined_measure.cu.
+#pragma once
+
+#include <type_traits>
+
+#include "libvpm/backend/cuda/answer.h"
+#include "libvpm/backend/cuda/flood.h"
+#include "libvpm/backend/cuda/image_measure.h"
+#include "libvpm/backend/cuda/points.h"
+#include "libvpm/backend/cuda/seen_shares.h"
+#include "libvpm/backend/cuda/share_measure.h"
+
+namespace vpm::cuda {
+namespace {
+
+// Blocks of one multiprocessor. Two spill no registers where an image is read, and are sooner done
+// with a pose of up to some 50 000 spheres; three are, with more spheres, or among points.
+constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
+constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
+
+template <class Surface>
+struct RefinedLaunch {
+  LevelView level;
+  Surface surface;
+  PointsView points;
+  RefinedSpace space;
+  bool counts_points = false;
+  // The blocks that deal with spheres, the others do with points; and what these add up.
+  unsigned sphere_blocks = 0;
+  Totals* totals = nullptr;
+  RefinedCounters* counters = nullptr;
+  Answer* answer = nullptr;
+};
+
+// Many poses of several tools.
+template <class Surface>
+struct BatchLaunch {
+  static constexpr unsigned kTools = 16;
+
+  LevelView levels[kTools];
+  unsigned ends[kTools];  // of the poses of each, which follow those of the tool before
+  Surface surface;
+  PointsView points;
+  RefinedSpace space;  // of the first team
+  TeamRoom room;       // of each: that of team t begins t * room.shares shares later
+  bool counts_points = false;
+};
+
+// The memory of one of several teams, each of one block.
+__device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room,
+                                 std::size_t team) {
+  const std::size_t shares = team * room.shares;
+  RefinedSpace space;
+  for (int turn = 0; turn < 2; ++turn) {
+    const ShareNotes& from = first.notes[turn];
+    space.notes[turn] = {from.words + shares, from.points + shares, from.sums + shares,
+                         from.planes + shares};
+  }
+  space.gaps = first.gaps + shares;
+  space.parents = first.parents + shares + team;
+  space.cut = first.cut + shares;
+  space.far = first.far + team * room.pieces;
+  space.flats = first.flats + team * 2 * TaskLists::kTasks;
+  space.patches = first.patches + team * kBatchThreads;
+  return space;
+}
+
+// What decides which shares behind a surface are inside.
+template <class Surface, class Team>
+using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Team>, Flood<Team>>;
+
+// Memory of a block; the steps of a query follow each other.
+template <class Surface>
+union BlockShared {
+  MeasureShared measure;
+  ImageMeasure::Shared image;
+  typename Inside<Surface, BlockTeam>::Shared inside;
+};
+
+// Where a kernel has its arguments. In shared memory they are read soon only by what is inlined
+// into it, which knows that they are there; of a launch, by functions as well.
+enum class Arguments { launched, shared };
+
+// The first step of one query by all blocks of a launch. Returns what this thread has added up.
+template <Arguments kArguments, class Surface>
+__device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                                    unsigned turn, BlockShared<Surface>& shared) {
+  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  if (blockIdx.x >= launch.sphere_blocks) {
+    if (launch.counts_points)
+      count_points(launch.level, launch.points, frame,
+                   {blockIdx.x - launch.sphere_blocks, gridDim.x - launch.sphere_blocks},
+                   launch.space.notes[turn % 2].points);
+    return {};
+  }
+  const PoseWork<Surface> work(launch.level, launch.surface, frame.to_surface, launch.space, turn,
+                               *launch.counters, of_spheres);
+  if constexpr (Surface::kTellsInside) {
+    if (ImageMeasure::is_for(launch.level, of_spheres))
+      return ImageMeasure(work, launch.counts_points, shared.image).run();
+  }
+  ShareMeasure<Surface> measure(work, launch.counts_points, shared.measure);
+  if constexpr (kArguments == Arguments::shared)
+    return measure.run_inlined();
+  else
+    return measure.run();
+}
+
+// The planes of cut shares, where the first step has not noted them: few queries need them.
+__device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
+                                         const PoseFrame& frame, unsigned turn,
+                                         BlockShared<DepthSurface>& shared) {
+  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
+  const PoseWork<DepthSurface> work(launch.level, launch.surface, frame.to_surface, launch.space,
+                                    turn, *launch.counters, of_spheres);
+  ImageMeasure(work, launch.counts_points, shared.image).note_planes();
+}
+
+// What the next query begins with, when nobody waits for this one any more.
+template <class Surface>
+__device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) {
+  launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
+}
+
+// One query; the last block to come floods alone. For levels of few shares.
+__global__ void __launch_bounds__(kThreads, kManyBlocks)
+    one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
+                   const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ BlockShared<DiskSurface> shared;
+  __shared__ RawResult total;
+  measure_shares<Arguments::launched>(launch, frame, sequence, shared);
+  if (!is_last_of(launch.totals->done, gridDim.x)) {
+    clear_next(launch, sequence);
+    return;
+  }
+  const std::uint64_t met = now();
+  if (threadIdx.x == 0) total = RawResult{};
+  BlockTeam team;
+  add_block(Flood<BlockTeam>(launch.level, frame.to_surface, launch.space, sequence,
+                             *launch.counters, team, shared.inside, launch.counts_points)
+                .run(),
+            total);
+  __syncthreads();
+  send(word_of(total), now() - met, launch.answer, sequence);
+  if (threadIdx.x == 0) {
+    launch.totals->done = 0;
+    *launch.counters = RefinedCounters{};
+  }
+  clear_next(launch, sequence);
+}
+
+// One query by all blocks of a cooperative launch. Where the first step has found all (no far
+// pieces, and nobody asks for points), the last block to come sends the answer. Whether this block
+// is the last to be done.
+template <Arguments kArguments, class Surface>
+__device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                            unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
+  using Rest = Inside<Surface, GridTeam>;
+  Totals* const totals = launch.totals;
+  const RawResult found = measure_shares<kArguments>(launch, frame, sequence, shared);
+  if (Surface::kTellsInside) add_block(found, totals->result);
+  const bool is_last = team.arrive();
+  std::uint64_t met = now();
+  unsigned far = 0;
+  const auto has_more = [&] { return Rest::has_more(far, launch.counts_points); };
+  if (is_last) {
+    const std::uint32_t word = word_of(totals->result);  // read while it is seen that this is all
+    far = read(launch.counters->far);
+    if (!has_more()) send(word, now() - met, launch.answer, sequence);
+  }
+  clear_next(launch, sequence);  // while the others come
+  if (!is_last) {
+    team.wait();
+    met = now();
+    far = read_for_block(*launch.counters).far;
+  }
+  if (has_more()) {
+    if constexpr (Surface::kTellsInside)
+      if (far > 0) note_planes(launch, frame, sequence, shared);
+    GridTeam meeting = team;  // one of its own: what functions are given lies in memory
+    Rest rest(launch.level, frame.to_surface, launch.space, sequence, *launch.counters, meeting,
+              shared.inside, launch.counts_points);
+    add_block(rest.run(), totals->result);
+  }
+  if (!is_last_of(totals->done, gridDim.x)) return false;
+  if (has_more()) send(word_of(totals->result), now() - met, launch.answer, sequence);
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    *totals = Totals{};
+    *launch.counters = RefinedCounters{};
+  }
+  return true;
+}
+
+template <class Surface, unsigned kBlocks>
+__global__ void __launch_bounds__(kThreads, kBlocks)
+    one_pose(const __grid_constant__ RefinedLaunch<Surface> launch,
+             const __grid_constant__ PoseFrame frame, unsigned sequence) {
+  __shared__ BlockShared<Surface> shared;
+  GridTeam team(&launch.totals->arrived);
+  answer_pose<Arguments::launched>(launch, frame, sequence, team, shared);
+}
+
+// Each block a query of its own, one after another.
+template <class Surface>
+__global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
+    many_poses(const __grid_constant__ BatchLaunch<Surface> launch,
+               const __grid_constant__ CloudFrame cloud, const Pose* poses, unsigned count,
+               RawResult* results) {
+  __shared__ BlockShared<Surface> shared;
+  __shared__ PoseFrame frame;
+  __shared__ RefinedCounters counters;
+  __shared__ RawResult total;
+  const RefinedSpace space = space_of(launch.space, launch.room, blockIdx.x);
+  const auto clear_notes = [&](const LevelView& level) {
+    for (const ShareNotes& notes : space.notes) notes.clear(level, {});
+  };
+  BlockTeam team;
+  unsigned turn = 0, tool = 0;
+  for (unsigned p = blockIdx.x; p < count; p += gridDim.x, ++turn) {
+    __syncthreads();
+    if (p >= launch.ends[tool]) {
+      clear_notes(launch.levels[tool]);
+      while (p >= launch.ends[tool]) ++tool;
+      __syncthreads();
+    }
+    const LevelView& level = launch.levels[tool];
+    if (threadIdx.x == 0) {
+      frame = frame_of(poses[p], cloud, level.center_of_mass, level.spheres_reach);
+      counters = RefinedCounters{};
+      total = RawResult{};
+    }
+    __syncthreads();
+    if (launch.counts_points)
+      count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
+    const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
+                                 {});
+    const RawResult found = ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
+    if (Surface::kTellsInside) add_block(found, total);
+    space.notes[(turn + 1) % 2].clear(level, {});
+    __syncthreads();
+    Inside<Surface, BlockTeam> inside(level, frame.to_surface, space, turn, counters, team,
+                                      shared.inside, launch.counts_points);
+    if (inside.has_more(counters.far, launch.counts_points)) add_block(inside.run(), total);
+    __syncthreads();
+    if (threadIdx.x == 0) results[p] = total;
+  }
+  clear_notes(launch.levels[tool]);  // the next launch begins with turn 0 again
+}
+
+}  // namespace
+}  // namespace vpm::cuda

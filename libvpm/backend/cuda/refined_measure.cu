@@ -1,0 +1,184 @@
+#include <algorithm>
+
+#include "libvpm/backend/cuda/device_level.h"
+#include "libvpm/backend/cuda/measure_on_device.h"
+#include "libvpm/backend/cuda/persistent/standby_kernel.h"
+#include "libvpm/backend/cuda/refined_kernels.h"
+#include "libvpm/backend/cuda/refined_measure.h"
+#include "libvpm/backend/cuda/refined_memory.h"
+
+namespace vpm::cuda {
+namespace {
+
+class RefinedOnDevice : public MeasureOnDevice {
+ public:
+  RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
+                  int device)
+      : MeasureOnDevice(tool, device),
+        level_(tool, level, options.shadows),
+        counts_points_(options.counts_points),
+        of_images_(kernel_of_images(level_.view())),
+        of_points_(kernel_of_points(level_.view())),
+        standing_by_{stand_by_kernel, blocks_that_fit(stand_by_kernel, kThreads, kFewBlocks),
+                     kThreads},
+        memory_(TeamRoom(level_.view()), 1,
+                std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
+        totals_(1),
+        counters_(1) {
+    totals_.clear();
+    counters_.clear();
+    if (options.standby_us > 0 && !counts_points_)  // orders say nothing of points
+      stand_by(standby(standing_by_), options.standby_us);
+  }
+
+ private:
+  // How one pose is answered.
+  template <class Surface>
+  struct PoseKernel {
+    using Function = void (*)(RefinedLaunch<Surface>, PoseFrame, unsigned);
+    Function function = nullptr;
+    unsigned blocks = 0;
+    bool meets = true;  // its blocks do, so all of them must be there at once
+  };
+  template <class Surface>
+  static PoseKernel<Surface> kernel_of(typename PoseKernel<Surface>::Function function,
+                                       unsigned blocks, bool meets = true) {
+    return {function, blocks_that_fit(function, kThreads, blocks), meets};
+  }
+  static PoseKernel<DepthSurface> kernel_of_images(const LevelView& level) {
+    return level.count <= kSpheresOfFewBlocks
+               ? kernel_of<DepthSurface>(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
+               : kernel_of<DepthSurface>(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
+  }
+  // Points alone are flooded, for which small levels have a kernel of their own.
+  static PoseKernel<DiskSurface> kernel_of_points(const LevelView& level) {
+    return is_small(level)
+               ? kernel_of<DiskSurface>(one_pose_small, kManyBlocks, false)
+               : kernel_of<DiskSurface>(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
+  }
+
+  // Teams that share the work of a batch.
+  struct Teams {
+    Teams(unsigned teams, const TeamRoom& wanted)
+        : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
+    unsigned count;
+    TeamRoom room;
+    RefinedMemory memory;
+  };
+
+  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
+    if (cloud().frame().is_organised)
+      launch_on(cloud().depth_surface(), of_images_, frame, answer, sequence);
+    else
+      launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
+  }
+  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
+    make_room(tools);
+    if (cloud().frame().is_organised)
+      launch_on(cloud().depth_surface(), tools, poses, results);
+    else
+      launch_on(cloud().disk_surface(), tools, poses, results);
+  }
+  double reach() const override { return level_.view().spheres_reach; }
+  const std::uint32_t* state_words(unsigned sequence) const override {
+    return memory_.space().notes[sequence % 2].words;
+  }
+  SphereState state_of(std::uint32_t word) const override {
+    return (word & kCounted) == 0 ? SphereState::outside
+           : (word & kCut) != 0   ? SphereState::boundary
+                                  : SphereState::inside;
+  }
+
+  // Of clouds that a camera has seen. The arguments of the last clouds are kept: frames come by
+  // turns.
+  const void* standing_launch(Answer* answer) override {
+    if (!cloud().frame().is_organised) return nullptr;
+    for (std::size_t k = 0; k < kClouds; ++k)
+      if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
+    const CurrentDevice current(device());
+    if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
+    const std::size_t k = next_cloud_++ % kClouds;
+    const RefinedLaunch<DepthSurface> arguments =
+        arguments_of(cloud().depth_surface(), standing_by_.blocks, answer);
+    clouds_on_device_[k] = 0;
+    check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
+    finish_transfers();
+    clouds_on_device_[k] = cloud().serial();
+    return arguments_.get() + k;
+  }
+
+  template <class Surface>
+  RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
+                                      Answer* answer) const {
+    // Few points lie in reach: they take less than a large level's spheres. One block counts them at
+    // least, however small the device is.
+    unsigned sphere_blocks = blocks;
+    if (counts_points_) sphere_blocks -= std::max(1U, blocks / (is_small(level_.view()) ? 2 : 8));
+    return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
+            sphere_blocks, totals_.get(), counters_.get(),  answer};
+  }
+  template <class Surface>
+  void launch_on(const Surface& surface, const PoseKernel<Surface>& kernel, const PoseFrame& frame,
+                 Answer* answer, unsigned sequence) {
+    launch_kernel(kernel.function, {kernel.blocks, kThreads},
+                  kernel.meets ? LaunchKind::cooperative : LaunchKind::independent, stream(),
+                  arguments_of(surface, kernel.blocks, answer), frame, sequence);
+  }
+
+  static const LevelView& level_of(const ToolPart& part) {
+    return static_cast<const RefinedOnDevice&>(*part.measure).level_.view();
+  }
+  void make_room(std::span<const ToolPart> tools) {
+    TeamRoom wanted = teams_ ? teams_->room : TeamRoom();
+    for (const ToolPart& part : tools) wanted = wanted.with(TeamRoom(level_of(part)));
+    if (teams_ && teams_->room.holds(wanted)) return;
+    teams_.reset();  // before more memory is taken
+    teams_ = make_teams<Teams>(teams_that_fit(RefinedMemory::bytes_of_team(wanted), kBatchBlocks),
+                               wanted);
+  }
+  // As many tools in a launch as it has room for.
+  template <class Surface>
+  void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* poses,
+                 RawResult* results) {
+    BatchLaunch<Surface> arguments{
+        {}, {}, surface, cloud().points(), teams_->memory.space(), teams_->room, counts_points_};
+    for (unsigned begin = 0; !tools.empty();) {
+      const std::size_t count = std::min<std::size_t>(arguments.kTools, tools.size());
+      for (std::size_t t = 0; t < count; ++t) {
+        arguments.levels[t] = level_of(tools[t]);
+        arguments.ends[t] = tools[t].end - begin;
+      }
+      const unsigned end = tools[count - 1].end;
+      launch_kernel(many_poses<Surface>, {std::min(teams_->count, end - begin), kBatchThreads},
+                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
+                    end - begin, results + begin);
+      tools = tools.subspan(count);
+      begin = end;
+    }
+  }
+
+  DeviceLevel level_;
+  bool counts_points_;
+  PoseKernel<DepthSurface> of_images_;
+  PoseKernel<DiskSurface> of_points_;
+  StandbyKernel standing_by_;
+  RefinedMemory memory_;
+  DeviceArray<Totals> totals_;
+  DeviceArray<RefinedCounters> counters_;
+  std::unique_ptr<Teams> teams_;
+  // Clouds whose arguments for standing_launch() are kept.
+  static constexpr std::size_t kClouds = 4;
+  DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
+  std::uint64_t clouds_on_device_[kClouds] = {};
+  std::size_t next_cloud_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
+                                                    const QueryOptions& options, int device) {
+  const CurrentDevice current(device);
+  return std::make_unique<RefinedOnDevice>(tool, level, options, device);
+}
+
+}  // namespace vpm::cuda

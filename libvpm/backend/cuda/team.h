@@ -1,0 +1,184 @@
+// The threads that answer one query: all blocks of a launch together, or one block alone.
+#pragma once
+
+#include <cuda/atomic>
+
+#include "libvpm/backend/cpu/cell.h"
+#include "libvpm/scene/pixel_rectangle.h"
+
+namespace vpm::cuda {
+
+// Threads of a block that deal with one pose together with others, and alone with one after
+// another. Registers are what limits the refined measure: fewer threads are sooner done with one
+// pose, more of them get through more poses.
+inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
+inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
+inline constexpr unsigned kMostThreads = 256;
+
+// What this thread has done or seen is seen by whoever sees what it does next, and the other way
+// round. For all of a block, between two of its barriers.
+__device__ inline void fence() {
+  ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
+}
+
+// Counts a block, by all its threads: whether it is the last of so many. What the others did before
+// is seen then.
+__device__ inline bool is_last_of(unsigned& come, unsigned all) {
+  using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
+  __shared__ bool is_last;
+  __syncthreads();
+  // Not fence(): that takes as long as the addition, and would be needed on both sides of it.
+  if (threadIdx.x == 0) is_last = Count(come).fetch_add(1, ::cuda::memory_order_acq_rel) == all - 1;
+  __syncthreads();
+  return is_last;
+}
+
+// Work dealt out to blocks: row k to part k % parts.
+struct Part {
+  unsigned part = 0, parts = 1;
+};
+
+// A block alone.
+class BlockTeam {
+ public:
+  static constexpr bool kIsBlock = true;
+  __device__ unsigned thread() const { return threadIdx.x; }
+  __device__ unsigned threads() const { return blockDim.x; }
+  __device__ Part block() const { return {}; }
+  __device__ void sync() { __syncthreads(); }
+};
+
+// All blocks of a cooperative launch.
+class GridTeam {
+ public:
+  static constexpr bool kIsBlock = false;
+  __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
+  __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
+  __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
+  __device__ Part block() const { return {blockIdx.x, gridDim.x}; }
+  __device__ void sync() {
+    arrive();
+    wait();
+  }
+  // The two halves of sync(). Whether this block is the last to arrive.
+  __device__ bool arrive() {
+    target_ += gridDim.x;
+    return is_last_of(*arrived_, target_);
+  }
+  // Each look that acquires has the multiprocessor forget what it keeps near, which other blocks
+  // may still need: only the last one does.
+  __device__ void wait() {
+    if (threadIdx.x == 0) {
+      while (count().load(::cuda::memory_order_relaxed) < target_) {
+      }
+      static_cast<void>(count().load(::cuda::memory_order_acquire));
+    }
+    __syncthreads();
+  }
+
+ private:
+  using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
+  __device__ Count count() const { return Count(*arrived_); }
+
+  unsigned* arrived_;  // 0 at the start of a query
+  unsigned target_ = 0;
+};
+
+// Threads of a warp that work together; `width` is a power of two.
+struct Tile {
+  unsigned width, lane, mask;
+
+  __device__ explicit Tile(unsigned tile_width)
+      : width(tile_width), lane(threadIdx.x % tile_width) {
+    const unsigned first = threadIdx.x % 32 - lane;
+    mask = (width == 32 ? ~0U : (1U << width) - 1) << first;
+  }
+  __device__ bool leads() const { return lane == 0; }
+  // By shuffles: votes of a warp's tiles would come one after another.
+  __device__ bool any(bool value) const {
+    unsigned found = value ? 1 : 0;
+#pragma unroll 1
+    for (unsigned other = width / 2; other > 0; other /= 2)
+      found |= __shfl_xor_sync(mask, found, static_cast<int>(other), static_cast<int>(width));
+    return found != 0;
+  }
+  // A bit for each lane.
+  __device__ unsigned which(bool value) const {
+    return __ballot_sync(mask, value) >> (threadIdx.x % 32 - lane);
+  }
+  template <class T>
+  __device__ T from(T value, unsigned source) const {
+    return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
+  }
+  __device__ Vec3 from(Vec3 v, unsigned source) const {
+    return {from(v.x, source), from(v.y, source), from(v.z, source)};
+  }
+  __device__ PixelRectangle from(const PixelRectangle& r, unsigned source) const {
+    return {from(r.u0, source), from(r.v0, source), from(r.u1, source), from(r.v1, source)};
+  }
+  // From the thread so many lanes on.
+  __device__ double from_next(double value, unsigned lanes) const {
+    return __shfl_down_sync(mask, value, lanes, static_cast<int>(width));
+  }
+  __device__ std::int64_t sum(std::int64_t value) const {
+    for (unsigned other = width / 2; other > 0; other /= 2)
+      value += __shfl_xor_sync(mask, value, static_cast<int>(other), static_cast<int>(width));
+    return value;
+  }
+};
+
+// Returns the first of the neighbouring samples that share a direction with this lane's, of which
+// `sharing` has a bit for each lane.
+__device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
+  const unsigned begin = lane / kNeighborSamples * kNeighborSamples;
+  return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
+}
+
+// The terms of a ToolSum or ContactPlane as they lie in memory.
+inline constexpr int kTerms = 7;
+template <class Sum>
+__device__ std::int64_t* terms_of(Sum& sum) {
+  static_assert(sizeof(Sum) == kTerms * sizeof(std::int64_t));
+  return reinterpret_cast<std::int64_t*>(&sum);
+}
+
+// Adds up over a tile, for all its threads.
+template <class Sum>
+__device__ void add_up(const Tile& tile, Sum& sum) {
+  std::int64_t* const terms = terms_of(sum);
+  // Terms at once, so that they wait together.
+#pragma unroll 1
+  for (unsigned other = tile.width / 2; other > 0; other /= 2) {
+#pragma unroll
+    for (int k = 0; k < kTerms; ++k)
+      terms[k] += __shfl_xor_sync(tile.mask, terms[k], static_cast<int>(other),
+                                  static_cast<int>(tile.width));
+  }
+}
+
+// Adds up the rows of a tile's threads, those that they do not have being 0. For its first thread.
+__device__ inline void add_up(const Tile& tile, CrossedSums& row) {
+#pragma unroll 1
+  for (unsigned half = tile.width / 2; half > 0; half /= 2) {
+    row.weight += tile.from_next(row.weight, half);
+    row.moment += Vec3{tile.from_next(row.moment.x, half), tile.from_next(row.moment.y, half),
+                       tile.from_next(row.moment.z, half)};
+  }
+  row.is_cut = tile.any(row.is_cut);
+}
+
+// Many threads may add to a sum at once.
+__device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
+  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
+}
+
+template <class Sum>
+__device__ void add_atomically(Sum part, Sum& sum) {
+  const std::int64_t* const terms = terms_of(part);
+  std::int64_t* const totals = terms_of(sum);
+#pragma unroll
+  for (int k = 0; k < kTerms; ++k)
+    if (terms[k] != 0) add_term(totals[k], terms[k]);
+}
+
+}  // namespace vpm::cuda

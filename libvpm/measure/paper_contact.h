@@ -1,0 +1,87 @@
+// The math of the measure as printed, for host and device: what points say of a sphere, which
+// neighbours a boundary sphere lets in, and what spheres add to the result. Steps as numbered in
+// README.md.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/measure/tool_sum.h"
+#include "libvpm/model/sphere.h"
+
+namespace vpm {
+
+// Volume of the cap of height `height` (0..2) of the unit ball. Kaluschke et al. 2017, section 4.
+VPM_HD constexpr double unit_cap_volume(double height) {
+  return kPi * height * height * (3 - height) / 3;
+}
+
+// Steps 2 and 3: sums over the points in a sphere, in fixed point. Terms are local to the sphere:
+// |terms| <= 4 pi / 3 < 8, so that 2^kPointBits points stay below 2^(3 + 24 + 36) = 2^63.
+struct PaperContact {
+  static constexpr int kPointBits = 24;
+  using Sum = FixedSum<36>;
+
+  std::int64_t points = 0, cap = 0, normal[3] = {}, offset[3] = {};
+
+  // Of one point at x with the unit normal n; tool axes.
+  VPM_HD static PaperContact of_point(const Sphere& s, Vec3 x, Vec3 n) {
+    const Vec3 from_center = (x - s.center) / s.radius;
+    const double depth = 1 + dot(n, from_center);  // r - d, d = n . (c - p), in radii
+    const double height = depth < 0 ? 0 : depth > 2 ? 2 : depth;
+    return {1,
+            Sum::round(unit_cap_volume(height)),
+            {Sum::round(n.x), Sum::round(n.y), Sum::round(n.z)},
+            {Sum::round(from_center.x), Sum::round(from_center.y), Sum::round(from_center.z)}};
+  }
+
+  // Calls add(sum, term) for each sum of `total`: many threads may do so at once.
+  template <class Add>
+  VPM_HD void add_to(PaperContact& total, const Add& add) const {
+    add(total.points, points);
+    add(total.cap, cap);
+    for (int k = 0; k < 3; ++k) add(total.normal[k], normal[k]);
+    for (int k = 0; k < 3; ++k) add(total.offset[k], offset[k]);
+  }
+
+  VPM_HD Vec3 mean_normal() const { return normalized_or_zero(to_vector(normal)); }
+  VPM_HD double mean_cap(const Sphere& s) const {
+    return s.radius * s.radius * s.radius * (static_cast<double>(cap) * per_point());
+  }
+  VPM_HD Vec3 mean_place(const Sphere& s) const {
+    return s.center + s.radius * (per_point() * to_vector(offset));
+  }
+
+ private:
+  VPM_HD double per_point() const { return 1 / (Sum::kOne * static_cast<double>(points)); }
+  VPM_HD static Vec3 to_vector(const std::int64_t (&v)[3]) {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+  }
+};
+
+// Step 4: whether a boundary sphere lets a neighbour in that is not boundary.
+VPM_HD inline bool lets_in(const Sphere& boundary, Vec3 normal, const Sphere& neighbor) {
+  return !(dot(normal, neighbor.center - boundary.center) > -neighbor.radius);
+}
+
+// What sums are relative to.
+struct ToolMeasures {
+  double volume = 0;
+  Vec3 center_of_mass;
+  double reach = 0;
+};
+inline ToolMeasures measures_of(const ToolModel& tool) {
+  return {tool.volume, tool.center_of_mass, tool.reach};
+}
+
+// Step 6. Caps and spheres lie in disjoint spheres inside the solid, so the sums of a ToolSum hold.
+VPM_HD inline void add_boundary(const ToolMeasures& tool, const Sphere& s,
+                                const PaperContact& contact, Vec3 normal, ToolSum& sum) {
+  sum.add(contact.mean_cap(s) / tool.volume, normal,
+          (contact.mean_place(s) - tool.center_of_mass) / tool.reach);
+}
+VPM_HD inline void add_inside(const ToolMeasures& tool, const Sphere& s, Vec3 normal,
+                              ToolSum& sum) {
+  sum.add(volume(s) / tool.volume, normal, (s.center - tool.center_of_mass) / tool.reach);
+}
+
+}  // namespace vpm

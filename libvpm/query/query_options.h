@@ -1,4 +1,0 @@
-#pragma once
-
-#include "libvpm/core/pose.h"
-#include "libvpm/include/vpm/query_types.h"

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "libvpm/include/vpm/query_types.h"

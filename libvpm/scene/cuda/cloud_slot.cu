@@ -1,0 +1,162 @@
+#include <algorithm>
+
+#include "libvpm/core/lengths.h"
+#include "libvpm/scene/cuda/cloud_settle.h"
+#include "libvpm/scene/cuda/cloud_slot.h"
+
+namespace vpm::cuda {
+namespace {
+
+// Bounds within which float positions of usable depths are finite and lie on the rays of their
+// pixels, their disks are finite, and a cloud has no more points than a PreparedCloud takes: with
+// rays `longest` times as long as deep, a position errs by less than 2^-22 of its length.
+bool is_plain(const Camera& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  const double x = std::max(std::abs(k.cx), std::abs(camera.width - 1 - k.cx)) / k.fx;
+  const double y = std::max(std::abs(k.cy), std::abs(camera.height - 1 - k.cy)) / k.fy;
+  const double longest = std::sqrt(x * x + y * y + 1);
+  constexpr double kLongest = 0x1p10, kWidestPixel = 0x1p10, kError = 0x1p-21;
+  return std::size_t{camera.width} * camera.height <= PreparedCloud::kMaxPoints &&
+         std::max(camera.width, camera.height) <= DepthSurface::kMostPixelsASide &&
+         longest <= kLongest && 1 / k.fx <= kWidestPixel && 1 / k.fy <= kWidestPixel &&
+         std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
+}
+
+// As validate() and PreparedCloud ask of a camera.
+bool is_sound_pose(const Pose& pose) {
+  return is_rotation(pose.rotation, kRotationExact) && is_in_range(pose.translation);
+}
+
+constexpr std::size_t whole_groups(std::size_t pixels) {
+  return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
+}
+
+}  // namespace
+
+CloudSlot::CloudSlot(const DepthFrameOptions& options)
+    : FrameSlot(options),
+      image_(whole_groups(pixels()) * (image_bytes() / pixels())),
+      depth_(whole_groups(pixels())),
+      inverse_(whole_groups(pixels())),
+      seen_(pixels()),
+      cloud_(Camera{options.intrinsics, options.width, options.height, {}}),
+      counters_(1),
+      answer_(1),
+      recipe_{depth_.get(),
+              inverse_.get(),
+              {},
+              {},
+              pixel_scale_in_floats(options.intrinsics),
+              pixel_scale(options.intrinsics),
+              options.normals.window,
+              EdgeGate(options.normals, options.intrinsics),
+              whole_window(options.normals.window),
+              seen_.get(),
+              options.points,
+              cloud_.room()},
+      preparation_(preparation_of(options.normals)) {
+  counters_.clear();
+  set_camera();
+}
+
+CloudSlot::~CloudSlot() {
+  cudaEventSynchronize(end_->get());
+}
+
+void CloudSlot::set_camera() {
+  recipe_.camera = camera();
+  recipe_.to_camera = relative_to({camera().to_world.rotation, {}}, {}).rotation;
+}
+
+void CloudSlot::begin() {
+  is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
+  if (!is_plain_) {
+    cloud();  // refuses what is to be refused
+    return;
+  }
+  cloud_.stand_at(camera().to_world);
+  set_camera();
+  const CurrentDevice current(options().device.first());
+  const OtherWork other;
+  launch();
+  other.goes_on_until(end_);
+}
+
+// What is launched has an end, even if the rest fails.
+void CloudSlot::launch() {
+  const auto mark_end = [&] {
+    is_there_ = false;
+    return cudaEventRecord(end_->get(), stream_.get());
+  };
+  try {
+    take(stream_.get());
+    make(stream_.get());
+  } catch (...) {
+    mark_end();
+    throw;
+  }
+  check(mark_end());
+}
+
+bool CloudSlot::require(cudaStream_t stream) const {
+  const std::lock_guard lock(mutex_);
+  is_there_ = is_there_ || has_happened(*end_);
+  if (!is_there_) check(cudaStreamWaitEvent(stream, end_->get()));
+  return is_there_;
+}
+
+void CloudSlot::take(cudaStream_t stream) {
+  const DepthFrameOptions& o = options();
+  DepthSource image;
+  if (o.counts_per_metre) {
+    image.counts = reinterpret_cast<const std::uint16_t*>(image_.device());
+    image.counts_per_metre = *o.counts_per_metre;
+  } else {
+    image.metres = reinterpret_cast<const float*>(image_.device());
+  }
+  take_image(image, recipe_, counters_.get(), stream);
+}
+
+void CloudSlot::make(cudaStream_t stream) {
+  prepare_on_device(recipe_, options().normals.method, preparation_, counters_.get(),
+                    answer_.device(), sequence_ + 1, stream);
+  ++sequence_;  // now that it will be answered
+  settle_on_device(recipe_, preparation_.overlaps, stream);
+}
+
+bool CloudSlot::is_answered() const {
+  return number_of(look_at(answer_.host()->points)) == sequence_ &&
+         number_of(look_at(answer_.host()->doubtful)) == sequence_;
+}
+
+void CloudSlot::wait_for_answer() const {
+  for (unsigned looks = 1; !is_answered(); ++looks)
+    if (looks % kLooksPerCheck == 0 && has_happened(*end_) && !is_answered())
+      throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
+}
+
+// Then the image is not read any more.
+void CloudSlot::wait() const {
+  wait_for_answer();
+}
+
+bool CloudSlot::is_sound() const {
+  wait_for_answer();
+  return value_of(look_at(answer_.host()->doubtful)) == 0;
+}
+
+std::size_t CloudSlot::points() const {
+  if (is_plain_ && is_sound()) return value_of(look_at(answer_.host()->points));
+  return cloud().positions().size();
+}
+
+}  // namespace vpm::cuda
+
+namespace vpm {
+
+std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options) {
+  const cuda::CurrentDevice current(options.device.first());
+  return std::make_shared<cuda::CloudSlot>(options);
+}
+
+}  // namespace vpm

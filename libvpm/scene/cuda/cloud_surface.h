@@ -1,0 +1,237 @@
+// The surface of a tile of an image, by a block: for cloud_settle.cu.
+#pragma once
+
+#include <math_constants.h>
+
+#include "libvpm/scene/cuda/cloud_tile.h"
+#include "libvpm/scene/depth/settled_pixel.h"
+
+namespace vpm::cuda {
+
+// What is settled of a pixel depends on those so far around it: normals that are asked, and their
+// windows.
+inline constexpr int kMarginOfMarks = kSettledReach,
+                     kSettleMargin = kMarginOfMarks + kSettledRadius;
+
+// Sizes of what a block keeps of a tile.
+struct SettleSizes {
+  using Frame = TileFrame<kSettleMargin>;
+  static constexpr int kThreads = CloudTile::kSurfaceThreads;
+  static constexpr int kWidth = CloudTile::kWidth + 2 * kSettleMargin,
+                       kHeight = CloudTile::kHeight + 2 * kSettleMargin;
+  static constexpr int kMarkedWidth = CloudTile::kWidth + 2 * kMarginOfMarks,
+                       kMarked = kMarkedWidth * (CloudTile::kHeight + 2 * kMarginOfMarks);
+  static constexpr int kColumns = CloudTile::kWidth + 2 * kSettledRadius;
+  static constexpr int kRanges =
+      CloudTile::kPixels / 4 + CloudTile::kPixels / 16 + CloudTile::kPixels / 64 + 2;
+  static constexpr int kPixelsOfThread = CloudTile::kPixels / kThreads,
+                       kMarkedOfThread = kMarked / kThreads;
+  static_assert(CloudTile::kPixels % kThreads == 0 && kMarked % kThreads == 0);
+};
+
+struct SeenTile {
+  float4 pixels[SettleSizes::kWidth *
+                SettleSizes::kHeight];  // with the margin: normals and inverse depth
+  WindowOfDepths<float> columns[SettleSizes::kColumns * CloudTile::kHeight];  // of the windows
+};
+struct SettledTile {
+  float surface[CloudTile::kPixels];
+  InverseDepthRange ranges[SettleSizes::kRanges];
+};
+// What is settled takes the place of what was seen.
+union SettleShared {
+  SeenTile seen;
+  SettledTile settled;
+};
+
+// One tile of an image, by a block.
+class SettleWork {
+  using Window = WindowOfDepths<float>;
+  static constexpr int kThreads = SettleSizes::kThreads, kWidth = SettleSizes::kWidth,
+                       kHeight = SettleSizes::kHeight, kColumns = SettleSizes::kColumns;
+
+ public:
+  __device__ SettleWork(const CloudRecipe& recipe, int number, SettleShared& shared)
+      : recipe_(recipe), tile_(recipe, number), shared_(shared) {}
+
+  // Zeros outside of the image. (In this file few loops are unrolled: a block goes through its code
+  // once or twice, and what counts is how much that is.)
+  __device__ void load() const {
+    const float4* const image = recipe_.seen;
+    constexpr int kPixels = kWidth * kHeight;
+    constexpr int kAtOnce = 12;  // reads that wait together, before what they bring is stored
+#pragma unroll 1
+    for (int begin = thread(); begin < kPixels; begin += kAtOnce * kThreads) {
+      float4 seen[kAtOnce];
+#pragma unroll
+      for (int i = 0; i < kAtOnce; ++i) {
+        const int k = begin + i * kThreads;
+        const int x = k % kWidth - kSettleMargin, y = k / kWidth - kSettleMargin;
+        const bool is_there = k < kPixels && tile_.is_in_image(x, y);
+        seen[i] = is_there ? image[tile_.pixel(x, y)] : float4{0, 0, 0, 0};
+      }
+#pragma unroll
+      for (int i = 0; i < kAtOnce; ++i) {
+        const int k = begin + i * kThreads;
+        if (k < kPixels) shared_.seen.pixels[k] = seen[i];
+      }
+    }
+  }
+
+  __device__ void sum_columns() const {
+#pragma unroll 1
+    for (int k = thread(); k < kColumns * CloudTile::kHeight; k += kThreads) {
+      const float4* const middle =
+          shared_.seen.pixels + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
+      shared_.seen.columns[k] =
+          column_of_depths<float>([&](int dv) { return middle[dv * kWidth].w; });
+    }
+  }
+
+  // Meets before others see the marks.
+  __device__ void mark() const {
+    unsigned clear = 0;
+    for_marked([&](int i, int x, int y) {
+      const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
+      clear |= is_clear<float>(seen) ? 1U << i : 0U;
+    });
+    __syncthreads();
+    for_marked([&](int i, int x, int y) {
+      float& inverse = shared_.seen.pixels[tile_.index(x, y)].w;
+      inverse = marked(inverse, (clear >> i & 1U) != 0);
+    });
+  }
+
+  struct Pixel {
+    float inverse;
+    Vec3f normal;
+  };
+  __device__ Pixel settled(int x, int y) const {
+    const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
+    const NormalSum<float> sum = settled_normal<float>(seen);
+    const float scale = per_length(sum.x, sum.y, sum.z);
+    return {settled_inverse_depth(seen(0, 0), window_at(x, y)),
+            {sum.x * scale, sum.y * scale, sum.z * scale}};
+  }
+  __device__ Pixel as_measured(int x, int y) const {
+    const SeenPixel<float> pixel = seen_at(x, y);
+    return {pixel.inverse, {pixel.x, pixel.y, pixel.z}};
+  }
+  // Meets before the pixels take the place of what was seen.
+  template <class Make>
+  __device__ void make_pixels(const Make& make) const {
+    constexpr int kPixels = SettleSizes::kPixelsOfThread;
+    Vec3f* const normals = recipe_.room.pixel_normals;
+    InverseDepthRange* const pixels = recipe_.room.tiles[0];
+    float surface[kPixels];
+#pragma unroll
+    for (int i = 0; i < kPixels; ++i) {
+      const int k = thread() + i * kThreads, x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
+      const Pixel made = make(x, y);
+      surface[i] = made.inverse;
+      if (!tile_.holds(x, y)) continue;
+      normals[tile_.pixel(x, y)] = made.normal;
+      pixels[tile_.pixel(x, y)] = {made.inverse, made.inverse};
+    }
+    __syncthreads();
+#pragma unroll
+    for (int i = 0; i < kPixels; ++i) shared_.settled.surface[thread() + i * kThreads] = surface[i];
+  }
+
+  // Levels 1 to CloudTile::kLevels, and this tile's part of what lies above. Meets after each.
+  __device__ void write_tiles() const {
+    InverseDepthRange* fine = nullptr;
+    InverseDepthRange* coarse = shared_.settled.ranges;
+#pragma unroll 1
+    for (int level = 1; level <= CloudTile::kLevels; ++level) {
+      const int count = (CloudTile::kWidth >> level) * (CloudTile::kHeight >> level);
+      if (thread() < count) coarse[thread()] = write_tile(level, fine);
+      fine = coarse;
+      coarse += count;
+      __syncthreads();
+    }
+    // Inverse depths are not negative, so they are in the order of their bits.
+    const int level = CloudTile::kLevels + 1 + thread();
+    if (level >= recipe_.room.levels) return;
+    InverseDepthRange range = fine[0];
+    for (int k = 1; k < CloudTile::kWidth / CloudTile::kHeight; ++k) range = united(range, fine[k]);
+    auto* const above = reinterpret_cast<int*>(tile_at(level, tile_.u0, tile_.v0));
+    atomicMin(above, __float_as_int(range.low));
+    atomicMax(above + 1, __float_as_int(range.high));
+  }
+
+ private:
+  // Calls visit(i, x, y) for the thread's share of the pixels to be marked.
+  template <class Visit>
+  __device__ static void for_marked(const Visit& visit) {
+#pragma unroll 2
+    for (int i = 0; i < SettleSizes::kMarkedOfThread; ++i) {
+      const int k = thread() + i * kThreads;
+      visit(i, k % SettleSizes::kMarkedWidth - kMarginOfMarks,
+            k / SettleSizes::kMarkedWidth - kMarginOfMarks);
+    }
+  }
+  __device__ static int thread() {
+    return static_cast<int>(threadIdx.x);
+  }
+
+  __device__ SeenPixel<float> seen_at(int x, int y) const {
+    const float4 pixel = shared_.seen.pixels[tile_.index(x, y)];
+    return {pixel.w, pixel.x, pixel.y, pixel.z};
+  }
+  __device__ const Window& column_at(int x, int y) const {
+    return shared_.seen.columns[y * kColumns + x + kSettledRadius];
+  }
+  __device__ Window window_at(int x, int y) const {
+    return window_of_depths<float>([&](int du) { return column_at(x + du, y); });
+  }
+
+  // The tile of a level of the whole image that holds a pixel.
+  __device__ InverseDepthRange* tile_at(int level, int u, int v) const {
+    const int per_row = ((tile_.width - 1) >> level) + 1;
+    return recipe_.room.tiles[level] + static_cast<std::size_t>(v >> level) * per_row +
+           (u >> level);
+  }
+  // What lies outside of the image adds nothing.
+  __device__ InverseDepthRange write_tile(int level, const InverseDepthRange* fine) const {
+    const int per_row = CloudTile::kWidth >> level, x = thread() % per_row, y = thread() / per_row;
+    InverseDepthRange range{CUDART_INF_F, 0};
+#pragma unroll
+    for (int child = 0; child < 4; ++child) {
+      const int cx = 2 * x + child % 2, cy = 2 * y + child / 2;
+      if (fine != nullptr) {
+        range = united(range, fine[cy * 2 * per_row + cx]);
+      } else if (tile_.holds(cx, cy)) {
+        const float value = shared_.settled.surface[cy * CloudTile::kWidth + cx];
+        range = united(range, {value, value});
+      }
+    }
+    const int u = (tile_.u0 >> level) + x, v = (tile_.v0 >> level) + y;
+    if (level < recipe_.room.levels && u <= (tile_.width - 1) >> level &&
+        v <= (tile_.height - 1) >> level)
+      *tile_at(level, u << level, v << level) = range;
+    return range;
+  }
+
+  const CloudRecipe& recipe_;
+  SettleSizes::Frame tile_;
+  SettleShared& shared_;
+};
+
+// Is called by all threads of a block.
+__device__ inline void settle_tile(const SettleWork& work, PointReading points) {
+  work.load();
+  __syncthreads();
+  if (points == PointReading::settled) {
+    work.sum_columns();
+    work.mark();
+    __syncthreads();
+    work.make_pixels([&](int x, int y) { return work.settled(x, y); });
+  } else {
+    work.make_pixels([&](int x, int y) { return work.as_measured(x, y); });
+  }
+  __syncthreads();
+  work.write_tiles();
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,30 @@
+// What kernels see of a cloud: plain pointers and numbers.
+#pragma once
+
+#include <cstdint>
+
+#include "libvpm/cloud/camera.h"
+#include "libvpm/scene/points/point_tree.h"
+
+namespace vpm::cuda {
+
+// The points of a cloud, about its origin: those of an image by pixel (NaN where there is none),
+// others in the order of the leaves of their hierarchy.
+struct PointsView {
+  const Vec3f* positions = nullptr;
+  const Vec3f* normals = nullptr;
+  std::uint32_t count = 0;
+  std::int32_t width = 0;  // > 0: of the image
+  PointTree tree;          // otherwise
+};
+
+// Everything of a cloud that poses are combined with.
+struct CloudFrame {
+  bool is_organised = false;
+  Vec3 origin;
+  Pose camera_to_world;
+  Intrinsics intrinsics;
+  std::int32_t width = 0, height = 0;
+};
+
+}  // namespace vpm::cuda

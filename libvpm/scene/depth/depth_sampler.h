@@ -1,0 +1,155 @@
+// The image of a camera, read at any place: one inverse depth per pixel of a pinhole camera.
+//
+// Inverse depth is affine in the pixel on a plane, so bilinear interpolation is exact there. Which
+// side a place lies on is read off its own pixel, without normals; the normal only scales the
+// distance. Camera coordinates.
+//
+// One text reads one place (Vec3; host and device) or four at a time (Vec3x4; host).
+#pragma once
+
+#include "libvpm/cloud/camera.h"
+#include "libvpm/core/division.h"
+#include "libvpm/core/lengths.h"
+#include "libvpm/scene/surface.h"
+
+namespace vpm {
+
+// Least and greatest inverse depth of a tile of pixels; low = 0 where any pixel is unknown, both 0
+// where all are.
+struct alignas(8) InverseDepthRange {  // read at once
+  float low = 0, high = 0;
+};
+VPM_HD inline InverseDepthRange united(InverseDepthRange a, InverseDepthRange b) {
+#ifdef __CUDA_ARCH__
+  return {fminf(a.low, b.low), fmaxf(a.high, b.high)};
+#else
+  return {b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high};
+#endif
+}
+
+// A view: plain pointers, for host or device.
+struct DepthSampler {
+  static constexpr int kMaxLevels = 16;
+  // The widest and highest image: of the coarsest tiles, a look takes three by three.
+  static constexpr std::uint32_t kMostPixelsASide = 1U << kMaxLevels;
+  // Pixels whose inverse depths differ by more than this fraction belong to two surfaces. A plane
+  // at 1 m seen by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
+  static constexpr double kJump = 0.03;
+  // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
+  // or curved; those of a crease differ by more.
+  static constexpr double kSmoothCosine = 0.9;
+  // Windows of normals that lie this many pixels to either side see one side of a crease each: they
+  // are up to twice as wide (7 pixels by default).
+  static constexpr std::int32_t kAcross = 4;
+
+  Intrinsics k;
+  std::int32_t width = 0, height = 0;
+  std::int32_t levels = 0;
+  const Vec3f* normals = nullptr;  // of each pixel, camera axes; zero where none is known
+  // tiles[l] are of 2^l by 2^l pixels; tiles[0].high is the pixel's own inverse depth.
+  const InverseDepthRange* tiles[kMaxLevels] = {};
+  // Inverse depth before noise was taken out (settled_image.h): what was seen to be free stays so.
+  const float* measured = nullptr;
+
+  VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
+  VPM_HD double measured_at(std::int32_t u, std::int32_t v) const {
+    return measured[v * width + u];
+  }
+  // Returns the inverse depth of pixels, 1/m; 0 where it is unknown.
+  template <class Int>
+  [[gnu::always_inline]] VPM_HD auto inverse_depth(const Int& u, const Int& v) const {
+    const InverseDepthRange* pixels = tiles[0];
+    return gather(v * width + u, [pixels](std::int32_t i) { return pixels[i].high; });
+  }
+
+  // Reads the surface on the ray of x. Calls also(u, v), which may load more at the nearest pixel:
+  // a device waits for all loads together. Where nothing is known, the rest has no meaning.
+  template <class Place, class Also>
+  [[gnu::always_inline]] VPM_HD ReadingOf<RealOf<Place>> read_and(const Place& x,
+                                                                  const Also& also) const {
+    using Real = RealOf<Place>;
+    const Pixel<Real> pixel = look_up(x, also);
+    ReadingOf<Real> reading;
+    if (!any(pixel.known)) return reading;
+    reading.known = pixel.known;
+    const Real to_foot = quotient(1, x.z * pixel.inverse_depth);
+    reading.foot = to_foot * x;  // on the ray of x
+    reading.point = static_cast<IndexOf<Real>>(pixel.nearest);
+    reading.normal = widen(pixel.normal);
+    const Real along = dot(reading.normal, x), squared_length = squared_norm(x);
+    const MaskOf<Real> is_trusted =
+        (along < 0) & (along * along >= (kGrazing * kGrazing) * squared_length);
+    reading.distance = along * (1 - to_foot);
+    // No normal, or one that cannot be right: the surface is taken to face the ray.
+    if (any(pixel.known & negated(is_trusted))) {
+      const Real length = square_root(squared_length);
+      reading.normal = choose(is_trusted, reading.normal, quotient(-1, length) * x);
+      reading.distance = is_trusted ? reading.distance : length * (to_foot - 1);
+    }
+    return reading;
+  }
+
+ private:
+  // Below this cosine between normal and ray the normal is not trusted to scale a distance.
+  static constexpr double kGrazing = 0.05;
+
+  // The surface in the direction of a place.
+  template <class Real>
+  struct Pixel {
+    MaskOf<Real> known{};
+    Real inverse_depth{};
+    IntOf<Real> nearest{};    // index of the nearest pixel
+    StoredOf<Real> normal{};  // of that
+  };
+  template <class Place, class Also>
+  [[gnu::always_inline]] VPM_HD Pixel<RealOf<Place>> look_up(const Place& x,
+                                                             const Also& also) const {
+    using Real = RealOf<Place>;
+    using Int = IntOf<Real>;
+    const Real zero{}, per_depth = quotient(1, x.z);
+    const Real any_u = k.fx * (x.x * per_depth) + k.cx, any_v = k.fy * (x.y * per_depth) + k.cy;
+    const double u_end = width, v_end = height;
+    // Squares of depths below kSmallestLength would vanish.
+    const MaskOf<Real> is_seen = (x.z >= kSmallestLength) & (any_u >= -0.5) & (any_v >= -0.5) &
+                                 (any_u + 0.5 < u_end) & (any_v + 0.5 < v_end);
+    if (!any(is_seen)) return {};
+    const Real u = is_seen ? any_u : zero, v = is_seen ? any_v : zero;
+    const Real from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
+    // Not negative: what is cut off rounds to the nearest.
+    const Int un = truncated(u + 0.5), vn = truncated(v + 0.5);
+    const Int u0 = truncated(from_u), v0 = truncated(from_v);
+    const Int u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
+    const Real a = inverse_depth(u0, v0), b = inverse_depth(u1, v0);
+    const Real c = inverse_depth(u0, v1), d = inverse_depth(u1, v1);
+    const Int nearest = vn * width + un;
+    const StoredOf<Real> normal = gather(normals, nearest);
+    also(un, vn);
+    const MaskOf<Real> is_left = widen_mask(un == u0), is_upper = widen_mask(vn == v0);
+    const Real per_z = is_one_surface(a, b, c, d)
+                           ? bilinear(a, b, c, d, from_u - widen(u0), from_v - widen(v0))
+                       : is_upper ? (is_left ? a : b)
+                                  : (is_left ? c : d);
+    return {static_cast<MaskOf<Real>>(is_seen & (per_z > 0)), per_z, nearest, normal};
+  }
+
+  // True if four pixels are all known and show one surface.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD auto is_one_surface(const Real& a, const Real& b,
+                                                           const Real& c, const Real& d) {
+    const Real low_ab = a < b ? a : b, low_cd = c < d ? c : d,
+               low = low_ab < low_cd ? low_ab : low_cd;
+    const Real high_ab = a > b ? a : b, high_cd = c > d ? c : d,
+               high = high_ab > high_cd ? high_ab : high_cd;
+    return (low > 0) & (high - low <= kJump * high);
+  }
+  // Interpolates between four pixels, at these fractions of the way from a to b, and from a to c.
+  template <class Real>
+  [[gnu::always_inline]] static VPM_HD Real bilinear(const Real& a, const Real& b, const Real& c,
+                                                     const Real& d, const Real& along_u,
+                                                     const Real& along_v) {
+    const Real top = a + along_u * (b - a), bottom = c + along_u * (d - c);
+    return top + along_v * (bottom - top);
+  }
+};
+
+}  // namespace vpm

@@ -1,0 +1,38 @@
+// Pixels without measurement between ones that see one surface are closed, up to two pixels from
+// the rim of a hole.
+#pragma once
+
+#include "libvpm/cloud/padded_image.h"
+#include "libvpm/scene/depth/depth_surface.h"
+
+namespace vpm {
+
+// Each closes what lies beside the pixels before it, so holes up to twice as wide; pairs reach no
+// further.
+inline constexpr int kFillPasses = 2;
+
+// The inverse depth of a pixel between opposite neighbours that see one surface, 0 where there are
+// none: their mean is exact on a plane. `image(u, v)` are inverse depths, 0 where nothing is known.
+template <class Image>
+VPM_HD float between_neighbors(const Image& image, int width, int height, int u, int v) {
+  double sum = 0;
+  int pairs = 0;
+  const auto add_pair = [&](int du, int dv) {
+    const int above = dv < 0 ? v + dv : v - dv, below = dv < 0 ? v - dv : v + dv;
+    if (u - du < 0 || u + du >= width || above < 0 || below >= height) return;
+    const double a = image(u - du, v - dv), b = image(u + du, v + dv);
+    if (!(a > 0 && b > 0) || std::fabs(a - b) > DepthSurface::kJump * (a < b ? b : a)) return;
+    sum += a + b;
+    ++pairs;
+  };
+  add_pair(1, 0);
+  add_pair(0, 1);
+  add_pair(1, 1);
+  add_pair(1, -1);
+  return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0F;
+}
+
+// Closes them in a whole image of inverse depth with a margin.
+void close_holes(PaddedImage& inverse);
+
+}  // namespace vpm

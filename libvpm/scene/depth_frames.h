@@ -1,0 +1,81 @@
+// Depth images as they come from a camera, made ready for queries: on a device without a way back
+// over the host's memory.
+//
+//   DepthFrames frames({intrinsics, 640, 480, 1000.0, {}, device_from_text("auto")});
+//   camera.read(frames.counts());                               // 30 times a second
+//   const DepthFrame frame = frames.prepare(camera_to_world);   // begins, and returns at once
+//   const Result r = query.run(frame, pose);                    // a thousand times a second
+//
+// A query gives the bits that it gives on PreparedCloud(make_cloud(image, camera, normals),
+// points), whatever the device.
+//
+// Frames are immutable and may be held, copied, and queried by several threads; memory of one that
+// nobody holds is used again. So while the loop queries one frame, the next can be filled and
+// prepared. DepthFrames itself belongs to one thread at a time, and frames may outlive it. On a
+// device nothing is allocated once there is memory for as many frames as are held at a time, and
+// the one to come; a CPU takes some for each frame while it prepares it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "libvpm/cloud/normals.h"
+#include "libvpm/device/device.h"
+#include "libvpm/scene/prepared_cloud.h"
+
+namespace vpm {
+
+struct DepthFrameOptions {
+  Intrinsics intrinsics;                   // pixels
+  std::uint32_t width = 0, height = 0;     // pixels
+  std::optional<double> counts_per_metre;  // images are 16-bit counts; otherwise metres in float
+  NormalOptions normals;
+  Device device;  // that of the queries; others than it copy what the CPU prepares
+  PointReading points = PointReading::settled;
+};
+
+class FrameSlot;  // frame_slot.h
+
+class DepthFrame {
+ public:
+  // Returns the number of pixels that have a normal. Waits for the preparation.
+  std::size_t points() const;
+
+  // The frame as the CPU prepares it, when first asked for. Throws what PreparedCloud throws.
+  const PreparedCloud& cloud() const;
+
+  const FrameSlot& slot() const { return *slot_; }
+
+ private:
+  friend class DepthFrames;
+  explicit DepthFrame(std::shared_ptr<const FrameSlot> slot) : slot_(std::move(slot)) {}
+  std::shared_ptr<const FrameSlot> slot_;
+};
+
+class DepthFrames {
+ public:
+  // Throws Error(invalid_argument) for intrinsics or normals out of range, an image without pixels
+  // or counts per metre that are not positive; Error(unavailable) where the device is not there.
+  explicit DepthFrames(const DepthFrameOptions& options);
+
+  // Where the next image belongs, row by row: one of them, as the options say. Pinned memory, so
+  // that the device copies at full speed. To be written before prepare(), and not after it.
+  std::span<std::uint16_t> counts();
+  std::span<float> metres();
+
+  // Returns the frame of that image. On a device this only begins; queries wait there for its end.
+  // What PreparedCloud would refuse (of the image, its size or the pose, which maps the camera's
+  // coordinates to the world's) is refused here or by the first query.
+  DepthFrame prepare(const Pose& camera_to_world);
+
+ private:
+  FrameSlot& next();
+
+  DepthFrameOptions options_;
+  std::vector<std::shared_ptr<FrameSlot>> slots_;
+  std::shared_ptr<FrameSlot> next_;
+};
+
+}  // namespace vpm

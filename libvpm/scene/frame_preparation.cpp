@@ -1,0 +1,217 @@
+#include "libvpm/scene/frame_preparation.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "libvpm/cloud/vector_tile.h"
+#include "libvpm/core/lengths.h"
+#include "libvpm/core/vector_clones.h"
+#include "libvpm/scene/depth/hole_closing.h"
+
+namespace vpm {
+namespace {
+
+// With a camera of less, points lie on the rays of their pixels as far as float can say, so nobody
+// needs to look: off by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
+constexpr double kUsualFocalLength = 0x1p20;
+// Normals are of unit length but for rounding; validate() allows more than this of the square.
+constexpr double kUnitTolerance = 1.9e-3;
+
+double steepest(double size, double centre, double focal) {
+  return std::max(std::abs(centre), std::abs(size - 1 - centre)) / focal;
+}
+
+// Whether nothing can be wrong with a point of this camera that a look at its normal does not tell.
+bool is_usual(const Camera& camera, const DepthImage& depth) {
+  const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
+  if (depth.width != camera.width || depth.height != camera.height || pixels == 0 ||
+      pixels > PreparedCloud::kMaxPoints ||
+      std::max(depth.width, depth.height) > DepthSurface::kMostPixelsASide ||
+      !is_in_range(camera.to_world.translation))
+    return false;
+  const Intrinsics& k = camera.intrinsics;
+  const double x = steepest(camera.width, k.cx, k.fx), y = steepest(camera.height, k.cy, k.fy);
+  return std::max(k.fx, k.fy) * (1 + x) * (1 + y) * (1 + x + y) <= kUsualFocalLength;
+}
+
+// A row of the frame: what is read, and where the points go, each at its pixel.
+struct RowOfPoints {
+  int width;
+  double ray_y;
+  Rotation to_world, to_camera;
+  const float* depth;
+  const NormalRow& seen;
+  const double* ray_x;
+  Vec3f *positions, *normals;
+  float *back_x, *back_y, *back_z;  // of the pixels, in the camera's axes
+  std::uint8_t* exists;
+};
+
+struct RowFacts {
+  std::uint32_t points = 0;
+  bool is_sound = true;
+};
+
+[[gnu::always_inline]] inline void place_tile(const RowOfPoints& row, int first, RowFacts& facts) {
+  const int count = std::min(kTile, row.width - first);
+  const Rotation to_world = row.to_world, to_camera = row.to_camera;
+  const double ray_y = row.ray_y;
+  float depth[kTile] = {};
+  std::copy(row.depth + first, row.depth + first + count, depth);
+  const float *nx = row.seen.x.data() + first, *ny = row.seen.y.data() + first,
+              *nz = row.seen.z.data() + first;
+  const double* ray_x = row.ray_x + first;
+  VectorTile position, normal, back;
+  std::uint32_t exists[kTile], points = 0, odd = 0;
+  for (int i = 0; i < kTile; ++i) {
+    const double z = depth[i];
+    const Vec3f p = narrow(to_world * Vec3{ray_x[i] * z, ray_y * z, z});
+    const Vec3f n = narrow(to_world * Vec3{nx[i], ny[i], nz[i]});
+    const Vec3f b = narrow(to_camera * widen(n));
+    const double off = squared_norm(widen(n)) - 1;
+    const bool there = (nx[i] != 0) | (ny[i] != 0) | (nz[i] != 0);
+    position.x[i] = p.x, position.y[i] = p.y, position.z[i] = p.z;
+    normal.x[i] = n.x, normal.y[i] = n.y, normal.z[i] = n.z;
+    back.x[i] = there ? b.x : 0, back.y[i] = there ? b.y : 0, back.z[i] = there ? b.z : 0;
+    exists[i] = there;
+    odd |= there & !((off <= kUnitTolerance) & (off >= -kUnitTolerance));
+  }
+  for (int i = 0; i < kTile; ++i) points += exists[i];
+  facts.points += points;
+  facts.is_sound = facts.is_sound && odd == 0;
+  position.store(count, row.positions + first);
+  normal.store(count, row.normals + first);
+  std::copy(back.x, back.x + count, row.back_x + first);
+  std::copy(back.y, back.y + count, row.back_y + first);
+  std::copy(back.z, back.z + count, row.back_z + first);
+  std::copy(exists, exists + count, row.exists + first);
+}
+
+VPM_VECTOR_CLONES
+RowFacts place_row(const RowOfPoints& row) {
+  RowFacts facts;
+  for (int first = 0; first < row.width; first += kTile) place_tile(row, first, facts);
+  return facts;
+}
+
+// Takes out what does not exist, and says for each pixel which point is the first from there on.
+void compact_row(const std::uint8_t* exists, int width, std::uint32_t first, Vec3f* positions,
+                 Vec3f* normals, std::uint32_t* begin) {
+  std::uint32_t k = 0;
+  for (int u = 0; u < width; ++u) {
+    begin[u] = first + k;
+    positions[k] = positions[u];
+    normals[k] = normals[u];
+    k += exists[u];
+  }
+}
+
+}  // namespace
+
+FramePreparation::FramePreparation(const NormalOptions& options, PointReading points)
+    : options_(options), points_(points) {
+  check_normal_options(options);
+}
+
+void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
+                               PreparedCloud& cloud) {
+  try {
+    check_intrinsics(camera.intrinsics);
+    if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
+        !prepare_rows(depth, camera, cloud))
+      cloud = PreparedCloud(make_cloud(depth, camera, options_),
+                            points_);  // tells what is wrong, if anything
+  } catch (...) {
+    cloud = PreparedCloud{Cloud{}};
+    throw;
+  }
+}
+
+// False where a normal is not sound.
+bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
+                                    PreparedCloud& cloud) {
+  validate(camera, "the cloud");
+  const std::size_t width = depth.width, height = depth.height, pixels = width * height;
+  const Intrinsics& k = camera.intrinsics;
+  const Rotation to_camera =
+      relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
+  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // forgets all that points need
+  cloud.serial_ = PreparedCloud::next_serial();
+  cloud.origin_ = camera.to_world.translation;
+  cloud.camera_ = camera;
+  cloud.positions_.resize(pixels);
+  cloud.normals_.resize(pixels);
+  cloud.pixel_begin_.resize(pixels + 1);
+  row_points_.resize(height);
+  rays_.resize(width + kTile);
+  for (std::size_t u = 0; u < width; ++u) rays_[u] = (static_cast<double>(u) - k.cx) / k.fx;
+  images_.resize(depth.width, depth.height, options_);
+  seen_.resize(depth.width, depth.height);
+  cloud.image_.resize(depth.width, depth.height);
+  static_assert(SettledImage::kReach <= FollowingRows::kMostReach);
+  marking_.start(static_cast<int>(height), SeenImage::kReachOfMarks);
+  settling_.start(static_cast<int>(height), SettledImage::kReach);
+  for_bands(static_cast<int>(height), [&](int begin, int end) {
+    images_.take_rows(depth, options_, begin, end);
+    for (int v = begin; v < end; ++v)
+      std::copy_n(images_.inverse.at(0, v), width, seen_.inverse.at(0, v));
+  });
+  close_holes(seen_.inverse);
+  std::atomic<bool> is_sound{true};
+  for_bands(static_cast<int>(height), [&](int begin, int end) {
+    const auto rows = normal_rows(images_, k, options_);
+    NormalRow row(width);
+    std::vector<std::uint8_t> exists(width);
+    for (int v = begin; v < end; ++v) {
+      rows->estimate(v, row);
+      const std::size_t at = static_cast<std::size_t>(v) * width;
+      Vec3f *positions = cloud.positions_.data() + at, *normals = cloud.normals_.data() + at;
+      const auto [points, sound] =
+          place_row({static_cast<int>(width), (v - k.cy) / k.fy, camera.to_world.rotation,
+                     to_camera, depth.depth.data() + at, row, rays_.data(), positions, normals,
+                     seen_.x.at(0, v), seen_.y.at(0, v), seen_.z.at(0, v), exists.data()});
+      if (!sound) is_sound = false;
+      row_points_[static_cast<std::size_t>(v)] = points;
+      std::uint32_t* pixel_begin = cloud.pixel_begin_.data() + at;
+      if (points < width)
+        compact_row(exists.data(), static_cast<int>(width), static_cast<std::uint32_t>(at),
+                    positions, normals, pixel_begin);
+      else
+        std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
+      // What is settled reads marks, between bands too: of two threads the one that came first
+      // there has marked its rows before it came here.
+      if (points_ == PointReading::settled)
+        marking_.made(v, [&](int first, int last) { seen_.mark_rows(first, last); });
+      settling_.made(
+          v, [&](int first, int last) { cloud.image_.read_rows(seen_, points_, first, last); });
+    }
+  });
+  close_ranks(width, cloud);
+  cloud.image_.finish();
+  return is_sound;
+}
+
+// The points of a row lie at its first pixel; now they follow those of the row above.
+void FramePreparation::close_ranks(std::size_t width, PreparedCloud& cloud) const {
+  std::uint32_t first = 0;
+  for (std::size_t v = 0; v < row_points_.size(); ++v) {
+    const auto at = static_cast<std::uint32_t>(v * width);
+    if (first < at) {
+      const auto move = [&](std::vector<Vec3f>& points) {
+        std::memmove(points.data() + first, points.data() + at, row_points_[v] * sizeof(Vec3f));
+      };
+      move(cloud.positions_);
+      move(cloud.normals_);
+      for (std::size_t u = 0; u < width; ++u) cloud.pixel_begin_[at + u] -= at - first;
+    }
+    first += row_points_[v];
+  }
+  cloud.pixel_begin_.back() = first;
+  cloud.positions_.resize(first);
+  cloud.normals_.resize(first);
+}
+
+}  // namespace vpm

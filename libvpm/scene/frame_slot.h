@@ -1,0 +1,61 @@
+// The memory of one depth frame: the image as it came, and what was made of it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+
+#include "libvpm/scene/depth_frames.h"
+#include "libvpm/scene/frame_preparation.h"
+
+namespace vpm {
+
+class FrameSlot {
+ public:
+  explicit FrameSlot(const DepthFrameOptions& options)
+      : options_(options),
+        camera_{options.intrinsics, options.width, options.height, {}},
+        preparation_(options.normals, options.points) {}
+  virtual ~FrameSlot() = default;
+  FrameSlot(const FrameSlot&) = delete;
+  FrameSlot& operator=(const FrameSlot&) = delete;
+
+  // Room for the image, as counts or as metres.
+  virtual std::byte* image() = 0;
+  const std::byte* image() const { return const_cast<FrameSlot*>(this)->image(); }
+  std::size_t image_bytes() const {
+    return pixels() * (options_.counts_per_metre ? sizeof(std::uint16_t) : sizeof(float));
+  }
+  std::size_t pixels() const { return std::size_t{options_.width} * options_.height; }
+
+  // Takes the image for one seen from here.
+  void prepare(const Pose& camera_to_world) {
+    camera_ = {options_.intrinsics, options_.width, options_.height, camera_to_world};
+    has_cloud_ = false;
+    begin();
+  }
+  // Until the image may be written anew.
+  virtual void wait() const {}
+  virtual std::size_t points() const { return cloud().positions().size(); }
+
+  const DepthFrameOptions& options() const { return options_; }
+  const Camera& camera() const { return camera_; }
+  // By the CPU, when first asked for.
+  const PreparedCloud& cloud() const;
+
+ protected:
+  virtual void begin() { cloud(); }
+
+ private:
+  DepthFrameOptions options_;
+  Camera camera_;
+  mutable std::mutex mutex_;
+  mutable FramePreparation preparation_;
+  mutable PreparedCloud cloud_{Cloud{}};
+  mutable bool has_cloud_ = false;
+};
+
+// On the device of the options, which is a CUDA one. Throws Error(unavailable).
+std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options);
+
+}  // namespace vpm

@@ -1,0 +1,364 @@
+// A surface as an unorganised cloud holds it: disks (point, normal, sampling radius) in a bounding
+// volume hierarchy.
+//
+// The nearest disk decides on which side a place lies. Places are in the cloud's frame about its
+// origin.
+#pragma once
+
+#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/body.h"
+#include "libvpm/scene/points/normal_cones.h"
+#include "libvpm/scene/points/point_list.h"
+#include "libvpm/scene/points/point_tree.h"
+
+namespace vpm {
+
+// A second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or behind
+// either of them (a concave one, a slot).
+struct SecondPlane {
+  Vec3f normal, foot;
+  bool is_convex = false;
+
+  VPM_HD TangentPlane plane() const { return {widen(normal), widen(foot)}; }
+};
+
+// A view: plain pointers, for host or device.
+struct DiskSurface {
+  static constexpr bool kTellsInside = false;   // nobody knows from where disks were seen
+  static constexpr bool kSearchesFoot = false;  // the disk of a reading is the nearest
+
+  PointTree feet;  // in canonical order
+  const Vec3f* normals = nullptr;
+  const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
+  const SecondPlane* seconds = nullptr;
+  PointNumbers radii{};
+  NormalCones cones{};
+
+  // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
+  VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
+    return read_point(x, feet.nearest(x, HUGE_VAL, near));
+  }
+  VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
+    if (i == kNoPoint) return {};
+    const TangentPlane own = plane_of(i);
+    const double distance = own.distance(x);
+    if (knows_second(i)) {
+      const SecondPlane& second = second_at(i);
+      const TangentPlane beyond = second.plane();
+      const double other = beyond.distance(x);
+      if (second.is_convex ? other > distance : other < distance)
+        return {true, other, beyond.normal, beyond.foot, i};
+    }
+    return {true, distance, own.normal, own.foot, i};
+  }
+
+  // The part of a ball about x that is behind the surface that was read there.
+  VPM_HD double fraction_inside(const Reading& reading, Vec3 x, double radius) const {
+    if (!knows_second(reading.point)) return ball_fraction_inside(reading.distance / radius);
+    const SecondPlane& second = second_at(reading.point);
+    const TangentPlane own = plane_of(reading.point), beyond = second.plane();
+    const double first_inside = ball_fraction_inside(own.distance(x) / radius);
+    const double second_inside = ball_fraction_inside(beyond.distance(x) / radius);
+    const double cosine = dot(own.normal, beyond.normal);
+    return second.is_convex ? fraction_of_both(first_inside, second_inside, cosine)
+                            : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
+  }
+
+  // The surface for places in a ball: the points that may be nearest to one of them, if they are
+  // few. `near`: a point that is near the centre.
+  class AroundBall;
+  VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t near) const;
+
+  // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
+  // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
+  // sides of a groove, towards these, or their crease.
+  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
+    if (knows_second(reading.point) && !second_at(reading.point).is_convex) {
+      const TangentPlane own = plane_of(reading.point), other = second_at(reading.point).plane();
+      const bool below_both = own.distance(x) < 0 && other.distance(x) < 0;
+      return below_both && dot(own.normal, other.normal) > kSlot
+                 ? normal_below_groove(x, own, other)
+                 : reading.normal;
+    }
+    const Vec3 towards = reading.foot - x;
+    const double height = dot(reading.normal, towards);
+    const Vec3 aside = towards - height * reading.normal;
+    const double aside_squared = squared_norm(aside), rim = rim_of(reading.point);
+    if (height > 0 && aside_squared <= rim * rim) return reading.normal;
+    return normalized_or_zero(towards - (rim / std::sqrt(aside_squared)) * aside);
+  }
+
+  // Calls visit(normal) for each plane that a disk knows.
+  template <class Visit>
+  VPM_HD void for_normals_of(std::uint32_t i, const Visit& visit) const {
+    visit(widen(normals[i]));
+    if (knows_second(i)) visit(widen(second_at(i).normal));
+  }
+  // Whether all that disks in a ball know faces the way of n: the cosine is above `least`.
+  VPM_HD bool face_one_way(Vec3 center, double radius, Vec3 n, double least) const {
+#ifdef __CUDA_ARCH__
+    return face_one_way_by<PointTree::OneByOne>(center, radius, n, least);
+#else
+    return face_one_way_by_vectors(center, radius, n, least);
+#endif
+  }
+
+  // A body of this radius about x is nearest to `own`, by a point of it. Looks for another wall at
+  // four places that are further behind, on each side: of those that face elsewhere (cosine less
+  // than `unlike`) that which takes the most of the body. Only where a disk may be nearest to one
+  // of the places and faces elsewhere: what is beyond the last point of a cloud is no wall.
+  VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
+                              double unlike, OtherWall& other) const;
+
+  // What a ball is to the disks. No bound of the gap is known.
+  struct Look {
+    Side side = Side::free;
+    std::uint32_t point = kNoPoint;  // the nearest to the centre, where the ball may touch it
+    Vec3 center;
+    double radius = 0;
+  };
+  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
+    const std::uint32_t point = feet.nearest_touching(center, radius, radii);
+    return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
+  }
+  VPM_HD bool may_be_flat(const Look& look) const {
+    return look.point != kNoPoint;
+  }
+  template <class Read>
+  VPM_HD bool is_flat(const Look& look, const Read&, double tolerance, TangentPlane& plane) const {
+    return mean_plane(look, tolerance, plane);
+  }
+  template <class ReadAll>
+  VPM_HD bool mean_plane(const Look& look, Vec3, double, double tolerance, const ReadAll&,
+                         TangentPlane& plane) const {
+    return mean_plane(look, tolerance, plane);
+  }
+  // The mean plane of the disks below a ball that was looked at; false where they do not show one
+  // smooth surface: one is of another wall or lies off it by more than a part of `tolerance`, or
+  // those to one side of the middle are too few or face elsewhere.
+  VPM_HD bool mean_plane(const Look& look, double tolerance, TangentPlane& plane) const {
+    if (look.point == kNoPoint) return false;
+    const Reading nearest = read_point(look.center, look.point);
+    const double height = nearest.distance, near = kMiddle * look.radius;
+    const Vec3 middle = look.center - height * nearest.normal;
+    Vec3 normal_sum, place_sum;
+    std::uint32_t found = 0;
+    const bool few = feet.for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
+      normal_sum += widen(normals[i]);
+      place_sum += widen(feet.points[i]);
+      return ++found <= kMostOfPatch;
+    });
+    if (!few || found == 0) return false;
+    plane = {normalized_or_zero(normal_sum), 1.0 / found * place_sum};
+    return shows(plane, middle, look.center, look.radius * look.radius + height * height,
+                 kOffPlane * tolerance);
+  }
+
+ private:
+  static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more would take longer than shares
+  static constexpr std::uint32_t kFewestAside = 3;     // points of a patch to one side
+  static constexpr double kSmoothCosine = 0.9;         // as in an image
+  // Disks that face elsewhere by more than 60 degrees are of another wall. (90 would leave it to
+  // noise which disks of a wall at right angles are.)
+  static constexpr double kOtherWall = 0.5;
+  // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
+  static constexpr double kMiddle = 0.65;
+  static constexpr double kOffPlane = 0.5;  // of the tolerance
+  // Other walls are looked for so many radii aside, and as many further behind: at a body's end.
+  static constexpr double kFurther = 0.85;
+  static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
+  // What is nearest beyond a border is looked for again so many radii from it.
+  static constexpr double kBeyondBorder = 0.2;
+  // The rim of a disk is so many sampling radii from its middle: no gaps are left between disks
+  // that noise has moved.
+  static constexpr double kRim = 3;
+  static constexpr double kSlot = -0.8;  // cosine between the sides of a slot, at most
+
+  template <class Distances>
+  VPM_HD bool face_one_way_by(Vec3 center, double radius, Vec3 n, double least) const {
+    const double squared_radius = radius * radius;
+    return feet.for_leaves_in_ball<Distances>(
+        center, squared_radius,
+        [&](std::uint32_t node) { return !cones.are_within(node, n, least); },
+        [&](std::uint32_t begin, std::uint32_t end) {
+          bool all = true;
+          for (std::uint32_t i = begin; all && i < end; ++i) {
+            if (squared_norm(widen(feet.points[i]) - center) > squared_radius) continue;
+            for_normals_of(i, [&](Vec3 normal) { all &= dot(normal, n) > least; });
+          }
+          return all;
+        });
+  }
+  bool face_one_way_by_vectors(Vec3 center, double radius, Vec3 n, double least) const;
+
+  VPM_HD TangentPlane plane_of(std::uint32_t i) const {
+    return {widen(normals[i]), widen(feet.points[i])};
+  }
+  VPM_HD double rim_of(std::uint32_t i) const {
+    return kRim * radii.of_points[i];
+  }
+  // Not by a pointer that may be null: code that nvcc 13.0 makes of that for sm_90 has been seen to
+  // read through one behind its check.
+  VPM_HD bool knows_second(std::uint32_t i) const {
+    return second_of[i] != kNoPoint;
+  }
+  VPM_HD const SecondPlane& second_at(std::uint32_t i) const {
+    return seconds[second_of[i]];
+  }
+
+  // Whether another wall than `own` may be the nearest to one of the places about a body at which
+  // it is looked for.
+  VPM_HD bool may_meet_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point,
+                                  double radius, double unlike) const {
+    const double away = kFurther * radius, depth = away - own.distance(x);
+    return depth > 0 &&
+           !face_one_way(x - away * own.normal, depth + away + rim_of(point), own.normal, unlike);
+  }
+  // `near`: the surface, as far as it concerns these places.
+  template <class Near>
+  VPM_HD bool choose_other_wall(const Near& near, Vec3 x, const TangentPlane& own,
+                                std::uint32_t point, double radius, double unlike,
+                                OtherWall& other) const {
+    const Vec3 side = normalized_or_zero(cross(own.normal, axis_aside(own.normal))),
+               across = cross(own.normal, side);
+    const Vec3 asides[4] = {side, -1.0 * side, across, -1.0 * across};
+    double least = radius;
+    OtherWall wall;
+    for (const Vec3 aside : asides) {
+      const Vec3 place = x + kFurther * radius * (aside - own.normal);
+      double away = 0;
+      if (!find_border(near, place, x, own, point, unlike, wall, away) || !(away < least)) continue;
+      least = away > 0 ? away : 0;
+      other = wall;
+    }
+    if (!(least < radius)) return false;
+    // A wall that ends at a crease is nearest to a place behind that in another direction.
+    const Vec3 beyond = other.border.foot - kBeyondBorder * radius * other.border.normal;
+    if (!find_border(near, beyond, x, own, point, unlike, wall, least)) return true;
+    other = wall;
+    return least < radius;
+  }
+  // Where it ends that `own` is nearer than the wall at a place, if this faces elsewhere: so far
+  // from x. Else changes nothing.
+  template <class Near>
+  VPM_HD bool find_border(const Near& near, Vec3 place, Vec3 x, const TangentPlane& own,
+                          std::uint32_t point, double unlike, OtherWall& other,
+                          double& away) const {
+    const Reading there = near.read(place, point);
+    if (!(there.distance < 0)) return false;
+    const Vec3 normal = closest_normal(place, there);
+    if (dot(normal, own.normal) > unlike) return false;
+    const Vec3 between = own.normal - normal;
+    away = (own.distance(x) - dot(normal, x - there.foot)) / norm(between);
+    other.normal = normal;
+    other.border.normal = normalized_or_zero(between);
+    other.border.foot = x - away * other.border.normal;
+    return true;
+  }
+
+  // A coordinate axis that is far from a direction.
+  static VPM_HD Vec3 axis_aside(Vec3 n) {
+    return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  }
+
+  // Whether the points in a ball show this plane, on all sides of a place of it.
+  VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
+                    double tolerance) const {
+    const Vec3 n = plane.normal;
+    const Vec3 side = cross(n, axis_aside(n)), other = cross(n, side);
+    Vec3 sums[4];
+    std::uint32_t counts[4] = {};
+    std::uint32_t found = 0;
+    const bool agree = feet.for_points_in_ball(center, squared_radius, [&](std::uint32_t i) {
+      const Vec3 place = widen(feet.points[i]), away = place - middle, normal = widen(normals[i]);
+      const int aside = (dot(away, side) > 0 ? 1 : 0) + (dot(away, other) > 0 ? 2 : 0);
+      sums[aside] += normal;
+      ++counts[aside];
+      return ++found <= kMostOfPatch && dot(normal, n) > kOtherWall &&
+             std::fabs(plane.distance(place)) <= tolerance;
+    });
+    for (int k = 0; agree && k < 4; ++k) {
+      if (counts[k] < kFewestAside || dot(normalized_or_zero(sums[k]), n) < kSmoothCosine)
+        return false;
+    }
+    return agree;
+  }
+};
+
+// The points that may be nearest to places in a ball are quicker to search as a list than in the
+// tree. Answers have the same bits.
+class DiskSurface::AroundBall {
+ public:
+  VPM_HD AroundBall(const DiskSurface& surface, Vec3 center, double radius, std::uint32_t near)
+      : surface_(surface), center_(center) {
+    if (near == kNoPoint) return;
+    const double covered = kSlack * radius;
+    const double distance = norm(widen(surface.feet.points[near]) - center);
+    if (are_many(near, covered * (distance + covered))) return;
+    radius_ = covered;
+    const double reach = kSlack * (distance + 2 * covered);
+    gather(reach * reach);
+  }
+
+  VPM_HD Reading read(Vec3 x, std::uint32_t near) const {
+    if (points_.is_empty() || !(squared_norm(x - center_) <= radius_ * radius_))
+      return surface_.read(x, near);
+    return surface_.read_point(x, points_.nearest(x));
+  }
+  // DiskSurface::find_other_wall.
+  VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
+                              double unlike, OtherWall& other) const {
+    if (!covers(x, kFarthestPlace * radius))
+      return surface_.find_other_wall(x, own, point, radius, unlike, other);
+    return surface_.may_meet_other_wall(x, own, point, radius, unlike) &&
+           surface_.choose_other_wall(*this, x, own, point, radius, unlike, other);
+  }
+
+ private:
+  static constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
+
+  VPM_HD bool covers(Vec3 x, double radius) const {
+    return !points_.is_empty() && norm(x - center_) + radius <= radius_;
+  }
+
+  // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
+  // radius is 4 `quarter`. The leaf of a near point tells how densely.
+  VPM_HD bool are_many(std::uint32_t near, double quarter) const {
+    const PointBox leaf = surface_.feet.leaf_of(near);
+    const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
+    const double area = 12 * quarter, area_of_leaf = 0.5 * squared_diagonal;  // roughly
+    return area * PointTree::kLeafSize > 2 * PointList::kMost * area_of_leaf;
+  }
+
+  // The points that may be nearest; none if they are more than PointList::kMost.
+  VPM_HD void gather(double squared_reach) {
+    const bool few = surface_.feet.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
+      return points_.add(i, surface_.feet.points[i]);
+    });
+    if (!few) points_.clear();
+  }
+
+  const DiskSurface& surface_;
+  Vec3 center_;
+  double radius_ = 0;
+  PointList points_;
+};
+
+VPM_HD inline DiskSurface::AroundBall DiskSurface::around_ball(Vec3 center, double radius,
+                                                               std::uint32_t near) const {
+  return {*this, center, radius, near};
+}
+
+VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
+                                                std::uint32_t point, double radius, double unlike,
+                                                OtherWall& other) const {
+  if (!may_meet_other_wall(x, own, point, radius, unlike)) return false;
+#ifdef __CUDA_ARCH__
+  const DiskSurface& near = *this;  // lists would take the memory of many threads
+#else
+  const AroundBall near(*this, x, kFarthestPlace * radius, point);
+#endif
+  return choose_other_wall(near, x, own, point, radius, unlike, other);
+}
+
+}  // namespace vpm

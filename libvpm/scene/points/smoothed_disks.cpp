@@ -1,0 +1,203 @@
+#include "libvpm/scene/points/smoothed_disks.h"
+
+#include <optional>
+
+#include "libvpm/scene/points/second_planes.h"
+
+namespace vpm {
+namespace {
+
+constexpr std::uint32_t kFewOpposite = 5;
+constexpr double kStandsOff = 2;  // radii, from those about it
+// Fewer alike, twice as far too, make a stray, and an outlier where others are unlike it.
+constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
+// Of those alike.
+constexpr double kUnlikeOfSmooth = 0.1;
+constexpr double kUnlikeOfCalm = 0.02;  // so few are noise
+
+bool is_among_its_like(const Neighborhood& around) {
+  return around.unlike <= kUnlikeOfSmooth * around.alike;
+}
+
+DiskKind kind_of(const Neighborhood& around) {
+  const bool is_smooth = is_among_its_like(around);
+  if (around.alike < kFewTogether) return DiskKind::stray;
+  if (is_smooth) return DiskKind::smooth;
+  return around.alike < kFewAlike ? DiskKind::outlier : DiskKind::bent;
+}
+
+class Smoothing {
+ public:
+  Smoothing(const DiskWindows& windows, SettledDisks& result)
+      : windows_(windows),
+        result_(result),
+        kinds_(windows.count()),
+        is_calm_(leaf_count()),
+        is_beside_(leaf_count()) {}
+
+  // What a pass reads of other disks, none of its own writes.
+  std::vector<DiskKind> run() {
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_among_alike(leaf, work); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_beside_creases(leaf, work); });
+    before_.reserve(windows_.count());
+    for (std::uint32_t i = 0; i < windows_.count(); ++i) before_.push_back(settled(i));
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_among_settled(leaf, work); });
+    return std::move(kinds_);
+  }
+
+ private:
+  std::uint32_t leaf_count() const {
+    return (windows_.count() + PointTree::kLeafSize - 1) / PointTree::kLeafSize;
+  }
+  template <class Pass>
+  void pass(const Pass& pass) {
+    for_leaves(windows_, result_, pass);
+  }
+
+  Disk settled(std::uint32_t i) const {
+    return {widen(result_.feet[i]), widen(result_.normals[i])};
+  }
+  // As it was measured, but facing as those about it do.
+  Disk turned(std::uint32_t i) const { return {windows_.disk(i).place, widen(result_.normals[i])}; }
+  // Moves a disk to the mean height of those about it, along its normal, and turns it as they face.
+  void set(std::uint32_t i, const Disk& disk, const Neighborhood& around) {
+    result_.feet[i] = narrow(disk.place + around.height / around.alike * disk.normal);
+    result_.normals[i] = narrow(normalized_or_zero(around.normals));
+  }
+
+  // Calls take(i, disk, neighborhood) for the disks of a leaf, each as disk_of(i) says, among those
+  // that are near. They have most neighbours in common.
+  template <class DiskOf, class Take>
+  void look_around_each(const DiskLeaf& leaf, std::span<const Disk> near, const DiskOf& disk_of,
+                        const Take& take) const {
+    for (std::uint32_t first = leaf.begin; first < leaf.end; first += 4) {
+      DiskInBall four[4];
+      Neighborhood found[4];
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = std::min(first + k, leaf.end - 1);
+        four[k] = {disk_of(i), windows_.window(i, leaf)};
+      }
+      look_around(near, four, found);
+      for (std::uint32_t k = 0; k < 4 && first + k < leaf.end; ++k)
+        take(first + k, four[k], found[k]);
+    }
+  }
+
+  void settle_among_alike(const DiskLeaf& leaf, LeafWork& work) {
+    if (!windows_.gather(leaf.center, windows_.reach(leaf), kMostInWide, work.near))
+      work.near.clear();
+    bool is_calm = true;
+    look_around_each(
+        leaf, work.near, [&](std::uint32_t i) { return windows_.disk(i); },
+        [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
+          const bool is_usual = around.count() <= kMostInWindow && around.alike >= kFewAlike;
+          const auto all = is_usual ? around : look_further(i, own);
+          if (all && all->alike > 0) set(i, own.disk, *all);
+          kinds_[i] = all ? kind_of(*all) : DiskKind::outlier;
+          is_calm &= is_smooth(kinds_[i]) && all->unlike <= kUnlikeOfCalm * all->alike;
+        });
+    is_calm_[leaf.begin / PointTree::kLeafSize] = is_calm;
+  }
+
+  // Of a disk that has few neighbours, or many: nothing is known of one among too many. Nothing is
+  // about one that stands off from others, alone.
+  std::optional<Neighborhood> look_further(std::uint32_t i, const DiskInBall& one) const {
+    std::vector<Disk> near;
+    double reach = one.reach;
+    const auto gathers = [&](double r) {
+      return windows_.gather(one.disk.place, r, kMostInWindow, near);
+    };
+    if (!DiskWindows::halve_until(reach, gathers)) return std::nullopt;
+    const Neighborhood around = look_around_one(near, {one.disk, reach});
+    if (around.alike >= kFewAlike) return around;
+    if (!windows_.gather(one.disk.place, 2 * reach, kMostInWide, near)) return around;
+    const Neighborhood further = look_around_one(near, {one.disk, 2 * reach});
+    const double furthest = kStandsOff * windows_.radius(i);
+    return std::fabs(further.height) <= furthest * further.alike ? further : Neighborhood{};
+  }
+  static Neighborhood look_around_one(std::span<const Disk> near, const DiskInBall& one) {
+    const DiskInBall four[4] = {one, one, one, one};
+    Neighborhood found[4];
+    look_around(near, four, found);
+    return found[0];
+  }
+
+  // Whether hardly any were found about a leaf that face elsewhere.
+  bool is_calm_about(const DiskLeaf& leaf) const {
+    return windows_.for_leaves_near(leaf.center, windows_.reach(leaf), [&](std::uint32_t begin) {
+      return is_calm_[begin / PointTree::kLeafSize] != 0;
+    });
+  }
+
+  // A disk's own normal does not tell whether it is away from creases: those that noise has turned
+  // towards what is beyond one find less about them that faces elsewhere, and their mean would lean
+  // that way. The mean about it tells.
+  void find_clear(const DiskLeaf& leaf, LeafWork& work) {
+    if (is_calm_about(leaf)) {
+      for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
+        kinds_[i] = DiskKind::clear;  // all smooth
+      return;
+    }
+    is_beside_[leaf.begin / PointTree::kLeafSize] = 1;
+    if (!windows_.gather(leaf.center, windows_.reach(leaf), kMostInWide, work.near)) return;
+    look_around_each(
+        leaf, work.near, [&](std::uint32_t i) { return turned(i); },
+        [&](std::uint32_t i, const DiskInBall&, const Neighborhood& around) {
+          if (kinds_[i] == DiskKind::smooth && is_among_its_like(around))
+            kinds_[i] = DiskKind::clear;
+        });
+  }
+
+  // The windows by which the others' normals were estimated may reach across a crease.
+  void settle_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
+    if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0) return;
+    work.near.clear();
+    const auto take_clear = [&](std::uint32_t j) {
+      if (kinds_[j] == DiskKind::clear) work.near.push_back(windows_.disk(j));
+    };
+    if (!windows_.for_disks_near(leaf.center, windows_.reach(leaf), kMostInWide, take_clear))
+      return;
+    look_around_each(
+        leaf, work.near, [&](std::uint32_t i) { return turned(i); },
+        [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
+          if (is_smooth(kinds_[i]) && around.alike >= kFewAlike) set(i, own.disk, around);
+        });
+  }
+
+  // Means of means: what noise is left after the first ones makes the surface uneven on the scale
+  // of their windows, and the nearest of its disks are then those that it has moved most. What is
+  // opposite is told from where noise has been taken from both.
+  void settle_among_settled(const DiskLeaf& leaf, LeafWork& work) {
+    work.near.clear();
+    const auto take_smooth = [&](std::uint32_t j) {
+      if (is_smooth(kinds_[j])) work.near.push_back(before_[j]);
+    };
+    if (!windows_.for_disks_near(leaf.center, windows_.reach(leaf), kMostInWide, take_smooth))
+      return;
+    look_around_each(
+        leaf, work.near, [&](std::uint32_t i) { return settled(i); },
+        [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
+          if (!is_smooth(kinds_[i])) return;
+          if (around.alike >= kFewAlike) set(i, own.disk, around);
+          if (around.opposite.count < kFewOpposite) return;
+          const MeanPlane opposite(around.opposite, own.disk.place);
+          if (const auto second = second_plane(settled(i), opposite, 0))
+            work.found.push_back({i, *second});
+        });
+  }
+
+  const DiskWindows& windows_;
+  SettledDisks& result_;
+  std::vector<DiskKind> kinds_;
+  std::vector<char> is_calm_, is_beside_;  // of leaves
+  std::vector<Disk> before_;
+};
+
+}  // namespace
+
+std::vector<DiskKind> smooth(const DiskWindows& windows, SettledDisks& result) {
+  return Smoothing(windows, result).run();
+}
+
+}  // namespace vpm
