@@ -54,7 +54,7 @@ std::optional<Camera> PointCloud::camera() const {
   return cloud_->sensor ? std::optional(cloud_->sensor->camera) : std::nullopt;
 }
 
-Body::Body(const PointCloud& cloud, PointReading points)
+Body::Body(const PointCloud& cloud, Denoising points)
     : body_(std::make_shared<const SceneBody>(PreparedCloud(cloud.cloud(), points))) {}
 
 std::size_t Body::points() const {

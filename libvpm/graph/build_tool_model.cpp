@@ -98,22 +98,23 @@ void fill_graph(const SphereBvh& bvh, const Frame& frame, Level& level) {
   level.graph = with_edges(edges, bridges);
 }
 
-ShareQuality fill_shares(const Normalized& n, const SphereBvh& bvh, Level& level) {
+CellQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& level) {
   const double pieces =
       std::clamp(kPiecesPerSphere * level.sphere_count, kFewestPieces, kMostPieces);
-  const Shares shares = find_shares(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
+  const VoronoiCells voronoi =
+      find_voronoi_cells(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
   for (std::size_t i = 0; i < level.sphere_count; ++i) {
-    level.share_volume.push_back(n.frame.cubed() * shares.volume[i]);
-    level.share_centroid.push_back(n.frame.from(shares.centroid[i]));
-    level.share_reach.push_back(n.frame.unit * shares.reach[i]);
+    level.cell_volume.push_back(n.frame.cubed() * voronoi.volume[i]);
+    level.cell_centroid.push_back(n.frame.from(voronoi.centroid[i]));
+    level.cell_reach.push_back(n.frame.unit * voronoi.reach[i]);
   }
   const double size = std::cbrt(n.mass.volume) / samples_per_length(level.sphere_count);
   Cells cells =
-      build_cells(bvh.spheres(), shares, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
+      build_cells(bvh.spheres(), voronoi, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
   level.block_begin = std::move(cells.block_begin);
   level.blocks = std::move(cells.blocks);
   level.samples = std::move(cells.samples);
-  return shares.quality;
+  return voronoi.quality;
 }
 
 }  // namespace
@@ -125,7 +126,7 @@ double samples_per_length(std::uint32_t spheres) {
 }
 
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
-                           std::vector<ShareQuality>* quality) {
+                           std::vector<CellQuality>* quality) {
   const MassProperties mass = enclosed_mass(packing.solid);
   check(packing, mass, options);
   const Normalized n = normalize(packing, mass);
@@ -147,7 +148,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
     fill_graph(bvh, n.frame, level);
     level.hierarchy = build_hierarchy(spheres);
     level.grid = build_point_location_grid(spheres);
-    const ShareQuality found = fill_shares(n, bvh, level);
+    const CellQuality found = fill_cells(n, bvh, level);
     if (quality != nullptr) quality->push_back(found);
     model.levels.push_back(std::move(level));
     if (options.progress) {

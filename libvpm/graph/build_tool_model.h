@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "libvpm/graph/shares.h"
+#include "libvpm/graph/voronoi_cells.h"
 #include "libvpm/model/packing.h"
 #include "libvpm/model/tool_model.h"
 
@@ -31,6 +31,6 @@ struct GraphOptions {
 // Error(refused) for a bad packing. Same bytes for any thread count; scaling all coordinates by a
 // power of two changes exponents only.
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
-                           std::vector<ShareQuality>* quality = nullptr);
+                           std::vector<CellQuality>* quality = nullptr);
 
 }  // namespace vpm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libvpm/backend/cpu/share_clusters.h"
+#include "libvpm/backend/cpu/cell_clusters.h"
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -118,14 +118,14 @@ double fraction_inside(const Level& level, const CellBlock& block, const Cut& pl
   return sum;
 }
 
-double fraction_inside(const ToolModel& model, const Level& level, const ShareClusters& clusters,
+double fraction_inside(const ToolModel& model, const Level& level, const CellClusters& clusters,
                        const Cut& cut) {
   double sum = 0;
-  for (const ShareCluster& cluster : clusters.clusters) {
+  for (const CellCluster& cluster : clusters.clusters) {
     const bool patch = may_be_planar(cluster.reach, model.reach);
     const Cut of_patch = cut.plane_at(cluster.center, cluster.reach);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
-      const std::uint32_t i = clusters.shares[k];
+      const std::uint32_t i = clusters.voronoi[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
         const CellBlock& block = level.blocks[b];
         sum +=
@@ -155,8 +155,8 @@ std::vector<LevelError> calibrate(const ToolModel& model, const Solid& solid) {
   for (Vec3& v : centered.vertices) v -= model.center_of_mass;
   centered = enclosed_surface(centered);
   std::vector<Cut> cuts = make_cuts(centered);
-  std::vector<ShareClusters> clusters;
-  for (const Level& level : model.levels) clusters.push_back(cluster_shares(model, level));
+  std::vector<CellClusters> clusters;
+  for (const Level& level : model.levels) clusters.push_back(cluster_cells(model, level));
   std::vector<std::vector<double>> errors(model.levels.size(), std::vector<double>(cuts.size()));
   parallel_for(cuts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

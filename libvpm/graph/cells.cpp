@@ -84,14 +84,14 @@ SphereCell build_cell(std::vector<CellPiece> pieces, const Placement& placement)
 
 }  // namespace
 
-Cells build_cells(std::span<const Sphere> spheres, const Shares& shares, double size, Vec3 origin,
-                  double unit, double volume) {
+Cells build_cells(std::span<const Sphere> spheres, const VoronoiCells& voronoi, double size,
+                  Vec3 origin, double unit, double volume) {
   std::vector<SphereCell> of_sphere(spheres.size());
   parallel_for(spheres.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::vector<CellPiece> pieces;
       cut_ball(spheres[i].radius, size, pieces);
-      cut_gap(shares, i, spheres[i].center, size, pieces);
+      cut_gap(voronoi, i, spheres[i].center, size, pieces);
       of_sphere[i] = build_cell(std::move(pieces), {spheres[i].center - origin, unit, volume});
     }
   });

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/graph/shares.h"
+#include "libvpm/graph/voronoi_cells.h"
 #include "libvpm/model/tool_model.h"
 
 namespace vpm {
@@ -25,7 +25,7 @@ struct CellPiece {
 void cut_ball(double radius, double size, std::vector<CellPiece>& pieces);
 
 // Appends pieces of the gap part of a cell, halved until the moment radius fits `size`.
-void cut_gap(const Shares& shares, std::size_t sphere, Vec3 center, double size,
+void cut_gap(const VoronoiCells& voronoi, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces);
 
 struct Cells {
@@ -36,7 +36,7 @@ struct Cells {
 
 // Cuts all cells. Coordinates are stored relative to `origin`, times `unit`; weights relative to
 // `volume`.
-Cells build_cells(std::span<const Sphere> spheres, const Shares& shares, double size, Vec3 origin,
-                  double unit, double volume);
+Cells build_cells(std::span<const Sphere> spheres, const VoronoiCells& voronoi, double size,
+                  Vec3 origin, double unit, double volume);
 
 }  // namespace vpm

@@ -74,13 +74,13 @@ class GapCutter {
 
 }  // namespace
 
-void cut_gap(const Shares& shares, std::size_t sphere, Vec3 center, double size,
+void cut_gap(const VoronoiCells& voronoi, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces) {
-  const std::uint32_t begin = shares.gap_begin[sphere], end = shares.gap_begin[sphere + 1];
-  if (begin == end || !(shares.gap_scale > 0)) return;
-  std::vector<GapSegment> segments(shares.gap.segments.begin() + begin,
-                                   shares.gap.segments.begin() + end);
-  GapCutter(shares.gap, shares.gap_scale, center, size, pieces).cut(segments);
+  const std::uint32_t begin = voronoi.gap_begin[sphere], end = voronoi.gap_begin[sphere + 1];
+  if (begin == end || !(voronoi.gap_scale > 0)) return;
+  std::vector<GapSegment> segments(voronoi.gap.segments.begin() + begin,
+                                   voronoi.gap.segments.begin() + end);
+  GapCutter(voronoi.gap, voronoi.gap_scale, center, size, pieces).cut(segments);
 }
 
 }  // namespace vpm

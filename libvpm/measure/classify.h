@@ -11,13 +11,15 @@ namespace vpm {
 
 // Lengths of the tool that the rules compare with, m.
 struct ToolReach {
-  double length = 0;   // radius about the centre of mass that encloses the tool
-  double inverse = 0;  // 1 / length, 1/m: scales arms
-  double shadow = 0;   // places further behind a seen surface need the support of a plane
+  double length = 0;    // radius about the centre of mass that encloses the tool
+  double inverse = 0;   // 1 / length, 1/m: scales arms
+  double occluded = 0;  // places further behind a seen surface need the support of a plane
 
   ToolReach() = default;
-  ToolReach(double reach, Shadows shadows)
-      : length(reach), inverse(1 / reach), shadow(shadows == Shadows::solid ? HUGE_VAL : reach) {}
+  ToolReach(double reach, OccludedSpace occluded)
+      : length(reach),
+        inverse(1 / reach),
+        occluded(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
 // A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
@@ -25,7 +27,7 @@ struct ToolReach {
 inline constexpr double kCompactReach = 0.125;
 // Clusters up to this part of the tool's radius may be planar; wider ones, of one large cell, are
 // classified by their blocks.
-inline constexpr double kPatchReach = 0.1;
+inline constexpr double kPlanarReach = 0.1;
 // A block sees one plane where that is right to its radius, and to this part of the tool's radius:
 // blocks of few large cells are wider than the error they may make.
 inline constexpr double kFlatness = 0.1;
@@ -36,7 +38,7 @@ VPM_HD constexpr bool is_compact(double cell_radius, double tool_radius) {
 }
 // True if a cluster of this bounding radius is small enough to be decided as a whole.
 VPM_HD constexpr bool may_be_planar(double cluster_radius, double tool_radius) {
-  return cluster_radius <= kPatchReach * tool_radius;
+  return cluster_radius <= kPlanarReach * tool_radius;
 }
 
 // The side of a plane on which a body lies.
@@ -63,27 +65,29 @@ enum class ClusterClass : std::uint8_t {
 // Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
 // plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
 template <MeasuredBody Surface>
-VPM_HD ClusterClass class_of_ball(const Surface& surface, const typename Surface::Look& look,
-                                  Vec3 center, double radius, double tool_radius) {
-  switch (look.side) {
+VPM_HD ClusterClass class_of_ball(const Surface& surface,
+                                  const typename Surface::BallClass& in_ball, Vec3 center,
+                                  double radius, double tool_radius) {
+  switch (in_ball.side) {
     case Side::free:
       return ClusterClass::free;
-    case Side::mixed:
+    case Side::ambiguous:
       return ClusterClass::ambiguous;
-    case Side::uncut:
+    case Side::no_surface:
       return ClusterClass::no_surface;
     case Side::behind:
       break;
   }
-  return gap_bound(surface, look, center, radius) < tool_radius ? ClusterClass::behind_near
-                                                                : ClusterClass::behind;
+  return gap_bound(surface, in_ball, center, radius) < tool_radius ? ClusterClass::behind_near
+                                                                   : ClusterClass::behind;
 }
 
 // Returns the class of a whole cluster: class_of_ball(), but uniform where it is small enough.
 template <MeasuredBody Surface>
-VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surface::Look& look,
-                                     Vec3 center, double radius, double tool_radius) {
-  const ClusterClass found = class_of_ball(surface, look, center, radius, tool_radius);
+VPM_HD ClusterClass class_of_cluster(const Surface& surface,
+                                     const typename Surface::BallClass& in_ball, Vec3 center,
+                                     double radius, double tool_radius) {
+  const ClusterClass found = class_of_ball(surface, in_ball, center, radius, tool_radius);
   return found == ClusterClass::behind_near && may_be_planar(radius, tool_radius)
              ? ClusterClass::uniform
              : found;
@@ -92,8 +96,8 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface, const typename Surf
 // Returns the class of a planar cluster without a surface in it, by the surface sample at its
 // middle.
 template <MeasuredBody Surface>
-VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middle, Vec3 center,
-                                    double radius, double tool_radius) {
+VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample& middle,
+                                    Vec3 center, double radius, double tool_radius) {
   if (!(middle.known && middle.distance < 0)) return ClusterClass::free;
   if (!(norm(middle.foot - center) + radius < tool_radius)) return ClusterClass::behind;
   const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
@@ -106,23 +110,23 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const Reading& middl
 // True if a plane as which the surface passes through a cluster is the cluster's: it passes no
 // further away than kSheetReach of its radii, and no second surface is near.
 template <MeasuredBody Surface>
-VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::Look& look,
+VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, const TangentPlane& plane) {
   const double near = kSheetReach * radius;
   OtherWall other;
   return squared_norm(plane.foot - center) <= near * near &&
-         !finds_other_wall(surface, center, plane, look.point, radius, kOneDirection, other);
+         !finds_other_wall(surface, center, plane, in_ball.point, radius, kOneDirection, other);
 }
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
-// `plane`. `read_all` is ReadInTurn, or reads the same places side by side.
+// `plane`. `sample_all` is SampleInTurn, or reads the same places side by side.
 template <MeasuredBody Surface, class ReadAll>
-VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::Look& look,
+VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
-                                const ReadAll& read_all, TangentPlane& plane) {
+                                const ReadAll& sample_all, TangentPlane& plane) {
   return may_be_planar(radius, tool_radius) &&
-         surface.mean_plane(look, center, radius, radius, read_all, plane) &&
-         is_plane_of_cluster(surface, look, center, radius, plane);
+         surface.mean_plane(in_ball, center, radius, radius, sample_all, plane) &&
+         is_plane_of_cluster(surface, in_ball, center, radius, plane);
 }
 
 // Returns the side of a cell in a cluster that is cut by a plane. What the cell's own pixels show
@@ -139,7 +143,7 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
 // plane supports it.
 template <class Surface>
 VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
-  return signed_distance < -(Surface::kTellsInside ? tool.shadow : tool.length);
+  return signed_distance < -(Surface::kTellsInside ? tool.occluded : tool.length);
 }
 // True if a body of this radius is shared out between two walls: smaller ones are pushed to one.
 VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
@@ -158,19 +162,19 @@ enum class BlockClass : std::uint8_t {
 // is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
 // be.
 template <MeasuredBody Surface, class Read>
-VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::Look& look,
+VPM_HD BlockClass class_of_block(const Surface& surface, const typename Surface::BallClass& in_ball,
                                  Vec3 center, double radius, const ToolReach& tool,
                                  const Read& read, TangentPlane& plane) {
-  if (look.side == Side::free) return BlockClass::free;
-  if (look.side != Side::mixed) return BlockClass::uncut;
-  if (!surface.may_be_flat(look)) return BlockClass::ambiguous;
+  if (in_ball.side == Side::free) return BlockClass::free;
+  if (in_ball.side != Side::ambiguous) return BlockClass::uncut;
+  if (!surface.may_be_flat(in_ball)) return BlockClass::ambiguous;
   const double most = kFlatness * tool.length, tolerance = radius < most ? radius : most;
-  if (!surface.is_flat(look, read, tolerance, plane) ||
+  if (!surface.is_flat(in_ball, read, tolerance, plane) ||
       is_far_behind<Surface>(plane.distance(center), tool))
     return BlockClass::ambiguous;
   OtherWall other;
-  return is_divisible(radius, tool) &&
-                 finds_other_wall(surface, center, plane, look.point, radius, kOneDirection, other)
+  return is_divisible(radius, tool) && finds_other_wall(surface, center, plane, in_ball.point,
+                                                        radius, kOneDirection, other)
              ? BlockClass::ambiguous
              : BlockClass::cut;
 }

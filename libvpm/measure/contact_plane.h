@@ -36,14 +36,14 @@ struct ContactPlane {
   }
   // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
   // object more than `near` in front of it. Without a plane nothing does.
-  VPM_HD bool vouches_for(Vec3 relative, Vec3 hiding, double near) const {
+  VPM_HD bool supports(Vec3 relative, Vec3 hiding, double near) const {
     return count > 0 && height(relative) < 0 && height(hiding) <= near;
   }
 };
 
 // A cut share, in the surface's frame: its plane speaks for what is too far behind the surface, or
 // out of sight.
-struct CutShare {
+struct CutCell {
   ContactPlane plane;
   Vec3 center;
   double reach = 0;
@@ -51,8 +51,8 @@ struct CutShare {
   VPM_HD Vec3 relative(Vec3 x) const { return 1 / reach * (x - center); }
   // True if a place lies behind the plane, so that the flood may go there.
   VPM_HD bool is_behind(Vec3 x) const { return plane.height(relative(x)) < 0; }
-  VPM_HD bool vouches_for(Vec3 x, Vec3 hiding, double near) const {
-    return plane.vouches_for(relative(x), relative(hiding), near / reach);
+  VPM_HD bool supports(Vec3 x, Vec3 hiding, double near) const {
+    return plane.supports(relative(x), relative(hiding), near / reach);
   }
 };
 

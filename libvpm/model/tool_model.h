@@ -70,10 +70,10 @@ struct Level {
   Hierarchy hierarchy;
   PointLocationGrid grid;
   // Volume of each cell, m^3; they sum to the solid's volume.
-  std::vector<double> share_volume;
-  std::vector<Vec3> share_centroid;
+  std::vector<double> cell_volume;
+  std::vector<Vec3> cell_centroid;
   // Largest distance of a cell's points from its sphere's centre, m.
-  std::vector<double> share_reach;
+  std::vector<double> cell_reach;
   // Row offsets: blocks of each cell; spheres + 1 entries.
   std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;

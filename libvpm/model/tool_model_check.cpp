@@ -21,7 +21,7 @@ constexpr double kReachTolerance = 1e-6;
 constexpr double kFarthestPart = 2;
 // Largest distance of a cell's blocks and samples from its sphere's centre, in bounding radii of
 // the cell.
-constexpr double kFarthestOfShare = 7;
+constexpr double kFarthestOfCell = 7;
 // Number of samples per cell up to which a query's counts are exact.
 constexpr std::size_t kMostSamplesOfACell = std::size_t{1} << 20;
 // Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
@@ -40,8 +40,8 @@ class LevelCheck {
     graph();
     hierarchy();
     grid();
-    shares();
-    cells();
+    cell_sum();
+    samples();
     sums();
   }
 
@@ -139,21 +139,21 @@ class LevelCheck {
     ascending(grid.begin, grid.spheres, "spheres");
   }
 
-  void shares() const {
+  void cell_sum() const {
     const std::size_t n = level_.sphere_count;
-    if (level_.share_volume.size() != n || level_.share_centroid.size() != n ||
-        level_.share_reach.size() != n)
+    if (level_.cell_volume.size() != n || level_.cell_centroid.size() != n ||
+        level_.cell_reach.size() != n)
       fail("its shares are not as many as its spheres");
     for (std::size_t i = 0; i < n; ++i) {
-      if (!(level_.share_volume[i] >= 0) || !std::isfinite(level_.share_volume[i]) ||
-          !is_finite(level_.share_centroid[i]) || !(level_.share_reach[i] > 0) ||
-          !std::isfinite(level_.share_reach[i]))
+      if (!(level_.cell_volume[i] >= 0) || !std::isfinite(level_.cell_volume[i]) ||
+          !is_finite(level_.cell_centroid[i]) || !(level_.cell_reach[i] > 0) ||
+          !std::isfinite(level_.cell_reach[i]))
         fail("share " + std::to_string(i) + " is negative or not finite, or has no reach");
     }
   }
 
   // Checks that blocks cut the samples into consecutive runs, and cells cut the blocks so.
-  void cells() const {
+  void samples() const {
     rows(level_.block_begin, level_.sphere_count, level_.blocks.size(), "blocks");
     std::uint32_t end = 0;
     for (std::size_t i = 0; i < level_.blocks.size(); ++i) {
@@ -184,14 +184,14 @@ class LevelCheck {
   void sums() const {
     const double farthest = kFarthestPart * model_.reach,
                  of_sphere = (1 + kReachTolerance) * model_.reach;
-    double balls = 0, shares = 0, weights = 0;
+    double balls = 0, cell_sum = 0, weights = 0;
     for (std::size_t i = 0; i < level_.sphere_count; ++i) {
       const Sphere& sphere = model_.spheres[i];
       if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= of_sphere) ||
-          !(level_.share_reach[i] <= 2 * farthest))
+          !(level_.cell_reach[i] <= 2 * farthest))
         fail("sphere " + std::to_string(i) + " or its share lies beyond the tool's reach");
       balls += volume(sphere);
-      shares += level_.share_volume[i];
+      cell_sum += level_.cell_volume[i];
     }
     for (std::size_t i = 0; i < level_.blocks.size(); ++i) {
       if (!(norm(widen(level_.blocks[i].center)) <= farthest))
@@ -203,15 +203,15 @@ class LevelCheck {
         fail("sample " + std::to_string(i) + " lies beyond the tool's reach");
       weights += sample.weight;
     }
-    for (std::uint32_t i = 0; i < level_.sphere_count; ++i) check_share(i);
+    for (std::uint32_t i = 0; i < level_.sphere_count; ++i) check_cell(i);
     const auto differ = [](double sum, double whole) {
       return !(std::abs(sum - whole) <= kSumTolerance * whole);
     };
     if (!(balls <= (1 + kSumTolerance) * model_.volume))
       fail("its spheres hold " + std::to_string(balls / model_.volume) +
            " times the tool's volume, so they overlap");
-    if (differ(shares, model_.volume))
-      fail("its shares sum to " + std::to_string(shares / model_.volume) +
+    if (differ(cell_sum, model_.volume))
+      fail("its shares sum to " + std::to_string(cell_sum / model_.volume) +
            " times the tool's volume");
     if (differ(weights, 1))
       fail("the weights of its samples sum to " + std::to_string(weights) + " instead of 1");
@@ -219,9 +219,9 @@ class LevelCheck {
 
   // Checks that the pieces of a cell lie within its bounding radius, in whose multiples a query
   // sums places.
-  void check_share(std::uint32_t i) const {
+  void check_cell(std::uint32_t i) const {
     const Vec3 center = model_.spheres[i].center - model_.center_of_mass;
-    const double farthest = kFarthestOfShare * level_.share_reach[i];
+    const double farthest = kFarthestOfCell * level_.cell_reach[i];
     const auto check = [&](Vec3 at, double radius) {
       if (!(norm(at - center) + radius <= farthest))
         fail("the share of sphere " + std::to_string(i) + " reaches further than it says");

@@ -11,7 +11,7 @@ namespace {
 constexpr file::ChunkId kTool("TOOL"), kSpheres("SPHR"), kLevels("LEVL");
 constexpr file::ChunkId kEdgeBegin("EDGB"), kNeighbors("EDGN"), kNodes("NODE"), kLeaves("LEAF");
 constexpr file::ChunkId kGridBegin("GRDB"), kGridSpheres("GRDS");
-constexpr file::ChunkId kShareVolume("SHRV"), kShareCentroid("SHRC"), kShareReach("SHRR");
+constexpr file::ChunkId kCellVolume("SHRV"), kCellCentroid("SHRC"), kCellReach("SHRR");
 constexpr file::ChunkId kBlockBegin("BLKB"), kBlocks("BLCK"), kSamples("SMPL");
 constexpr file::ChunkId kCalibration("CALB");
 constexpr file::ChunkId kMeshVertices("MSHV"), kMeshTriangles("MSHT");
@@ -55,9 +55,9 @@ Level level_of(const LevelRecord& record, const file::Reader& reader, std::uint3
                 record.grid_nz,
                 reader.read<std::uint32_t>(kGridBegin, k),
                 reader.read<std::uint32_t>(kGridSpheres, k)};
-  level.share_volume = reader.read<double>(kShareVolume, k);
-  level.share_centroid = reader.read<Vec3>(kShareCentroid, k);
-  level.share_reach = reader.read<double>(kShareReach, k);
+  level.cell_volume = reader.read<double>(kCellVolume, k);
+  level.cell_centroid = reader.read<Vec3>(kCellCentroid, k);
+  level.cell_reach = reader.read<double>(kCellReach, k);
   level.block_begin = reader.read<std::uint32_t>(kBlockBegin, k);
   level.blocks = reader.read<CellBlock>(kBlocks, k);
   level.samples = reader.read<CellSample>(kSamples, k);
@@ -71,9 +71,9 @@ void add_level(file::Writer& writer, const Level& level, std::uint32_t k) {
   writer.add(kLeaves, k, std::span(level.hierarchy.leaves));
   writer.add(kGridBegin, k, std::span(level.grid.begin));
   writer.add(kGridSpheres, k, std::span(level.grid.spheres));
-  writer.add(kShareVolume, k, std::span(level.share_volume));
-  writer.add(kShareCentroid, k, std::span(level.share_centroid));
-  writer.add(kShareReach, k, std::span(level.share_reach));
+  writer.add(kCellVolume, k, std::span(level.cell_volume));
+  writer.add(kCellCentroid, k, std::span(level.cell_centroid));
+  writer.add(kCellReach, k, std::span(level.cell_reach));
   writer.add(kBlockBegin, k, std::span(level.block_begin));
   writer.add(kBlocks, k, std::span(level.blocks));
   writer.add(kSamples, k, std::span(level.samples));

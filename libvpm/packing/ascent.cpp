@@ -26,7 +26,7 @@ struct Contacts {
   bool has(Obstacle obstacle) const {
     return std::find(obstacles.begin(), obstacles.end(), obstacle) != obstacles.end();
   }
-  double clearance(const Space& space, Vec3 x) const {
+  double separation(const Space& space, Vec3 x) const {
     double d = HUGE_VAL;
     for (const Obstacle o : obstacles) d = std::min(d, linearised(space, o, x).value);
     return d;
@@ -65,7 +65,7 @@ struct Contacts {
 
 }  // namespace
 
-Sphere ascend(const Space& space, Vec3 start, const Clearance& from, double longest_step) {
+Sphere ascend(const Space& space, Vec3 start, const SeparationBound& from, double longest_step) {
   Sphere best{start, from.value};
   if (from.nearest.kind == Obstacle::Kind::none) return best;
   Contacts contacts;
@@ -76,7 +76,7 @@ Sphere ascend(const Space& space, Vec3 start, const Clearance& from, double long
     const MaxMinStep step = max_min_step(contacts.bounds, box);
     if (!(step.value - best.radius > kConverged * best.radius)) break;
     const Vec3 x = best.center + step.delta;
-    const Clearance there = space.clearance(x, contacts.clearance(space, x));
+    const SeparationBound there = space.separation(x, contacts.separation(space, x));
     const bool unforeseen =
         there.nearest.kind != Obstacle::Kind::none && !contacts.has(there.nearest);
     if (there.value > best.radius) {

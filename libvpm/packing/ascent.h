@@ -15,7 +15,7 @@ namespace vpm {
 // an unforeseen obstacle shortens the step. No step is longer than `longest_step`. The result
 // touches four obstacles (fewer where the maximum is flat), to rounding; the ascent never lowers
 // the clearance and never crosses the mesh.
-Sphere ascend(const Space& space, Vec3 start, const Clearance& from,
+Sphere ascend(const Space& space, Vec3 start, const SeparationBound& from,
               double longest_step = HUGE_VAL);
 
 }  // namespace vpm

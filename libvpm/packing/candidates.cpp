@@ -78,7 +78,7 @@ Sphere Candidates::moved_to_contact(const Candidate& c) const {
   for (int i = 0; i < kMostSteps && gap > kContact * best.radius; ++i) {
     const double step = std::min(gap, kStep * best.radius);
     const Vec3 x = best.center + normalized_or_zero(to.center - best.center) * step;
-    const Clearance at = space_.clearance(x);
+    const SeparationBound at = space_.separation(x);
     if (!(at.value > 0)) break;
     const Sphere moved = ascend(space_, x, at, kAstray * step);
     const double left = norm(moved.center - to.center) - to.radius - moved.radius;
@@ -90,7 +90,7 @@ Sphere Candidates::moved_to_contact(const Candidate& c) const {
 }
 
 bool Candidates::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
-  const double room = space_.clearance(sphere.center).value;
+  const double room = space_.separation(sphere.center).value;
   if (!(room >= kUnchanged * sphere.radius)) return false;
   space_.place({sphere.center, std::min(room, sphere.radius)}, touched);
   return true;

@@ -15,7 +15,7 @@ struct Obstacle {
   friend constexpr bool operator==(const Obstacle&, const Obstacle&) = default;
 };
 
-struct Clearance {
+struct SeparationBound {
   double value = 0;
   Obstacle nearest;
   // Unit vector from the nearest point of the obstacle; zero if there is none.

@@ -66,7 +66,7 @@ Vec3 cube_center(BlockIndex::Coordinates c, int level) {
 }
 
 // Returns the sphere of radius `cap` that touches the nearest obstacle of x.
-Sphere against_obstacle(Vec3 x, const Clearance& at, double cap) {
+Sphere against_obstacle(Vec3 x, const SeparationBound& at, double cap) {
   return {x - (at.value - cap) * at.away, cap};
 }
 
@@ -410,17 +410,17 @@ double Space::local_maximum(Block& block, const Cell& leaf, double radius, doubl
     if (distance < kSlope * half && leaf.d <= m.radius) return m.radius;
     if (m.radius >= radius && distance - m.radius + half < radius) return m.radius;
   }
-  const Clearance at = clearance(x);
+  const SeparationBound at = separation(x);
   Sphere best = at.value >= cap ? against_obstacle(x, at, cap) : ascend(*this, x, at);
   best.radius = std::min(best.radius, cap);
   block.maxima.push_back(best);
   return best.radius;
 }
 
-Clearance Space::clearance(Vec3 x, double within) const {
+SeparationBound Space::separation(Vec3 x, double within) const {
   const std::uint32_t b = index_.find(cube_of(x, level_));
   if (b == BlockIndex::kNone) return {-1, {}, {}};
-  Clearance best{std::min(within, reach_), {}, {}};
+  SeparationBound best{std::min(within, reach_), {}, {}};
   for (const std::uint32_t i : blocks_[b].spheres) {
     const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
     if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};

@@ -51,7 +51,7 @@ class Space {
 
   // Returns the clearance of a point in the solid if it is below `within`. Otherwise kind is none
   // and the value is min(within, reach_). The value is negative if the point has no room.
-  Clearance clearance(Vec3 x, double within = 2) const;
+  SeparationBound separation(Vec3 x, double within = 2) const;
 
   // Places a sphere and appends the blocks around it to `touched`. Clearances know it at once,
   // bounds and searches after update() of these blocks.

@@ -38,7 +38,7 @@ void for_each_job(std::size_t count, const Body& body) {
 // True if one launch can answer for both.
 bool go_together(const QueryOptions& a, const QueryOptions& b) {
   return a.measure == b.measure && a.device == b.device && a.counts_points == b.counts_points &&
-         a.shadows == b.shadows;
+         a.occluded == b.occluded;
 }
 
 void check_options(const QueryOptions& options, const ToolModel& tool) {
@@ -51,7 +51,7 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
-  if (options.shadows == Shadows::solid && options.measure == Measure::paper)
+  if (options.occluded == OccludedSpace::solid && options.measure == Measure::paper)
     invalid("solid shadows are a matter of the refined measure", "leave the other measure out");
 }
 
@@ -71,7 +71,7 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
 
 // A frame always has a camera, and must not be prepared by the CPU for a device.
 void ToolQuery::check(const SceneView& scene) const {
-  if (options_.shadows != Shadows::solid || scene.frame() != nullptr) return;
+  if (options_.occluded != OccludedSpace::solid || scene.frame() != nullptr) return;
   if (!scene.cloud().is_organised() && !scene.cloud().positions().empty())
     refuse(
         "of points without a camera nobody knows what they hide: solid shadows need a cloud that "

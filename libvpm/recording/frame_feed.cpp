@@ -87,7 +87,7 @@ PreparedChange FrameReader::prepare(FrameChange change) {
 }
 
 FrameFeed::FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
-                     const ImportOptions& options, const Device& device, PointReading points)
+                     const ImportOptions& options, const Device& device, Denoising points)
     : recording_(recording),
       schedule_(recording, schedule),
       cloud_(std::make_unique<PreparedCloud>(Cloud{})) {
@@ -107,7 +107,7 @@ FrameFeed::~FrameFeed() {
 }
 
 void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options,
-                            const Device& device, PointReading points) {
+                            const Device& device, Denoising points) {
   try {
     FrameReader reader(recording_, options, device, points);
     while (std::optional<FrameChange> change = schedule.next()) {

@@ -48,7 +48,7 @@ class FrameReader {
   // `options` tell how images become clouds, `device` where they are prepared. Camera poses come
   // from the recording.
   FrameReader(const Recording& recording, const ImportOptions& options, const Device& device = {},
-              PointReading points = PointReading::settled)
+              Denoising points = Denoising::on)
       : recording_(recording),
         options_(options),
         device_(device),
@@ -67,7 +67,7 @@ class FrameReader {
   const Recording& recording_;
   ImportOptions options_;
   Device device_;
-  PointReading points_;
+  Denoising points_;
   FramePreparation preparation_;
   std::unique_ptr<PreparedCloud> spare_;
   std::optional<DepthFrames> frames_;
@@ -90,7 +90,7 @@ class FrameFeed {
   // Starts preparing, as FrameReader does it. Keeps a reference to the recording.
   FrameFeed(const Recording& recording, const ScheduleOptions& schedule,
             const ImportOptions& options, const Device& device = {},
-            PointReading points = PointReading::settled);
+            Denoising points = Denoising::on);
   ~FrameFeed();
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
@@ -114,7 +114,7 @@ class FrameFeed {
   static constexpr std::size_t kAhead = 2;
 
   void prepare_all(FrameSchedule schedule, const ImportOptions& options, const Device& device,
-                   PointReading points);
+                   Denoising points);
   PreparedChange take();
   void count(const PreparedChange& taken);
 

@@ -13,16 +13,18 @@
 namespace vpm {
 
 // A body of the scene. Its members:
-//   Look look_at_ball(center, radius)  classifies a ball: `side` is true of all of the ball, or
+//   BallClass classify_ball(center, radius)  classifies a ball: `side` is true of all of the ball,
+//   or
 //                                      `mixed`; `point` is where to begin a search in it, or
 //                                      kNoPoint
-//   Reading read(x, point)             samples the surface for a place x: signed distance (negative
+//   SurfaceSample sample(x, point)       samples the surface for a place x: signed distance
+//   (negative
 //                                      inside), unit normal into free space, foot; unknown where
 //                                      nothing was measured
 //   Vec3 closest_normal(x, reading)    returns the unit direction of the nearest way out of a place
 //                                      behind the surface, where `reading` was sampled
 //   bool may_be_flat(look)             false if the surface in the ball is surely not one plane
-//   bool mean_plane(look, center, radius, tolerance, read_all, plane)
+//   bool mean_plane(look, center, radius, tolerance, sample_all, plane)
 //                                      finds the mean plane of the surface across the ball
 //   bool is_flat(look, read, tolerance, plane)
 //                                      finds the plane at the ball's middle, which read() samples
@@ -33,18 +35,18 @@ namespace vpm {
 // flood decides; kSearchesFoot, that closest_normal() searches, so that neighbours share its
 // result.
 template <class B>
-concept MeasuredBody = requires(const B& body, Vec3 x, double length, Reading reading,
-                                TangentPlane plane, const typename B::Look& look,
-                                Reading (*read)()) {
-  { body.look_at_ball(x, length) } -> std::same_as<typename B::Look>;
-  { look.side } -> std::convertible_to<Side>;
-  { look.point } -> std::convertible_to<std::uint32_t>;
-  { body.read(x, kNoPoint) } -> std::same_as<Reading>;
-  { body.closest_normal(x, reading) } -> std::same_as<Vec3>;
-  { body.may_be_flat(look) } -> std::same_as<bool>;
-  { body.mean_plane(look, x, length, length, ReadInTurn{}, plane) } -> std::same_as<bool>;
-  { body.is_flat(look, read, length, plane) } -> std::same_as<bool>;
-  { body.fraction_inside(reading, x, length) } -> std::same_as<double>;
+concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSample on_surface,
+                                TangentPlane plane, const typename B::BallClass& in_ball,
+                                SurfaceSample (*read)()) {
+  { body.classify_ball(x, length) } -> std::same_as<typename B::BallClass>;
+  { in_ball.side } -> std::convertible_to<Side>;
+  { in_ball.point } -> std::convertible_to<std::uint32_t>;
+  { body.sample(x, kNoPoint) } -> std::same_as<SurfaceSample>;
+  { body.closest_normal(x, on_surface) } -> std::same_as<Vec3>;
+  { body.may_be_flat(in_ball) } -> std::same_as<bool>;
+  { body.mean_plane(in_ball, x, length, length, SampleInTurn{}, plane) } -> std::same_as<bool>;
+  { body.is_flat(in_ball, read, length, plane) } -> std::same_as<bool>;
+  { body.fraction_inside(on_surface, x, length) } -> std::same_as<double>;
   body.around_ball(x, length, kNoPoint);
   { B::kTellsInside } -> std::convertible_to<bool>;
   { B::kSearchesFoot } -> std::convertible_to<bool>;
@@ -54,21 +56,21 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, Reading re
 // of the surface says.
 template <class B>
 concept SeesFreeSpace = MeasuredBody<B> &&
-    requires(const B& body, Vec3 x, double length, const typename B::Look& look) {
-  { body.side_of(look, x, length) } -> std::same_as<Side>;
+    requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
+  { body.side_of(in_ball, x, length) } -> std::same_as<Side>;
   { body.tells_of_parts(x, length) } -> std::same_as<bool>;
-  { body.is_free_part(look, x, length) } -> std::same_as<bool>;
-  { body.may_touch(look, x, length) } -> std::same_as<bool>;
-  { B::least_inverse_depth(look) } -> std::same_as<float>;
+  { body.is_free_part(in_ball, x, length) } -> std::same_as<bool>;
+  { body.may_touch(in_ball, x, length) } -> std::same_as<bool>;
+  { B::least_inverse_depth(in_ball) } -> std::same_as<float>;
   { body.may_be_free(0.0F, x, length) } -> std::same_as<bool>;
-  { body.may_hold_free(look, x, length) } -> std::same_as<bool>;
+  { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
 };
 
 // A body that bounds how far places of a ball behind it are from the surface.
 template <class B>
 concept BoundsGap = MeasuredBody<B> &&
-    requires(const B& body, Vec3 x, double length, const typename B::Look& look) {
-  { body.largest_gap(look, x, length) } -> std::same_as<double>;
+    requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
+  { body.largest_gap(in_ball, x, length) } -> std::same_as<double>;
 };
 
 // A body, or a part of one about a ball, that may show an obstacle from several sides.
@@ -81,11 +83,12 @@ concept HasOtherWalls = requires(const B& body, Vec3 x, double length, TangentPl
 // Returns the side of a ball that was looked at; where its look does not decide, what was seen of
 // it alone may show it to be free.
 template <MeasuredBody B>
-VPM_HD Side side_of(const B& body, const typename B::Look& look, Vec3 center, double radius) {
+VPM_HD Side side_of(const B& body, const typename B::BallClass& in_ball, Vec3 center,
+                    double radius) {
   if constexpr (SeesFreeSpace<B>)
-    return body.side_of(look, center, radius);
+    return body.side_of(in_ball, center, radius);
   else
-    return look.side;
+    return in_ball.side;
 }
 // True if a look at a ball tells of the balls in it (is_free_part).
 template <MeasuredBody B>
@@ -97,26 +100,28 @@ VPM_HD bool tells_of_parts(const B& body, Vec3 center, double radius) {
 }
 // True if such a look shows a ball in the one that was looked at to be free.
 template <MeasuredBody B>
-VPM_HD bool is_free_part(const B& body, const typename B::Look& look, Vec3 center, double radius) {
+VPM_HD bool is_free_part(const B& body, const typename B::BallClass& in_ball, Vec3 center,
+                         double radius) {
   if constexpr (SeesFreeSpace<B>)
-    return body.is_free_part(look, center, radius);
+    return body.is_free_part(in_ball, center, radius);
   else
     return false;
 }
 // False if the surface surely does not touch a ball in the one that was looked at.
 template <MeasuredBody B>
-VPM_HD bool may_touch(const B& body, const typename B::Look& look, Vec3 center, double radius) {
+VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 center,
+                      double radius) {
   if constexpr (SeesFreeSpace<B>)
-    return body.may_touch(look, center, radius);
+    return body.may_touch(in_ball, center, radius);
   else
     return true;
 }
 // Returns the least inverse depth, 1/m, of the surface in a ball that was looked at; 0 of a body
 // that has seen no free space.
 template <MeasuredBody B>
-VPM_HD float least_inverse_depth(const typename B::Look& look) {
+VPM_HD float least_inverse_depth(const typename B::BallClass& in_ball) {
   if constexpr (SeesFreeSpace<B>)
-    return B::least_inverse_depth(look);
+    return B::least_inverse_depth(in_ball);
   else
     return 0;
 }
@@ -131,18 +136,20 @@ VPM_HD bool may_be_free(const B& body, float least, Vec3 center, double radius) 
 }
 // False if may_be_free() says so of every ball in this one, which lies in one that was looked at.
 template <MeasuredBody B>
-VPM_HD bool may_hold_free(const B& body, const typename B::Look& look, Vec3 center, double radius) {
+VPM_HD bool may_hold_free(const B& body, const typename B::BallClass& in_ball, Vec3 center,
+                          double radius) {
   if constexpr (SeesFreeSpace<B>)
-    return body.may_hold_free(look, center, radius);
+    return body.may_hold_free(in_ball, center, radius);
   else
     return false;
 }
 // Returns a bound of the distance, m, from any place of a ball that was looked at to the foot of
 // its surface sample; without end where the body knows none.
 template <MeasuredBody B>
-VPM_HD double gap_bound(const B& body, const typename B::Look& look, Vec3 center, double radius) {
+VPM_HD double gap_bound(const B& body, const typename B::BallClass& in_ball, Vec3 center,
+                        double radius) {
   if constexpr (BoundsGap<B>)
-    return body.largest_gap(look, center, radius);
+    return body.largest_gap(in_ball, center, radius);
   else
     return HUGE_VAL;
 }

@@ -33,7 +33,7 @@ struct DepthFrameOptions {
   std::optional<double> counts_per_metre;  // images are 16-bit counts; otherwise metres in float
   NormalOptions normals;
   Device device;  // that of the queries; others than it copy what the CPU prepares
-  PointReading points = PointReading::settled;
+  Denoising points = Denoising::on;
 };
 
 class FrameSlot;  // frame_slot.h

@@ -111,7 +111,7 @@ void compact_row(const std::uint8_t* exists, int width, std::uint32_t first, Vec
 
 }  // namespace
 
-FramePreparation::FramePreparation(const NormalOptions& options, PointReading points)
+FramePreparation::FramePreparation(const NormalOptions& options, Denoising points)
     : options_(options), points_(points) {
   check_normal_options(options);
 }
@@ -151,9 +151,9 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   images_.resize(depth.width, depth.height, options_);
   seen_.resize(depth.width, depth.height);
   cloud.image_.resize(depth.width, depth.height);
-  static_assert(SettledImage::kReach <= FollowingRows::kMostReach);
+  static_assert(DenoisedImage::kReach <= FollowingRows::kMostReach);
   marking_.start(static_cast<int>(height), SeenImage::kReachOfMarks);
-  settling_.start(static_cast<int>(height), SettledImage::kReach);
+  settling_.start(static_cast<int>(height), DenoisedImage::kReach);
   for_bands(static_cast<int>(height), [&](int begin, int end) {
     images_.take_rows(depth, options_, begin, end);
     for (int v = begin; v < end; ++v)
@@ -183,7 +183,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
         std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
       // What is settled reads marks, between bands too: of two threads the one that came first
       // there has marked its rows before it came here.
-      if (points_ == PointReading::settled)
+      if (points_ == Denoising::on)
         marking_.made(v, [&](int first, int last) { seen_.mark_rows(first, last); });
       settling_.made(
           v, [&](int first, int last) { cloud.image_.read_rows(seen_, points_, first, last); });

@@ -13,8 +13,7 @@ namespace vpm {
 class FramePreparation {
  public:
   // Throws Error(invalid_argument) for options out of range.
-  explicit FramePreparation(const NormalOptions& options,
-                            PointReading points = PointReading::settled);
+  explicit FramePreparation(const NormalOptions& options, Denoising points = Denoising::on);
 
   // `cloud` becomes that of the frame and takes no new memory if it held a frame of the same size;
   // nobody may ask it meanwhile. Throws what make_cloud() and PreparedCloud() throw; then `cloud`
@@ -26,7 +25,7 @@ class FramePreparation {
   void close_ranks(std::size_t width, PreparedCloud& cloud) const;
 
   NormalOptions options_;
-  PointReading points_;
+  Denoising points_;
   NormalImages images_;
   SeenImage seen_;
   FollowingRows marking_, settling_;

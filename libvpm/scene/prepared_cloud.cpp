@@ -57,7 +57,7 @@ std::uint64_t PreparedCloud::next_serial() {
   return ++last;
 }
 
-PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
+PreparedCloud::PreparedCloud(const Cloud& cloud, Denoising points)
     : serial_(next_serial()), origin_(cloud.origin) {
   if (cloud.size() > kMaxPoints) {
     refuse("the cloud has " + std::to_string(cloud.size()) + " points", {},
@@ -72,18 +72,18 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, PointReading points)
     std::vector<float> radii = order_in_space(cloud);
     boxes_ = boxes_of(positions_);
     const DiskSurface measured{point_tree(), normals_.data()};
-    if (points == PointReading::settled) {
+    if (points == Denoising::on) {
       disks_ = settle(measured, std::move(radii));
       foot_boxes_ = boxes_of(disks_.feet);
     } else {
-      disks_ = as_measured(measured, std::move(radii));
+      disks_ = off(measured, std::move(radii));
     }
     largest_radii_ = largest_in_nodes(disks_.radii);
     cones_ = cones_of(disk_surface());
   }
 }
 
-void PreparedCloud::take_image(const Cloud& cloud, PointReading points) {
+void PreparedCloud::take_image(const Cloud& cloud, Denoising points) {
   camera_ = cloud.sensor->camera;
   const DepthImage& depth = cloud.sensor->depth;
   SeenImage seen;
@@ -93,7 +93,7 @@ void PreparedCloud::take_image(const Cloud& cloud, PointReading points) {
   order_by_pixel(cloud, seen);
   image_.resize(depth.width, depth.height);
   const int height = seen.inverse.height;
-  if (points == PointReading::settled)
+  if (points == Denoising::on)
     for_bands(height, [&](int begin, int end) { seen.mark_rows(begin, end); });
   for_bands(height, [&](int begin, int end) { image_.read_rows(seen, points, begin, end); });
   image_.finish();

@@ -10,11 +10,11 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/include/vpm/camera.h"
+#include "libvpm/scene/depth/denoised_image.h"
 #include "libvpm/scene/depth/depth_surface.h"
-#include "libvpm/scene/depth/settled_image.h"
 #include "libvpm/scene/pixel_rectangle.h"
+#include "libvpm/scene/points/denoised_disks.h"
 #include "libvpm/scene/points/disk_surface.h"
-#include "libvpm/scene/points/settled_disks.h"
 
 namespace vpm {
 
@@ -29,7 +29,7 @@ class PreparedCloud {
   // refuses. Depths outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured. From
   // a depth image, FramePreparation (frame_preparation.h) is quicker. To settle 300 000 points
   // takes one core a millisecond where a camera saw them, otherwise a second or two (README.md).
-  explicit PreparedCloud(const Cloud& cloud, PointReading points = PointReading::settled);
+  explicit PreparedCloud(const Cloud& cloud, Denoising points = Denoising::on);
 
   // The same for copies, different for any two clouds of a process: what is known of a cloud
   // elsewhere (on a device) can be told by it.
@@ -47,9 +47,9 @@ class PreparedCloud {
   DepthSurface depth_surface() const { return image_.surface(camera_->intrinsics); }
   // Of organised clouds: the first point at or after each pixel; pixels + 1.
   const std::vector<std::uint32_t>& pixel_begin() const { return pixel_begin_; }
-  PointTree point_tree() const;                         // of the positions; and
-  DiskSurface disk_surface() const;                     // of clouds that are not organised
-  const SettledDisks& disks() const { return disks_; }  // the same; in the order of positions()
+  PointTree point_tree() const;                          // of the positions; and
+  DiskSurface disk_surface() const;                      // of clouds that are not organised
+  const DenoisedDisks& disks() const { return disks_; }  // the same; in the order of positions()
 
   // Calls visit(begin, end) for ranges of points that hold all that lie in the ball (about
   // origin()), and others.
@@ -66,7 +66,7 @@ class PreparedCloud {
  private:
   friend class FramePreparation;
 
-  void take_image(const Cloud& cloud, PointReading points);
+  void take_image(const Cloud& cloud, Denoising points);
   // Notes the pixels' normals in `seen`, which has the image's size.
   void order_by_pixel(const Cloud& cloud, SeenImage& seen);
   std::vector<float> order_in_space(const Cloud& cloud);  // returns the sampling radii
@@ -82,12 +82,12 @@ class PreparedCloud {
 
   std::optional<Camera> camera_;
   std::vector<std::uint32_t> pixel_begin_;
-  SettledImage image_;
+  DenoisedImage image_;
 
   std::vector<BoxQuad> boxes_;        // of the positions
   std::vector<float> largest_radii_;  // of the disks in each node of their tree
   std::vector<BoxQuad> foot_boxes_;   // of the disks' feet; none where those are the positions
-  SettledDisks disks_;
+  DenoisedDisks disks_;
   std::vector<ConeQuad> cones_;  // of the disks
 };
 

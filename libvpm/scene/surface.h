@@ -9,13 +9,13 @@
 
 namespace vpm {
 
-// Where a ball lies, decided conservatively: `mixed` may be said of any ball, the others only where
-// they are true.
+// Where a ball lies, decided conservatively: `ambiguous` may be said of any ball, the others only
+// where they are true.
 enum class Side : std::uint8_t {
-  free,    // seen free space, or never seen: counts for nothing
-  behind,  // wholly behind the seen surface
-  uncut,   // no surface passes through it; a reading at its centre holds for all of it
-  mixed,   // look closer
+  free,        // seen free space, or never seen: counts for nothing
+  behind,      // wholly behind the seen surface
+  no_surface,  // no surface passes through it; a sample at its centre holds for all of it
+  ambiguous,   // look closer
 };
 
 // A point of the cloud by its index, for surfaces that have such.
@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
 // The surface as seen from one place x, or from as many as a Real has lanes.
 template <class Real>
-struct ReadingOf {
+struct SurfaceSampleOf {
   MaskOf<Real> known{};    // false: nothing was measured in this direction
   Real distance{};         // signed distance to the surface along its normal; negative inside
   PlaceOf<Real> normal{};  // unit, into free space
@@ -31,16 +31,16 @@ struct ReadingOf {
   IndexOf<Real> point =
       ~IndexOf<Real>{};  // the same, by index (or kNoPoint): a good place to begin the next search
 };
-using Reading = ReadingOf<double>;
+using SurfaceSample = SurfaceSampleOf<double>;
 
 // Reads a surface at several places, one after the other, as long as `take` says to go on. Returns
 // true if it has taken all.
-struct ReadInTurn {
+struct SampleInTurn {
   template <class Surface, int kPlaces, class Take>
   VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
                          const Take& take) const {
     for (const Vec3& place : places)
-      if (!take(surface.read(place))) return false;
+      if (!take(surface.sample(place))) return false;
     return true;
   }
 };

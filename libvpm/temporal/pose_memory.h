@@ -12,23 +12,23 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/backend/cpu/share_clusters.h"
+#include "libvpm/backend/cpu/cell_clusters.h"
 #include "libvpm/scene/surface.h"
 
 namespace vpm {
 
 class PoseMemory {
  public:
-  PoseMemory(std::size_t shares, std::size_t clusters)
-      : last_(shares, clusters), next_(shares, clusters) {}
+  PoseMemory(std::size_t cells, std::size_t clusters)
+      : last_(cells, clusters), next_(cells, clusters) {}
 
-  bool was_inside(std::uint32_t share) const { return last_.inside[share] != 0; }
+  bool was_inside(std::uint32_t cell) const { return last_.inside[cell] != 0; }
   // Calls visit(share) for those that were.
   template <class Visit>
-  void for_shares(const Visit& visit) const {
+  void for_cells(const Visit& visit) const {
     for (const Rows& rows : last_.remembered) {
-      for (std::uint32_t share = rows.begin; share < rows.end; ++share)
-        if (was_inside(share)) visit(share);
+      for (std::uint32_t cell = rows.begin; cell < rows.end; ++cell)
+        if (was_inside(cell)) visit(cell);
     }
   }
   bool is_near(std::uint32_t cluster, Vec3 foot, double reach) const {
@@ -37,22 +37,22 @@ class PoseMemory {
   // The plane in which the surface cut the tool when it last did.
   const TangentPlane& touched() const { return touched_; }
   void touch(const TangentPlane& plane) { touched_ = plane; }
-  void forget(std::uint32_t share) { last_.inside[share] = false; }
+  void forget(std::uint32_t cell) { last_.inside[cell] = false; }
   void forget() { last_.clear(); }
 
   // `foot`: where a share of the cluster, not known yet, is behind the surface, world coordinates.
-  void remember(std::uint32_t index, const ShareCluster& cluster, Vec3 foot) {
+  void remember(std::uint32_t index, const CellCluster& cluster, Vec3 foot) {
     next_.feet[index] = foot;
     next_.known[index] = true;
     next_.remembered.push_back({index, cluster.begin, cluster.end});
   }
   bool is_known(std::uint32_t cluster) const { return next_.known[cluster] != 0; }
   // Of a cluster that is known.
-  void remember(std::uint32_t share) { next_.inside[share] = true; }
+  void remember(std::uint32_t cell) { next_.inside[cell] = true; }
   template <class Counts>
-  void remember_if(const ShareCluster& cluster, const Counts& counts) {
-    for (std::uint32_t share = cluster.begin; share < cluster.end; ++share)
-      next_.inside[share] = counts(share);
+  void remember_if(const CellCluster& cluster, const Counts& counts) {
+    for (std::uint32_t cell = cluster.begin; cell < cluster.end; ++cell)
+      next_.inside[cell] = counts(cell);
   }
   // When all is remembered: it replaces what was.
   void turn() {
@@ -67,8 +67,8 @@ class PoseMemory {
   };
   // Clusters that are not known cost nothing: most of a tool, mostly.
   struct Memory {
-    Memory(std::size_t shares, std::size_t clusters)
-        : inside(shares), feet(clusters), known(clusters) {
+    Memory(std::size_t cells, std::size_t clusters)
+        : inside(cells), feet(clusters), known(clusters) {
       remembered.reserve(clusters);
     }
     void clear() {

@@ -57,9 +57,9 @@ DepthRange range_of(const DepthImage& image) {
   for (const float d : image.depth)
     if (is_measured(d)) depths.push_back(d);
   if (depths.empty()) return {0, 1, 1};
-  const auto quantile = [&](double share) {
-    const auto at = depths.begin() +
-                    static_cast<std::ptrdiff_t>(share * static_cast<double>(depths.size() - 1));
+  const auto quantile = [&](double cell) {
+    const auto at =
+        depths.begin() + static_cast<std::ptrdiff_t>(cell * static_cast<double>(depths.size() - 1));
     std::nth_element(depths.begin(), at, depths.end());
     return static_cast<double>(*at);
   };

@@ -55,7 +55,7 @@ TEST(Suite, RefusesOptionsThatItWouldPassOver) {
   refuses(
       "accuracy", [](SuiteOptions& o) { o.data = "folder"; }, "--all");
   refuses(
-      "timing", [](SuiteOptions& o) { o.shadows = Shadows::solid; }, "accuracy");
+      "timing", [](SuiteOptions& o) { o.occluded = OccludedSpace::solid; }, "accuracy");
 }
 
 // Refuses before minutes of measuring.

@@ -34,11 +34,11 @@ float uniform(std::mt19937& random, float low, float high) {
 }
 
 // Tilted, with holes and noise.
-Depths wall(float hole_share, float noise) {
+Depths wall(float hole_cell, float noise) {
   return [=](std::uint32_t u, std::uint32_t v, std::mt19937& random) {
     const float z = 1.0F / (1.0F + 1e-3F * static_cast<float>(u) - 5e-4F * static_cast<float>(v));
     const float noisy = z * (1 + uniform(random, -noise, noise));
-    return uniform(random, 0, 1) < hole_share ? 0.0F : noisy;
+    return uniform(random, 0, 1) < hole_cell ? 0.0F : noisy;
   };
 }
 
@@ -130,14 +130,14 @@ TEST_P(SameFrame, AsMeasured) {
   for (const auto& [name, depths] : kImages) {
     const DepthImage image = image_of(depths, 97, 61);
     DepthFrameOptions options = options_of(image, {GetParam()});
-    options.points = PointReading::as_measured;
+    options.points = Denoising::off;
     DepthFrames frames(options);
     const auto memory = testing::memory_on_device(frame_of(frames, image, kFarPose));
     ASSERT_TRUE(memory);
     const Camera camera{options.intrinsics, image.width, image.height, kFarPose};
     EXPECT_TRUE(testing::same_bits(
-        *memory, testing::memory_of(PreparedCloud(make_cloud(image, camera, options.normals),
-                                                  PointReading::as_measured))));
+        *memory, testing::memory_of(
+                     PreparedCloud(make_cloud(image, camera, options.normals), Denoising::off))));
   }
 }
 

@@ -276,7 +276,7 @@ TEST(RoundedPosesOnDevice, GiveTheSame) {
   }
 }
 
-TEST(SolidShadowsOnDevice, GiveTheSame) {
+TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   constexpr std::uint32_t kStandbyMicroseconds = 2000;
   const PreparedCloud cloud(testing::see(synthetic::make_scene("block")));
@@ -291,7 +291,7 @@ TEST(SolidShadowsOnDevice, GiveTheSame) {
     ToolQuery near_standing_by(tool, options);
     options.standby_us = 0;
     options.device = {};
-    options.shadows = Shadows::solid;
+    options.occluded = OccludedSpace::solid;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
     ToolQuery on_device(tool, options);

@@ -59,9 +59,9 @@ json of(const Level& level) {
         {"size", {grid.nx, grid.ny, grid.nz}},
         {"begin", grid.begin},
         {"spheres", grid.spheres}}},
-      {"share_volume", level.share_volume},
-      {"share_centroid", list(level.share_centroid)},
-      {"share_reach", level.share_reach},
+      {"share_volume", level.cell_volume},
+      {"share_centroid", list(level.cell_centroid)},
+      {"share_reach", level.cell_reach},
       {"block_begin", level.block_begin},
       {"blocks", list(level.blocks)},
       {"samples", list(level.samples)}};

@@ -71,9 +71,9 @@ Level octant_level(std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     Vec3 centroid = corner(i, kQuarter);
     if (columns) centroid.z = 0;
-    level.share_volume.push_back(0.008 / count);
-    level.share_centroid.push_back(centroid);
-    level.share_reach.push_back(
+    level.cell_volume.push_back(0.008 / count);
+    level.cell_centroid.push_back(centroid);
+    level.cell_reach.push_back(
         columns ? std::sqrt(2 * kQuarter * kQuarter + 9 * kQuarter * kQuarter) : half_diagonal);
     level.blocks.push_back({narrow(centroid), static_cast<float>(half_diagonal), i, i + 1});
     level.samples.push_back(

@@ -40,9 +40,9 @@ ToolModel scaled(ToolModel m, double by) {
       n.bound = {by * n.bound.center, by * n.bound.radius};
     level.grid.low = by * level.grid.low;
     level.grid.cell *= by;
-    for (double& v : level.share_volume) v *= cubed;
-    for (Vec3& g : level.share_centroid) g = by * g;
-    for (double& r : level.share_reach) r *= by;
+    for (double& v : level.cell_volume) v *= cubed;
+    for (Vec3& g : level.cell_centroid) g = by * g;
+    for (double& r : level.cell_reach) r *= by;
     for (CellBlock& b : level.blocks) {
       b.center = narrow(by * widen(b.center));
       b.radius *= narrow_by;
@@ -106,7 +106,7 @@ TEST(BuildToolModel, FillsSoundLevelsOfPrefixes) {
   EXPECT_NO_THROW(validate(model, "model"));
   for (const Level& level : model.levels) {
     double sum = 0;
-    for (const double v : level.share_volume) sum += v;
+    for (const double v : level.cell_volume) sum += v;
     EXPECT_NEAR(sum / model.volume, 1, 1e-12);
     EXPECT_EQ(level.bridges, level.components_before - 1);
   }

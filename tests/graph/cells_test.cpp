@@ -90,7 +90,7 @@ TEST_P(Cells, SmoothFacesByLittle) {
   EXPECT_LE(error.worst, 2.5e-3);
 }
 
-TEST_P(Cells, HoldTheShareOfTheirSphere) {
+TEST_P(Cells, HoldTheCellOfTheirSphere) {
   const Packing packing = test::greedy_packing(GetParam()(), 300, 40000);
   const ToolModel model = build_tool_model(packing, {});
   const Level& level = model.levels.back();
@@ -109,9 +109,9 @@ TEST_P(Cells, HoldTheShareOfTheirSphere) {
         moment += sample.weight * widen(sample.center);
       }
     }
-    EXPECT_NEAR(weight * model.volume / level.share_volume[i], 1, 1e-11);
+    EXPECT_NEAR(weight * model.volume / level.cell_volume[i], 1, 1e-11);
     const Vec3 centroid = moment / weight + model.center_of_mass;
-    EXPECT_LT(norm(centroid - level.share_centroid[i]), 1e-6 * model.reach);
+    EXPECT_LT(norm(centroid - level.cell_centroid[i]), 1e-6 * model.reach);
     sum += weight;
   }
   EXPECT_NEAR(sum, 1, 1e-12);
@@ -142,7 +142,7 @@ TEST_P(Cells, SamplesThatFollowOneAnotherLieSideBySide) {
 }
 
 // Every point of the solid lies in a block of the sphere whose surface is nearest.
-TEST_P(Cells, BlocksEncloseTheirShare) {
+TEST_P(Cells, BlocksEncloseTheirCell) {
   const test::Shape shape = GetParam()();
   const Packing packing = test::greedy_packing(shape, 300, 40000);
   const ToolModel model = build_tool_model(packing, {});
@@ -157,7 +157,7 @@ TEST_P(Cells, BlocksEncloseTheirShare) {
     ++inside;
     const std::uint32_t i = bvh.nearest_surface(x + model.center_of_mass, 0);
     EXPECT_LE(norm(x + model.center_of_mass - packing.spheres[i].center),
-              level.share_reach[i] + 0.01 * model.reach);
+              level.cell_reach[i] + 0.01 * model.reach);
     bool enclosed = false;
     for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
       enclosed |= norm(x - widen(level.blocks[b].center)) <= double{level.blocks[b].radius};

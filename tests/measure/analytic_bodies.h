@@ -9,36 +9,40 @@ namespace vpm::testing {
 // A solid below a plane, without an end.
 struct HalfSpace {
   static constexpr bool kTellsInside = false, kSearchesFoot = false;
-  struct Look {
+  struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;
   };
 
   TangentPlane top;
 
-  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
+  VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
     const double distance = top.distance(center);
-    return {distance >= radius ? Side::free : distance <= -radius ? Side::uncut : Side::mixed};
+    return {distance >= radius    ? Side::free
+            : distance <= -radius ? Side::no_surface
+                                  : Side::ambiguous};
   }
-  VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
+  VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
     const double distance = top.distance(x);
     return {true, distance, top.normal, x - distance * top.normal};
   }
-  VPM_HD Vec3 closest_normal(Vec3, const Reading& reading) const { return reading.normal; }
-  VPM_HD bool may_be_flat(const Look&) const { return true; }
+  VPM_HD Vec3 closest_normal(Vec3, const SurfaceSample& on_surface) const {
+    return on_surface.normal;
+  }
+  VPM_HD bool may_be_flat(const BallClass&) const { return true; }
   template <class ReadAll>
-  VPM_HD bool mean_plane(const Look&, Vec3, double, double, const ReadAll&,
+  VPM_HD bool mean_plane(const BallClass&, Vec3, double, double, const ReadAll&,
                          TangentPlane& plane) const {
     plane = top;
     return true;
   }
   template <class Read>
-  VPM_HD bool is_flat(const Look&, const Read&, double, TangentPlane& plane) const {
+  VPM_HD bool is_flat(const BallClass&, const Read&, double, TangentPlane& plane) const {
     plane = top;
     return true;
   }
-  VPM_HD double fraction_inside(const Reading& reading, Vec3, double radius) const {
-    return ball_fraction_inside(reading.distance / radius);
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) const {
+    return ball_fraction_inside(on_surface.distance / radius);
   }
   VPM_HD const HalfSpace& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };
@@ -54,50 +58,54 @@ inline HalfSpace below(Vec3 normal, double height) {
 template <class One, class Other>
 struct Both {
   static constexpr bool kTellsInside = false, kSearchesFoot = false;
-  struct Look {
+  struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;
-    typename One::Look one;
-    typename Other::Look other;
+    typename One::BallClass one;
+    typename Other::BallClass other;
   };
 
   One one;
   Other other;
 
-  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
-    Look look;
-    look.one = one.look_at_ball(center, radius);
-    look.other = other.look_at_ball(center, radius);
-    const bool is_free = look.one.side == Side::free || look.other.side == Side::free;
-    const bool is_mixed = look.one.side == Side::mixed || look.other.side == Side::mixed;
-    look.side = is_free ? Side::free : is_mixed ? Side::mixed : Side::uncut;
-    return look;
+  VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
+    BallClass in_ball;
+    in_ball.one = one.classify_ball(center, radius);
+    in_ball.other = other.classify_ball(center, radius);
+    const bool is_free = in_ball.one.side == Side::free || in_ball.other.side == Side::free;
+    const bool is_mixed =
+        in_ball.one.side == Side::ambiguous || in_ball.other.side == Side::ambiguous;
+    in_ball.side = is_free ? Side::free : is_mixed ? Side::ambiguous : Side::no_surface;
+    return in_ball;
   }
-  VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
-    const Reading a = one.read(x), b = other.read(x);
+  VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
+    const SurfaceSample a = one.sample(x), b = other.sample(x);
     return a.distance >= b.distance ? a : b;
   }
-  VPM_HD Vec3 closest_normal(Vec3, const Reading& reading) const { return reading.normal; }
+  VPM_HD Vec3 closest_normal(Vec3, const SurfaceSample& on_surface) const {
+    return on_surface.normal;
+  }
   // One plane only where the other body's surface does not pass.
-  VPM_HD bool may_be_flat(const Look& look) const {
-    return look.one.side != Side::mixed || look.other.side != Side::mixed;
+  VPM_HD bool may_be_flat(const BallClass& in_ball) const {
+    return in_ball.one.side != Side::ambiguous || in_ball.other.side != Side::ambiguous;
   }
   template <class ReadAll>
-  VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
-                         const ReadAll& read_all, TangentPlane& plane) const {
-    if (!may_be_flat(look)) return false;
-    return look.one.side == Side::mixed
-               ? one.mean_plane(look.one, center, radius, tolerance, read_all, plane)
-               : other.mean_plane(look.other, center, radius, tolerance, read_all, plane);
+  VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
+                         const ReadAll& sample_all, TangentPlane& plane) const {
+    if (!may_be_flat(in_ball)) return false;
+    return in_ball.one.side == Side::ambiguous
+               ? one.mean_plane(in_ball.one, center, radius, tolerance, sample_all, plane)
+               : other.mean_plane(in_ball.other, center, radius, tolerance, sample_all, plane);
   }
   template <class Read>
-  VPM_HD bool is_flat(const Look& look, const Read& read, double tolerance,
+  VPM_HD bool is_flat(const BallClass& in_ball, const Read& read, double tolerance,
                       TangentPlane& plane) const {
-    return look.one.side == Side::mixed ? one.is_flat(look.one, read, tolerance, plane)
-                                        : other.is_flat(look.other, read, tolerance, plane);
+    return in_ball.one.side == Side::ambiguous
+               ? one.is_flat(in_ball.one, read, tolerance, plane)
+               : other.is_flat(in_ball.other, read, tolerance, plane);
   }
-  VPM_HD double fraction_inside(const Reading& reading, Vec3, double radius) const {
-    return ball_fraction_inside(reading.distance / radius);
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) const {
+    return ball_fraction_inside(on_surface.distance / radius);
   }
   VPM_HD const Both& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 };

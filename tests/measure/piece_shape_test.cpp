@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libvpm/measure/crossing_plane.h"
+#include "libvpm/measure/clip_plane.h"
 
 namespace vpm {
 namespace {

@@ -45,7 +45,7 @@ TEST(ToolModel, UnsoundModelsAreNotWritten) {
     m.levels[0].hierarchy.leaves.pop_back();
     --m.levels[0].hierarchy.nodes[1].end;
   });
-  expect_refused("missing share", [](ToolModel& m) { m.levels[1].share_volume.pop_back(); });
+  expect_refused("missing share", [](ToolModel& m) { m.levels[1].cell_volume.pop_back(); });
   expect_refused("orphaned samples", [](ToolModel& m) { m.levels[1].samples.push_back({}); });
   expect_refused("empty grid", [](ToolModel& m) { m.levels[1].grid.nz = 0; });
   expect_refused("sphere of another level", [](ToolModel& m) { m.levels[0].grid.spheres[3] = 5; });

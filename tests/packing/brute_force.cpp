@@ -92,8 +92,8 @@ double worst_overlap(const std::vector<Sphere>& spheres) {
   return worst;
 }
 
-double clearance(const Solid& solid, const std::vector<Sphere>& spheres, Vec3 x,
-                 std::size_t except) {
+double separation(const Solid& solid, const std::vector<Sphere>& spheres, Vec3 x,
+                  std::size_t except) {
   double d = distance_to_mesh(solid, x);
   if (!encloses(solid, x)) d = -d;
   for (std::size_t i = 0; i < spheres.size(); ++i)

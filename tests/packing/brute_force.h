@@ -17,7 +17,7 @@ double worst_protrusion(const Solid& solid, const std::vector<Sphere>& spheres);
 double worst_overlap(const std::vector<Sphere>& spheres);
 
 // Returns the signed clearance of x beside all spheres but number `except`.
-double clearance(const Solid& solid, const std::vector<Sphere>& spheres, Vec3 x,
-                 std::size_t except);
+double separation(const Solid& solid, const std::vector<Sphere>& spheres, Vec3 x,
+                  std::size_t except);
 
 }  // namespace vpm::test

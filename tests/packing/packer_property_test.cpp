@@ -49,7 +49,7 @@ TEST_P(RandomSolids, CentresAreLocalMaxima) {
       const double step = spheres[i].radius * std::pow(10, random.uniform(-5, -2));
       const Vec3 beside =
           spheres[i].center + step * normalized_or_zero(random.in_box({-1, -1, -1}, {1, 1, 1}));
-      EXPECT_LE(clearance(surface, spheres, beside, i), spheres[i].radius * (1 + 1e-8));
+      EXPECT_LE(separation(surface, spheres, beside, i), spheres[i].radius * (1 + 1e-8));
     }
   }
 }
@@ -66,7 +66,7 @@ TEST_P(RandomSolids, NoRoomIsLeftForALargerSphere) {
   Random random(5);
   for (int k = 0; k < 4000; ++k) {
     const Vec3 x = random.in_box(low, high);
-    EXPECT_LE(clearance(surface, spheres, x, spheres.size()), 1.05 * spheres.back().radius);
+    EXPECT_LE(separation(surface, spheres, x, spheres.size()), 1.05 * spheres.back().radius);
   }
 }
 

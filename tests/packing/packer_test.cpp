@@ -137,7 +137,7 @@ TEST(Packer, StopsAtTheSmallestRadius) {
   Random random(1);
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x = random.in_box({-.6, -.6, -.6}, {.6, .6, .8});
-    EXPECT_LE(clearance(solid, result.spheres, x, result.spheres.size()), 0.021);
+    EXPECT_LE(separation(solid, result.spheres, x, result.spheres.size()), 0.021);
   }
 }
 

@@ -59,11 +59,11 @@ TEST(DepthFrames, AreReadAsMeasuredWhereThatIsAsked) {
   const ToolModel tool = testing::lattice_cube(0.1, 6, 2);
   DepthFrameOptions options = options_of();
   Result found[2];
-  for (const PointReading points : {PointReading::settled, PointReading::as_measured}) {
+  for (const Denoising points : {Denoising::on, Denoising::off}) {
     options.points = points;
     DepthFrames frames(options);
     std::copy(image.depth.begin(), image.depth.end(), frames.metres().begin());
-    Result& result = found[points == PointReading::settled ? 0 : 1];
+    Result& result = found[points == Denoising::on ? 0 : 1];
     result = ToolQuery(tool, {}).run(frames.prepare({}), kPose);
     testing::expect_equal(result, ToolQuery(tool, {}).run(
                                       PreparedCloud(make_cloud(image, camera, {}), points), kPose));

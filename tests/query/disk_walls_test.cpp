@@ -55,10 +55,10 @@ TEST(TwoWallsOfPoints, TheOtherOneIsFoundWhereABodyReachesIt) {
   const DiskSurface disks = cloud.disk_surface();
   for (const double x : {-0.006, -0.001, 0.002, 0.007}) {
     const Vec3 at{x, 0.0007, -0.03};
-    const Reading reading = disks.read(at - cloud.origin());
+    const SurfaceSample on_surface = disks.sample(at - cloud.origin());
     const auto finds = [&](double radius, OtherWall& other) {
-      return disks.find_other_wall(at - cloud.origin(), {reading.normal, reading.foot},
-                                   reading.point, radius, kTwoWalls, other);
+      return disks.find_other_wall(at - cloud.origin(), {on_surface.normal, on_surface.foot},
+                                   on_surface.point, radius, kTwoWalls, other);
     };
     OtherWall other;
     ASSERT_TRUE(finds(1.5 * std::fabs(x), other)) << x;
@@ -91,10 +91,10 @@ TEST(TwoWallsOfPoints, TheBorderIsThatOfTheWallNotOfItsEnd) {
   const DiskSurface disks = cloud.disk_surface();
   for (const double depth : {0.037, 0.041, 0.045}) {  // below the top, whose edge is nearer
     const Vec3 at = Vec3{-depth - 0.002, 0.0007, -depth} - cloud.origin();
-    const Reading reading = disks.read(at);
+    const SurfaceSample on_surface = disks.sample(at);
     OtherWall other;
-    ASSERT_TRUE(disks.find_other_wall(at, {reading.normal, reading.foot}, reading.point, 0.02,
-                                      kTwoWalls, other));
+    ASSERT_TRUE(disks.find_other_wall(at, {on_surface.normal, on_surface.foot}, on_surface.point,
+                                      0.02, kTwoWalls, other));
     EXPECT_NEAR(other.border.distance(at), 0.002 * kSlope, 2e-4) << depth;
     EXPECT_LT(angle(other.normal, {1, 0, 0}), 2 * kDegree) << depth;
   }
@@ -113,10 +113,10 @@ TEST(TwoWallsOfPoints, OneWallHasNoOther) {
     const DiskSurface disks = cloud.disk_surface();
     for (const double depth : {0.005, 0.02, 0.04}) {
       const Vec3 at = Vec3{0.004, -0.011, -depth} - cloud.origin();
-      const Reading reading = disks.read(at);
+      const SurfaceSample on_surface = disks.sample(at);
       OtherWall other;
-      EXPECT_FALSE(disks.find_other_wall(at, {reading.normal, reading.foot}, reading.point, 0.02,
-                                         kTwoWalls, other));
+      EXPECT_FALSE(disks.find_other_wall(at, {on_surface.normal, on_surface.foot}, on_surface.point,
+                                         0.02, kTwoWalls, other));
     }
   }
 }
@@ -188,10 +188,11 @@ TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
   int found = 0;
   for (int k = 0; k < 200; ++k) {
     const Vec3 middle = Vec3{0.01 * at(random), 0.1 * at(random), -0.02} - cloud.origin();
-    const DiskSurface::AroundBall near = disks.around_ball(middle, 0.008, disks.read(middle).point);
+    const DiskSurface::AroundBall near =
+        disks.around_ball(middle, 0.008, disks.sample(middle).point);
     const Vec3 x = middle + 0.004 * Vec3{at(random), at(random), at(random)};
-    const Reading reading = near.read(x, kNoPoint), direct = disks.read(x);
-    ASSERT_EQ(reading.point, direct.point);
+    const SurfaceSample on_surface = near.sample(x, kNoPoint), direct = disks.sample(x);
+    ASSERT_EQ(on_surface.point, direct.point);
     const TangentPlane own{disks.closest_normal(x, direct), direct.foot};
     OtherWall one, other;
     const bool is_met = near.find_other_wall(x, own, direct.point, 0.006, kTwoWalls, one);
@@ -235,7 +236,7 @@ TEST(TwoWallsOfPoints, BelowAGrooveTheCreaseIsNearest) {
     for (const double aside : {-1.6, -0.9, -0.4, 0.0, 0.2, 0.7, 1.3}) {
       const Vec3 at{aside * depth, 0.0007, -depth};
       const Vec3 there = at - cloud.origin();
-      const Vec3 direction = disks.closest_normal(there, disks.read(there));
+      const Vec3 direction = disks.closest_normal(there, disks.sample(there));
       EXPECT_LT(angle(direction, groove.gradient(at)), 0.5 * kDegree) << depth << ' ' << aside;
     }
   }

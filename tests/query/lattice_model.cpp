@@ -62,9 +62,9 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
     model.spheres.push_back({center, share / 2});
     level.grid.begin.push_back(i);
     level.grid.spheres.push_back(i);
-    level.share_volume.push_back(share * share * share);
-    level.share_centroid.push_back(center);
-    level.share_reach.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
+    level.cell_volume.push_back(share * share * share);
+    level.cell_centroid.push_back(center);
+    level.cell_reach.push_back(std::sqrt(3.0) * share / 2 * (1 + 1e-6));
     const std::uint32_t begin = static_cast<std::uint32_t>(level.samples.size());
     for (std::uint32_t s = 0; s < m * m * m; ++s) {
       const std::uint32_t part_row = s / m % m, part_layer = s / (m * m);
@@ -75,7 +75,7 @@ ToolModel lattice_cube(double edge, std::uint32_t n, std::uint32_t m) {
       level.samples.push_back(
           {narrow(sample), static_cast<float>(std::sqrt(5.0 / 3 * mean_squared_distance)), weight});
     }
-    level.blocks.push_back({narrow(center), static_cast<float>(level.share_reach.back()), begin,
+    level.blocks.push_back({narrow(center), static_cast<float>(level.cell_reach.back()), begin,
                             static_cast<std::uint32_t>(level.samples.size())});
     level.block_begin.push_back(static_cast<std::uint32_t>(level.blocks.size()));
   }

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 // A block of a large cell is wider than the step is high.
-TEST(RefinedMeasure, FewLargeSharesDoNotTakeAStepForAPlane) {
+TEST(RefinedMeasure, FewLargeCellsDoNotTakeAStepForAPlane) {
   const synthetic::Scene scene = synthetic::make_scene("step");
   const PreparedCloud cloud(see(scene));
   const ToolModel tool = lattice_cube(kEdge, 2, 8);
@@ -263,7 +263,7 @@ TEST(RefinedMeasure, PushesFromOneWallBesideACrease) {
     const double from_bottom =
         (std::abs(x.x) - (x.z - 1)) / 2;  // distance of the foot on the nearer wall
     if (from_bottom < kTwoPixels) continue;
-    const Vec3 normal = surface.closest_normal(x, surface.read(x));
+    const Vec3 normal = surface.closest_normal(x, surface.sample(x));
     EXPECT_GT(dot(normal, scene.surface->gradient(x)), std::cos(kWithin * kPi / 180))
         << x.x << ' ' << x.z;
   }
@@ -283,7 +283,7 @@ TEST(RefinedMeasure, FindsTheBottomOfAGrooveUnderNoise) {
     for (int k = 0; k < 9 * 10 * 20; ++k) {
       const double depth = 0.01 + 0.005 * (k / 20 % 10), aside = 0.1 * (k / 200 - 4) * depth;
       const Vec3 x{aside, -0.1 + 0.01 * (k % 20), 1 + depth};
-      const Vec3 normal = surface.closest_normal(x, surface.read(x));
+      const Vec3 normal = surface.closest_normal(x, surface.sample(x));
       sum += std::acos(std::min(1.0, dot(normal, scene.surface->gradient(x)))) * 180 / kPi;
       ++count;
     }

@@ -30,7 +30,7 @@ TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
     points.positions.push_back({1000 + static_cast<float>(k % 20), static_cast<float>(k / 20), 0});
   points.normals.assign(points.positions.size(), {0, 0, -1});
   points.radii.assign(points.positions.size(), 0.01F);
-  const PreparedCloud cloud(points, PointReading::as_measured);
+  const PreparedCloud cloud(points, Denoising::off);
   std::mt19937_64 random(1);
   int inside = 0;
   for (int k = 0; k < 20000; ++k) {
@@ -38,7 +38,7 @@ TEST(PointsOfSphere, AreThoseThatTheExactTestTakes) {
     const Pose pose{rotation, widen(place) - rotation * on_sphere};
     const bool expected =
         strictly_inside(sphere, relative_to(pose, {{}, cloud.origin()}) * widen(place));
-    ASSERT_EQ(PointsOfSphere(cloud, pose).count(sphere, DiskSurface::Look{}), expected) << k;
+    ASSERT_EQ(PointsOfSphere(cloud, pose).count(sphere, DiskSurface::BallClass{}), expected) << k;
     inside += expected;
   }
   EXPECT_GT(inside, 1000);

@@ -74,8 +74,7 @@ Frame frame(std::uint32_t width, std::uint32_t height) {
 }
 
 void expect_same(FramePreparation& preparation, const Frame& f, const NormalOptions& options,
-                 PreparedCloud& cloud, PointReading points = PointReading::settled,
-                 bool has_points = true) {
+                 PreparedCloud& cloud, Denoising points = Denoising::on, bool has_points = true) {
   const PreparedCloud expected(make_cloud(f.depth, f.camera, options), points);
   if (has_points) {
     ASSERT_GT(expected.positions().size(), 0u);
@@ -117,7 +116,7 @@ TEST(FramePreparation, TakesImagesOfAnySize) {
   PreparedCloud cloud{Cloud{}};
   for (const auto& [width, height] :
        {std::pair(1U, 1U), std::pair(1U, 65U), std::pair(65U, 1U), std::pair(33U, 33U)})
-    expect_same(preparation, frame(width, height), options, cloud, PointReading::settled,
+    expect_same(preparation, frame(width, height), options, cloud, Denoising::on,
                 width > 1 && height > 1);
 }
 
@@ -155,12 +154,12 @@ TEST(FramePreparation, WhatIsRefusedLeavesNoCloudBehind) {
 
 TEST(FramePreparation, ReadsPointsAsMeasured) {
   const NormalOptions options;
-  FramePreparation preparation(options, PointReading::as_measured);
+  FramePreparation preparation(options, Denoising::off);
   PreparedCloud cloud{Cloud{}};
   Frame f = frame(200, 150);
-  expect_same(preparation, f, options, cloud, PointReading::as_measured);
+  expect_same(preparation, f, options, cloud, Denoising::off);
   f.camera.intrinsics = {3e6, 3e6, 31.5, 23.5};  // beyond usual intrinsics
-  expect_same(preparation, f, options, cloud, PointReading::as_measured);
+  expect_same(preparation, f, options, cloud, Denoising::off);
 }
 
 TEST(FramePreparation, CamerasBeyondTheUsualAreNoOthers) {

@@ -51,15 +51,15 @@ TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
     const Vec3 center{-0.03 + 0.02 * std::sin(12.9 * k), 0.2 * std::sin(78.2 * k),
                       0.97 + 0.03 * std::sin(37.7 * k)};
     const double radius = 0.002 + 0.003 * std::abs(std::sin(5.3 * k));
-    const DepthSurface::Look look = surface.look_at_ball(center, radius);
+    const DepthSurface::BallClass in_ball = surface.classify_ball(center, radius);
     bool in_front = true;
-    for (std::int32_t v = look.pixels.v0; v <= look.pixels.v1; ++v) {
-      for (std::int32_t u = look.pixels.u0; u <= look.pixels.u1; ++u)
+    for (std::int32_t v = in_ball.pixels.v0; v <= in_ball.pixels.v1; ++v) {
+      for (std::int32_t u = in_ball.pixels.u0; u <= in_ball.pixels.u1; ++u)
         in_front &= (center.z + radius) * surface.measured_at(u, v) < 1;
     }
     EXPECT_EQ(surface.side_of_ball(center, radius) == Side::free, in_front);
     free += in_front;
-    beside_the_step += in_front && look.side == Side::mixed;
+    beside_the_step += in_front && in_ball.side == Side::ambiguous;
   }
   EXPECT_GT(free, 1000);
   EXPECT_GT(beside_the_step, 20);  // tiles alone do not decide these
@@ -93,16 +93,16 @@ TEST(DepthSurface, SideOfBallIsConservative) {
                         1 + 0.5 * std::sin(37.7 * k)};
       const double radius = 0.002 + 0.05 * std::abs(std::sin(4.1 * k));
       const Side side = surface.side_of_ball(center, radius);
-      if (side == Side::mixed) continue;
+      if (side == Side::ambiguous) continue;
       ++decided;
       for (int s = 0; s < 30; ++s) {
         const Vec3 direction =
             normalized_or_zero({std::sin(3.3 * s), std::sin(7.7 * s + 1), std::sin(5.1 * s + 2)});
-        const Reading reading = surface.read(center + radius * direction);
+        const SurfaceSample on_surface = surface.sample(center + radius * direction);
         if (side == Side::behind) {
-          EXPECT_TRUE(reading.known && reading.distance < 0) << name << k;
+          EXPECT_TRUE(on_surface.known && on_surface.distance < 0) << name << k;
         } else {
-          EXPECT_TRUE(!reading.known || reading.distance > 0) << name << k;
+          EXPECT_TRUE(!on_surface.known || on_surface.distance > 0) << name << k;
         }
       }
     }
@@ -129,9 +129,9 @@ TEST(PreparedCloud, AroundABallTheNearestPointIsTheSame) {
         const auto around = disks.around_ball(center, radius, disks.feet.nearest(center, HUGE_VAL));
         for (int k = 0; k < 200; ++k) {
           const Vec3 x = center + radius * Vec3{std::sin(k), std::cos(1.7 * k), std::sin(2.3 * k)};
-          ASSERT_EQ(around.read(x, kNoPoint).point, disks.feet.nearest(x, HUGE_VAL)) << spacing;
+          ASSERT_EQ(around.sample(x, kNoPoint).point, disks.feet.nearest(x, HUGE_VAL)) << spacing;
         }
-        ASSERT_EQ(around.read(center, kNoPoint).point, disks.feet.nearest(center, HUGE_VAL));
+        ASSERT_EQ(around.sample(center, kNoPoint).point, disks.feet.nearest(center, HUGE_VAL));
       }
     }
   }

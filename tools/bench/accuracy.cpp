@@ -40,7 +40,7 @@ class Accuracy {
   explicit Accuracy(const SuiteOptions& options)
       : options_(options),
         sweeps_([&](const std::string& shape) -> const PackedSolid& { return tool(shape); },
-                options.noise_seed, options.shadows, options.device, report_) {
+                options.noise_seed, options.occluded, options.device, report_) {
     report_.suite = "accuracy";
     report_.settings = {{"quick", options.quick},
                         {"all", options.all},
@@ -86,7 +86,7 @@ class Accuracy {
   }
 
  private:
-  bool is_solid() const { return options_.shadows == Shadows::solid; }
+  bool is_solid() const { return options_.occluded == OccludedSpace::solid; }
 
   const PackedSolid& tool(const std::string& shape) {
     const auto found = tools_.find(shape);
@@ -119,7 +119,7 @@ class Accuracy {
         synthetic::Scene scene = synthetic::make_scene(name);
         scene.camera = camera_of_spacing(spacing * smallest);
         const RandomPoses found = run_random_poses(scene, tools, kFew, kRandomPoses, kNoiseSeed,
-                                                   options_.shadows, options_.device);
+                                                   options_.occluded, options_.device);
         leaks += found.leaks[0];
         report_.results.push_back({{"group", "random poses"},
                                    {"scene", name},
@@ -192,7 +192,7 @@ class Accuracy {
         "frame                                    poses   mean   worst  > 5 %   mean   worst  > 5 %"
         "   mean   worst  > 5 %   in free space   paper mean   worst\n";
     int counted = 0;
-    MeanAndWorst solid, near, without_shadows;
+    MeanAndWorst solid, near, without_occluded;
     for (const FrameResult& r :
          run_real_frames(options_.data, tool("twisted-torus"), 1000, kPoses, options_.device)) {
       nlohmann::json row = {{"group", "recorded images"},
@@ -208,7 +208,7 @@ class Accuracy {
       };
       say("solid", r.solid);
       say("near", r.near);
-      say("near_without_shadows", r.without_shadows);
+      say("near_without_shadows", r.without_occluded);
       row["paper"] = {{"mean", r.paper.all.mean()}, {"worst", r.paper.all.worst()}};
       report_.summary += text(" %15d %12.2f %7.2f\n", r.counted_in_free_space,
                               100 * r.paper.all.mean(), 100 * r.paper.all.worst());
@@ -216,7 +216,7 @@ class Accuracy {
       counted += r.counted_in_free_space;
       solid.add(r.solid.all.worst());
       near.add(r.near.all.worst());
-      without_shadows.add(r.without_shadows.all.worst());
+      without_occluded.add(r.without_occluded.all.worst());
     }
     check("spheres counted in seen free space, recorded images", counted, 0);
     check("difference from what is behind recorded images, shadows solid", solid.worst(),
@@ -224,7 +224,7 @@ class Accuracy {
     if (is_solid()) return step();
     check("difference from what is behind recorded images, shadows near", near.worst(),
           kFrameBound);
-    check("the same, without places in shadows", without_shadows.worst(), kFrameBound);
+    check("the same, without places in shadows", without_occluded.worst(), kFrameBound);
     step();
   }
 

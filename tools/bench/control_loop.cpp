@@ -60,8 +60,8 @@ struct Path {
 };
 
 // Returns the height at which this fraction of the tool is inside, by bisection.
-double height_for(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool, const Path& path,
-                  double fraction) {
+double height_for(ToolQuery& query, const PreparedCloud& cloud, const ToolModel& tool,
+                  const Path& path, double fraction) {
   double low = -tool.reach, high = tool.reach;
   for (int step = 0; step < 24; ++step) {
     const double middle = 0.5 * (low + high);
@@ -278,10 +278,10 @@ void print_histogram(const Figures& figures) {
   for (std::size_t at = 0; at < times.size(); low *= 1.2) {
     const auto end = static_cast<std::size_t>(
         std::upper_bound(times.begin(), times.end(), low * 1.2) - times.begin());
-    const double share = static_cast<double>(end - at) / static_cast<double>(times.size());
+    const double cell = static_cast<double>(end - at) / static_cast<double>(times.size());
     if (end > at) {
       std::printf("%9.1f us  %6zu  %s\n", low * 1.2, end - at,
-                  std::string(static_cast<std::size_t>(std::ceil(60 * share)), '#').c_str());
+                  std::string(static_cast<std::size_t>(std::ceil(60 * cell)), '#').c_str());
     }
     at = end;
   }
@@ -368,7 +368,8 @@ std::deque<CameraStream> make_cameras(const Options& options, const Cloud& cloud
   const std::string& frames = options.at("frames");
   if (frames == "none") return cameras;
   if (!cloud.sensor || (frames != "counts" && frames != "metres"))
-    throw Error(ErrorKind::invalid_argument, "frames= takes counts or metres, and a cloud with a camera");
+    throw Error(ErrorKind::invalid_argument,
+                "frames= takes counts or metres, and a cloud with a camera");
   const NormalOptions normals{normal_method_from_text(options.at("method"))};
   for (int k = number(options, "rotate", 1); k > 0; --k)
     cameras.emplace_back(*cloud.sensor, frames == "counts", normals, device);
@@ -397,7 +398,8 @@ void time_single(const Options& options, std::deque<ToolQuery>& queries,
 
 void control(int argc, char** argv) {
   if (argc < 3)
-    throw Error(ErrorKind::invalid_argument, "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
+    throw Error(ErrorKind::invalid_argument,
+                "usage: control-loop TOOL.vpmg CLOUD.vpmc [option=value ...]");
   const Options options = parse(argc, argv);
   QueryOptions asked = query_options(options);
   const int copies = number(options, "rotate", 1), batch = number(options, "batch", 1);

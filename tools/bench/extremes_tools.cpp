@@ -112,7 +112,7 @@ void add_refused_models(std::vector<ExtremeCase>& cases) {
   add("weights that sum to more than 1",
       [](ToolModel& t) { t.levels[0].samples[0].weight += 0.01; });
   add("shares that sum to less than the tool",
-      [](ToolModel& t) { t.levels[0].share_volume[0] *= 0.9; });
+      [](ToolModel& t) { t.levels[0].cell_volume[0] *= 0.9; });
   add("a sample beyond the tool", [](ToolModel& t) { t.levels[0].samples[0].center.x = 100; });
   add("a tool without reach", [](ToolModel& t) { t.reach = 0; });
   add("more samples in a share than are counted exactly", [](ToolModel& t) {

@@ -10,7 +10,7 @@ namespace vpm::bench {
 namespace {
 
 struct Arguments {
-  std::string suite, folder = "bench-output", meshes, data, shadows = "near";
+  std::string suite, folder = "bench-output", meshes, data, occluded = "near";
   bool quick = false, all = false, baseline = false;
   std::uint64_t noise_seed = SuiteOptions::kUsualNoise;
 };
@@ -31,7 +31,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--noise-seed", a.noise_seed, "accuracy: sample of the noise")
       ->check(tools::whole_number_in(0, 1 << 30))
       ->capture_default_str();
-  app.add_option("--shadows", a.shadows,
+  app.add_option("--shadows", a.occluded,
                  "accuracy: what counts of the places that a depth image does not show: near ones, "
                  "or all (solid)")
       ->check(CLI::IsMember({"near", "solid"}))
@@ -50,7 +50,7 @@ std::string command_of(const Arguments& a, const std::string& device) {
   return "vpm-bench " + a.suite + (a.quick ? " --quick" : "") + (a.all ? " --all" : "") +
          (a.baseline ? " --baseline" : "") +
          (usual_noise ? "" : " --noise-seed " + std::to_string(a.noise_seed)) +
-         (a.shadows == "near" ? "" : " --shadows " + a.shadows) +
+         (a.occluded == "near" ? "" : " --shadows " + a.occluded) +
          (device == "auto" ? "" : " --device " + device) +
          (a.meshes.empty() ? "" : " --meshes MESHES") + (a.data.empty() ? "" : " --data DATA");
 }
@@ -60,16 +60,17 @@ void run(const tools::Tool& tool, const Arguments& a) {
   const bool asks_device = device != "auto" || needs_device(a.suite);
   if (is_suite(a.suite)) make_folder(a.folder);
   tools::Progress progress("vpm-bench " + a.suite, tool.common());
-  const Report report =
-      run_suite(a.suite, {.quick = a.quick,
-                          .all = a.all,
-                          .progress = [&](double fraction) { progress.update(fraction); },
-                          .meshes = a.meshes,
-                          .data = a.data,
-                          .baseline = a.baseline,
-                          .noise_seed = a.noise_seed,
-                          .shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near,
-                          .device = asks_device ? tool.device() : Device{}});
+  const Report report = run_suite(
+      a.suite,
+      {.quick = a.quick,
+       .all = a.all,
+       .progress = [&](double fraction) { progress.update(fraction); },
+       .meshes = a.meshes,
+       .data = a.data,
+       .baseline = a.baseline,
+       .noise_seed = a.noise_seed,
+       .occluded = a.occluded == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach,
+       .device = asks_device ? tool.device() : Device{}});
   write(report, command_of(a, device), a.folder);
   if (!tool.common().quiet) std::cout << report.summary << std::flush;
   if (!report.failure.empty())

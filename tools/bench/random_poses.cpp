@@ -50,7 +50,8 @@ Camera camera_of_spacing(double spacing) {
 
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, Shadows shadows, const Device& device) {
+                             int poses, std::uint64_t seed, OccludedSpace occluded,
+                             const Device& device) {
   const PreparedCloud cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
   const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
@@ -59,7 +60,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const PackedSolid& tool = *tools[t];
     ToolQuery queries[2] = {
-        ToolQuery(tool.model, {.level = level, .device = device, .shadows = shadows}),
+        ToolQuery(tool.model, {.level = level, .device = device, .occluded = occluded}),
         ToolQuery(tool.model, {.measure = Measure::paper, .level = level, .device = device})};
     const int last = static_cast<int>(static_cast<std::size_t>(poses) * (t + 1) / tools.size());
     while (found.poses < last) {

@@ -33,7 +33,8 @@ Camera camera_of_spacing(double spacing);
 // takes most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
-                             int poses, std::uint64_t seed, Shadows shadows, const Device& device);
+                             int poses, std::uint64_t seed, OccludedSpace occluded,
+                             const Device& device);
 
 // Returns a uniformly distributed rotation; draws four numbers.
 Rotation random_rotation(synthetic::NormalNumbers& numbers);

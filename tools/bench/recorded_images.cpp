@@ -39,7 +39,7 @@ std::string path_of(const Frame& frame, const std::string& folder) {
 FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedSolid& tool,
                       std::uint32_t level, int poses, const Device& device) {
   const PreparedCloud prepared(cloud);
-  ToolQuery solid(tool.model, {.level = level, .device = device, .shadows = Shadows::solid}),
+  ToolQuery solid(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid}),
       near(tool.model, {.level = level, .device = device}),
       paper(tool.model, {.measure = Measure::paper, .level = level, .device = device});
   FrameResult result;
@@ -54,7 +54,8 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
     const auto volume = [&](ToolQuery& query) { return query.run(prepared, pose).volume_fraction; };
     const double volume_near = volume(near);
     result.near.add(std::abs(volume_near - count.behind));
-    result.without_shadows.add(volume_error(volume_near, count.behind, {.inside = count.shadow}));
+    result.without_occluded.add(
+        volume_error(volume_near, count.behind, {.inside = count.occluded}));
     result.solid.add(std::abs(volume(solid) - count.behind));
     result.paper.add(std::abs(volume(paper) - count.behind));
     for (const ToolQuery* query : {&near, &solid})
@@ -86,7 +87,7 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
     options.intrinsics = frame.intrinsics;
     options.units_per_metre = frame.units_per_metre;
     try {
-      images.push_back({frame.file, import_cloud(file::read_all(path), path, options).cloud});
+      images.push_back({frame.file, import_cloud(file::sample_all(path), path, options).cloud});
     } catch (const Error& fault) {
       if (fault.kind() != ErrorKind::unavailable) throw;
     }

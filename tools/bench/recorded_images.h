@@ -31,8 +31,9 @@ std::vector<RecordedImage> recorded_images(const std::string& folder);
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach);
 
 // Largest fraction of the tool inside, by the count, of the poses that are compared. The count
-// takes shadows as solid, as Shadows::solid does. Shadows::near is also compared without the places
-// in shadows, which lie further behind the surface than the tool's reach and may count or not.
+// takes shadows as solid, as OccludedSpace::solid does. OccludedSpace::within_reach is also
+// compared without the places in shadows, which lie further behind the surface than the tool's
+// reach and may count or not.
 inline constexpr double kShallow = 0.1;
 inline constexpr double kFrameBound = 0.05;  // of the tool's volume
 
@@ -49,7 +50,7 @@ struct FrameResult {
     }
   };
   Difference solid, near, paper;  // Measure::refined with both kinds of shadows, Measure::paper
-  Difference without_shadows;     // of near, where places in shadows may count or not
+  Difference without_occluded;    // of near, where places in shadows may count or not
   int counted_in_free_space = 0;  // spheres of solid and near, over all poses
 };
 

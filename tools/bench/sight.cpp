@@ -151,7 +151,7 @@ ProjectiveCount count_behind(std::span<const Vec3> places, double reach, const P
                              const DepthImage& depth, const Camera& camera) {
   const Pose to_camera = relative_to(camera.to_world, pose);
   const Intrinsics& k = camera.intrinsics;
-  std::size_t behind = 0, shadow = 0;
+  std::size_t behind = 0, occluded = 0;
   for (const Vec3& place : places) {
     const Vec3 x = to_camera * place;
     if (!(x.z > 0)) continue;
@@ -161,10 +161,10 @@ ProjectiveCount count_behind(std::span<const Vec3> places, double reach, const P
     const double seen =
         depth.depth[depth.index(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v))];
     behind += seen > 0 && x.z > seen;
-    shadow += seen > 0 && x.z > seen + reach;
+    occluded += seen > 0 && x.z > seen + reach;
   }
   const auto all = static_cast<double>(places.size());
-  return {static_cast<double>(behind) / all, static_cast<double>(shadow) / all};
+  return {static_cast<double>(behind) / all, static_cast<double>(occluded) / all};
 }
 
 }  // namespace vpm::bench

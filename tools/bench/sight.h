@@ -64,11 +64,11 @@ class Sight {
 Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras);
 
-// Fractions of the places. The count takes the shadow of an object as solid, as Shadows::solid
-// does.
+// Fractions of the places. The count takes the shadow of an object as solid, as
+// OccludedSpace::solid does.
 struct ProjectiveCount {
-  double behind = 0;  // behind the depth of the nearest pixel
-  double shadow = 0;  // the part of `behind` that is further behind it than the tool's reach
+  double behind = 0;    // behind the depth of the nearest pixel
+  double occluded = 0;  // the part of `behind` that is further behind it than the tool's reach
 };
 
 // Counts `places`, which are spread evenly over the tool. A place in front of a pixel without

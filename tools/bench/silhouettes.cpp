@@ -84,7 +84,7 @@ void follow_solid(const Path& path, const std::vector<Pose>& along, const Prepar
                   const PackedSolid& tool, std::uint32_t level, const Device& device,
                   SilhouetteResult& result) {
   const bool is_whole = std::ranges::find(path.depth.depth, 0.0F) == path.depth.depth.end();
-  ToolQuery query(tool.model, {.level = level, .device = device, .shadows = Shadows::solid});
+  ToolQuery query(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid});
   double volume_before = 0, count_before = 0;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const double volume = query.run(cloud, along[k]).volume_fraction;
@@ -146,7 +146,7 @@ int counted_in_free_space(const ToolModel& tool, const Level& level, const Pose&
   for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
     if (states[i] == SphereState::outside) continue;
     const Vec3 c = to_camera * tool.spheres[i].center;
-    const double reach = level.share_reach[i], nearest = c.z - reach, farthest = c.z + reach;
+    const double reach = level.cell_reach[i], nearest = c.z - reach, farthest = c.z + reach;
     if (!(nearest > 0)) continue;
     bool free = true;
     const double r = reach * std::max(k.fx, k.fy) / nearest * (1 + norm(c) / nearest) + 1;

@@ -15,7 +15,7 @@ enum Option : unsigned {
   kData = 4,
   kBaseline = 8,
   kNoiseSeed = 16,
-  kShadows = 32
+  kOccluded = 32
 };
 
 // Where a suite's queries are computed.
@@ -29,7 +29,7 @@ struct Suite {
 };
 
 constexpr Suite kSuites[] = {
-    {"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kShadows, Place::either},
+    {"accuracy", run_accuracy, kAll | kData | kNoiseSeed | kOccluded, Place::either},
     {"extremes", run_extremes, 0, Place::either},
     {"packing", run_packing, kAll | kMeshes},
     {"replay", run_replay, kData, Place::either},
@@ -64,7 +64,7 @@ void check_options(const Suite& suite, const SuiteOptions& given) {
   check(!given.data.empty(), kData, "--data");
   check(given.baseline, kBaseline, "--baseline");
   check(given.noise_seed != SuiteOptions::kUsualNoise, kNoiseSeed, "--noise-seed");
-  check(given.shadows == Shadows::solid, kShadows, "--shadows");
+  check(given.occluded == OccludedSpace::solid, kOccluded, "--shadows");
 }
 
 }  // namespace

@@ -22,8 +22,9 @@ struct SuiteOptions {
   bool baseline = false;  // scaling: the measure as printed beside it
   static constexpr std::uint64_t kUsualNoise = 1;
   std::uint64_t noise_seed = kUsualNoise;  // accuracy: seed of the noise
-  Shadows shadows = Shadows::near;         // accuracy; solid leaves out clouds without camera
-  Device device = {};                      // computes the queries, in suites that take one
+  OccludedSpace occluded =
+      OccludedSpace::within_reach;  // accuracy; solid leaves out clouds without camera
+  Device device = {};               // computes the queries, in suites that take one
 };
 
 // Returns the names of all suites, "accuracy, extremes, ...", or of those that take a CUDA device.

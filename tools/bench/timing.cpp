@@ -123,13 +123,13 @@ class Timing {
     time("cloud preparation", 0, runs_.fast, [&] { PreparedCloud prepared(cloud_); });
     points_ = without_camera(cloud_);
     time("cloud preparation, points", 0, runs_.slow, [&] { PreparedCloud prepared(points_); });
-    const auto time_frame = [&](const char* stage, PointReading points) {
+    const auto time_frame = [&](const char* stage, Denoising points) {
       FramePreparation preparation(NormalOptions{}, points);
       PreparedCloud frame{Cloud{}};
       time(stage, 0, runs_.fast, [&] { preparation.prepare(depth, scene_.camera, frame); });
     };
-    time_frame("frame, all at once", PointReading::settled);
-    time_frame("frame, all at once, as measured", PointReading::as_measured);
+    time_frame("frame, all at once", Denoising::on);
+    time_frame("frame, all at once, as measured", Denoising::off);
   }
 
   // Prepares recorded rooms and random poses in them, since a query's time depends on what is near.
@@ -138,7 +138,7 @@ class Timing {
     ToolQuery query(tool, {});
     for (const RecordedImage& image : recorded_images(options_.data)) {
       recorded_.push_back({PreparedCloud(image.cloud),
-                           PreparedCloud(image.cloud, PointReading::as_measured),
+                           PreparedCloud(image.cloud, Denoising::off),
                            without_camera(image.cloud),
                            {}});
       Recorded& room = recorded_.back();
@@ -168,7 +168,7 @@ class Timing {
     ToolModel model;
     time("graph", spheres, runs_.slow, [&] { model = build_tool_model(packing, GraphOptions{}); });
 
-    const PreparedCloud cloud(cloud_), measured(cloud_, PointReading::as_measured), points(points_);
+    const PreparedCloud cloud(cloud_), measured(cloud_, Denoising::off), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
     // Places most of the tool further behind the surface than its reach.

@@ -76,7 +76,7 @@ class VoxelGreedy::Run {
       }
       gather(field_.center(v), room);
       const Sphere found = refine == Refine::none
-                               ? Sphere{field_.center(v), clearance(field_.center(v))}
+                               ? Sphere{field_.center(v), separation(field_.center(v))}
                                : compass_search(field_.center(v));
       placed_.push_back({found.center, kMargin * found.radius});
       take(found, std::max<double>(room, found.radius));
@@ -92,7 +92,7 @@ class VoxelGreedy::Run {
       if (norm(x - s.center) - s.radius < room + 2 * kWalk * field_.width) near_.push_back(s);
   }
 
-  double clearance(Vec3 x) const {
+  double separation(Vec3 x) const {
     double d = field_.bvh.closest(x).distance;
     for (const Sphere& s : near_) d = std::min(d, norm(x - s.center) - s.radius);
     return d;
@@ -100,7 +100,7 @@ class VoxelGreedy::Run {
 
   // Searches within the ball about the start that the mesh does not meet, so on its side.
   Sphere compass_search(Vec3 start) const {
-    Sphere best{start, clearance(start)};
+    Sphere best{start, separation(start)};
     const double walk = std::min(kWalk * field_.width, best.radius);
     for (double step = kFirstStep * field_.width; step > kLastStep * field_.width;) {
       bool better = false;
@@ -109,7 +109,7 @@ class VoxelGreedy::Run {
         const int i = code % 3 - 1, j = code / 3 % 3 - 1, l = code / 9 - 1;
         const Vec3 x = best.center + step * Vec3{1.0 * i, 1.0 * j, 1.0 * l};
         if (norm(x - start) > walk) continue;
-        if (const double d = clearance(x); d > best.radius) {
+        if (const double d = separation(x); d > best.radius) {
           best = {x, d};
           better = true;
         }

@@ -105,7 +105,7 @@ void run(const Tool& tool, Arguments& a) {
 
   Progress progress("levels", tool.common());
   a.options.progress = [&](double fraction) { progress.update(fraction); };
-  std::vector<ShareQuality> quality;
+  std::vector<CellQuality> quality;
   const auto start = std::chrono::steady_clock::now();
   ToolModel model = build_tool_model(packing, a.options, &quality);
   if (a.calibrate) model.calibration = calibrate(model, packing.solid);

@@ -29,7 +29,7 @@ namespace {
 
 struct Arguments {
   std::vector<std::string> tools;
-  std::string cloud, pose, poses, measure = "refined", shadows = "near", output = "-", spheres_out,
+  std::string cloud, pose, poses, measure = "refined", occluded = "near", output = "-", spheres_out,
                                   stats, view;
   std::uint32_t level = 0;
   std::string max_error;
@@ -69,7 +69,7 @@ void declare(CLI::App& app, Arguments& a) {
                "Use the finest level without spheres that the cloud's points cannot resolve");
   app.add_option("--stiffness", a.stiffness,
                  "N/m^3: scales force and torque; without, or 1, they are in m^3 and m^4");
-  app.add_option("--shadows", a.shadows,
+  app.add_option("--shadows", a.occluded,
                  "What counts of places that a depth image does not show: those near behind what "
                  "it shows, or all: solid")
       ->check(CLI::IsMember({"near", "solid"}))
@@ -264,8 +264,8 @@ void write_rest(const Arguments& a, const ToolModel& model, const LevelToolQuery
 }
 
 // The measure as printed reads points as they are.
-PointReading reading_of_points(const Arguments& a) {
-  return a.raw_points || a.measure == "paper" ? PointReading::as_measured : PointReading::settled;
+Denoising denoising_of(const Arguments& a) {
+  return a.raw_points || a.measure == "paper" ? Denoising::off : Denoising::on;
 }
 
 // `pose` is the first.
@@ -294,7 +294,7 @@ void run_poses(const Tool& tool, const Arguments& a, const std::vector<ToolModel
   if (!a.pose.empty()) pose = pose_from_text(a.pose, &deviation);
   const Cloud cloud = read_cloud(a.cloud);
   const auto start = std::chrono::steady_clock::now();
-  const PreparedCloud prepared(cloud, reading_of_points(a));
+  const PreparedCloud prepared(cloud, denoising_of(a));
   const double prepare_seconds = seconds_since(start);
   if (view) view->add_cloud(a.cloud, cloud);
 
@@ -352,7 +352,7 @@ void run_replay(const Tool& tool, const Arguments& a, const ToolModel& model,
                   "--rate and the rate of --coupling differ; give one of them");
     rate = parameters->rate;
   }
-  Replay replay(tool, a.replay, rate, options.device, reading_of_points(a));
+  Replay replay(tool, a.replay, rate, options.device, denoising_of(a));
   const Pose first = replay.path().pose(0);
   LevelToolQuery query(model, options, level_request(a), replay.first_cloud(), first);
   if (query.scale()) note_scale(tool, *query.scale(), query.finest());
@@ -382,7 +382,7 @@ void run(const Tool& tool, const Arguments& a) {
   options.level = a.level;
   for (const ToolModel& model : models) model.level(a.level);  // it has one
   options.stiffness = a.stiffness.value_or(1);
-  options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
+  options.occluded = a.occluded == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach;
   options.coherent = a.coherent;
   options.counts_points = a.count_points;
   options.standby_us = a.standby_us;

@@ -80,7 +80,8 @@ void PoseView::set_frames(const std::string& name, const Recording& recording,
   import_ = options;
 }
 
-void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query) {
+void PoseView::add(std::size_t tool, const Pose& pose, const Result& result,
+                   const ToolQuery& query) {
   Answer answer{pose, result, {}};
   for (const SphereState state : query.states())
     answer.states.push_back(static_cast<std::uint8_t>(state));
@@ -90,7 +91,8 @@ void PoseView::add(std::size_t tool, const Pose& pose, const Result& result, con
   if (tool + 1 == models_.size()) keep(std::move(current_));
 }
 
-void PoseView::add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses) {
+void PoseView::add_batch(ToolQuery& query, const PreparedCloud& cloud,
+                         std::span<const Pose> poses) {
   ToolQuery* const only = &query;
   add_batch(std::span(&only, 1), cloud, poses);
 }
@@ -142,7 +144,7 @@ void PoseView::add_facts(view::Page& page) const {
     page.add_fact("cloud", name + maker_of(cloud.provenance));
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
-  if (options_.shadows == Shadows::solid) page.add_fact("shadows", "solid");
+  if (options_.occluded == OccludedSpace::solid) page.add_fact("shadows", "solid");
   if (options_.stiffness != 1) {
     char text[64];
     std::snprintf(text, sizeof text, "%.6g N/m³", options_.stiffness);
@@ -208,7 +210,7 @@ void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) cons
 std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& steps,
                                   std::size_t tool, std::size_t body) const {
   const bool has_stiffness = options_.stiffness != 1;
-  view::Column volume{"volume", "m3", 1, {}, body}, share{"of the tool", "%", 1, {}, body},
+  view::Column volume{"volume", "m3", 1, {}, body}, cell{"of the tool", "%", 1, {}, body},
       force{has_stiffness ? "force" : "force / stiffness", has_stiffness ? "N" : "m3", 3, {}, body},
       torque{has_stiffness ? "torque" : "torque / stiffness",
              has_stiffness ? "Nm" : "m4",
@@ -223,7 +225,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   for (const Step& step : steps) {
     const Result& r = step.answers[tool].result;
     add(volume, {r.volume});
-    add(share, {100 * r.volume_fraction});
+    add(cell, {100 * r.volume_fraction});
     add(force, {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z});
     add(torque, {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z});
     add(boundary, {1.0 * r.boundary});
@@ -231,7 +233,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
     if (r.points) add(points, {1.0 * *r.points});
   }
   const std::size_t volume_column = page.add_column(volume);
-  page.add_column(share);
+  page.add_column(cell);
   const std::size_t force_column = page.add_column(force);
   const std::size_t torque_column = page.add_column(torque);
   page.add_column(boundary);

@@ -77,7 +77,7 @@ bool is_default(const ReplayArguments& a) {
 }
 
 Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
-               const Device& device, PointReading points)
+               const Device& device, Denoising points)
     : tool_(tool),
       arguments_(arguments),
       rate_(rate),

@@ -37,7 +37,7 @@ class Replay {
   // frames without a camera are read as `points` says. Throws what the readers throw, and
   // Error(refused) if recording and path share no time or no frame can be used.
   Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
-         PointReading points);
+         Denoising points);
 
   const SampledPath& path() const { return path_; }
   // Returns the first frame that can be used, by which levels are chosen.
@@ -71,7 +71,7 @@ class Replay {
   SampledPath path_;
   ImportOptions import_;
   Device device_;
-  PointReading points_;
+  Denoising points_;
   ScheduleOptions schedule_;
   std::unique_ptr<const PreparedCloud> first_cloud_;
   std::unique_ptr<FrameFeed> feed_;

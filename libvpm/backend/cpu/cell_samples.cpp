@@ -25,7 +25,7 @@ struct FourRows {
 }  // namespace
 
 VPM_VECTOR_CLONES
-CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples) {
+ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples) {
   FourRows rows[kSumRows / kFour];
   Mask4 any_cut{};
   const std::size_t count = samples.size();

@@ -6,19 +6,19 @@
 #include <span>
 #include <type_traits>
 
-#include "libvpm/backend/cpu/cell.h"
-#include "libvpm/backend/cpu/depth_readings.h"
+#include "libvpm/backend/cpu/cell_measure.h"
+#include "libvpm/backend/cpu/depth_samples.h"
 
 namespace vpm {
 
 // SamplesInTurn::crossed.
-CrossedSums crossed_sums(const CrossingPlane& plane, std::span<const CellSample> samples);
+ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples);
 
 // A surface that vectors read at several places.
 template <class Surface>
 concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
-                                 Reading (&readings)[4]) {
-  read_four(surface, places, readings);
+                                 SurfaceSample (&on_surface_at)[4]) {
+  sample_four(surface, places, on_surface_at);
 };
 
 // Reads a surface at four places by vectors where it can be, others one after the other.
@@ -26,29 +26,29 @@ struct ReadTogether {
   template <class Surface, class Take>
   bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
     if constexpr (ReadsTogether<Surface>) {
-      Reading readings[4];
-      read_four(surface, places, readings);
-      return std::all_of(std::begin(readings), std::end(readings), take);
+      SurfaceSample on_surface_at[4];
+      sample_four(surface, places, on_surface_at);
+      return std::all_of(std::begin(on_surface_at), std::end(on_surface_at), take);
     } else {
-      return ReadInTurn{}(surface, places, take);
+      return SampleInTurn{}(surface, places, take);
     }
   }
 };
 
 // Adds samples whose surface is searched for one place after another.
 struct SamplesOneByOne : SamplesInTurn {
-  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
-                             std::uint32_t count) {
-    return crossed_sums(plane, {samples, count});
+  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
+                                std::uint32_t count) {
+    return clipped_moments(plane, {samples, count});
   }
 };
 
 // Adds the samples of one cell that a camera sees, four at a time.
 class SamplesTogether {
  public:
-  static CrossedSums crossed(const CrossingPlane& plane, const CellSample* samples,
-                             std::uint32_t count) {
-    return crossed_sums(plane, {samples, count});
+  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
+                                std::uint32_t count) {
+    return clipped_moments(plane, {samples, count});
   }
   template <class Measure>
   void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
@@ -57,9 +57,9 @@ class SamplesTogether {
     for (std::uint32_t first = 0; first < count; first += kAtOnce) {
       const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
       const std::uint32_t found =
-          read_samples(surface, measure.to_surface(), {samples + first, some}, readings_);
+          sample_surface(surface, measure.to_surface(), {samples + first, some}, on_surface_at_);
       for (std::uint32_t k = 0; k < found; ++k)
-        add_one(measure, samples, first + readings_[k].sample, readings_[k].at, result);
+        add_one(measure, samples, first + on_surface_at_[k].sample, on_surface_at_[k].at, result);
     }
   }
   // Adds those whose directions were put off, to be found together.
@@ -79,12 +79,13 @@ class SamplesTogether {
 
   template <class Measure>
   void add_one(const Measure& measure, const CellSample* samples, std::uint32_t k,
-               const PlaceReading& at, CellResult& result) {
-    const SharePiece piece = piece_of(samples[k]);
-    const typename Measure::PieceLook look = measure.look_of(piece, at.x, at.reading);
-    if (!measure.note(piece, look, result)) return;
-    if (!Measure::shares_direction(piece, look)) {
-      measure.add_pushed(measure.part_behind(piece, look), look.reading.normal, result.sum);
+               const PlaceSample& at, CellResult& result) {
+    const ToolPiece piece = piece_of(samples[k]);
+    const typename Measure::PieceSample sampled = measure.sample_of(piece, at.x, at.on_surface);
+    if (!measure.note(piece, sampled, result)) return;
+    if (!Measure::shares_direction(piece, sampled)) {
+      measure.add_pushed(measure.part_behind(piece, sampled), sampled.on_surface.normal,
+                         result.sum);
       return;
     }
     if (neighbors_ != k / kNeighborSamples) {
@@ -101,8 +102,8 @@ class SamplesTogether {
     std::uint32_t direction;  // which of those that are searched for
   };
 
-  SampleReading readings_[kAtOnce];
-  PlaceReading searched_[kAtOnce];
+  SurfaceOfSample on_surface_at_[kAtOnce];
+  PlaceSample searched_[kAtOnce];
   Pushed pushed_[kAtOnce * kNeighborSamples];
   std::uint32_t direction_count_ = 0, pushed_count_ = 0;
   std::uint32_t neighbors_ = kNone;  // for which the last direction is searched

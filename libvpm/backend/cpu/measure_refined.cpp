@@ -6,10 +6,10 @@ namespace vpm {
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
     : tool_(tool),
-      reach_(tool.reach, options.shadows),
+      reach_(tool.reach, options.occluded),
       counts_points_(options.counts_points),
       level_(tool, level),
-      shares_(level_) {
+      cells_(level_) {
   if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
 }
 
@@ -27,9 +27,9 @@ Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {
   std::fill(states.begin(), states.end(), SphereState::outside);
   for (std::uint32_t i = 0; i < level_.size(); ++i) {
-    if (shares_.counts(i))
+    if (cells_.counts(i))
       states[level_.sphere(i)] =
-          shares_.cells[i] == Cell::cut ? SphereState::boundary : SphereState::inside;
+          cells_.cells[i] == CellClass::cut ? SphereState::boundary : SphereState::inside;
   }
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/backend/cpu/points_inside.h"
-#include "libvpm/backend/cpu/share_states.h"
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/include/vpm/query_types.h"
@@ -59,7 +59,7 @@ class RefinedMeasure {
   ToolReach reach_;
   bool counts_points_;
   SpatialLevel level_;
-  ShareStates shares_;
+  CellStates cells_;
   std::optional<PoseMemory> memory_;
 };
 

@@ -4,17 +4,17 @@
 
 #include <atomic>
 
+#include "libvpm/backend/cpu/camera_visibility.h"
+#include "libvpm/backend/cpu/cell_classifier.h"
+#include "libvpm/backend/cpu/inside_flood.h"
 #include "libvpm/backend/cpu/measure_refined.h"
-#include "libvpm/backend/cpu/seen_shares.h"
-#include "libvpm/backend/cpu/share_classifier.h"
-#include "libvpm/backend/cpu/share_flood.h"
 
 namespace vpm {
 
 // Decides which cells behind a surface are inside.
 template <class Surface>
 using InsideOf =
-    std::conditional_t<Surface::kTellsInside, SeenShares<Surface>, ShareFlood<Surface>>;
+    std::conditional_t<Surface::kTellsInside, CameraVisibility<Surface>, InsideFlood<Surface>>;
 
 template <MeasuredBody Surface>
 Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
@@ -22,15 +22,15 @@ Result RefinedMeasure::run_on(const Surface& surface, const Pose& to_world, cons
   ToolSum sum;
   Result result;
   const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
-  ShareClassifier classifier(tool_, reach_, level_, surface, to_surface, points, shares_);
+  CellClassifier classifier(tool_, reach_, level_, surface, to_surface, points, cells_);
   ParallelRegion region;
   result.points = classifier.run(region);
-  CutShares cut(tool_, level_, to_surface, shares_);
+  CutCells cut(tool_, level_, to_surface, cells_);
   cut.list();
-  InsideOf<Surface> inside(reach_, level_, surface, to_surface, cut, shares_);
+  InsideOf<Surface> inside(reach_, level_, surface, to_surface, cut, cells_);
   inside.run(region);
   if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
-  result.boundary = static_cast<std::uint32_t>(shares_.cut.size());
+  result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
   result.inside = add_up(surface, to_surface, inside, region, sum);
   sum.write(tool_, pose.rotation, result);
   if (!memory_) return result;
@@ -65,15 +65,15 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
                                      const Inside& inside, std::uint32_t begin, std::uint32_t end,
                                      ToolSum& sum) {
   std::uint32_t last_cut = kNoRow, count = 0;
-  for_rows_in(Cell::cut, shares_.cells, begin, end,
-              [&](std::uint32_t i) { sum.add(shares_.results[i].sum); });
-  for_rows_in(Passage::taken, shares_.passages, begin, end, [&](std::uint32_t i) {
+  for_rows_in(CellClass::cut, cells_.cells, begin, end,
+              [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
+  for_rows_in(FloodState::taken, cells_.flood_states, begin, end, [&](std::uint32_t i) {
     const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
     sum.add(part);
     if (part.volume.value != 0)
       ++count;
     else
-      shares_.cells[i] = Cell::free;  // hidden, not inside
+      cells_.cells[i] = CellClass::free;  // hidden, not inside
   });
   return count;
 }
@@ -82,23 +82,23 @@ template <class Surface, class Inside>
 ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                                std::uint32_t row, std::uint32_t& last_cut) const {
   ToolSum sum;
-  if (shares_.cells[row] == Cell::pushed) {
-    add_whole(reach_, level_.mass(row), shares_.planes[level_.root(row)].normal, sum);
+  if (cells_.cells[row] == CellClass::pushed) {
+    add_whole(reach_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
     return sum;
   }
-  const bool partial = shares_.cells[row] == Cell::partial;
-  if (partial && !shares_.results[row].is_far) return shares_.results[row].sum;
+  const bool partial = cells_.cells[row] == CellClass::partial;
+  if (partial && !cells_.results[row].is_far) return cells_.results[row].sum;
   const CellView view = level_.cell(row);
   const CellMeasure measure(surface, to_surface, reach_, view);
-  Voucher voucher = inside.voucher(row, last_cut);
-  const auto vouches = [&](Vec3 x, Vec3 foot) { return voucher(x, foot); };
+  PlaneSupport support = inside.support(row, last_cut);
+  const auto supports = [&](Vec3 x, Vec3 foot) { return support(x, foot); };
   if (partial) {
-    sum = shares_.results[row].sum;
-    measure.add_far(vouches, sum);
+    sum = cells_.results[row].sum;
+    measure.add_far(supports, sum);
   } else if (is_compact(level_.reach(row), reach_.length)) {
-    measure.add_whole_piece(vouches, piece_of(level_.mass(row), view), sum);
+    measure.add_whole_piece(supports, piece_of(level_.mass(row), view), sum);
   } else {
-    sum = measure.whole(vouches);
+    sum = measure.whole(supports);
   }
   return sum;
 }
@@ -109,27 +109,27 @@ void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, co
                               Inside& inside) {
   inside.begin_to_remember(to_world, *memory_);
   const auto keep_cluster = [&](std::uint32_t root) {
-    const ShareCluster& cluster = level_.cluster(root);
+    const CellCluster& cluster = level_.cluster(root);
     for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-      if (!shares_.counts(i)) continue;
+      if (!cells_.counts(i)) continue;
       const bool is_known = memory_->is_known(root);
       if (!is_known || !inside.follows(i)) {
-        const Reading reading = surface.read(to_surface * level_.cell(i).center);
-        const Vec3 foot = to_world * reading.foot;
-        if (!reading.known || !inside.is_sure(i, foot)) continue;
+        const SurfaceSample on_surface = surface.sample(to_surface * level_.cell(i).center);
+        const Vec3 foot = to_world * on_surface.foot;
+        if (!on_surface.known || !inside.is_sure(i, foot)) continue;
         if (!is_known) memory_->remember(root, cluster, foot);
       }
       if (inside.all_follow()) {
-        memory_->remember_if(cluster, [&](std::uint32_t k) { return shares_.counts(k); });
+        memory_->remember_if(cluster, [&](std::uint32_t k) { return cells_.counts(k); });
         return;
       }
       memory_->remember(i);
     }
   };
-  for (std::uint32_t i = next_busy(shares_.cells, 0, level_.size()); i < level_.size();) {
+  for (std::uint32_t i = next_busy(cells_.cells, 0, level_.size()); i < level_.size();) {
     const std::uint32_t root = level_.root(i);
     keep_cluster(root);
-    i = next_busy(shares_.cells, level_.cluster(root).end, level_.size());
+    i = next_busy(cells_.cells, level_.cluster(root).end, level_.size());
   }
   memory_->turn();
 }

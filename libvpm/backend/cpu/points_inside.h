@@ -59,16 +59,16 @@ class PointsOfSphere {
         to_cloud_(relative_to({{}, cloud.origin()}, pose)) {}
 
   // `look`: what the cloud's surface says of the sphere.
-  std::uint32_t count(const Sphere& sphere, const DepthSurface::Look& look) const {
+  std::uint32_t count(const Sphere& sphere, const DepthSurface::BallClass& in_ball) const {
     const Near near = near_to(sphere);
     std::uint32_t found = 0;
-    cloud_.for_ranges_in_pixels(look.pixels, [&](std::uint32_t begin, std::uint32_t end) {
+    cloud_.for_ranges_in_pixels(in_ball.pixels, [&](std::uint32_t begin, std::uint32_t end) {
       found += count(near, begin, end);
     });
     return found;
   }
-  template <class Look>
-  std::uint32_t count(const Sphere& sphere, const Look&) const {
+  template <class BallClass>
+  std::uint32_t count(const Sphere& sphere, const BallClass&) const {
     const Near near = near_to(sphere);
     std::uint32_t found = 0;
     cloud_.for_ranges_in_ball(

@@ -3,9 +3,9 @@
 namespace vpm {
 namespace {
 
-constexpr std::uint32_t kFewShares = 8;  // are looked at one by one
+constexpr std::uint32_t kFewCells = 8;  // are looked at one by one
 constexpr std::size_t kGroupClusters = 8;
-constexpr double kGroupReach = 2.5 * kPatchReach;  // of the tool's
+constexpr double kGroupReach = 2.5 * kPlanarReach;  // of the tool's
 // A group's ball holds the shares of its clusters, though not the clusters' own balls, however
 // their projections are rounded.
 constexpr double kGroupRounding = 1 + 1e-9;
@@ -13,9 +13,9 @@ constexpr double kGroupRounding = 1 + 1e-9;
 }  // namespace
 
 SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
-  ShareClusters clusters = cluster_shares(tool, level);
-  spheres_ = std::move(clusters.shares);
-  for (const ShareCluster& c : clusters.clusters) {
+  CellClusters clusters = cluster_cells(tool, level);
+  spheres_ = std::move(clusters.cells);
+  for (const CellCluster& c : clusters.clusters) {
     root_of_row_.resize(c.end, static_cast<std::uint32_t>(roots_.size()));
     roots_.push_back(static_cast<std::uint32_t>(nodes_.size()));
     add_nodes(tool, level, c.begin, c.end);
@@ -26,7 +26,7 @@ SpatialLevel::SpatialLevel(const ToolModel& tool, const Level& level) {
     masses_.push_back(clusters.masses[sphere]);
     block_masses_.insert(block_masses_.end(), block_masses.begin() + level.block_begin[sphere],
                          block_masses.begin() + level.block_begin[sphere + 1]);
-    add_share(tool, level, sphere);
+    add_cell(tool, level, sphere);
   }
   add_graph(level.graph);
 }
@@ -35,7 +35,7 @@ void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uin
                              std::uint32_t end) {
   const std::size_t node = nodes_.size();
   nodes_.push_back({enclosing_cluster(tool, level, spheres_, begin, end), 0});
-  if (end - begin > kFewShares) {
+  if (end - begin > kFewCells) {
     const std::uint32_t middle = halve(tool, spheres_, begin, end);
     add_nodes(tool, level, begin, middle);
     add_nodes(tool, level, middle, end);
@@ -50,8 +50,8 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
   const auto count = static_cast<std::uint32_t>(roots_.size());
   for (std::uint32_t root = 0; root < count; ++root) {
     if (!groups_.empty() && root - groups_.back().begin < kGroupClusters) {
-      ShareGroup& last = groups_.back();
-      const ShareCluster ball =
+      CellGroup& last = groups_.back();
+      const CellCluster ball =
           enclosing_cluster(tool, level, spheres_, first_row(last.begin), end_row(root));
       if (ball.reach <= kGroupReach * tool.reach) {
         last.ball = ball;
@@ -61,12 +61,12 @@ void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
     }
     groups_.push_back({nodes_[roots_[root]].cluster, root, root + 1});
   }
-  for (ShareGroup& group : groups_) group.ball.reach *= kGroupRounding;
+  for (CellGroup& group : groups_) group.ball.reach *= kGroupRounding;
 }
 
-void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
-  Share share{tool.spheres[sphere].center - tool.center_of_mass, level.share_reach[sphere],
-              tool.spheres[sphere].radius, static_cast<std::uint32_t>(blocks_.size()), 0};
+void SpatialLevel::add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere) {
+  Cell cell{tool.spheres[sphere].center - tool.center_of_mass, level.cell_reach[sphere],
+            tool.spheres[sphere].radius, static_cast<std::uint32_t>(blocks_.size()), 0};
   for (std::uint32_t b = level.block_begin[sphere]; b < level.block_begin[sphere + 1]; ++b) {
     CellBlock block = level.blocks[b];
     const auto begin = static_cast<std::uint32_t>(samples_.size());
@@ -76,8 +76,8 @@ void SpatialLevel::add_share(const ToolModel& tool, const Level& level, std::uin
     block.end = static_cast<std::uint32_t>(samples_.size());
     blocks_.push_back(block);
   }
-  share.end = static_cast<std::uint32_t>(blocks_.size());
-  shares_.push_back(share);
+  cell.end = static_cast<std::uint32_t>(blocks_.size());
+  cells_.push_back(cell);
 }
 
 void SpatialLevel::add_graph(const SphereGraph& graph) {

@@ -4,20 +4,20 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/backend/cpu/share_clusters.h"
-#include "libvpm/measure/share_piece.h"
+#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/measure/tool_piece.h"
 
 namespace vpm {
 
 // Clusters in clusters, down to few shares; those of a cluster follow it.
-struct ShareTreeNode {
-  ShareCluster cluster;    // rows of SpatialLevel
+struct CellTreeNode {
+  CellCluster cluster;     // rows of SpatialLevel
   std::uint32_t next = 0;  // the node after this one and all within
 };
 
 // Clusters side by side: roots [begin, end) of the level.
-struct ShareGroup {
-  ShareCluster ball;
+struct CellGroup {
+  CellCluster ball;
   std::uint32_t begin = 0, end = 0;
 };
 
@@ -26,27 +26,27 @@ class SpatialLevel {
  public:
   SpatialLevel(const ToolModel& tool, const Level& level);
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(shares_.size()); }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
   std::uint32_t sphere(std::uint32_t row) const { return spheres_[row]; }
   CellView cell(std::uint32_t row) const {
-    const Share& share = shares_[row];
-    return {blocks_.data(), block_masses_.data(), samples_.data(), share.begin,
-            share.end,      share.center,         share.reach};
+    const Cell& row_cell = cells_[row];
+    return {blocks_.data(), block_masses_.data(), samples_.data(), row_cell.begin,
+            row_cell.end,   row_cell.center,      row_cell.reach};
   }
-  double reach(std::uint32_t row) const { return shares_[row].reach; }
-  double radius(std::uint32_t row) const { return shares_[row].radius; }
+  double reach(std::uint32_t row) const { return cells_[row].reach; }
+  double radius(std::uint32_t row) const { return cells_[row].radius; }
   const BlockMass& mass(std::uint32_t row) const { return masses_[row]; }
   std::span<const std::uint32_t> neighbors(std::uint32_t row) const {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
   }
-  const std::vector<ShareTreeNode>& nodes() const { return nodes_; }
+  const std::vector<CellTreeNode>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& roots() const { return roots_; }         // nodes in no other
   std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
-  const ShareCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
-  const std::vector<ShareGroup>& groups() const { return groups_; }
+  const CellCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
+  const std::vector<CellGroup>& groups() const { return groups_; }
 
  private:
-  struct Share {
+  struct Cell {
     Vec3 center;                       // of the sphere, about the tool's centre of mass
     double reach = 0, radius = 0;      // of the share, of the sphere
     std::uint32_t begin = 0, end = 0;  // blocks
@@ -54,19 +54,19 @@ class SpatialLevel {
 
   void add_nodes(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end);
   void add_groups(const ToolModel& tool, const Level& level);
-  void add_share(const ToolModel& tool, const Level& level, std::uint32_t sphere);
+  void add_cell(const ToolModel& tool, const Level& level, std::uint32_t sphere);
   void add_graph(const SphereGraph& graph);
 
   std::vector<std::uint32_t> spheres_;
-  std::vector<Share> shares_;
+  std::vector<Cell> cells_;
   std::vector<BlockMass> masses_;
   std::vector<CellBlock> blocks_;
   std::vector<BlockMass> block_masses_;
   std::vector<CellSample> samples_;
   std::vector<std::uint32_t> neighbor_begin_, neighbors_;
-  std::vector<ShareTreeNode> nodes_;
+  std::vector<CellTreeNode> nodes_;
   std::vector<std::uint32_t> roots_, root_of_row_;
-  std::vector<ShareGroup> groups_;
+  std::vector<CellGroup> groups_;
 };
 
 }  // namespace vpm

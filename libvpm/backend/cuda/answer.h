@@ -82,7 +82,7 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   __syncthreads();
   if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
   if (__any_sync(~0U, part.points != 0) != 0) {  // seldom asked for
-    const auto points = static_cast<unsigned>(Tile(32).sum(part.points));
+    const auto points = static_cast<unsigned>(Subwarp(32).sum(part.points));
     if (lane == 0) atomicAdd(&total.points, points);
   }
   __syncthreads();

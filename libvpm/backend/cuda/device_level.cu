@@ -2,7 +2,7 @@
 
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/backend/cuda/device_level.h"
-#include "libvpm/backend/cuda/level_units.h"
+#include "libvpm/backend/cuda/level_tasks.h"
 
 namespace vpm::cuda {
 namespace {
@@ -48,31 +48,31 @@ double reach_of_spheres(const ToolModel& tool, const Level& level) {
 }
 
 DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
-                         const ShareClusters& clusters)
+                         const CellClusters& clusters)
     : spheres_(tool.spheres.data(), level.sphere_count),
       centers_(centers_of(tool, level)),
-      reach_(level.share_reach),
+      reach_(level.cell_reach),
       block_begin_(level.block_begin),
       grid_begin_(level.grid.begin),
       grid_spheres_(level.grid.spheres),
       blocks_(level.blocks),
-      share_masses_(clusters.masses),
+      cell_masses_(clusters.masses),
       samples_(level.samples),
       edges_(edges_of(level.graph)),
       edge_begin_(edge_begins(level.graph)) {
-  const LevelUnits units(tool, level, clusters);
+  const LevelTasks units(tool, level, clusters);
   block_masses_ = DeviceArray<BlockMass>(units.block_masses());
-  const ChunkedUnits<Unit> chunked = units.chunked();
-  units_ = DeviceArray<Unit>(chunked.units);
-  chunks_ = DeviceArray<Chunk>(chunked.chunks);
+  const GroupedTasks<BlockTask> chunked = units.chunked();
+  units_ = DeviceArray<BlockTask>(chunked.units);
+  chunks_ = DeviceArray<TaskGroup>(chunked.chunks);
   view_.count = level.sphere_count;
   view_.chunks = chunks_.get();
-  view_.chunk_count = static_cast<std::uint32_t>(chunked.chunks.size());
+  view_.task_group_count = static_cast<std::uint32_t>(chunked.chunks.size());
   if (level.sphere_count <= kSpheresOfWarps) {
     std::uint32_t wide_count = 0;
-    const ChunkedUnits<WarpUnit> of_warps = units.chunked_for_warps(wide_count);
-    units_of_warps_ = DeviceArray<WarpUnit>(of_warps.units);
-    chunks_of_warps_ = DeviceArray<Chunk>(of_warps.chunks);
+    const GroupedTasks<WarpTask> of_warps = units.chunked_for_warps(wide_count);
+    units_of_warps_ = DeviceArray<WarpTask>(of_warps.units);
+    chunks_of_warps_ = DeviceArray<TaskGroup>(of_warps.chunks);
     view_.of_warps = {units_of_warps_.get(), chunks_of_warps_.get(),
                       static_cast<std::uint32_t>(of_warps.chunks.size()), wide_count};
   }
@@ -84,7 +84,7 @@ DeviceLevel::DeviceLevel(const ToolModel& tool, const Level& level, ToolReach re
   view_.block_masses = block_masses_.get();
   view_.samples = samples_.get();
   view_.units = units_.get();
-  view_.share_masses = share_masses_.get();
+  view_.cell_masses = cell_masses_.get();
   view_.edges = edges_.get();
   view_.edge_begin = edge_begin_.get();
   view_.edge_count = static_cast<std::uint32_t>(edges_.size());

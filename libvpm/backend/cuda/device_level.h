@@ -11,24 +11,24 @@ double reach_of_spheres(const ToolModel& tool, const Level& level);
 
 class DeviceLevel {
  public:
-  DeviceLevel(const ToolModel& tool, const Level& level, Shadows shadows)
-      : DeviceLevel(tool, level, {tool.reach, shadows}, cluster_shares(tool, level)) {}
+  DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded)
+      : DeviceLevel(tool, level, {tool.reach, occluded}, cluster_cells(tool, level)) {}
   const LevelView& view() const { return view_; }
 
  private:
   DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
-              const ShareClusters& clusters);
+              const CellClusters& clusters);
 
   DeviceArray<Sphere> spheres_;
   DeviceArray<Vec3> centers_;
   DeviceArray<double> reach_;
   DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_;
   DeviceArray<CellBlock> blocks_;
-  DeviceArray<BlockMass> block_masses_, share_masses_;
+  DeviceArray<BlockMass> block_masses_, cell_masses_;
   DeviceArray<CellSample> samples_;
-  DeviceArray<Unit> units_;
-  DeviceArray<WarpUnit> units_of_warps_;
-  DeviceArray<Chunk> chunks_, chunks_of_warps_;
+  DeviceArray<BlockTask> units_;
+  DeviceArray<WarpTask> units_of_warps_;
+  DeviceArray<TaskGroup> chunks_, chunks_of_warps_;
   DeviceArray<Edge> edges_;
   DeviceArray<std::uint32_t> edge_begin_;
   LevelView view_;

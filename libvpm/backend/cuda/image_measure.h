@@ -3,7 +3,7 @@
 // for no other.
 #pragma once
 
-#include "libvpm/backend/cuda/image_chunk.h"
+#include "libvpm/backend/cuda/image_task_group.h"
 
 namespace vpm::cuda {
 
@@ -22,12 +22,12 @@ class ImageMeasure {
         sums_(work.notes) {}
 
   // Whether there are enough.
-  __device__ static bool is_for(const LevelView& level, Part part) {
+  __device__ static bool is_for(const LevelView& level, BlockRange part) {
     return level.of_warps.count > 0 && level.of_warps.count <= part.parts * (blockDim.x / 32);
   }
   // Returns what this thread has added up.
   __device__ RawResult run() {
-    measure_chunk<UnitSums>();
+    measure_chunk<TaskSums>();
     return sums_.found();
   }
   // Notes the planes of cut shares, which run() leaves out. Seldom needed.
@@ -37,16 +37,16 @@ class ImageMeasure {
   // Neighbours go to different blocks: they often take long together.
   template <class Found>
   __device__ void measure_chunk() {
-    const WarpChunks& all = work_.level.of_warps;
+    const WarpTaskGroups& all = work_.level.of_warps;
     const unsigned c = threadIdx.x / 32 * work_.part.parts + work_.part.part;
     if (c >= all.count) return;
     const bool is_wide = c < all.wide_count;
-    const unsigned at_once = is_wide ? WarpChunks::kWideUnits : Chunk::kUnits;
-    const WarpUnit* const units = all.units +
-                                  (is_wide ? 0 : all.wide_count * WarpChunks::kWideUnits) +
+    const unsigned at_once = is_wide ? WarpTaskGroups::kWideTasks : TaskGroup::kTasks;
+    const WarpTask* const units = all.units +
+                                  (is_wide ? 0 : all.wide_count * WarpTaskGroups::kWideTasks) +
                                   (is_wide ? c : c - all.wide_count) * at_once;
-    ImageChunk<Found>(work_, counts_points_, all.chunks[c].ball, units, 32 / at_once, shared_,
-                      sums_)
+    ImageTaskGroup<Found>(work_, counts_points_, all.chunks[c].ball, units, 32 / at_once, shared_,
+                          sums_)
         .measure();
   }
 

@@ -1,12 +1,12 @@
 // What the warps of an image's query add up, and note of shares. For image_chunk.h.
 #pragma once
 
-#include "libvpm/backend/cuda/shares.h"
+#include "libvpm/backend/cuda/cell_notes.h"
 
 namespace vpm::cuda {
 
 // What is found of a unit.
-struct UnitSums {
+struct TaskSums {
   ToolSum sum;
   bool is_cut = false;
 };
@@ -14,30 +14,30 @@ struct UnitSums {
 // What a thread adds up of an image's query, and notes of shares.
 class ImageSums {
  public:
-  __device__ explicit ImageSums(const ShareNotes& notes) : notes_(notes) {}
+  __device__ explicit ImageSums(const CellNotes& notes) : notes_(notes) {}
 
   // What was found of the share of a unit, of one unit at most; others may note something of the
   // share too.
-  __device__ void note(const Unit& unit, const UnitSums& found) {
+  __device__ void note(const BlockTask& task, const TaskSums& found) {
     found_.sum.add(found.sum);
     if (!found.is_cut && found.sum.volume.value == 0) return;
     bits_added_ = kCounted | (found.is_cut ? kCut : 0);
-    word_before_ = atomicOr(&notes_.words[unit.share], bits_added_);
+    word_before_ = atomicOr(&notes_.words[task.cell], bits_added_);
   }
   // The planes of cut shares.
-  __device__ void note(const Unit& unit, const ContactPlane& found) const {
-    if (found.count > 0) add_atomically(found, notes_.planes[unit.share]);
+  __device__ void note(const BlockTask& task, const ContactPlane& found) const {
+    if (found.count > 0) add_atomically(found, notes_.planes[task.cell]);
   }
-  __device__ void note_points(const Unit& unit) const {
-    atomicOr(&notes_.words[unit.share], kCountsPoints);
+  __device__ void note_points(const BlockTask& task) const {
+    atomicOr(&notes_.words[task.cell], kCountsPoints);
   }
   __device__ RawResult found() {
-    count_share(word_before_, bits_added_, found_);
+    count_cell(word_before_, bits_added_, found_);
     return found_;
   }
 
  private:
-  const ShareNotes& notes_;
+  const CellNotes& notes_;
   RawResult found_;
   std::uint32_t word_before_ = 0, bits_added_ = 0;  // of the share that was noted
 };

@@ -1,9 +1,9 @@
-// The steps of the measure as printed, numbered as in libvpm/measure/README.md, by many threads: the
-// bits of PaperMeasure, whatever their order.
+// The steps of the measure as printed, numbered as in libvpm/measure/README.md, by many threads:
+// the bits of PaperMeasure, whatever their order.
 #pragma once
 
+#include "libvpm/backend/cuda/cell_notes.h"
 #include "libvpm/backend/cuda/points.h"
-#include "libvpm/backend/cuda/shares.h"
 #include "libvpm/measure/paper_contact.h"
 
 namespace vpm::cuda {
@@ -56,7 +56,7 @@ __device__ inline void clear(const PaperSpace& space, const PaperCounters& count
 
 // Steps 1 and 2 for a part of the points, by all threads of a block.
 __device__ inline void gather(const PaperLevel& level, const PointsView& points,
-                              const PoseFrame& frame, Part part, const PaperSpace& space,
+                              const PoseFrame& frame, BlockRange part, const PaperSpace& space,
                               PaperCounters& counters) {
   for_points(
       points, frame, level.spheres_reach, part, [&](std::uint32_t index, Vec3 point, bool active) {
@@ -120,17 +120,17 @@ class PaperFlood {
     return level_.graph_begin[i + 1] - level_.graph_begin[i];
   }
   // Of the threads of a tile, those for which `value` holds: the first thread is bit 0.
-  __device__ static unsigned ballot(const Tile& tile, bool value) {
-    return (__ballot_sync(tile.mask, value) & tile.mask) >> (threadIdx.x % 32 - tile.lane);
+  __device__ static unsigned ballot(const Subwarp& subwarp, bool value) {
+    return (__ballot_sync(subwarp.mask, value) & subwarp.mask) >> (threadIdx.x % 32 - subwarp.lane);
   }
-  __device__ static unsigned before(const Tile& tile, unsigned ballot) {
-    return __popc(ballot & ((1U << tile.lane) - 1));
+  __device__ static unsigned before(const Subwarp& subwarp, unsigned ballot) {
+    return __popc(ballot & ((1U << subwarp.lane) - 1));
   }
 
   __device__ void enter();
   __device__ void pass_front(unsigned size);
-  __device__ Vec3 pass(const Tile& tile, std::uint32_t j);
-  __device__ void claim(const Tile& tile, bool wants, std::uint32_t i);
+  __device__ Vec3 pass(const Subwarp& subwarp, std::uint32_t j);
+  __device__ void claim(const Subwarp& subwarp, bool wants, std::uint32_t i);
   __device__ bool gives_normal(std::uint32_t word, std::uint32_t i, std::uint32_t j) const;
   template <class Pass>
   __device__ void for_hubs(std::uint32_t word, const Pass& pass);
@@ -150,34 +150,35 @@ class PaperFlood {
 
 // By a tile: those of its spheres that nobody has claimed yet are in the next front.
 template <class Team>
-__device__ void PaperFlood<Team>::claim(const Tile& tile, bool wants, std::uint32_t i) {
+__device__ void PaperFlood<Team>::claim(const Subwarp& subwarp, bool wants, std::uint32_t i) {
   const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
-  const unsigned all = ballot(tile, claimed);
+  const unsigned all = ballot(subwarp, claimed);
   if (all == 0) return;
   unsigned slot = 0;
-  if (tile.leads()) slot = atomicAdd(&counters_.fronts[(front_ + 1) % 3], __popc(all));
-  slot = tile.from(slot, 0) + before(tile, all);
+  if (subwarp.leads()) slot = atomicAdd(&counters_.fronts[(front_ + 1) % 3], __popc(all));
+  slot = subwarp.from(slot, 0) + before(subwarp, all);
   if (claimed) space_.inside[next_ + slot] = i;
 }
 
 // Steps 3 and 4: a tile for each boundary sphere, a block for each that is a hub.
 template <class Team>
 __device__ void PaperFlood<Team>::enter() {
-  const Tile tile(kWidth);
+  const Subwarp subwarp(kWidth);
   const unsigned count = read(counters_.boundary);
   for (unsigned k = team_.thread() / kWidth; k < count; k += team_.threads() / kWidth) {
     const std::uint32_t i = space_.boundary[k];
     const Vec3 normal = space_.contacts[i].mean_normal();
-    if (tile.leads()) {
+    if (subwarp.leads()) {
       space_.normals[i] = normal;
       add_boundary(level_.tool, level_.spheres[i], space_.contacts[i], normal, result_.sum);
       ++result_.boundary;
     }
     const std::uint32_t end = level_.graph_begin[i + 1];
     if (degree(i) > PaperLevel::kMostNeighbors) continue;
-    for (std::uint32_t n = level_.graph_begin[i] + tile.lane; n - tile.lane < end; n += kWidth) {
+    for (std::uint32_t n = level_.graph_begin[i] + subwarp.lane; n - subwarp.lane < end;
+         n += kWidth) {
       const std::uint32_t j = n < end ? level_.neighbors[n] : i;
-      claim(tile,
+      claim(subwarp,
             read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]), j);
     }
   }
@@ -189,12 +190,12 @@ template <class Team>
 __device__ void PaperFlood<Team>::pass_front(unsigned size) {
   if (team_.thread() == 0) counters_.fronts[(front_ + 2) % 3] = 0;
   next_ = begin_ + size;
-  const Tile tile(kWidth);
+  const Subwarp subwarp(kWidth);
   for (unsigned k = team_.thread() / kWidth; k < size; k += team_.threads() / kWidth) {
     const std::uint32_t j = space_.inside[begin_ + k];
     if (degree(j) > PaperLevel::kMostNeighbors) continue;
-    const Vec3 normal = pass(tile, j);
-    if (tile.leads()) space_.normals[j] = normal;
+    const Vec3 normal = pass(subwarp, j);
+    if (subwarp.leads()) space_.normals[j] = normal;
   }
   for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
 }
@@ -202,19 +203,20 @@ __device__ void PaperFlood<Team>::pass_front(unsigned size) {
 // Claims what the sphere leads to and returns its normal: normals are added in the order of the
 // neighbours.
 template <class Team>
-__device__ Vec3 PaperFlood<Team>::pass(const Tile& tile, std::uint32_t j) {
+__device__ Vec3 PaperFlood<Team>::pass(const Subwarp& subwarp, std::uint32_t j) {
   const std::uint32_t end = level_.graph_begin[j + 1];
   Vec3 normal;
-  for (std::uint32_t n = level_.graph_begin[j] + tile.lane; n - tile.lane < end; n += kWidth) {
+  for (std::uint32_t n = level_.graph_begin[j] + subwarp.lane; n - subwarp.lane < end;
+       n += kWidth) {
     const std::uint32_t i = n < end ? level_.neighbors[n] : j;  // itself: neither 0 nor before
     const std::uint32_t word = read(space_.words[i]);
     const bool gives = gives_normal(word, i, j);
     const Vec3 theirs = gives ? space_.normals[i] : Vec3{};
-    claim(tile, word == 0, i);
-    for (unsigned rest = ballot(tile, gives); rest != 0; rest &= rest - 1) {
+    claim(subwarp, word == 0, i);
+    for (unsigned rest = ballot(subwarp, gives); rest != 0; rest &= rest - 1) {
       const unsigned from = __ffs(static_cast<int>(rest)) - 1;
-      normal +=
-          Vec3{tile.from(theirs.x, from), tile.from(theirs.y, from), tile.from(theirs.z, from)};
+      normal += Vec3{subwarp.from(theirs.x, from), subwarp.from(theirs.y, from),
+                     subwarp.from(theirs.z, from)};
     }
   }
   return normalized_or_zero(normal);
@@ -234,7 +236,7 @@ __device__ bool PaperFlood<Team>::gives_normal(std::uint32_t word, std::uint32_t
 template <class Team>
 template <class Pass>
 __device__ void PaperFlood<Team>::for_hubs(std::uint32_t word, const Pass& pass) {
-  const Part part = team_.block();
+  const BlockRange part = team_.block();
   for (std::uint32_t first = part.part; first < level_.hub_count;
        first += part.parts * blockDim.x) {
     const std::uint32_t h = first + threadIdx.x * part.parts;
@@ -252,7 +254,7 @@ __device__ void PaperFlood<Team>::for_hubs(std::uint32_t word, const Pass& pass)
 
 template <class Team>
 __device__ void PaperFlood<Team>::enter_from_hub(std::uint32_t i) {
-  const Tile warp(32);
+  const Subwarp warp(32);
   const Vec3 normal = space_.contacts[i].mean_normal();
   const std::uint32_t end = level_.graph_begin[i + 1];
   for (std::uint32_t n = level_.graph_begin[i] + threadIdx.x; n - warp.lane < end;
@@ -267,7 +269,7 @@ __device__ void PaperFlood<Team>::enter_from_hub(std::uint32_t i) {
 // in their order, and added by a thread for each axis.
 template <class Team>
 __device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
-  const Tile warp(32);
+  const Subwarp warp(32);
   const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // of 32 neighbours
   const std::uint32_t end = level_.graph_begin[j + 1];
   double sum = 0;

@@ -64,7 +64,7 @@ __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, dou
 // The same for points of any cloud, by all threads of a block.
 template <class Visit>
 __device__ void for_points(const PointsView& points, const PoseFrame& frame, double reach,
-                           Part part, const Visit& visit) {
+                           BlockRange part, const Visit& visit) {
   const std::uint32_t warp = part.part * (blockDim.x / 32) + threadIdx.x / 32;
   const std::uint32_t warps = part.parts * (blockDim.x / 32);
   if (points.width > 0) {
@@ -82,7 +82,8 @@ __device__ void for_points(const PointsView& points, const PoseFrame& frame, dou
 
 // For a part of the points that the pose can reach, by all threads of a block.
 __device__ inline void count_points(const LevelView& level, const PointsView& points,
-                                    const PoseFrame& frame, Part part, std::uint32_t* counts) {
+                                    const PoseFrame& frame, BlockRange part,
+                                    std::uint32_t* counts) {
   for_points(points, frame, level.spheres_reach, part, [&](std::uint32_t, Vec3 point, bool active) {
     count_point(level, frame.to_tool, point, active, counts);
   });

@@ -2,7 +2,7 @@
 // cloud has them do with a piece that is inside.
 #pragma once
 
-#include "libvpm/backend/cuda/shares.h"
+#include "libvpm/backend/cuda/cell_notes.h"
 
 namespace vpm::cuda {
 
@@ -12,13 +12,13 @@ struct PoseWork {
   const Surface& surface;
   const Pose& to_surface;
   const RefinedSpace& space;
-  const ShareNotes& notes;  // of the pose, in that space
+  const CellNotes& notes;  // of the pose, in that space
   RefinedCounters& counters;
-  Part part;
+  BlockRange part;
 
   __device__ PoseWork(const LevelView& of_level, const Surface& of_surface, const Pose& pose,
                       const RefinedSpace& of_space, unsigned turn, RefinedCounters& of_counters,
-                      Part of_part)
+                      BlockRange of_part)
       : level(of_level),
         surface(of_surface),
         to_surface(pose),
@@ -33,21 +33,21 @@ struct PoseWork {
 
   // Adds a piece of a share that is inside, or cut. `normal`: the way out of one that is not cut.
   // Far ones are listed.
-  __device__ void add_inside(const CellMeasure<Surface>& measure, const SharePiece& piece,
-                             const typename CellMeasure<Surface>::PieceLook& look, Vec3 normal,
-                             std::uint32_t share, ToolSum& total) const {
+  __device__ void add_inside(const CellMeasure<Surface>& measure, const ToolPiece& piece,
+                             const typename CellMeasure<Surface>::PieceSample& sampled, Vec3 normal,
+                             std::uint32_t cell, ToolSum& total) const {
     ToolSum sum;
-    measure.add(piece, look, normal, surface, sum);
-    if (!look.is_far) {
+    measure.add(piece, sampled, normal, surface, sum);
+    if (!sampled.is_far) {
       total.add(sum);
       return;
     }
     // Member by member: the whole would be stored byte by byte.
     FarPiece& far = space.far[atomicAdd(&counters.far, 1U)];
-    far.at = look.x;
-    far.foot = look.reading.foot;
+    far.at = sampled.x;
+    far.foot = sampled.on_surface.foot;
     far.sum = sum;
-    far.share = share;
+    far.cell = cell;
   }
 };
 

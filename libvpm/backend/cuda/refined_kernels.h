@@ -5,11 +5,11 @@
 #include <type_traits>
 
 #include "libvpm/backend/cuda/answer.h"
-#include "libvpm/backend/cuda/flood.h"
+#include "libvpm/backend/cuda/camera_visibility.h"
+#include "libvpm/backend/cuda/group_measure.h"
 #include "libvpm/backend/cuda/image_measure.h"
+#include "libvpm/backend/cuda/inside_flood.h"
 #include "libvpm/backend/cuda/points.h"
-#include "libvpm/backend/cuda/seen_shares.h"
-#include "libvpm/backend/cuda/share_measure.h"
 
 namespace vpm::cuda {
 namespace {
@@ -50,25 +50,25 @@ struct BatchLaunch {
 // The memory of one of several teams, each of one block.
 __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room,
                                  std::size_t team) {
-  const std::size_t shares = team * room.shares;
+  const std::size_t cells = team * room.cells;
   RefinedSpace space;
   for (int turn = 0; turn < 2; ++turn) {
-    const ShareNotes& from = first.notes[turn];
-    space.notes[turn] = {from.words + shares, from.points + shares, from.sums + shares,
-                         from.planes + shares};
+    const CellNotes& from = first.notes[turn];
+    space.notes[turn] = {from.words + cells, from.points + cells, from.sums + cells,
+                         from.planes + cells};
   }
-  space.gaps = first.gaps + shares;
-  space.parents = first.parents + shares + team;
-  space.cut = first.cut + shares;
+  space.gaps = first.gaps + cells;
+  space.parents = first.parents + cells + team;
+  space.cut = first.cut + cells;
   space.far = first.far + team * room.pieces;
   space.flats = first.flats + team * 2 * TaskLists::kTasks;
-  space.patches = first.patches + team * kBatchThreads;
+  space.planar_clusters = first.planar_clusters + team * kBatchThreads;
   return space;
 }
 
 // What decides which shares behind a surface are inside.
 template <class Surface, class Team>
-using Inside = std::conditional_t<Surface::kTellsInside, SeenShares<Team>, Flood<Team>>;
+using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
 
 // Memory of a block; the steps of a query follow each other.
 template <class Surface>
@@ -84,9 +84,9 @@ enum class Arguments { launched, shared };
 
 // The first step of one query by all blocks of a launch. Returns what this thread has added up.
 template <Arguments kArguments, class Surface>
-__device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
-                                    unsigned turn, BlockShared<Surface>& shared) {
-  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+__device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+                                   unsigned turn, BlockShared<Surface>& shared) {
+  const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
   if (blockIdx.x >= launch.sphere_blocks) {
     if (launch.counts_points)
       count_points(launch.level, launch.points, frame,
@@ -100,7 +100,7 @@ __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const 
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
   }
-  ShareMeasure<Surface> measure(work, launch.counts_points, shared.measure);
+  GroupMeasure<Surface> measure(work, launch.counts_points, shared.measure);
   if constexpr (kArguments == Arguments::shared)
     return measure.run_inlined();
   else
@@ -111,7 +111,7 @@ __device__ RawResult measure_shares(const RefinedLaunch<Surface>& launch, const 
 __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
                                          const PoseFrame& frame, unsigned turn,
                                          BlockShared<DepthSurface>& shared) {
-  const Part of_spheres{blockIdx.x, launch.sphere_blocks};
+  const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
   if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
   const PoseWork<DepthSurface> work(launch.level, launch.surface, frame.to_surface, launch.space,
                                     turn, *launch.counters, of_spheres);
@@ -130,7 +130,7 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
                    const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<DiskSurface> shared;
   __shared__ RawResult total;
-  measure_shares<Arguments::launched>(launch, frame, sequence, shared);
+  measure_cells<Arguments::launched>(launch, frame, sequence, shared);
   if (!is_last_of(launch.totals->done, gridDim.x)) {
     clear_next(launch, sequence);
     return;
@@ -159,7 +159,7 @@ __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const RawResult found = measure_shares<kArguments>(launch, frame, sequence, shared);
+  const RawResult found = measure_cells<kArguments>(launch, frame, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
@@ -215,7 +215,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ RawResult total;
   const RefinedSpace space = space_of(launch.space, launch.room, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
-    for (const ShareNotes& notes : space.notes) notes.clear(level, {});
+    for (const CellNotes& notes : space.notes) notes.clear(level, {});
   };
   BlockTeam team;
   unsigned turn = 0, tool = 0;
@@ -237,7 +237,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
     const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
                                  {});
-    const RawResult found = ShareMeasure<Surface>(work, launch.counts_points, shared.measure).run();
+    const RawResult found = GroupMeasure<Surface>(work, launch.counts_points, shared.measure).run();
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();

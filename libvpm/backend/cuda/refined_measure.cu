@@ -15,7 +15,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   RefinedOnDevice(const ToolModel& tool, const Level& level, const QueryOptions& options,
                   int device)
       : MeasureOnDevice(tool, device),
-        level_(tool, level, options.shadows),
+        level_(tool, level, options.occluded),
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
@@ -110,8 +110,8 @@ class RefinedOnDevice : public MeasureOnDevice {
   template <class Surface>
   RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
                                       Answer* answer) const {
-    // Few points lie in reach: they take less than a large level's spheres. One block counts them at
-    // least, however small the device is.
+    // Few points lie in reach: they take less than a large level's spheres. One block counts them
+    // at least, however small the device is.
     unsigned sphere_blocks = blocks;
     if (counts_points_) sphere_blocks -= std::max(1U, blocks / (is_small(level_.view()) ? 2 : 8));
     return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "libvpm/backend/cuda/share_tasks.h"
-#include "libvpm/backend/cuda/shares.h"
+#include "libvpm/backend/cuda/cell_notes.h"
+#include "libvpm/backend/cuda/cell_tasks.h"
 #include "libvpm/device/cuda/device_array.h"
 
 namespace vpm::cuda {
@@ -10,16 +10,16 @@ namespace vpm::cuda {
 class RefinedMemory {
  public:
   RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)
-      : words_(2 * room.shares * teams),
-        points_(2 * room.shares * teams),
-        sums_(2 * room.shares * teams),
-        planes_(2 * room.shares * teams),
-        gaps_(room.shares * teams),
-        parents_((room.shares + 1) * teams),
-        cut_(room.shares * teams),
+      : words_(2 * room.cells * teams),
+        points_(2 * room.cells * teams),
+        sums_(2 * room.cells * teams),
+        planes_(2 * room.cells * teams),
+        gaps_(room.cells * teams),
+        parents_((room.cells + 1) * teams),
+        cut_(room.cells * teams),
         far_(room.pieces * teams),
         flats_(2 * TaskLists::kTasks * blocks),
-        patches_(threads * blocks) {
+        planar_clusters_(threads * blocks) {
     words_.clear();
     points_.clear();
     sums_.clear();
@@ -35,16 +35,16 @@ class RefinedMemory {
             cut_.get(),
             far_.get(),
             flats_.get(),
-            patches_.get()};
+            planar_clusters_.get()};
   }
 
   // Of a team of one block.
   static std::size_t bytes_of_team(const TeamRoom& room) {
-    constexpr std::size_t kOfShare =
+    constexpr std::size_t kOfCell =
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
         2 * sizeof(std::uint32_t);
-    return room.shares * kOfShare + room.pieces * sizeof(FarPiece) +
-           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(CrossedPatch);
+    return room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
+           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(PlanarCluster);
   }
 
  private:
@@ -55,7 +55,7 @@ class RefinedMemory {
   DeviceArray<std::uint32_t> parents_, cut_;
   DeviceArray<FarPiece> far_;
   DeviceArray<FlatBlock> flats_;
-  DeviceArray<CrossedPatch> patches_;
+  DeviceArray<PlanarCluster> planar_clusters_;
 };
 
 }  // namespace vpm::cuda

@@ -3,8 +3,8 @@
 // no flood decides what is inside, each thread adds up what it finds.
 #pragma once
 
+#include "libvpm/backend/cuda/cell_tasks.h"
 #include "libvpm/backend/cuda/pose_work.h"
-#include "libvpm/backend/cuda/share_tasks.h"
 
 namespace vpm::cuda {
 
@@ -37,13 +37,13 @@ class TaskMeasure {
   __device__ void measure();
   // What this thread has added up.
   __device__ RawResult found() {
-    count_share(words_before_, bits_added_, found_);
+    count_cell(words_before_, bits_added_, found_);
     return found_;
   }
 
   __device__ void add(unsigned list, const Task& task) { lists_.add(list, task); }
-  __device__ void add_crossed(const Unit& unit, const CrossingPlane& plane);
-  __device__ void note_behind(const Unit& unit, Vec3 normal);
+  __device__ void add_clipped(const BlockTask& block_task, const ClipPlane& plane);
+  __device__ void note_behind(const BlockTask& block_task, Vec3 normal);
   __device__ Measure measure_of(const CellView& view) const {
     return {work_.surface, work_.to_surface, work_.level.tool_reach, view};
   }
@@ -58,24 +58,25 @@ class TaskMeasure {
     const unsigned row = 2 * work_.part.part + (list == TaskLists::flat_wide);
     return work_.space.flats[row * TaskLists::kTasks + slot];
   }
-  __device__ void measure(const Tile& tile, unsigned list, unsigned slot, const Task& task);
-  __device__ SharePiece piece(Task::Form form, std::uint32_t k) const {
+  __device__ void measure(const Subwarp& subwarp, unsigned list, unsigned slot, const Task& task);
+  __device__ ToolPiece piece(Task::Form form, std::uint32_t k) const {
     switch (form) {
       case Task::samples:
         return piece_of(work_.level.samples[k]);
-      case Task::whole_share:
-        return piece_of(work_.level.share_masses[k], work_.level.cell(k));
+      case Task::whole_cell:
+        return piece_of(work_.level.cell_masses[k], work_.level.cell(k));
       default:
         return piece_of(work_.level.block_masses[k], work_.level.blocks[k]);
     }
   }
-  __device__ void add_piece(const Tile& tile, const Measure& measure, const Task& task,
+  __device__ void add_piece(const Subwarp& subwarp, const Measure& measure, const Task& task,
                             std::uint32_t k, CellResult& result);
-  __device__ static unsigned first_neighbor(const Tile& tile, bool shares);
-  __device__ CellResult measure_flat(const Tile& tile, const FlatBlock& flat, const Task& task);
-  __device__ CellResult measure_pieces(const Tile& tile, const Task& task);
+  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool cells_it);
+  __device__ CellResult measure_flat(const Subwarp& subwarp, const FlatBlock& flat,
+                                     const Task& task);
+  __device__ CellResult measure_pieces(const Subwarp& subwarp, const Task& task);
   __device__ void note_task(const Task& task, const CellResult& result);
-  __device__ void count(std::uint32_t share, std::uint32_t bits);
+  __device__ void count(std::uint32_t cell, std::uint32_t bits);
 
   const PoseWork<Surface>& work_;
   TaskLists& lists_;
@@ -85,10 +86,12 @@ class TaskMeasure {
 
 // Lists a block where the surface is one plane, if the plane crosses it.
 template <class Surface>
-__device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const CrossingPlane& plane) {
-  const UnitBall& ball = unit.balls[Unit::of_block];
+__device__ void TaskMeasure<Surface>::add_clipped(const BlockTask& block_task,
+                                                  const ClipPlane& plane) {
+  const TaskBall& ball = block_task.balls[BlockTask::of_block];
   const PlaneSide side = side_of_plane(plane.distance(ball.center), ball.radius);
-  const Task task{unit.share, Task::samples, unit.begin, unit.end - unit.begin};
+  const Task task{block_task.cell, Task::samples, block_task.begin,
+                  block_task.end - block_task.begin};
   if (side == PlaneSide::cut) {
     const unsigned list =
         task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
@@ -100,21 +103,21 @@ __device__ void TaskMeasure<Surface>::add_crossed(const Unit& unit, const Crossi
   }
   CellResult result;
   if (side == PlaneSide::behind)
-    add_whole(work_.level.tool_reach, work_.level.block_masses[unit.block], plane.normal,
+    add_whole(work_.level.tool_reach, work_.level.block_masses[block_task.block], plane.normal,
               result.sum);
   note_task(task, result);
 }
 
 // A share wholly behind the surface of its patch.
 template <class Surface>
-__device__ void TaskMeasure<Surface>::note_behind(const Unit& unit, Vec3 normal) {
+__device__ void TaskMeasure<Surface>::note_behind(const BlockTask& block_task, Vec3 normal) {
   ToolSum sum;
-  add_whole(work_.level.tool_reach, work_.level.share_masses[unit.share], normal, sum);
+  add_whole(work_.level.tool_reach, work_.level.cell_masses[block_task.cell], normal, sum);
   if (kFloods) {
-    work_.notes.sums[unit.share] = sum;
+    work_.notes.sums[block_task.cell] = sum;
   } else {
     found_.sum.add(sum);
-    if (sum.volume.value != 0) count(unit.share, kCounted);
+    if (sum.volume.value != 0) count(block_task.cell, kCounted);
   }
 }
 
@@ -134,91 +137,92 @@ __device__ void TaskMeasure<Surface>::measure() {
       bundle -= bundles;
     }
     if (list == TaskLists::kLists) return;
-    const Tile tile(TaskLists::width(list));
-    const unsigned slot = bundle * (32 / tile.width) + threadIdx.x % 32 / tile.width;
-    if (slot < lists_.counts[list]) measure(tile, list, slot, lists_.tasks[list][slot]);
+    const Subwarp subwarp(TaskLists::width(list));
+    const unsigned slot = bundle * (32 / subwarp.width) + threadIdx.x % 32 / subwarp.width;
+    if (slot < lists_.counts[list]) measure(subwarp, list, slot, lists_.tasks[list][slot]);
     __syncwarp();
   }
 }
 
 template <class Surface>
-__device__ void TaskMeasure<Surface>::measure(const Tile& tile, unsigned list, unsigned slot,
+__device__ void TaskMeasure<Surface>::measure(const Subwarp& subwarp, unsigned list, unsigned slot,
                                               const Task& task) {
-  const CellResult result = TaskLists::is_flat(list) ? measure_flat(tile, flat(list, slot), task)
-                                                     : measure_pieces(tile, task);
-  if (tile.leads()) note_task(task, result);
+  const CellResult result = TaskLists::is_flat(list) ? measure_flat(subwarp, flat(list, slot), task)
+                                                     : measure_pieces(subwarp, task);
+  if (subwarp.leads()) note_task(task, result);
 }
 
 // The result is there for all threads of the tile.
 template <class Surface>
-__device__ CellResult TaskMeasure<Surface>::measure_pieces(const Tile& tile, const Task& task) {
-  const std::uint32_t i = task.share;
+__device__ CellResult TaskMeasure<Surface>::measure_pieces(const Subwarp& subwarp,
+                                                           const Task& task) {
+  const std::uint32_t i = task.cell;
   const Measure measure = measure_of({.samples = work_.level.samples,
                                       .center = work_.level.centers[i],
                                       .reach = work_.level.reach[i]});
   CellResult result;
-  for (std::uint32_t begin = 0; begin < task.count; begin += tile.width)
-    add_piece(tile, measure, task, begin + tile.lane, result);
-  __syncwarp(tile.mask);
-  add_up(tile, result.sum);
-  if (tile.any(result.plane.count > 0)) add_up(tile, result.plane);
-  result.is_far = tile.any(result.is_far);
+  for (std::uint32_t begin = 0; begin < task.count; begin += subwarp.width)
+    add_piece(subwarp, measure, task, begin + subwarp.lane, result);
+  __syncwarp(subwarp.mask);
+  add_up(subwarp, result.sum);
+  if (subwarp.any(result.plane.count > 0)) add_up(subwarp, result.plane);
+  result.is_far = subwarp.any(result.is_far);
   return result;
 }
 
 // What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
 // whole, to whole(). Far pieces are listed. By all threads of a tile.
 template <class Surface>
-__device__ void TaskMeasure<Surface>::add_piece(const Tile& tile, const Measure& measure,
+__device__ void TaskMeasure<Surface>::add_piece(const Subwarp& subwarp, const Measure& measure,
                                                 const Task& task, std::uint32_t k,
                                                 CellResult& result) {
   const bool exists = k < task.count;
-  const SharePiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
-  const typename Measure::PieceLook look = measure.look_at(piece);
-  const bool inside = exists && look.is_inside;
-  const bool shares =
-      exists && task.form == Task::samples && Measure::shares_direction(piece, look);
-  const unsigned first = Surface::kSearchesFoot ? first_neighbor(tile, shares) : tile.lane;
+  const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
+  const typename Measure::PieceSample sampled = measure.sample_piece(piece);
+  const bool inside = exists && sampled.is_inside;
+  const bool cells_it =
+      exists && task.form == Task::samples && Measure::shares_direction(piece, sampled);
+  const unsigned first = Surface::kSearchesFoot ? first_neighbor(subwarp, cells_it) : subwarp.lane;
   Vec3 normal;
-  if (inside && !Measure::is_cut(piece, look) && first == tile.lane)
-    normal = measure.closest_normal(look);
-  if (Surface::kSearchesFoot) normal = tile.from(normal, first);
+  if (inside && !Measure::is_cut(piece, sampled) && first == subwarp.lane)
+    normal = measure.closest_normal(sampled);
+  if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
   if (!inside) return;
-  measure.note(piece, look, result);
-  work_.add_inside(measure, piece, look, normal, task.share, result.sum);
+  measure.note(piece, sampled, result);
+  work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
 }
 
 // The first lane of those that share a direction with this one; itself where it has its own.
 template <class Surface>
-__device__ unsigned TaskMeasure<Surface>::first_neighbor(const Tile& tile, bool shares) {
-  const unsigned sharing = tile.which(shares);
-  return shares ? direction_leader(tile.lane, sharing) : tile.lane;
+__device__ unsigned TaskMeasure<Surface>::first_neighbor(const Subwarp& subwarp, bool cells_it) {
+  const unsigned sharing = subwarp.which(cells_it);
+  return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
 }
 
 // A row of samples by each thread; what the block needs is read before the first wait, a sample
 // before the one before it is added. The result is there for the first thread of the tile.
 template <class Surface>
-__device__ CellResult TaskMeasure<Surface>::measure_flat(const Tile& tile, const FlatBlock& flat,
-                                                         const Task& task) {
-  const CrossingPlane plane = flat.plane;
-  const Vec3 center = flat.center, share = work_.level.centers[task.share];
-  const double reach = work_.level.reach[task.share];
+__device__ CellResult TaskMeasure<Surface>::measure_flat(const Subwarp& subwarp,
+                                                         const FlatBlock& flat, const Task& task) {
+  const ClipPlane plane = flat.plane;
+  const Vec3 center = flat.center, cell = work_.level.centers[task.cell];
+  const double reach = work_.level.reach[task.cell];
   const CellSample* const samples = work_.level.samples + task.begin;
-  CellSample next = samples[tile.lane < task.count ? tile.lane : 0];
-  CrossedSums row;
+  CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
+  ClippedMoments row;
 #pragma unroll 1
-  for (std::uint32_t k = tile.lane; k < task.count;) {
+  for (std::uint32_t k = subwarp.lane; k < task.count;) {
     const CellSample sample = next;
-    k += tile.width;
+    k += subwarp.width;
     if (k < task.count) next = samples[k];
     add_to_row(sample, plane, row, row.is_cut);
   }
-  __syncwarp(tile.mask);
-  add_up(tile, row);
+  __syncwarp(subwarp.mask);
+  add_up(subwarp, row);
   CellResult result;
-  if (tile.leads()) {
+  if (subwarp.leads()) {
     if (row.is_cut)
-      measure_of({.center = share, .reach = reach}).add_to_plane(center, plane, result.plane);
+      measure_of({.center = cell, .reach = reach}).add_to_plane(center, plane, result.plane);
     add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_reach, result.sum);
   }
   return result;
@@ -227,7 +231,7 @@ __device__ CellResult TaskMeasure<Surface>::measure_flat(const Tile& tile, const
 // By one thread, what all threads of its tile have found.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResult& result) {
-  const std::uint32_t i = task.share;
+  const std::uint32_t i = task.cell;
   const bool cut = result.plane.count > 0;
   if (kFloods) {
     const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
@@ -244,9 +248,9 @@ __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResu
 // Notes that a share counts; others may do so too. What its word was is needed only when the next
 // one comes, so that nobody waits for it.
 template <class Surface>
-__device__ void TaskMeasure<Surface>::count(std::uint32_t share, std::uint32_t bits) {
-  count_share(words_before_, bits_added_, found_);
-  words_before_ = atomicOr(&work_.notes.words[share], bits);
+__device__ void TaskMeasure<Surface>::count(std::uint32_t cell, std::uint32_t bits) {
+  count_cell(words_before_, bits_added_, found_);
+  words_before_ = atomicOr(&work_.notes.words[cell], bits);
   bits_added_ = bits;
 }
 

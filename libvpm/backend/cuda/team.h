@@ -3,7 +3,7 @@
 
 #include <cuda/atomic>
 
-#include "libvpm/backend/cpu/cell.h"
+#include "libvpm/backend/cpu/cell_measure.h"
 #include "libvpm/scene/pixel_rectangle.h"
 
 namespace vpm::cuda {
@@ -34,7 +34,7 @@ __device__ inline bool is_last_of(unsigned& come, unsigned all) {
 }
 
 // Work dealt out to blocks: row k to part k % parts.
-struct Part {
+struct BlockRange {
   unsigned part = 0, parts = 1;
 };
 
@@ -44,7 +44,7 @@ class BlockTeam {
   static constexpr bool kIsBlock = true;
   __device__ unsigned thread() const { return threadIdx.x; }
   __device__ unsigned threads() const { return blockDim.x; }
-  __device__ Part block() const { return {}; }
+  __device__ BlockRange block() const { return {}; }
   __device__ void sync() { __syncthreads(); }
 };
 
@@ -55,7 +55,7 @@ class GridTeam {
   __device__ explicit GridTeam(unsigned* arrived) : arrived_(arrived) {}
   __device__ unsigned thread() const { return blockIdx.x * blockDim.x + threadIdx.x; }
   __device__ unsigned threads() const { return gridDim.x * blockDim.x; }
-  __device__ Part block() const { return {blockIdx.x, gridDim.x}; }
+  __device__ BlockRange block() const { return {blockIdx.x, gridDim.x}; }
   __device__ void sync() {
     arrive();
     wait();
@@ -85,10 +85,10 @@ class GridTeam {
 };
 
 // Threads of a warp that work together; `width` is a power of two.
-struct Tile {
+struct Subwarp {
   unsigned width, lane, mask;
 
-  __device__ explicit Tile(unsigned tile_width)
+  __device__ explicit Subwarp(unsigned tile_width)
       : width(tile_width), lane(threadIdx.x % tile_width) {
     const unsigned first = threadIdx.x % 32 - lane;
     mask = (width == 32 ? ~0U : (1U << width) - 1) << first;
@@ -144,27 +144,27 @@ __device__ std::int64_t* terms_of(Sum& sum) {
 
 // Adds up over a tile, for all its threads.
 template <class Sum>
-__device__ void add_up(const Tile& tile, Sum& sum) {
+__device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   std::int64_t* const terms = terms_of(sum);
   // Terms at once, so that they wait together.
 #pragma unroll 1
-  for (unsigned other = tile.width / 2; other > 0; other /= 2) {
+  for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
 #pragma unroll
     for (int k = 0; k < kTerms; ++k)
-      terms[k] += __shfl_xor_sync(tile.mask, terms[k], static_cast<int>(other),
-                                  static_cast<int>(tile.width));
+      terms[k] += __shfl_xor_sync(subwarp.mask, terms[k], static_cast<int>(other),
+                                  static_cast<int>(subwarp.width));
   }
 }
 
 // Adds up the rows of a tile's threads, those that they do not have being 0. For its first thread.
-__device__ inline void add_up(const Tile& tile, CrossedSums& row) {
+__device__ inline void add_up(const Subwarp& subwarp, ClippedMoments& row) {
 #pragma unroll 1
-  for (unsigned half = tile.width / 2; half > 0; half /= 2) {
-    row.weight += tile.from_next(row.weight, half);
-    row.moment += Vec3{tile.from_next(row.moment.x, half), tile.from_next(row.moment.y, half),
-                       tile.from_next(row.moment.z, half)};
+  for (unsigned half = subwarp.width / 2; half > 0; half /= 2) {
+    row.weight += subwarp.from_next(row.weight, half);
+    row.moment += Vec3{subwarp.from_next(row.moment.x, half), subwarp.from_next(row.moment.y, half),
+                       subwarp.from_next(row.moment.z, half)};
   }
-  row.is_cut = tile.any(row.is_cut);
+  row.is_cut = subwarp.any(row.is_cut);
 }
 
 // Many threads may add to a sum at once.

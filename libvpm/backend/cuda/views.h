@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "libvpm/backend/cpu/cell.h"
-#include "libvpm/backend/cpu/share_clusters.h"
+#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cpu/cell_measure.h"
 #include "libvpm/backend/cpu/sphere_location.h"
 #include "libvpm/scene/cuda/cloud_views.h"
 #include "libvpm/scene/depth/depth_surface.h"
@@ -13,35 +13,35 @@
 
 namespace vpm::cuda {
 
-struct alignas(32) UnitBall {
+struct alignas(32) TaskBall {
   Vec3 center;  // about the centre of mass
   double radius = 0;
 };
 
 // One block of a share, or a share that has none: what is classified by itself. All that this needs
 // lies together, since it is read once, by lanes that wait for it.
-struct alignas(32) Unit {
-  enum Ball { of_share, of_block, of_sphere, kBalls };
+struct alignas(32) BlockTask {
+  enum Ball { of_cell, of_block, of_sphere, kBalls };
   enum Flag : std::uint32_t {
     is_head = 1,     // the first of its share
-    is_compact = 2,  // its share is (share_clusters.h)
+    is_compact = 2,  // its share is (cell_clusters.h)
     has_block = 4,
   };
-  UnitBall balls[kBalls];
-  std::uint32_t share = 0, block = 0, begin = 0, end = 0;  // samples of the block
+  TaskBall balls[kBalls];
+  std::uint32_t cell = 0, block = 0, begin = 0, end = 0;  // samples of the block
   std::uint32_t flags = 0;
 };
 
 // Units of one cluster that are classified together.
-struct Chunk {
-  static constexpr unsigned kUnits = 8;
-  UnitBall ball;  // of the cluster
+struct TaskGroup {
+  static constexpr unsigned kTasks = 8;
+  TaskBall ball;  // of the cluster
   std::uint32_t begin = 0, end = 0;
 };
 
 // A unit, and what of it may be taken whole.
-struct WarpUnit : Unit {
-  BlockMass block_mass, share_mass;
+struct WarpTask : BlockTask {
+  BlockMass block_mass, cell_mass;
 };
 
 // Levels of more spheres have more chunks than any device has warps at once.
@@ -50,12 +50,12 @@ inline constexpr std::uint32_t kSpheresOfWarps = 8192;
 // The units of a small level, for warps that take one chunk each: of few units that are wide, of
 // more samples than kNarrow, or of more others. Where there are fewer, room is left behind them for
 // such as are nothing.
-struct WarpChunks {
-  static constexpr unsigned kWideUnits = 2;
+struct WarpTaskGroups {
+  static constexpr unsigned kWideTasks = 2;
   static constexpr std::uint32_t kNarrow = 8;
 
-  const WarpUnit* units = nullptr;
-  const Chunk* chunks = nullptr;
+  const WarpTask* units = nullptr;
+  const TaskGroup* chunks = nullptr;
   std::uint32_t count = 0,
                 wide_count = 0;  // wide ones come first; none of a level that is not small
 };
@@ -67,7 +67,7 @@ struct Edge {
 
 // One level of a tool.
 struct LevelView {
-  std::uint32_t count = 0, chunk_count = 0, edge_count = 0;  // `count` of spheres
+  std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // `count` of spheres
   std::uint32_t piece_count = 0;  // samples, blocks and shares: no query finds more
   const Sphere* spheres = nullptr;
   const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
@@ -75,11 +75,11 @@ struct LevelView {
   const std::uint32_t* block_begin = nullptr;
   const CellBlock* blocks = nullptr;
   const BlockMass* block_masses = nullptr;
-  const BlockMass* share_masses = nullptr;
+  const BlockMass* cell_masses = nullptr;
   const CellSample* samples = nullptr;
-  const Unit* units = nullptr;
-  const Chunk* chunks = nullptr;
-  WarpChunks of_warps;
+  const BlockTask* units = nullptr;
+  const TaskGroup* chunks = nullptr;
+  WarpTaskGroups of_warps;
   const Edge* edges = nullptr;                // by their larger index
   const std::uint32_t* edge_begin = nullptr;  // count + 1
   GridView grid;

@@ -38,6 +38,6 @@ struct NormalOptions {
 
 // How the refined measure reads measured points: freed of most of their noise, or as measured,
 // which is ready in less time.
-enum class PointReading { settled, as_measured };
+enum class Denoising { on, off };
 
 }  // namespace vpm

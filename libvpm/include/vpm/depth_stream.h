@@ -24,7 +24,7 @@ struct DepthStreamOptions {
   std::optional<double> counts_per_metre;  // images are 16-bit counts; without, metres in float
   NormalOptions normals = {};
   Device device = {};  // that of the queries; queries on another copy what the CPU prepares
-  PointReading points = PointReading::settled;
+  Denoising points = Denoising::on;
 };
 
 // Belongs to one thread at a time; the bodies that it returns may be shared, held and outlive it.

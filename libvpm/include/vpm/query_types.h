@@ -16,7 +16,7 @@ enum class Measure { refined, paper };
 // What counts of places that a depth image does not show, since something hides them: those up to
 // the tool's bounding radius behind what is seen, and those further behind for which the surface
 // that cuts the tool speaks; or all, as in a count of what is behind the image.
-enum class Shadows { near, solid };
+enum class OccludedSpace { within_reach, solid };
 
 struct QueryOptions {
   Measure measure = Measure::refined;
@@ -33,8 +33,8 @@ struct QueryOptions {
   // without counted points.
   std::uint32_t standby_us = 0;
   static constexpr std::uint32_t kLongestStandby = 1'000'000;
-  Shadows shadows = Shadows::near;  // solid: refined measure, in depth images
-  double stiffness = 1;             // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
+  OccludedSpace occluded = OccludedSpace::within_reach;  // solid: refined measure, in depth images
+  double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };
 
 // Question of a batch: a pose (tool to world coordinates) of one of the query's tools.

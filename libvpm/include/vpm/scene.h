@@ -59,7 +59,7 @@ class VPM_API Body {
   // Prepares a cloud for queries: a millisecond for a depth image of 300 000 pixels on one core, a
   // second or two for as many points without a camera. Throws Error(refused) for more than 2^24
   // points, or places further than 2^100 m from the origin.
-  Body(const PointCloud& cloud, PointReading points = PointReading::settled);
+  Body(const PointCloud& cloud, Denoising points = Denoising::on);
 
   // Returns the number of points with a normal; waits for a depth image that is being prepared.
   std::size_t points() const;

@@ -1,5 +1,5 @@
 // From the depths that cloud_take.h has brought to points with normals on a device: what
-// make_cloud() makes of them, bit by bit, and the image without holes. cloud_settle.h makes the
+// make_cloud() makes of them, bit by bit, and the image without holes. cloud_denoise.h makes the
 // surface of that.
 #pragma once
 

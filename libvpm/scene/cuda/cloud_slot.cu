@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/cuda/cloud_settle.h"
+#include "libvpm/scene/cuda/cloud_denoise.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace vpm::cuda {
@@ -121,7 +121,7 @@ void CloudSlot::make(cudaStream_t stream) {
   prepare_on_device(recipe_, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), sequence_ + 1, stream);
   ++sequence_;  // now that it will be answered
-  settle_on_device(recipe_, preparation_.overlaps, stream);
+  denoise_on_device(recipe_, preparation_.overlaps, stream);
 }
 
 bool CloudSlot::is_answered() const {

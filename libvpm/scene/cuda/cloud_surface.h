@@ -1,27 +1,27 @@
-// The surface of a tile of an image, by a block: for cloud_settle.cu.
+// The surface of a tile of an image, by a block: for cloud_denoise.cu.
 #pragma once
 
 #include <math_constants.h>
 
 #include "libvpm/scene/cuda/cloud_tile.h"
-#include "libvpm/scene/depth/settled_pixel.h"
+#include "libvpm/scene/depth/denoised_pixel.h"
 
 namespace vpm::cuda {
 
 // What is settled of a pixel depends on those so far around it: normals that are asked, and their
 // windows.
-inline constexpr int kMarginOfMarks = kSettledReach,
-                     kSettleMargin = kMarginOfMarks + kSettledRadius;
+inline constexpr int kMarginOfMarks = kDenoisedReach,
+                     kDenoiseMargin = kMarginOfMarks + kDenoisedRadius;
 
 // Sizes of what a block keeps of a tile.
-struct SettleSizes {
-  using Frame = TileFrame<kSettleMargin>;
+struct DenoiseSizes {
+  using Frame = TileFrame<kDenoiseMargin>;
   static constexpr int kThreads = CloudTile::kSurfaceThreads;
-  static constexpr int kWidth = CloudTile::kWidth + 2 * kSettleMargin,
-                       kHeight = CloudTile::kHeight + 2 * kSettleMargin;
+  static constexpr int kWidth = CloudTile::kWidth + 2 * kDenoiseMargin,
+                       kHeight = CloudTile::kHeight + 2 * kDenoiseMargin;
   static constexpr int kMarkedWidth = CloudTile::kWidth + 2 * kMarginOfMarks,
                        kMarked = kMarkedWidth * (CloudTile::kHeight + 2 * kMarginOfMarks);
-  static constexpr int kColumns = CloudTile::kWidth + 2 * kSettledRadius;
+  static constexpr int kColumns = CloudTile::kWidth + 2 * kDenoisedRadius;
   static constexpr int kRanges =
       CloudTile::kPixels / 4 + CloudTile::kPixels / 16 + CloudTile::kPixels / 64 + 2;
   static constexpr int kPixelsOfThread = CloudTile::kPixels / kThreads,
@@ -30,28 +30,28 @@ struct SettleSizes {
 };
 
 struct SeenTile {
-  float4 pixels[SettleSizes::kWidth *
-                SettleSizes::kHeight];  // with the margin: normals and inverse depth
-  WindowOfDepths<float> columns[SettleSizes::kColumns * CloudTile::kHeight];  // of the windows
+  float4 pixels[DenoiseSizes::kWidth *
+                DenoiseSizes::kHeight];  // with the margin: normals and inverse depth
+  WindowOfDepths<float> columns[DenoiseSizes::kColumns * CloudTile::kHeight];  // of the windows
 };
-struct SettledTile {
+struct DenoisedTile {
   float surface[CloudTile::kPixels];
-  InverseDepthRange ranges[SettleSizes::kRanges];
+  InverseDepthRange ranges[DenoiseSizes::kRanges];
 };
 // What is settled takes the place of what was seen.
-union SettleShared {
+union DenoiseShared {
   SeenTile seen;
-  SettledTile settled;
+  DenoisedTile denoised;
 };
 
 // One tile of an image, by a block.
-class SettleWork {
+class DenoiseWork {
   using Window = WindowOfDepths<float>;
-  static constexpr int kThreads = SettleSizes::kThreads, kWidth = SettleSizes::kWidth,
-                       kHeight = SettleSizes::kHeight, kColumns = SettleSizes::kColumns;
+  static constexpr int kThreads = DenoiseSizes::kThreads, kWidth = DenoiseSizes::kWidth,
+                       kHeight = DenoiseSizes::kHeight, kColumns = DenoiseSizes::kColumns;
 
  public:
-  __device__ SettleWork(const CloudRecipe& recipe, int number, SettleShared& shared)
+  __device__ DenoiseWork(const CloudRecipe& recipe, int number, DenoiseShared& shared)
       : recipe_(recipe), tile_(recipe, number), shared_(shared) {}
 
   // Zeros outside of the image. (In this file few loops are unrolled: a block goes through its code
@@ -66,7 +66,7 @@ class SettleWork {
 #pragma unroll
       for (int i = 0; i < kAtOnce; ++i) {
         const int k = begin + i * kThreads;
-        const int x = k % kWidth - kSettleMargin, y = k / kWidth - kSettleMargin;
+        const int x = k % kWidth - kDenoiseMargin, y = k / kWidth - kDenoiseMargin;
         const bool is_there = k < kPixels && tile_.is_in_image(x, y);
         seen[i] = is_there ? image[tile_.pixel(x, y)] : float4{0, 0, 0, 0};
       }
@@ -82,7 +82,7 @@ class SettleWork {
 #pragma unroll 1
     for (int k = thread(); k < kColumns * CloudTile::kHeight; k += kThreads) {
       const float4* const middle =
-          shared_.seen.pixels + tile_.index(k % kColumns - kSettledRadius, k / kColumns);
+          shared_.seen.pixels + tile_.index(k % kColumns - kDenoisedRadius, k / kColumns);
       shared_.seen.columns[k] =
           column_of_depths<float>([&](int dv) { return middle[dv * kWidth].w; });
     }
@@ -106,21 +106,21 @@ class SettleWork {
     float inverse;
     Vec3f normal;
   };
-  __device__ Pixel settled(int x, int y) const {
+  __device__ Pixel denoised(int x, int y) const {
     const auto seen = [&](int du, int dv) { return seen_at(x + du, y + dv); };
-    const NormalSum<float> sum = settled_normal<float>(seen);
+    const NormalSum<float> sum = denoised_normal<float>(seen);
     const float scale = per_length(sum.x, sum.y, sum.z);
-    return {settled_inverse_depth(seen(0, 0), window_at(x, y)),
+    return {denoised_inverse_depth(seen(0, 0), window_at(x, y)),
             {sum.x * scale, sum.y * scale, sum.z * scale}};
   }
-  __device__ Pixel as_measured(int x, int y) const {
+  __device__ Pixel off(int x, int y) const {
     const SeenPixel<float> pixel = seen_at(x, y);
     return {pixel.inverse, {pixel.x, pixel.y, pixel.z}};
   }
   // Meets before the pixels take the place of what was seen.
   template <class Make>
   __device__ void make_pixels(const Make& make) const {
-    constexpr int kPixels = SettleSizes::kPixelsOfThread;
+    constexpr int kPixels = DenoiseSizes::kPixelsOfThread;
     Vec3f* const normals = recipe_.room.pixel_normals;
     InverseDepthRange* const pixels = recipe_.room.tiles[0];
     float surface[kPixels];
@@ -135,13 +135,14 @@ class SettleWork {
     }
     __syncthreads();
 #pragma unroll
-    for (int i = 0; i < kPixels; ++i) shared_.settled.surface[thread() + i * kThreads] = surface[i];
+    for (int i = 0; i < kPixels; ++i)
+      shared_.denoised.surface[thread() + i * kThreads] = surface[i];
   }
 
   // Levels 1 to CloudTile::kLevels, and this tile's part of what lies above. Meets after each.
   __device__ void write_tiles() const {
     InverseDepthRange* fine = nullptr;
-    InverseDepthRange* coarse = shared_.settled.ranges;
+    InverseDepthRange* coarse = shared_.denoised.ranges;
 #pragma unroll 1
     for (int level = 1; level <= CloudTile::kLevels; ++level) {
       const int count = (CloudTile::kWidth >> level) * (CloudTile::kHeight >> level);
@@ -165,10 +166,10 @@ class SettleWork {
   template <class Visit>
   __device__ static void for_marked(const Visit& visit) {
 #pragma unroll 2
-    for (int i = 0; i < SettleSizes::kMarkedOfThread; ++i) {
+    for (int i = 0; i < DenoiseSizes::kMarkedOfThread; ++i) {
       const int k = thread() + i * kThreads;
-      visit(i, k % SettleSizes::kMarkedWidth - kMarginOfMarks,
-            k / SettleSizes::kMarkedWidth - kMarginOfMarks);
+      visit(i, k % DenoiseSizes::kMarkedWidth - kMarginOfMarks,
+            k / DenoiseSizes::kMarkedWidth - kMarginOfMarks);
     }
   }
   __device__ static int thread() {
@@ -180,7 +181,7 @@ class SettleWork {
     return {pixel.w, pixel.x, pixel.y, pixel.z};
   }
   __device__ const Window& column_at(int x, int y) const {
-    return shared_.seen.columns[y * kColumns + x + kSettledRadius];
+    return shared_.seen.columns[y * kColumns + x + kDenoisedRadius];
   }
   __device__ Window window_at(int x, int y) const {
     return window_of_depths<float>([&](int du) { return column_at(x + du, y); });
@@ -202,7 +203,7 @@ class SettleWork {
       if (fine != nullptr) {
         range = united(range, fine[cy * 2 * per_row + cx]);
       } else if (tile_.holds(cx, cy)) {
-        const float value = shared_.settled.surface[cy * CloudTile::kWidth + cx];
+        const float value = shared_.denoised.surface[cy * CloudTile::kWidth + cx];
         range = united(range, {value, value});
       }
     }
@@ -214,21 +215,21 @@ class SettleWork {
   }
 
   const CloudRecipe& recipe_;
-  SettleSizes::Frame tile_;
-  SettleShared& shared_;
+  DenoiseSizes::Frame tile_;
+  DenoiseShared& shared_;
 };
 
 // Is called by all threads of a block.
-__device__ inline void settle_tile(const SettleWork& work, PointReading points) {
+__device__ inline void denoise_tile(const DenoiseWork& work, Denoising points) {
   work.load();
   __syncthreads();
-  if (points == PointReading::settled) {
+  if (points == Denoising::on) {
     work.sum_columns();
     work.mark();
     __syncthreads();
-    work.make_pixels([&](int x, int y) { return work.settled(x, y); });
+    work.make_pixels([&](int x, int y) { return work.denoised(x, y); });
   } else {
-    work.make_pixels([&](int x, int y) { return work.as_measured(x, y); });
+    work.make_pixels([&](int x, int y) { return work.off(x, y); });
   }
   __syncthreads();
   work.write_tiles();

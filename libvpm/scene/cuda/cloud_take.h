@@ -17,7 +17,7 @@ struct DepthSource {
 inline constexpr unsigned kPixelsAtOnce = 8;
 
 // Brings the image to the device. Clears the counters, and the coarse tiles, which
-// settle_on_device() (cloud_settle.h) adds to.
+// denoise_on_device() (cloud_denoise.h) adds to.
 void take_image(const DepthSource& source, const CloudRecipe& recipe, CloudCounters* counters,
                 cudaStream_t stream);
 

@@ -56,7 +56,7 @@ struct CloudRecipe {
   WindowShape whole;       // windows that the image's border does not cut
   float4* seen = nullptr;  // of the pixels: normals in camera axes, turned back from the world's,
                            // and inverse depth without holes
-  PointReading points = PointReading::settled;
+  Denoising points = Denoising::on;
   CloudRoom room;
 };
 

@@ -118,11 +118,11 @@ void DeviceCloud::copy_points(const PreparedCloud& cloud) {
   const PointTree tree = copy_tree(cloud.point_tree(), positions_, boxes_);
   points_ = {positions_.get(), normals_.get(), tree.count, 0, tree};
   disks_ = cloud.disk_surface();
-  const SettledDisks& settled = cloud.disks();
-  feet_ = DeviceArray<Vec3f>(settled.feet);
-  disk_normals_ = DeviceArray<Vec3f>(settled.normals);
-  second_of_ = DeviceArray<std::uint32_t>(settled.second_of);
-  seconds_ = DeviceArray<SecondPlane>(settled.seconds);
+  const DenoisedDisks& denoised = cloud.disks();
+  feet_ = DeviceArray<Vec3f>(denoised.feet);
+  disk_normals_ = DeviceArray<Vec3f>(denoised.normals);
+  second_of_ = DeviceArray<std::uint32_t>(denoised.second_of);
+  seconds_ = DeviceArray<SecondPlane>(denoised.seconds);
   cones_ = DeviceArray<ConeQuad>(disks_.cones.quads, disks_.feet.quads());
   radii_ = DeviceArray<float>(disks_.radii.of_points, disks_.feet.count);
   largest_radii_ = DeviceArray<float>(disks_.radii.of_nodes, disks_.feet.nodes());

@@ -13,7 +13,7 @@ namespace vpm::cuda {
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
-  // Makes room for the cloud of an image, which kernels fill (cloud_prepare.h, cloud_settle.h).
+  // Makes room for the cloud of an image, which kernels fill (cloud_prepare.h, cloud_denoise.h).
   explicit DeviceCloud(const Camera& camera);
   void stand_at(const Pose& camera_to_world);
   CloudRoom room() const;

@@ -44,7 +44,7 @@ class FootSearch {
   FootSearch() = default;
   // `first` is what was read at x; it is known.
   [[gnu::always_inline]] VPM_HD FootSearch(const DepthSampler& image, const Place& x,
-                                           ReadingOf<Real> first, const Neighbors& beside)
+                                           SurfaceSampleOf<Real> first, const Neighbors& beside)
       : x_(x) {
     take_one_side(image, beside, first);
     foot_ = first.foot;
@@ -63,7 +63,7 @@ class FootSearch {
     return searches_;
   }
   [[gnu::always_inline]] VPM_HD const Place& target() const { return target_; }
-  [[gnu::always_inline]] VPM_HD void take(const DepthSampler& image, ReadingOf<Real> next,
+  [[gnu::always_inline]] VPM_HD void take(const DepthSampler& image, SurfaceSampleOf<Real> next,
                                           const Neighbors& beside) {
     ++steps_;
     searches_ &= next.known;
@@ -96,7 +96,7 @@ class FootSearch {
   static constexpr double kNearPixels = 0.5;   // a step shorter than this ends the search
   static constexpr double kCreasePixels = 2;   // a foot further aside than this lies on a crease
 
-  [[gnu::always_inline]] VPM_HD void step_to(const ReadingOf<Real>& next, const Real& squared,
+  [[gnu::always_inline]] VPM_HD void step_to(const SurfaceSampleOf<Real>& next, const Real& squared,
                                              const Mask& which) {
     foot_ = choose(which, next.foot, foot_);
     normal_ = choose(which, next.normal, normal_);
@@ -105,7 +105,8 @@ class FootSearch {
   }
   // Keeps in normal_ the sum of the normals where noise was met, and the direction where a groove
   // was: there the search has ended.
-  [[gnu::always_inline]] VPM_HD void turn_back(const ReadingOf<Real>& next, const Mask& which) {
+  [[gnu::always_inline]] VPM_HD void turn_back(const SurfaceSampleOf<Real>& next,
+                                               const Mask& which) {
     const Mask is_noise = which & (dot(normal_, next.normal) > kSmoothCosine);
     normal_ = choose(is_noise, normal_ + next.normal, normal_);
     has_met_noise_ |= is_noise;
@@ -132,29 +133,30 @@ class FootSearch {
   // side on whose tangent plane the foot lies. Its distance is then that of x.
   [[gnu::always_inline]] VPM_HD void take_one_side(const DepthSampler& image,
                                                    const Neighbors& beside,
-                                                   ReadingOf<Real>& reading) const {
+                                                   SurfaceSampleOf<Real>& on_surface) const {
     const Mask in_row = widen_mask(beside.across > 0) &
-                        holds_crease(beside.left, beside.right, reading.normal),
+                        holds_crease(beside.left, beside.right, on_surface.normal),
                in_column = widen_mask(beside.down > 0) &
-                           holds_crease(beside.above, beside.below, reading.normal);
+                           holds_crease(beside.above, beside.below, on_surface.normal);
     if (!any(in_row | in_column)) return;
-    const Int pixel = static_cast<Int>(reading.point), v = pixel / image.width,
+    const Int pixel = static_cast<Int>(on_surface.point), v = pixel / image.width,
               u = pixel - v * image.width;
     Real least = Real{} + HUGE_VAL;
     const auto consider = [&](const Mask& which, const Int& at_u, const Int& at_v,
                               const Stored& stored) __attribute__((always_inline)) {
       if (!any(which)) return;
       const Place normal = widen(stored);
-      const Real off = off_plane(image, reading.foot, at_u, at_v, normal);
+      const Real off = off_plane(image, on_surface.foot, at_u, at_v, normal);
       const Mask is_better = which & (off < least);
       least = is_better ? off : least;
-      reading.normal = choose(is_better, normal, reading.normal);
+      on_surface.normal = choose(is_better, normal, on_surface.normal);
     };
     for (std::int32_t side = -1; side <= 1; side += 2) {
       consider(in_row, u + side * beside.across, v, side < 0 ? beside.left : beside.right);
       consider(in_column, u, v + side * beside.down, side < 0 ? beside.above : beside.below);
     }
-    reading.distance = least < HUGE_VAL ? dot(reading.normal, x_ - reading.foot) : reading.distance;
+    on_surface.distance =
+        least < HUGE_VAL ? dot(on_surface.normal, x_ - on_surface.foot) : on_surface.distance;
   }
   // True if a crease passes between two neighbours of a pixel, and its normal is of neither.
   [[gnu::always_inline]] static VPM_HD Mask holds_crease(const Stored& one, const Stored& other,
@@ -188,20 +190,20 @@ class FootSearch {
 // Returns the gradient of the distance to the surface at a place x behind it: towards the nearest
 // surface point. `reading` is that of x, and known.
 template <class Place>
-[[gnu::always_inline]] VPM_HD inline Place search_normal(const DepthSampler& image, const Place& x,
-                                                         const ReadingOf<RealOf<Place>>& reading) {
+[[gnu::always_inline]] VPM_HD inline Place search_normal(
+    const DepthSampler& image, const Place& x, const SurfaceSampleOf<RealOf<Place>>& on_surface) {
   using Real = RealOf<Place>;
   using Int = IntOf<Real>;
   using Search = FootSearch<Real>;
-  const Int pixel = static_cast<Int>(reading.point), v = pixel / image.width,
+  const Int pixel = static_cast<Int>(on_surface.point), v = pixel / image.width,
             u = pixel - v * image.width;
-  Search search(image, x, reading, Search::neighbors_of(image, u, v));
+  Search search(image, x, on_surface, Search::neighbors_of(image, u, v));
   while (any(search.goes_on())) {
     typename Search::Neighbors beside;
     const auto also = [&](const Int& at_u, const Int& at_v) __attribute__((always_inline)) {
       beside = Search::neighbors_of(image, at_u, at_v);
     };
-    const ReadingOf<Real> next = image.read_and(search.target(), also);
+    const SurfaceSampleOf<Real> next = image.sample_and(search.target(), also);
     search.take(image, next, beside);
   }
   return search.normal();

@@ -48,7 +48,7 @@ struct DepthSampler {
   const Vec3f* normals = nullptr;  // of each pixel, camera axes; zero where none is known
   // tiles[l] are of 2^l by 2^l pixels; tiles[0].high is the pixel's own inverse depth.
   const InverseDepthRange* tiles[kMaxLevels] = {};
-  // Inverse depth before noise was taken out (settled_image.h): what was seen to be free stays so.
+  // Inverse depth before noise was taken out (denoised_image.h): what was seen to be free stays so.
   const float* measured = nullptr;
 
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
@@ -65,28 +65,28 @@ struct DepthSampler {
   // Reads the surface on the ray of x. Calls also(u, v), which may load more at the nearest pixel:
   // a device waits for all loads together. Where nothing is known, the rest has no meaning.
   template <class Place, class Also>
-  [[gnu::always_inline]] VPM_HD ReadingOf<RealOf<Place>> read_and(const Place& x,
-                                                                  const Also& also) const {
+  [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_and(const Place& x,
+                                                                          const Also& also) const {
     using Real = RealOf<Place>;
     const Pixel<Real> pixel = look_up(x, also);
-    ReadingOf<Real> reading;
-    if (!any(pixel.known)) return reading;
-    reading.known = pixel.known;
+    SurfaceSampleOf<Real> on_surface;
+    if (!any(pixel.known)) return on_surface;
+    on_surface.known = pixel.known;
     const Real to_foot = quotient(1, x.z * pixel.inverse_depth);
-    reading.foot = to_foot * x;  // on the ray of x
-    reading.point = static_cast<IndexOf<Real>>(pixel.nearest);
-    reading.normal = widen(pixel.normal);
-    const Real along = dot(reading.normal, x), squared_length = squared_norm(x);
+    on_surface.foot = to_foot * x;  // on the ray of x
+    on_surface.point = static_cast<IndexOf<Real>>(pixel.nearest);
+    on_surface.normal = widen(pixel.normal);
+    const Real along = dot(on_surface.normal, x), squared_length = squared_norm(x);
     const MaskOf<Real> is_trusted =
         (along < 0) & (along * along >= (kGrazing * kGrazing) * squared_length);
-    reading.distance = along * (1 - to_foot);
+    on_surface.distance = along * (1 - to_foot);
     // No normal, or one that cannot be right: the surface is taken to face the ray.
     if (any(pixel.known & negated(is_trusted))) {
       const Real length = square_root(squared_length);
-      reading.normal = choose(is_trusted, reading.normal, quotient(-1, length) * x);
-      reading.distance = is_trusted ? reading.distance : length * (to_foot - 1);
+      on_surface.normal = choose(is_trusted, on_surface.normal, quotient(-1, length) * x);
+      on_surface.distance = is_trusted ? on_surface.distance : length * (to_foot - 1);
     }
-    return reading;
+    return on_surface;
   }
 
  private:

@@ -20,20 +20,20 @@ struct DepthSurface : DepthSampler {
   // there as in the mean over a box in the ball.
   static constexpr double kRim = 0.5;
 
-  VPM_HD Reading read(Vec3 x, std::uint32_t = kNoPoint) const {
-    return read_and(x, [](std::int32_t, std::int32_t) {});
+  VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
+    return sample_and(x, [](std::int32_t, std::int32_t) {});
   }
   // Returns the surface for places in a ball: this one, since projection needs no search.
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
   // Returns the gradient of the distance to the surface at a place x behind it: towards the nearest
   // surface point. `reading` is that of x, and known.
-  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    return search_normal(*this, x, reading);
+  VPM_HD Vec3 closest_normal(Vec3 x, const SurfaceSample& on_surface) const {
+    return search_normal(*this, x, on_surface);
   }
 
   // The pixels of a ball: its side, and the range of inverse depth over the tiles that cover them.
-  struct Look {
+  struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // projection needs no place to begin
     bool leaves_image = true;
@@ -43,24 +43,24 @@ struct DepthSurface : DepthSampler {
   };
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
-    return side_of(look_at_ball(center, radius), center, radius);
+    return side_of(classify_ball(center, radius), center, radius);
   }
   // Returns the side of a ball that was looked at. Tiles hold pixels beside the ball too: where
   // they do not decide, its own pixels tell if it is free.
-  VPM_HD Side side_of(const Look& look, Vec3 center, double radius) const {
+  VPM_HD Side side_of(const BallClass& in_ball, Vec3 center, double radius) const {
     const double farthest = center.z + radius;
-    return may_be_seen_past(look, farthest) && is_seen_past(look.pixels, farthest, 0, 1)
+    return may_be_seen_past(in_ball, farthest) && is_seen_past(in_ball.pixels, farthest, 0, 1)
                ? Side::free
-               : look.side;
+               : in_ball.side;
   }
-  static VPM_HD PixelRectangle pixels_of(const Look& look) { return look.pixels; }
+  static VPM_HD PixelRectangle pixels_of(const BallClass& in_ball) { return in_ball.pixels; }
   // True if the pixels of a ball may all have measured no surface nearer than `depth`, m. The
   // pixel in the middle mostly says no.
-  VPM_HD bool may_be_seen_past(const Look& look, double depth) const {
-    const PixelRectangle& p = look.pixels;
-    return look.side == Side::mixed &&
+  VPM_HD bool may_be_seen_past(const BallClass& in_ball, double depth) const {
+    const PixelRectangle& p = in_ball.pixels;
+    return in_ball.side == Side::ambiguous &&
            std::int64_t{p.u1 - p.u0 + 1} * (p.v1 - p.v0 + 1) <= kMostPixels &&
-           depth * look.middle < 1;
+           depth * in_ball.middle < 1;
   }
   // True if every measured pixel of `p` in rows first, first + step, ... lies beyond `depth`, m.
   VPM_HD bool is_seen_past(const PixelRectangle& p, double depth, std::uint32_t first,
@@ -74,13 +74,13 @@ struct DepthSurface : DepthSampler {
     return true;
   }
 
-  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
-    Look look;
+  VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
+    BallClass in_ball;
     const double nearest = center.z - radius, farthest = center.z + radius;
-    if (!(farthest > 0)) return look;
-    look.side = Side::mixed;
-    look.pixels = whole_image(width, height);
-    if (!(nearest >= kSmallestLength)) return look;
+    if (!(farthest > 0)) return in_ball;
+    in_ball.side = Side::ambiguous;
+    in_ball.pixels = whole_image(width, height);
+    if (!(nearest >= kSmallestLength)) return in_ball;
     // |x'/z' - x/z| <= r (1 + |x|/z) / (z - r) for every x' in the ball.
     const double per_depth = quotient(1, center.z), per_nearest = quotient(radius, nearest);
     const double x = center.x * per_depth, y = center.y * per_depth;
@@ -90,41 +90,41 @@ struct DepthSurface : DepthSampler {
     const double v_low = v - spread_v, v_high = v + spread_v;
     // Written so that numbers that overflowed are free too.
     if (!(u_high >= -0.5 && v_high >= -0.5 && u_low < width - 0.5 && v_low < height - 0.5)) {
-      look.side = Side::free;
-      return look;
+      in_ball.side = Side::free;
+      return in_ball;
     }
-    look.leaves_image =
+    in_ball.leaves_image =
         u_low < -0.5 || v_low < -0.5 || u_high >= width - 0.5 || v_high >= height - 0.5;
     // Every pixel that look_up may touch for a place in the ball.
-    look.pixels = {u_low < 0 ? 0 : static_cast<std::int32_t>(u_low),
-                   v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
-                   u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
-                   v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
-    cover(look);
-    if (farthest * look.range.high < 1) {
-      look.side = Side::free;
-    } else if (!look.leaves_image && nearest * look.range.low > 1) {
-      look.side = Side::behind;
+    in_ball.pixels = {u_low < 0 ? 0 : static_cast<std::int32_t>(u_low),
+                      v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
+                      u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
+                      v_high + 1 >= height ? height - 1 : static_cast<std::int32_t>(v_high + 1)};
+    cover(in_ball);
+    if (farthest * in_ball.range.high < 1) {
+      in_ball.side = Side::free;
+    } else if (!in_ball.leaves_image && nearest * in_ball.range.low > 1) {
+      in_ball.side = Side::behind;
     }
-    return look;
+    return in_ball;
   }
 
   // True if a look at a ball tells of the balls in it: their pixels are among its own, unless it is
   // so near that the bound of its projection is loose.
   VPM_HD bool tells_of_parts(Vec3 center, double radius) const { return center.z > 2 * radius; }
   // True if such a look shows that a ball in the one that was looked at is free.
-  VPM_HD bool is_free_part(const Look& look, Vec3 center, double radius) const {
-    return (center.z + radius) * look.range.high < 1;
+  VPM_HD bool is_free_part(const BallClass& in_ball, Vec3 center, double radius) const {
+    return (center.z + radius) * in_ball.range.high < 1;
   }
 
   // True if the surface in a ball that was looked at may touch a ball in it, as far as the look
   // tells.
-  VPM_HD bool may_touch(const Look& look, Vec3 center, double radius) const {
-    return !(is_free_part(look, center, radius) || (center.z - radius) * look.range.low > 1);
+  VPM_HD bool may_touch(const BallClass& in_ball, Vec3 center, double radius) const {
+    return !(is_free_part(in_ball, center, radius) || (center.z - radius) * in_ball.range.low > 1);
   }
 
   // Returns the least inverse depth in a ball that was looked at, 1/m.
-  static VPM_HD float least_inverse_depth(const Look& look) { return look.range.low; }
+  static VPM_HD float least_inverse_depth(const BallClass& in_ball) { return in_ball.range.low; }
   // True if a ball in one that was looked at may be free though the plane of all pixels there says
   // no: the measured pixel at its centre lies beyond it, and not all of the surface there is nearer
   // than its far side. `least` is the least_inverse_depth() of that surface.
@@ -142,69 +142,71 @@ struct DepthSurface : DepthSampler {
 
   // False only if may_be_free is false for every ball in this one, which lies in one that was
   // looked at.
-  VPM_HD bool may_hold_free(const Look& look, Vec3 center, double radius) const {
+  VPM_HD bool may_hold_free(const BallClass& in_ball, Vec3 center, double radius) const {
     constexpr double kRounding = 1 - 1e-9;
-    return (center.z - radius) * look.range.low * kRounding < 1;
+    return (center.z - radius) * in_ball.range.low * kRounding < 1;
   }
 
   // True if the surface in a ball that was looked at may be one plane.
-  VPM_HD bool may_be_flat(const Look& look) const {
-    return !look.leaves_image && look.range.low > 0;
+  VPM_HD bool may_be_flat(const BallClass& in_ball) const {
+    return !in_ball.leaves_image && in_ball.range.low > 0;
   }
   // True if the surface in such a ball is one plane, as far as the range of its pixels tells: the
   // plane at the ball's centre, where read() samples the surface, predicts their least and greatest
   // depth to `tolerance`, m.
   template <class Read>
-  VPM_HD bool is_flat(const Look& look, const Read& read, double tolerance,
+  VPM_HD bool is_flat(const BallClass& in_ball, const Read& read, double tolerance,
                       TangentPlane& plane) const {
-    const Reading reading = read();
-    if (!reading.known) return false;
-    const CornerNormals corners = corner_normals(look);  // soon, though they may not be needed
-    plane = {reading.normal, reading.foot};
-    if (!shows(look, plane, tolerance)) return false;
-    plane.normal = mean_normal(look, corners, reading.normal);
+    const SurfaceSample on_surface = read();
+    if (!on_surface.known) return false;
+    const CornerNormals corners = corner_normals(in_ball);  // soon, though they may not be needed
+    plane = {on_surface.normal, on_surface.foot};
+    if (!shows(in_ball, plane, tolerance)) return false;
+    plane.normal = mean_normal(in_ball, corners, on_surface.normal);
     return true;
   }
   // True if the plane predicts the range of the ball's pixels, to `tolerance`, m.
-  VPM_HD bool shows(const Look& look, const TangentPlane& plane, double tolerance) const {
-    if (spans_few_pixels(look)) return look.range.high - look.range.low <= kJump * look.range.high;
+  VPM_HD bool shows(const BallClass& in_ball, const TangentPlane& plane, double tolerance) const {
+    if (spans_few_pixels(in_ball))
+      return in_ball.range.high - in_ball.range.low <= kJump * in_ball.range.high;
     const double per_height = quotient(1, dot(plane.normal, plane.foot));
     const double per_u = quotient(plane.normal.x * per_height, k.fx);
     const double per_v = quotient(plane.normal.y * per_height, k.fy);
-    const PixelRectangle& t = look.tiles;
+    const PixelRectangle& t = in_ball.tiles;
     const double u = 0.5 * (t.u0 + t.u1) - k.cx, v = 0.5 * (t.v0 + t.v1) - k.cy;
     const double middle = per_u * u + per_v * v + plane.normal.z * per_height;
     const double spread =
         0.5 * (std::fabs(per_u) * (t.u1 - t.u0) + std::fabs(per_v) * (t.v1 - t.v0));
     const double allowed = quotient(tolerance, plane.foot.z * plane.foot.z);
-    return std::fabs(middle - spread - look.range.low) <= allowed &&
-           std::fabs(middle + spread - look.range.high) <= allowed;
+    return std::fabs(middle - spread - in_ball.range.low) <= allowed &&
+           std::fabs(middle + spread - in_ball.range.high) <= allowed;
   }
 
   // Finds the mean plane of the surface across a ball that was looked at, from readings at its
   // middle and at four places around it. Returns false if they do not belong to one smooth surface,
   // or the range of the ball's pixels does not agree with the plane.
   template <class ReadAll>
-  VPM_HD bool mean_plane(const Look& look, Vec3 center, double radius, double tolerance,
-                         const ReadAll& read_all, TangentPlane& plane) const {
-    if (!may_be_flat(look)) return false;
-    const Reading middle = read(center);
+  VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
+                         const ReadAll& sample_all, TangentPlane& plane) const {
+    if (!may_be_flat(in_ball)) return false;
+    const SurfaceSample middle = sample(center);
     if (!middle.known) return false;
     const PlacesAround around(middle, center, radius);
     const Vec3 places[PlacesAround::kCount] = {around.at(0), around.at(1), around.at(2),
                                                around.at(3)};
     PlaneMean mean(middle);
-    if (!read_all(*this, places, [&](const Reading& reading) { return mean.take(reading); }))
+    if (!sample_all(*this, places,
+                    [&](const SurfaceSample& on_surface) { return mean.take(on_surface); }))
       return false;
     plane = mean.plane();
-    return shows(look, plane, tolerance);
+    return shows(in_ball, plane, tolerance);
   }
   // The four places around the middle; `middle` was read at the ball's centre, and is known.
   struct PlacesAround {
     static constexpr int kCount = 4;
     Vec3 below, side, other;
 
-    VPM_HD PlacesAround(const Reading& middle, Vec3 center, double radius)
+    VPM_HD PlacesAround(const SurfaceSample& middle, Vec3 center, double radius)
         : below(center - middle.distance * middle.normal) {
       const Vec3 n = middle.normal;
       const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -220,13 +222,13 @@ struct DepthSurface : DepthSampler {
   struct PlaneMean {
     Vec3 middle_normal, direction, feet;
 
-    VPM_HD explicit PlaneMean(const Reading& middle)
+    VPM_HD explicit PlaneMean(const SurfaceSample& middle)
         : middle_normal(middle.normal), direction(middle.normal), feet(middle.foot) {}
     // Adds a reading; false if it does not belong to that surface.
-    VPM_HD bool take(const Reading& reading) {
-      if (!reading.known || dot(reading.normal, middle_normal) < kSmoothCosine) return false;
-      direction += reading.normal;
-      feet += reading.foot;
+    VPM_HD bool take(const SurfaceSample& on_surface) {
+      if (!on_surface.known || dot(on_surface.normal, middle_normal) < kSmoothCosine) return false;
+      direction += on_surface.normal;
+      feet += on_surface.foot;
       return true;
     }
     // Returns the plane of five readings.
@@ -235,14 +237,14 @@ struct DepthSurface : DepthSampler {
 
   // Returns a bound of the distance, m, from any place in a ball that was looked at to the foot of
   // its reading.
-  VPM_HD double largest_gap(const Look& look, Vec3 center, double radius) const {
+  VPM_HD double largest_gap(const BallClass& in_ball, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;
-    if (!(nearest >= kSmallestLength && look.range.high > 0)) return HUGE_VAL;
-    return (farthest - quotient(1, look.range.high)) * quotient(norm(center) + radius, nearest);
+    if (!(nearest >= kSmallestLength && in_ball.range.high > 0)) return HUGE_VAL;
+    return (farthest - quotient(1, in_ball.range.high)) * quotient(norm(center) + radius, nearest);
   }
 
-  static VPM_HD double fraction_inside(const Reading& reading, Vec3, double radius) {
-    return ball_fraction_inside(reading.distance / radius);
+  static VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3, double radius) {
+    return ball_fraction_inside(on_surface.distance / radius);
   }
 
  private:
@@ -251,8 +253,8 @@ struct DepthSurface : DepthSampler {
   // A ball of more pixels is not asked pixel by pixel: its parts are, soon.
   static constexpr std::int64_t kMostPixels = 1024;
 
-  static VPM_HD bool spans_few_pixels(const Look& look) {
-    const PixelRectangle& p = look.pixels;
+  static VPM_HD bool spans_few_pixels(const BallClass& in_ball) {
+    const PixelRectangle& p = in_ball.pixels;
     return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
   }
 
@@ -260,8 +262,8 @@ struct DepthSurface : DepthSampler {
   struct CornerNormals {
     Vec3f at[4];
   };
-  VPM_HD CornerNormals corner_normals(const Look& look) const {
-    const PixelRectangle& p = look.pixels;
+  VPM_HD CornerNormals corner_normals(const BallClass& in_ball) const {
+    const PixelRectangle& p = in_ball.pixels;
     const std::int32_t u = (p.u1 - p.u0) / 4, v = (p.v1 - p.v0) / 4;
     const std::int32_t above = (p.v0 + v) * width, below = (p.v1 - v) * width;
     return {{normals[above + p.u0 + u], normals[above + p.u1 - u], normals[below + p.u0 + u],
@@ -269,8 +271,9 @@ struct DepthSurface : DepthSampler {
   }
   // Returns the mean of these and of the normal at the middle, of those that belong to one smooth
   // surface: noise is averaged, and curvature cancels.
-  VPM_HD Vec3 mean_normal(const Look& look, const CornerNormals& corners, Vec3 middle) const {
-    if (spans_few_pixels(look)) return middle;
+  VPM_HD Vec3 mean_normal(const BallClass& in_ball, const CornerNormals& corners,
+                          Vec3 middle) const {
+    if (spans_few_pixels(in_ball)) return middle;
     Vec3 sum = middle;
     for (const Vec3f& corner : corners.at) {
       const Vec3 normal = widen(corner);
@@ -289,8 +292,8 @@ struct DepthSurface : DepthSampler {
   }
 
   // Takes the range of the look's pixels from at most 3 by 3 tiles.
-  VPM_HD void cover(Look& look) const {
-    const PixelRectangle& p = look.pixels;
+  VPM_HD void cover(BallClass& in_ball) const {
+    const PixelRectangle& p = in_ball.pixels;
     const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
     const int least = exponent_of(static_cast<std::uint32_t>(wide > high ? wide : high));
     const int level = least < levels ? least : levels - 1;
@@ -298,9 +301,9 @@ struct DepthSurface : DepthSampler {
     const std::int32_t u0 = p.u0 >> level, u1 = p.u1 >> level;
     const std::int32_t v0 = p.v0 >> level, v1 = p.v1 >> level;
     const std::int32_t u_end = (u1 + 1) << level, v_end = (v1 + 1) << level;
-    look.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
-                  (v_end < height ? v_end : height) - 1};
-    look.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
+    in_ball.tiles = {u0 << level, v0 << level, (u_end < width ? u_end : width) - 1,
+                     (v_end < height ? v_end : height) - 1};
+    in_ball.middle = measured[(p.v0 + p.v1) / 2 * width + (p.u0 + p.u1) / 2];
     InverseDepthRange all = tiles[level][v0 * row + u0];
     const auto take = [&](std::int32_t u, std::int32_t v) {
       const InverseDepthRange tile = tiles[level][v * row + u];
@@ -309,7 +312,7 @@ struct DepthSurface : DepthSampler {
     // Takes nine always, some of them twice: loads that do not wait for each other, no branch.
     for (std::int32_t i = 0; i < 9; ++i)
       take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
-    look.range = all;
+    in_ball.range = all;
   }
 };
 

@@ -35,10 +35,10 @@ struct DiskSurface {
   NormalCones cones{};
 
   // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
-  VPM_HD Reading read(Vec3 x, std::uint32_t near = kNoPoint) const {
+  VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
     return read_point(x, feet.nearest(x, HUGE_VAL, near));
   }
-  VPM_HD Reading read_point(Vec3 x, std::uint32_t i) const {
+  VPM_HD SurfaceSample read_point(Vec3 x, std::uint32_t i) const {
     if (i == kNoPoint) return {};
     const TangentPlane own = plane_of(i);
     const double distance = own.distance(x);
@@ -53,10 +53,10 @@ struct DiskSurface {
   }
 
   // The part of a ball about x that is behind the surface that was read there.
-  VPM_HD double fraction_inside(const Reading& reading, Vec3 x, double radius) const {
-    if (!knows_second(reading.point)) return ball_fraction_inside(reading.distance / radius);
-    const SecondPlane& second = second_at(reading.point);
-    const TangentPlane own = plane_of(reading.point), beyond = second.plane();
+  VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3 x, double radius) const {
+    if (!knows_second(on_surface.point)) return ball_fraction_inside(on_surface.distance / radius);
+    const SecondPlane& second = second_at(on_surface.point);
+    const TangentPlane own = plane_of(on_surface.point), beyond = second.plane();
     const double first_inside = ball_fraction_inside(own.distance(x) / radius);
     const double second_inside = ball_fraction_inside(beyond.distance(x) / radius);
     const double cosine = dot(own.normal, beyond.normal);
@@ -72,19 +72,20 @@ struct DiskSurface {
   // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
   // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
   // sides of a groove, towards these, or their crease.
-  VPM_HD Vec3 closest_normal(Vec3 x, const Reading& reading) const {
-    if (knows_second(reading.point) && !second_at(reading.point).is_convex) {
-      const TangentPlane own = plane_of(reading.point), other = second_at(reading.point).plane();
+  VPM_HD Vec3 closest_normal(Vec3 x, const SurfaceSample& on_surface) const {
+    if (knows_second(on_surface.point) && !second_at(on_surface.point).is_convex) {
+      const TangentPlane own = plane_of(on_surface.point),
+                         other = second_at(on_surface.point).plane();
       const bool below_both = own.distance(x) < 0 && other.distance(x) < 0;
       return below_both && dot(own.normal, other.normal) > kSlot
                  ? normal_below_groove(x, own, other)
-                 : reading.normal;
+                 : on_surface.normal;
     }
-    const Vec3 towards = reading.foot - x;
-    const double height = dot(reading.normal, towards);
-    const Vec3 aside = towards - height * reading.normal;
-    const double aside_squared = squared_norm(aside), rim = rim_of(reading.point);
-    if (height > 0 && aside_squared <= rim * rim) return reading.normal;
+    const Vec3 towards = on_surface.foot - x;
+    const double height = dot(on_surface.normal, towards);
+    const Vec3 aside = towards - height * on_surface.normal;
+    const double aside_squared = squared_norm(aside), rim = rim_of(on_surface.point);
+    if (height > 0 && aside_squared <= rim * rim) return on_surface.normal;
     return normalized_or_zero(towards - (rim / std::sqrt(aside_squared)) * aside);
   }
 
@@ -111,36 +112,37 @@ struct DiskSurface {
                               double unlike, OtherWall& other) const;
 
   // What a ball is to the disks. No bound of the gap is known.
-  struct Look {
+  struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // the nearest to the centre, where the ball may touch it
     Vec3 center;
     double radius = 0;
   };
-  VPM_HD Look look_at_ball(Vec3 center, double radius) const {
+  VPM_HD BallClass classify_ball(Vec3 center, double radius) const {
     const std::uint32_t point = feet.nearest_touching(center, radius, radii);
-    return {point == kNoPoint ? Side::uncut : Side::mixed, point, center, radius};
+    return {point == kNoPoint ? Side::no_surface : Side::ambiguous, point, center, radius};
   }
-  VPM_HD bool may_be_flat(const Look& look) const {
-    return look.point != kNoPoint;
+  VPM_HD bool may_be_flat(const BallClass& in_ball) const {
+    return in_ball.point != kNoPoint;
   }
   template <class Read>
-  VPM_HD bool is_flat(const Look& look, const Read&, double tolerance, TangentPlane& plane) const {
-    return mean_plane(look, tolerance, plane);
+  VPM_HD bool is_flat(const BallClass& in_ball, const Read&, double tolerance,
+                      TangentPlane& plane) const {
+    return mean_plane(in_ball, tolerance, plane);
   }
   template <class ReadAll>
-  VPM_HD bool mean_plane(const Look& look, Vec3, double, double tolerance, const ReadAll&,
+  VPM_HD bool mean_plane(const BallClass& in_ball, Vec3, double, double tolerance, const ReadAll&,
                          TangentPlane& plane) const {
-    return mean_plane(look, tolerance, plane);
+    return mean_plane(in_ball, tolerance, plane);
   }
   // The mean plane of the disks below a ball that was looked at; false where they do not show one
   // smooth surface: one is of another wall or lies off it by more than a part of `tolerance`, or
   // those to one side of the middle are too few or face elsewhere.
-  VPM_HD bool mean_plane(const Look& look, double tolerance, TangentPlane& plane) const {
-    if (look.point == kNoPoint) return false;
-    const Reading nearest = read_point(look.center, look.point);
-    const double height = nearest.distance, near = kMiddle * look.radius;
-    const Vec3 middle = look.center - height * nearest.normal;
+  VPM_HD bool mean_plane(const BallClass& in_ball, double tolerance, TangentPlane& plane) const {
+    if (in_ball.point == kNoPoint) return false;
+    const SurfaceSample nearest = read_point(in_ball.center, in_ball.point);
+    const double height = nearest.distance, near = kMiddle * in_ball.radius;
+    const Vec3 middle = in_ball.center - height * nearest.normal;
     Vec3 normal_sum, place_sum;
     std::uint32_t found = 0;
     const bool few = feet.for_points_in_ball(middle, near * near, [&](std::uint32_t i) {
@@ -150,7 +152,7 @@ struct DiskSurface {
     });
     if (!few || found == 0) return false;
     plane = {normalized_or_zero(normal_sum), 1.0 / found * place_sum};
-    return shows(plane, middle, look.center, look.radius * look.radius + height * height,
+    return shows(plane, middle, in_ball.center, in_ball.radius * in_ball.radius + height * height,
                  kOffPlane * tolerance);
   }
 
@@ -244,7 +246,7 @@ struct DiskSurface {
   VPM_HD bool find_border(const Near& near, Vec3 place, Vec3 x, const TangentPlane& own,
                           std::uint32_t point, double unlike, OtherWall& other,
                           double& away) const {
-    const Reading there = near.read(place, point);
+    const SurfaceSample there = near.sample(place, point);
     if (!(there.distance < 0)) return false;
     const Vec3 normal = closest_normal(place, there);
     if (dot(normal, own.normal) > unlike) return false;
@@ -300,9 +302,9 @@ class DiskSurface::AroundBall {
     gather(reach * reach);
   }
 
-  VPM_HD Reading read(Vec3 x, std::uint32_t near) const {
+  VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near) const {
     if (points_.is_empty() || !(squared_norm(x - center_) <= radius_ * radius_))
-      return surface_.read(x, near);
+      return surface_.sample(x, near);
     return surface_.read_point(x, points_.nearest(x));
   }
   // DiskSurface::find_other_wall.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/scene/points/denoised_disks.h"
 #include "libvpm/scene/points/disk_windows.h"
-#include "libvpm/scene/points/settled_disks.h"
 
 namespace vpm {
 
@@ -51,7 +51,7 @@ struct LeafWork {
 
 // Calls pass(leaf, work) for all leaves. What they find is numbered in the disks' order.
 template <class Pass>
-void for_leaves(const DiskWindows& windows, SettledDisks& result, const Pass& pass) {
+void for_leaves(const DiskWindows& windows, DenoisedDisks& result, const Pass& pass) {
   constexpr std::uint32_t kGrain = 128 * PointTree::kLeafSize;
   const std::uint32_t count = windows.count();
   std::vector<std::vector<LeafWork::Found>> found((count + kGrain - 1) / kGrain);

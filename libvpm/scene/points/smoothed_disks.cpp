@@ -28,7 +28,7 @@ DiskKind kind_of(const Neighborhood& around) {
 
 class Smoothing {
  public:
-  Smoothing(const DiskWindows& windows, SettledDisks& result)
+  Smoothing(const DiskWindows& windows, DenoisedDisks& result)
       : windows_(windows),
         result_(result),
         kinds_(windows.count()),
@@ -37,12 +37,12 @@ class Smoothing {
 
   // What a pass reads of other disks, none of its own writes.
   std::vector<DiskKind> run() {
-    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_among_alike(leaf, work); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_alike(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
-    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_beside_creases(leaf, work); });
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_beside_creases(leaf, work); });
     before_.reserve(windows_.count());
-    for (std::uint32_t i = 0; i < windows_.count(); ++i) before_.push_back(settled(i));
-    pass([&](const DiskLeaf& leaf, LeafWork& work) { settle_among_settled(leaf, work); });
+    for (std::uint32_t i = 0; i < windows_.count(); ++i) before_.push_back(denoised(i));
+    pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_denoised(leaf, work); });
     return std::move(kinds_);
   }
 
@@ -55,7 +55,7 @@ class Smoothing {
     for_leaves(windows_, result_, pass);
   }
 
-  Disk settled(std::uint32_t i) const {
+  Disk denoised(std::uint32_t i) const {
     return {widen(result_.feet[i]), widen(result_.normals[i])};
   }
   // As it was measured, but facing as those about it do.
@@ -84,7 +84,7 @@ class Smoothing {
     }
   }
 
-  void settle_among_alike(const DiskLeaf& leaf, LeafWork& work) {
+  void denoise_among_alike(const DiskLeaf& leaf, LeafWork& work) {
     if (!windows_.gather(leaf.center, windows_.reach(leaf), kMostInWide, work.near))
       work.near.clear();
     bool is_calm = true;
@@ -150,7 +150,7 @@ class Smoothing {
   }
 
   // The windows by which the others' normals were estimated may reach across a crease.
-  void settle_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
+  void denoise_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
     if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0) return;
     work.near.clear();
     const auto take_clear = [&](std::uint32_t j) {
@@ -168,7 +168,7 @@ class Smoothing {
   // Means of means: what noise is left after the first ones makes the surface uneven on the scale
   // of their windows, and the nearest of its disks are then those that it has moved most. What is
   // opposite is told from where noise has been taken from both.
-  void settle_among_settled(const DiskLeaf& leaf, LeafWork& work) {
+  void denoise_among_denoised(const DiskLeaf& leaf, LeafWork& work) {
     work.near.clear();
     const auto take_smooth = [&](std::uint32_t j) {
       if (is_smooth(kinds_[j])) work.near.push_back(before_[j]);
@@ -176,19 +176,19 @@ class Smoothing {
     if (!windows_.for_disks_near(leaf.center, windows_.reach(leaf), kMostInWide, take_smooth))
       return;
     look_around_each(
-        leaf, work.near, [&](std::uint32_t i) { return settled(i); },
+        leaf, work.near, [&](std::uint32_t i) { return denoised(i); },
         [&](std::uint32_t i, const DiskInBall& own, const Neighborhood& around) {
           if (!is_smooth(kinds_[i])) return;
           if (around.alike >= kFewAlike) set(i, own.disk, around);
           if (around.opposite.count < kFewOpposite) return;
           const MeanPlane opposite(around.opposite, own.disk.place);
-          if (const auto second = second_plane(settled(i), opposite, 0))
+          if (const auto second = second_plane(denoised(i), opposite, 0))
             work.found.push_back({i, *second});
         });
   }
 
   const DiskWindows& windows_;
-  SettledDisks& result_;
+  DenoisedDisks& result_;
   std::vector<DiskKind> kinds_;
   std::vector<char> is_calm_, is_beside_;  // of leaves
   std::vector<Disk> before_;
@@ -196,7 +196,7 @@ class Smoothing {
 
 }  // namespace
 
-std::vector<DiskKind> smooth(const DiskWindows& windows, SettledDisks& result) {
+std::vector<DiskKind> smooth(const DiskWindows& windows, DenoisedDisks& result) {
   return Smoothing(windows, result).run();
 }
 

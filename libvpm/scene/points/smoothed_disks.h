@@ -1,11 +1,11 @@
-// The first part of settling a cloud's disks (settled_disks.h): each takes the mean of those about
+// The first part of settling a cloud's disks (denoised_disks.h): each takes the mean of those about
 // it that face its way, but not of those whose normals were estimated across a crease.
 #pragma once
 
 #include <vector>
 
+#include "libvpm/scene/points/denoised_disks.h"
 #include "libvpm/scene/points/disk_windows.h"
-#include "libvpm/scene/points/settled_disks.h"
 
 namespace vpm {
 
@@ -22,6 +22,6 @@ inline bool is_smooth(DiskKind kind) {
 
 // Smooths the disks in `result`, which are as measured, and says of which kind each is. Those that
 // face each other from the sides of a plate or a slot learn of each other's planes.
-std::vector<DiskKind> smooth(const DiskWindows& windows, SettledDisks& result);
+std::vector<DiskKind> smooth(const DiskWindows& windows, DenoisedDisks& result);
 
 }  // namespace vpm

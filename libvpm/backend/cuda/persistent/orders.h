@@ -61,12 +61,12 @@ class Orders {
   static constexpr std::uint64_t kFirstWait = 10'000'000;  // ns; the order was given already
 
   // Returns this lane's word of the order, when all have come or it is too late. `look(word)`.
-  template <class Look, class IsLate>
-  __device__ static NumberedWord wait(OrderWords& order, unsigned number, const Look& look,
+  template <class BallClass, class IsLate>
+  __device__ static NumberedWord wait(OrderWords& order, unsigned number, const BallClass& in_ball,
                                       const IsLate& is_late) {
     constexpr unsigned kLeaves = offsetof(Order, leaves) / sizeof(std::uint32_t);
     for (;;) {
-      const NumberedWord mine = look(order.words[threadIdx.x]);
+      const NumberedWord mine = in_ball(order.words[threadIdx.x]);
       if (__all_sync(~0U, number_of(mine) == number) != 0) return mine;
       if (__any_sync(~0U, is_late()) != 0) return numbered(number, threadIdx.x == kLeaves ? 1 : 0);
     }

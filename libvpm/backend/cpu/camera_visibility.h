@@ -1,0 +1,105 @@
+// The second step of the refined measure where a camera has seen the surface: what is behind it, no
+// further than the tool's reach, is inside. Beyond, the plane of the nearest cut share decides, or
+// the memory of poses before.
+#pragma once
+
+#include <algorithm>
+
+#include "libvpm/backend/cpu/cut_cells.h"
+#include "libvpm/core/parallel_region.h"
+#include "libvpm/measure/flood_rules.h"
+#include "libvpm/temporal/pose_memory.h"
+
+namespace vpm {
+
+template <class Surface>
+class CameraVisibility {
+ public:
+  CameraVisibility(ToolReach reach, const SpatialLevel& level, const Surface& surface,
+                   const Pose& to_surface, const CutCells& cut, CellStates& states)
+      : reach_(reach),
+        level_(level),
+        surface_(surface),
+        to_surface_(to_surface),
+        cut_(cut),
+        states_(states) {}
+
+  void run(const ParallelRegion&) {
+    std::transform(states_.cells.begin(), states_.cells.end(), states_.flood_states.begin(),
+                   [](CellClass cell) {
+                     return cell == CellClass::free || cell == CellClass::cut ? FloodState::closed
+                                                                              : FloodState::taken;
+                   });
+  }
+
+  // Where the surface passes through no share: those stay inside that were, or were cut, as long as
+  // they are behind the same surface.
+  void run_from(PoseMemory& memory, const Pose& to_world) {
+    memory_ = &memory;
+    memory.for_cells([&](std::uint32_t i) {
+      if (stays(i, memory, to_world))
+        any_stays_ = true;
+      else
+        memory.forget(i);
+    });
+  }
+
+  PlaneSupport support(std::uint32_t row, std::uint32_t& last_cut) const {
+    return {cut_, row, reach_.length, has_stayed(row), last_cut};
+  }
+
+  // What to remember of shares that count: not those of which all that is known is that something
+  // hides them. What hides them must not be further than the tool's reach in front of the mean
+  // plane of all that was cut last; where nothing is cut, some must stay, and the share be near.
+  void begin_to_remember(const Pose& to_world, PoseMemory& memory) {
+    to_world_ = to_world;
+    if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
+    plane_ = memory.touched();
+  }
+  // Whether to remember every share of which another one of its cluster is remembered; or else,
+  // whether this one.
+  bool all_follow() const { return !cut_.are_none(); }
+  bool follows(std::uint32_t row) const { return has_stayed(row); }
+  // Whether to remember any, behind the surface's place `foot` of the world.
+  bool is_sure(std::uint32_t row, Vec3 foot) const {
+    if (has_stayed(row)) return true;
+    if (plane_.distance(foot) > reach_.length) return false;
+    const double squared = squared_norm(foot - to_world_ * center(row));
+    return !cut_.are_none() || (any_stays_ && !is_hidden_cell(squared, reach_.length));
+  }
+
+ private:
+  Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
+  bool stays(std::uint32_t row, const PoseMemory& memory, const Pose& to_world) const {
+    if (states_.cells[row] == CellClass::free) return false;
+    const SurfaceSample on_surface = surface_.sample(center(row));
+    return on_surface.known &&
+           memory.is_near(level_.root(row), to_world * on_surface.foot, reach_.length);
+  }
+  TangentPlane mean_plane_of_cut() const {
+    Vec3 normal, foot;
+    for (const std::uint32_t i : states_.cut) {
+      const CutCell cut = cut_.at(i);
+      normal += cut.plane.normals();
+      foot += cut.center + cut.reach * cut.plane.mean_foot();
+    }
+    foot = 1 / static_cast<double>(states_.cut.size()) * foot;
+    return {to_world_.rotation * normalized_or_zero(normal), to_world_ * foot};
+  }
+  bool has_stayed(std::uint32_t row) const {
+    return memory_ != nullptr && memory_->was_inside(row);
+  }
+
+  ToolReach reach_;
+  const SpatialLevel& level_;
+  const Surface& surface_;
+  const Pose& to_surface_;
+  const CutCells& cut_;
+  CellStates& states_;
+  Pose to_world_;                       // from the surface's axes
+  TangentPlane plane_;                  // world, of what was cut last
+  const PoseMemory* memory_ = nullptr;  // of a tool that nothing cuts
+  bool any_stays_ = false;
+};
+
+}  // namespace vpm

@@ -1,0 +1,95 @@
+#include "libvpm/backend/cpu/cell_clusters.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "libvpm/core/box.h"
+
+namespace vpm {
+namespace {
+
+// Rounding must not let a share's ball leave its cluster's.
+constexpr double kRounding = 1 + 1e-12;
+
+Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& cells,
+                   std::uint32_t begin, std::uint32_t end) {
+  Box box;
+  for (std::uint32_t k = begin; k < end; ++k) box.add(tool.spheres[cells[k]].center);
+  return box;
+}
+
+// Of all samples of blocks [begin, end); without any its centroid is `otherwise`.
+BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Vec3 otherwise) {
+  BlockMass mass;
+  Vec3 moment;
+  for (std::uint32_t b = begin; b < end; ++b) {
+    for (std::uint32_t s = level.blocks[b].begin; s < level.blocks[b].end; ++s) {
+      mass.weight += level.samples[s].weight;
+      moment += level.samples[s].weight * widen(level.samples[s].center);
+    }
+  }
+  mass.centroid = mass.weight > 0 ? moment / mass.weight : otherwise;
+  return mass;
+}
+
+// Halves what is not small.
+void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end,
+                  CellClusters& out) {
+  const CellCluster cluster = enclosing_cluster(tool, level, out.cells, begin, end);
+  if (end - begin == 1 || cluster.reach <= kPlanarReach * tool.reach) {
+    std::sort(out.cells.begin() + begin, out.cells.begin() + end);
+    out.clusters.push_back(cluster);
+    return;
+  }
+  const std::uint32_t middle = halve(tool, out.cells, begin, end);
+  add_clusters(tool, level, begin, middle, out);
+  add_clusters(tool, level, middle, end, out);
+}
+
+}  // namespace
+
+std::vector<BlockMass> block_masses(const Level& level) {
+  std::vector<BlockMass> masses;
+  for (std::uint32_t b = 0; b < level.blocks.size(); ++b)
+    masses.push_back(mass_of(level, b, b + 1, widen(level.blocks[b].center)));
+  return masses;
+}
+
+CellCluster enclosing_cluster(const ToolModel& tool, const Level& level,
+                              const std::vector<std::uint32_t>& cells, std::uint32_t begin,
+                              std::uint32_t end) {
+  const Box box = box_of_centers(tool, cells, begin, end);
+  const Vec3 center = 0.5 * (box.low + box.high);
+  double reach = 0;
+  for (std::uint32_t k = begin; k < end; ++k) {
+    reach =
+        std::max(reach, norm(tool.spheres[cells[k]].center - center) + level.cell_reach[cells[k]]);
+  }
+  return {begin, end, center - tool.center_of_mass, kRounding * reach};
+}
+
+std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& cells, std::uint32_t begin,
+                    std::uint32_t end) {
+  const int axis = box_of_centers(tool, cells, begin, end).longest_axis();
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  std::nth_element(cells.begin() + begin, cells.begin() + middle, cells.begin() + end,
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     const double x = coordinate(tool.spheres[a].center, axis),
+                                  y = coordinate(tool.spheres[b].center, axis);
+                     return x != y ? x < y : a < b;
+                   });
+  return middle;
+}
+
+CellClusters cluster_cells(const ToolModel& tool, const Level& level) {
+  CellClusters out;
+  out.cells.resize(level.sphere_count);
+  std::iota(out.cells.begin(), out.cells.end(), 0u);
+  for (std::uint32_t i = 0; i < level.sphere_count; ++i)
+    out.masses.push_back(mass_of(level, level.block_begin[i], level.block_begin[i + 1],
+                                 tool.spheres[i].center - tool.center_of_mass));
+  add_clusters(tool, level, 0, level.sphere_count, out);
+  return out;
+}
+
+}  // namespace vpm

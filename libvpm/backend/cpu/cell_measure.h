@@ -1,0 +1,326 @@
+// The part of one sphere's share that lies behind the surface.
+//
+// The share is known as samples: compact pieces with centroid, volume and size, in blocks with an
+// enclosing ball. A block that the surface cannot reach counts whole or not at all; where it may
+// pass, each sample gives the fraction of a ball of its size. One definition for host and device.
+#pragma once
+
+#include "libvpm/measure/classify.h"
+#include "libvpm/measure/clip_plane.h"
+#include "libvpm/measure/contact_plane.h"
+#include "libvpm/measure/tool_piece.h"
+#include "libvpm/measure/tool_sum.h"
+
+namespace vpm {
+
+struct CellResult {
+  ToolSum sum;                     // tool axes, arms about the centre of mass
+  ContactPlane plane;              // plane.count > 0: the surface cuts the cell
+  bool is_far = false;             // a piece is: see CellMeasure::is_far
+  std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
+};
+
+// Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
+VPM_HD inline void add_whole(const ToolReach& tool, const BlockMass& mass, Vec3 normal,
+                             ToolSum& sum) {
+  sum.add(mass.weight, normal, tool.inverse * mass.centroid);
+}
+// Adds what a plane leaves of a block: nothing before it, all of its mass behind it, the clipped
+// moments of one that is cut. Along the plane's normal, in the tool's axes.
+VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
+                                const ClippedMoments& clipped, Vec3 normal, const ToolReach& tool,
+                                ToolSum& sum) {
+  if (side == PlaneSide::behind) add_whole(tool, mass, normal, sum);
+  if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
+}
+
+template <MeasuredBody Surface>
+class CellMeasure {
+ public:
+  // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
+  // tool's, and scales the arms.
+  VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
+                     const CellView& cell)
+      : surface_(surface),
+        to_surface_(to_surface),
+        tool_reach_(tool_reach),
+        cell_(cell),
+        center_(to_surface * cell.center) {}
+
+  // What of a cell through which the surface may pass is inside; of a cell that it does not cut,
+  // without the far pieces. `samples`: SamplesInTurn, or what adds the same sooner. `point`: where
+  // to begin to read disks.
+  template <class Samples>
+  VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
+    CellResult result;
+    result.point = point;
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) add_block(b, samples, result);
+    samples.flush(*this, result);
+    if (result.is_far && result.plane.count > 0) {
+      const CutCell own{result.plane, center_, cell_.reach};
+      add_far([&](Vec3 x, Vec3 foot) { return own.supports(x, foot, tool_reach_.length); },
+              result.sum);
+    }
+    return result;
+  }
+
+  // A surface further away than the tool's reach may be another one than that which cuts the tool:
+  // a place behind it is merely hidden by it, unless the plane of a cut cell vouches for both.
+  // `vouches(x, foot)`: whether one does for a place at x, behind the surface's place `foot`.
+  //
+  // Adds the far pieces, which run() leaves out.
+  template <class Supports>
+  VPM_HD void add_far(const Supports& supports, ToolSum& sum) const {
+    const auto add_if_far = [&](const ToolPiece& piece) {
+      const PieceSample sampled = sample_piece(piece);
+      if (sampled.is_far && supports(sampled.x, sampled.on_surface.foot)) add(piece, sampled, sum);
+    };
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
+      const CellBlock& block = cell_.blocks[b];
+      const ClassifiedBlock sampled = classify_block(block);
+      if (sampled.found == BlockClass::free || sampled.found == BlockClass::cut) continue;
+      if (sampled.found == BlockClass::uncut) {
+        add_if_far(piece_of(cell_.masses[b], block));
+        continue;
+      }
+      for (std::uint32_t s = block.begin; s < block.end; ++s)
+        add_if_far(piece_of(cell_.samples[s]));
+    }
+  }
+  // What of a cell wholly behind some surface is inside.
+  template <class Supports>
+  VPM_HD ToolSum whole(const Supports& supports) const {
+    ToolSum sum;
+    for (std::uint32_t b = cell_.begin; b < cell_.end; ++b)
+      add_whole_piece(supports, piece_of(cell_.masses[b], cell_.blocks[b]), sum);
+    return sum;
+  }
+  template <class Supports>
+  VPM_HD void add_whole_piece(const Supports& supports, const ToolPiece& piece,
+                              ToolSum& sum) const {
+    const PieceSample sampled = sample_piece(piece);
+    if (sampled.is_inside && (!sampled.is_far || supports(sampled.x, sampled.on_surface.foot)))
+      add(piece, sampled, sum);
+  }
+
+  // How the surface meets one block of the cell.
+  struct ClassifiedBlock {
+    BlockClass found = BlockClass::free;
+    TangentPlane plane;  // of a block that is cut
+    Vec3 center;
+    std::uint32_t point = kNoPoint;  // where to begin to read the surface
+  };
+  VPM_HD ClassifiedBlock classify_block(const CellBlock& block) const {
+    ClassifiedBlock result;
+    result.center = to_surface_ * widen(block.center);
+    const auto in_ball = surface_.classify_ball(result.center, block.radius);
+    result.point = in_ball.point;
+    result.found = class_of_block(
+        surface_, in_ball, result.center, block.radius, tool_reach_,
+        [&] { return surface_.sample(result.center); }, result.plane);
+    return result;
+  }
+
+  // Adds what one block contributes to run().
+  template <class Samples>
+  VPM_HD void add_block(std::uint32_t b, Samples& samples, CellResult& result) const {
+    const CellBlock& block = cell_.blocks[b];
+    const ClassifiedBlock sampled = classify_block(block);
+    if (sampled.found == BlockClass::free) return;
+    if (sampled.point != kNoPoint) result.point = sampled.point;
+    if (sampled.found == BlockClass::uncut) {
+      add_piece(piece_of(cell_.masses[b], block), result);
+    } else if (sampled.found == BlockClass::cut) {
+      add_block(b, {sampled.plane, to_surface_}, Samples::clipped, result);
+    } else {
+      const auto& near = surface_.around_ball(sampled.center, block.radius, sampled.point);
+      samples.add(*this, cell_.samples + block.begin, block.end - block.begin, near, result);
+    }
+  }
+
+  // One piece as the surface shows it.
+  struct PieceSample {
+    Vec3 x;
+    SurfaceSample on_surface;
+    bool is_inside = false;  // a part of it at least; the rest is said of such only
+    bool is_far = false;
+  };
+  VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
+    return sample_piece(piece, point, surface_);
+  }
+  // `near`: the surface as far as it concerns the piece.
+  template <class Near>
+  VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point,
+                                  const Near& near) const {
+    const Vec3 x = to_surface_ * piece.at;
+    return sample_of(piece, x, near.sample(x, point));
+  }
+  // The same of a piece at x of the surface's frame, where that was read.
+  VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
+                               const SurfaceSample& on_surface) const {
+    PieceSample sampled{x, on_surface};
+    sampled.is_inside =
+        on_surface.known && side_of_plane(on_surface.distance, piece.radius) != PlaneSide::before;
+    if (!sampled.is_inside) return sampled;
+    sampled.is_far = is_far_behind<Surface>(on_surface.distance, tool_reach_);
+    return sampled;
+  }
+  VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
+    return side_of_plane(sampled.on_surface.distance, piece.radius) == PlaneSide::cut;
+  }
+  // Adds a piece that is inside.
+  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, ToolSum& sum) const {
+    add(piece, sampled, surface_, sum);
+  }
+  template <class Near>
+  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, const Near& near,
+                  ToolSum& sum) const {
+    add(piece, sampled, is_cut(piece, sampled) ? Vec3{} : closest_normal(sampled), near, sum);
+  }
+  // Adds a piece that is inside, whose way out, where it is not cut, is known: a cut one is pushed
+  // along the normal that was read.
+  template <class Near>
+  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, Vec3 way_out,
+                  const Near& near, ToolSum& sum) const {
+    const bool cut = is_cut(piece, sampled);
+    add_behind(cut ? part_behind(piece, sampled) : piece, sampled,
+               cut ? sampled.on_surface.normal : way_out, near, sum);
+  }
+  // What of a cut piece is behind the surface, at its middle still.
+  VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
+    piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.radius);
+    return piece;
+  }
+  // Adds what is behind the surface, where the way out of its middle is known.
+  template <class Near>
+  VPM_HD void add_behind(const ToolPiece& piece, const PieceSample& sampled, Vec3 normal,
+                         const Near& near, ToolSum& sum) const {
+    OtherWall other;
+    if (is_divisible(piece.extent, tool_reach_) &&
+        finds_other_wall(near, sampled.x, {normal, sampled.on_surface.foot},
+                         sampled.on_surface.point, piece.extent, kTwoWalls, other))
+      add_divided(piece, sampled.x, normal, other, sum);
+    else
+      add_pushed(piece, normal, sum);
+  }
+  VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
+    return surface_.closest_normal(sampled.x, sampled.on_surface);
+  }
+  // Of a block's samples that lie side by side (kNeighborSamples), those that are wholly behind the
+  // surface are pushed in the direction of the first of them, where that is searched for. Far ones
+  // go their own ways.
+  VPM_HD static bool shares_direction(const ToolPiece& sample, const PieceSample& sampled) {
+    return Surface::kSearchesFoot && sampled.is_inside && !sampled.is_far &&
+           !is_cut(sample, sampled);
+  }
+  // Adds a piece at x that is shared out between two walls; its middle is nearer to the one with
+  // this normal.
+  VPM_HD void add_divided(const ToolPiece& piece, Vec3 x, Vec3 normal, const OtherWall& other,
+                          ToolSum& sum) const {
+    ClippedMoments part;
+    if (piece.begin < piece.end) {
+      const ClipPlane border(other.border, to_surface_);
+      part = clipped_in_turn(border, cell_.samples + piece.begin, piece.end - piece.begin);
+    } else {
+      part.weight = piece.weight * ball_fraction_inside(other.border.distance(x) / piece.extent);
+      part.moment = part.weight * piece.at;
+    }
+    sum.add_moment(part.weight, arm(part.moment), in_tool(other.normal));
+    sum.add_moment(piece.weight - part.weight, arm(piece.weight * piece.at - part.moment),
+                   in_tool(normal));
+  }
+  // Adds one that is pushed along one normal.
+  VPM_HD void add_pushed(const ToolPiece& piece, Vec3 normal, ToolSum& sum) const {
+    sum.add(piece.weight, in_tool(normal), arm(piece.at));
+  }
+  VPM_HD void add_to_plane(const PieceSample& sampled, ContactPlane& plane) const {
+    const SurfaceSample& at = sampled.on_surface;
+    plane.add(at.normal, relative(sampled.x - at.distance * at.normal));
+  }
+
+  // Notes what a piece says of its cell. Returns whether run() adds it.
+  VPM_HD bool note(const ToolPiece& piece, const PieceSample& sampled, CellResult& result) const {
+    if (!sampled.is_inside) return false;
+    result.is_far |= sampled.is_far;
+    if (is_cut(piece, sampled)) add_to_plane(sampled, result.plane);
+    return !sampled.is_far;
+  }
+  // Adds what one piece contributes to run().
+  VPM_HD void add_piece(const ToolPiece& piece, CellResult& result) const {
+    const PieceSample sampled = sample_piece(piece, result.point);
+    result.point = sampled.on_surface.point;
+    if (note(piece, sampled, result)) add(piece, sampled, result.sum);
+  }
+  // The same of sample `k` of a block.
+  struct SharedDirection {
+    std::uint32_t neighbors = UINT32_MAX;  // samples from kNeighborSamples times this on
+    Vec3 normal;
+  };
+  template <class Near>
+  VPM_HD void add_sample(std::uint32_t k, const ToolPiece& piece, SharedDirection& shared,
+                         CellResult& result, const Near& near) const {
+    const PieceSample sampled = sample_piece(piece, result.point, near);
+    result.point = sampled.on_surface.point;
+    if (!note(piece, sampled, result)) return;
+    if (!shares_direction(piece, sampled)) {
+      add(piece, sampled, near, result.sum);
+      return;
+    }
+    if (shared.neighbors != k / kNeighborSamples)
+      shared = {k / kNeighborSamples, closest_normal(sampled)};
+    add_pushed(piece, shared.normal, result.sum);
+  }
+
+  VPM_HD void add_to_plane(Vec3 center, const ClipPlane& plane, ContactPlane& mean) const {
+    mean.add(plane.seen.normal,
+             relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
+  }
+  // Adds one block of a cell that lies where the surface is one plane. `crossed`: clipped_in_turn,
+  // or what returns the same sooner.
+  template <class Clipped>
+  VPM_HD void add_block(std::uint32_t b, const ClipPlane& plane, const Clipped& clipped,
+                        CellResult& result) const {
+    const CellBlock& block = cell_.blocks[b];
+    const Vec3 center = widen(block.center);
+    const PlaneSide side = side_of_plane(plane.distance(center), block.radius);
+    ClippedMoments sums;
+    if (side == PlaneSide::cut)
+      sums = clipped(plane, cell_.samples + block.begin, block.end - block.begin);
+    if (sums.is_cut) add_to_plane(center, plane, result.plane);
+    add_by_plane(side, cell_.masses[b], sums, plane.normal, tool_reach_, result.sum);
+  }
+  VPM_HD const Surface& surface() const { return surface_; }
+  VPM_HD const Pose& to_surface() const { return to_surface_; }
+  VPM_HD Vec3 in_tool(Vec3 direction) const { return transpose(to_surface_.rotation) * direction; }
+
+ private:
+  VPM_HD Vec3 arm(Vec3 about_center_of_mass) const {
+    return tool_reach_.inverse * about_center_of_mass;
+  }
+  VPM_HD Vec3 relative(Vec3 x) const { return 1 / cell_.reach * (x - center_); }
+
+  const Surface& surface_;
+  const Pose& to_surface_;
+  ToolReach tool_reach_;
+  CellView cell_;
+  Vec3 center_;  // in the surface's frame
+};
+
+// The samples of a block that the surface may cut, one after another.
+struct SamplesInTurn {
+  template <class Measure, class Near>
+  VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
+                  const Near& near, CellResult& result) const {
+    typename Measure::SharedDirection shared;
+    for (std::uint32_t k = 0; k < count; ++k)
+      measure.add_sample(k, piece_of(samples[k]), shared, result, near);
+  }
+  template <class Measure>
+  VPM_HD void flush(const Measure&, CellResult&) const {}  // nothing is put off
+  static VPM_HD ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
+                                       std::uint32_t count) {
+    return clipped_in_turn(plane, samples, count);
+  }
+};
+
+}  // namespace vpm

@@ -1,0 +1,117 @@
+// The shares that the surface cuts, and what their planes say of places far behind it.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "libvpm/backend/cpu/cell_states.h"
+
+namespace vpm {
+
+class CutCells {
+ public:
+  CutCells(const ToolModel& tool, const SpatialLevel& level, const Pose& to_surface,
+           CellStates& states)
+      : tool_(tool),
+        level_(level),
+        to_surface_(to_surface),
+        states_(states),
+        rounding_(kUlps * std::numeric_limits<double>::epsilon() * norm(tool.center_of_mass)) {}
+
+  // When the surface has met all shares.
+  void list() {
+    states_.cut.clear();
+    for_rows_in(CellClass::cut, states_.cells, 0, level_.size(),
+                [&](std::uint32_t i) { states_.cut.push_back(i); });
+    states_.cut_clusters.clear();
+    std::uint32_t last = UINT32_MAX;
+    for (std::uint32_t k = 0; k < states_.cut.size(); ++k) {
+      const std::uint32_t root = level_.root(states_.cut[k]);
+      if (root != last) {
+        const CellCluster& ball = level_.cluster(root);
+        states_.cut_clusters.push_back({ball.center, ball.reach, k, k});
+      }
+      states_.cut_clusters.back().end = k + 1;
+      last = root;
+    }
+  }
+  bool are_none() const { return states_.cut.empty(); }
+
+  CutCell at(std::uint32_t cut) const {
+    return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center, level_.reach(cut)};
+  }
+  // The nearest one, by the spheres' centres; equal distances go to the sphere with the smaller
+  // index. There must be some. `last`: the row of the one that was nearest to another share, kNoRow
+  // where none was asked for; one close by makes it quick, and none changes the result.
+  CutCell nearest_to(std::uint32_t row, std::uint32_t& last) const {
+    const Vec3 from = level_.cell(row).center;
+    Nearest nearest(tool_.spheres[level_.sphere(row)].center);
+    consider(last != kNoRow ? last : states_.cut.front(), nearest);
+    for (const CutCluster& cluster : states_.cut_clusters) {
+      const double reach = kRounding * (std::sqrt(nearest.squared) + cluster.reach) + rounding_;
+      if (squared_norm(cluster.center - from) > reach * reach) continue;
+      for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) consider(states_.cut[k], nearest);
+    }
+    last = nearest.row;
+    return at(last);
+  }
+
+ private:
+  static constexpr double kRounding = 1 + 1e-9;
+
+  struct Nearest {
+    Vec3 from;
+    double squared = HUGE_VAL;
+    std::uint32_t sphere = UINT32_MAX, row = 0;
+
+    explicit Nearest(Vec3 center) : from(center) {}
+  };
+  void consider(std::uint32_t row, Nearest& nearest) const {
+    const std::uint32_t sphere = level_.sphere(row);
+    const double squared = squared_norm(tool_.spheres[sphere].center - nearest.from);
+    if (squared > nearest.squared || (squared == nearest.squared && sphere > nearest.sphere))
+      return;
+    nearest.squared = squared;
+    nearest.sphere = sphere;
+    nearest.row = row;
+  }
+  const ToolModel& tool_;
+  const SpatialLevel& level_;
+  const Pose& to_surface_;
+  CellStates& states_;
+  // Spheres lie about the tool's origin, clusters about its centre of mass, which may be far.
+  static constexpr double kUlps = 4;
+  double rounding_;  // m
+};
+
+// What says whether places of one share are inside, though far behind the surface: the plane of the
+// nearest cut share, or, where the surface cuts none, what is known of the share.
+class PlaneSupport {
+ public:
+  // `last_cut`: as CutCells::nearest_to().
+  PlaneSupport(const CutCells& cut, std::uint32_t row, double reach, bool where_nothing_is_cut,
+               std::uint32_t& last_cut)
+      : cut_(cut),
+        row_(row),
+        reach_(reach),
+        where_nothing_is_cut_(where_nothing_is_cut),
+        last_cut_(last_cut) {}
+
+  // Of a place at x, behind the surface's place `foot`.
+  bool operator()(Vec3 x, Vec3 foot) {
+    if (cut_.are_none()) return where_nothing_is_cut_;
+    if (!nearest_) nearest_ = cut_.nearest_to(row_, last_cut_);
+    return nearest_->supports(x, foot, reach_);
+  }
+
+ private:
+  const CutCells& cut_;
+  std::uint32_t row_;
+  double reach_;
+  bool where_nothing_is_cut_;
+  std::uint32_t& last_cut_;
+  std::optional<CutCell> nearest_;  // when first asked for
+};
+
+}  // namespace vpm

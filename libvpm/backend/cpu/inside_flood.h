@@ -1,0 +1,260 @@
+// The second step of the refined measure where nobody knows from where points were seen: which
+// shares behind the surface are inside. The surface enters the tool through cut shares; from there
+// every share behind it that the graph reaches is. Which ones does not depend on the order of the
+// traversal.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "libvpm/backend/cpu/cut_cells.h"
+#include "libvpm/core/parallel_region.h"
+#include "libvpm/measure/flood_rules.h"
+#include "libvpm/temporal/pose_memory.h"
+
+namespace vpm {
+
+template <class Surface>
+class InsideFlood {
+ public:
+  InsideFlood(ToolReach reach, const SpatialLevel& level, const Surface& surface,
+              const Pose& to_surface, const CutCells& cut, CellStates& states)
+      : reach_(reach),
+        level_(level),
+        surface_(surface),
+        to_surface_(to_surface),
+        cut_(cut),
+        states_(states) {}
+
+  // By all threads of the region, each in its part of the tool: what leads from one part to another
+  // is taken up in the next round.
+  void run(ParallelRegion& region) {
+    split(region.threads());
+    region.loop(states_.part_count, 1,
+                [&](std::size_t k, std::size_t) { enter(states_.parts[k]); });
+    while (change_round()) {
+      region.loop(states_.part_count, 1,
+                  [&](std::size_t k, std::size_t) { take_up(states_.parts[k]); });
+    }
+  }
+
+  // Where the surface passes through no share: those stay inside that were, or were cut, as long as
+  // they are behind the same surface; so does what the graph reaches from them near it.
+  void run_from(const PoseMemory& memory, const Pose& to_world) {
+    FloodPart& part = states_.parts.front();
+    const auto take_open = [&](std::uint32_t i) {
+      if (states_.cells[i] == CellClass::open) states_.cells[i] = CellClass::whole;
+      take(part, i);
+    };
+    memory.for_cells([&](std::uint32_t i) {
+      if (is_behind(i, [&](Vec3, Vec3 foot) {
+            return memory.is_near(level_.root(i), to_world * foot, reach_.length);
+          }))
+        take_open(i);
+    });
+    const auto is_near = [&](Vec3 at, Vec3 foot) {
+      return squared_norm(foot - at) <= reach_.length * reach_.length;
+    };
+    while (!part.front.empty()) {
+      for (const std::uint32_t j : level_.neighbors(next_of(part))) {
+        if (is_behind(j, is_near)) take_open(j);
+      }
+    }
+  }
+
+  // Of a share that the flood has taken.
+  PlaneSupport support(std::uint32_t row, std::uint32_t& last_cut) const {
+    return {cut_, row, reach_.length, true, last_cut};
+  }
+  // What to remember: all that counts (as CameraVisibility).
+  static void begin_to_remember(const Pose&, const PoseMemory&) {}
+  static bool follows(std::uint32_t) { return true; }
+  static bool all_follow() { return true; }
+  static bool is_sure(std::uint32_t, Vec3) { return true; }
+
+ private:
+  static constexpr std::size_t kRowsOfChunk = 128;  // counted in a byte
+
+  Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
+
+  // What the flood may do is shared out evenly.
+  void split(int threads) {
+    constexpr std::size_t kFewCut = 128;  // take less time than two rounds
+    const std::size_t count = std::clamp<std::size_t>(states_.cut.size() / kFewCut, 1, threads);
+    states_.parts.resize(std::max(count, states_.parts.size()));
+    states_.part_count = count;
+    const std::uint64_t all = count > 1 ? estimate_work() : 0;
+    std::uint64_t before = 0;
+    std::size_t chunk = 0;
+    std::uint32_t begin = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      for (; k + 1 < count && before < (k + 1) * all / count; ++chunk)
+        before += states_.work[chunk];
+      FloodPart& part = states_.parts[k];
+      part.begin = begin;
+      part.end = begin = k + 1 < count ? first_of_cluster(chunk * kRowsOfChunk) : level_.size();
+      part.front.clear();
+      part.leaving.clear();
+      part.last_cut = kNoRow;
+      part.left.clear();
+    }
+  }
+
+  // Of each chunk of rows and of all: a step to each share that is not free, and more from the cut
+  // ones, whose planes are asked.
+  std::uint64_t estimate_work() {
+    constexpr std::uint32_t kStepsFromCut = 2;
+    const std::vector<CellClass>& cells = states_.cells;
+    std::uint64_t all = 0;
+    states_.work.clear();
+    auto cut = states_.cut.begin();
+    for (std::size_t begin = 0; begin < cells.size(); begin += kRowsOfChunk) {
+      const std::size_t end = std::min(begin + kRowsOfChunk, cells.size());
+      std::uint8_t steps = 0;
+      for (std::size_t i = begin; i < end; ++i) steps += cells[i] != CellClass::free;
+      std::uint32_t work = steps;
+      for (; cut < states_.cut.end() && *cut < end; ++cut) work += kStepsFromCut;
+      states_.work.push_back(work);
+      all += work;
+    }
+    return all;
+  }
+
+  std::span<FloodPart> parts() const { return {states_.parts.data(), states_.part_count}; }
+
+  std::uint32_t first_of_cluster(std::size_t row) const {
+    return row < level_.size() ? level_.cluster(level_.root(static_cast<std::uint32_t>(row))).begin
+                               : level_.size();
+  }
+
+  // From the cut shares.
+  void enter(FloodPart& part) {
+    const auto first = std::lower_bound(states_.cut.begin(), states_.cut.end(), part.begin);
+    const auto last = std::lower_bound(first, states_.cut.end(), part.end);
+    for (auto i = first; i < last; ++i) {
+      for (const std::uint32_t j : level_.neighbors(*i)) step(part, *i, j);
+    }
+    spread(part);
+  }
+
+  // From the shares of other parts.
+  void take_up(FloodPart& part) {
+    for (const FloodPart& other : parts()) {
+      for (const FloodPart::Step& s : other.left) {
+        if (part.owns(s.to)) step(part, s.from, s.to);
+      }
+    }
+    spread(part);
+  }
+
+  void spread(FloodPart& part) {
+    while (!part.front.empty()) {
+      const std::uint32_t i = next_of(part);
+      for (const std::uint32_t j : level_.neighbors(i)) {
+        if (!part.owns(j))
+          part.leaving.push_back({i, j});
+        else if (is_passable(part, j))
+          take(part, j);
+      }
+    }
+  }
+
+  void step(FloodPart& part, std::uint32_t from, std::uint32_t to) {
+    if (!part.owns(to)) {
+      part.leaving.push_back({from, to});
+    } else if (is_passable(part, to) &&
+               (states_.cells[from] != CellClass::cut || enters(from, to))) {
+      take(part, to);
+    }
+  }
+
+  // False where no part has left anything for another.
+  bool change_round() {
+    bool goes_on = false;
+    for (FloodPart& part : parts()) {
+      part.left.clear();
+      part.left.swap(part.leaving);
+      goes_on = goes_on || !part.left.empty();
+    }
+    return goes_on;
+  }
+
+  void take(FloodPart& part, std::uint32_t j) {
+    states_.flood_states[j] = FloodState::taken;
+    part.front.push_back(j);
+  }
+  static std::uint32_t next_of(FloodPart& part) {
+    const std::uint32_t next = part.front.back();
+    part.front.pop_back();
+    return next;
+  }
+
+  bool is_passable(FloodPart& part, std::uint32_t j) {
+    FloodState& flood_state = states_.flood_states[j];
+    if (flood_state == FloodState::closed || flood_state == FloodState::taken) return false;
+    if (flood_state == FloodState::middle) decide_cluster(level_.root(j));
+    if (flood_state == FloodState::unknown) flood_state = find_flood_state(part, j);
+    return flood_state != FloodState::closed;
+  }
+
+  // Of an open patch, which one part owns.
+  void decide_cluster(std::uint32_t root) {
+    const CellCluster& cluster = level_.cluster(root);
+    const Vec3 at = to_surface_ * cluster.center;
+    const SurfaceSample middle = surface_.sample(at);
+    const ClusterClass found = class_by_middle(surface_, middle, at, cluster.reach, reach_.length);
+    if (found == ClusterClass::uniform)
+      push_cluster(surface_, to_surface_, cluster, root, middle, states_);
+    else
+      states_.set(cluster, found);
+  }
+
+  FloodState find_flood_state(FloodPart& part, std::uint32_t j) {
+    const Vec3 at = center(j);
+    const SurfaceSample on_surface = surface_.sample(at);
+    if (states_.cells[j] == CellClass::open) {
+      if (!(on_surface.known && on_surface.distance < 0)) return FloodState::closed;
+      states_.cells[j] = CellClass::whole;
+    }
+    states_.squared_gaps[j] = squared_gap(on_surface);
+    if (!is_hidden_cell(states_.squared_gaps[j], reach_.length)) return FloodState::open;
+    return cut_.nearest_to(j, part.last_cut).is_behind(at) ? FloodState::open : FloodState::closed;
+  }
+
+  bool enters(std::uint32_t cut, std::uint32_t row) {
+    return lies_near_sheet(squared_gap_of(row), level_.reach(cut), level_.reach(row)) ||
+           cut_.at(cut).is_behind(center(row));
+  }
+  double squared_gap_of(std::uint32_t row) {
+    if (states_.flood_states[row] == FloodState::planar) {
+      const double distance = states_.planes[level_.root(row)].distance(level_.cell(row).center);
+      return distance * distance;
+    }
+    if (states_.flood_states[row] == FloodState::near) {
+      const Vec3 at = center(row);
+      states_.squared_gaps[row] = squared_gap(surface_.sample(at));
+      states_.flood_states[row] = FloodState::open;
+    }
+    return states_.squared_gaps[row];
+  }
+
+  template <class Holds>
+  bool is_behind(std::uint32_t i, const Holds& holds) const {
+    if (states_.cells[i] == CellClass::free || states_.flood_states[i] == FloodState::taken)
+      return false;
+    const Vec3 at = center(i);
+    const SurfaceSample on_surface = surface_.sample(at);
+    if (!on_surface.known || (states_.cells[i] == CellClass::open && !(on_surface.distance < 0)))
+      return false;
+    return holds(at, on_surface.foot);
+  }
+
+  ToolReach reach_;
+  const SpatialLevel& level_;
+  const Surface& surface_;
+  const Pose& to_surface_;
+  const CutCells& cut_;
+  CellStates& states_;
+};
+
+}  // namespace vpm

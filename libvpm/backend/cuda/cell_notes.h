@@ -1,0 +1,137 @@
+// What a query notes of the shares: one word each, sums, and what later steps need.
+#pragma once
+
+#include <algorithm>
+
+#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/views.h"
+#include "libvpm/measure/flood_rules.h"
+
+namespace vpm::cuda {
+
+// The bits of a share's word. Where a camera tells what is inside, only kCut, kCountsPoints and
+// kCounted are set, and of what is noted of shares only points and planes; the rest serves the
+// flood.
+inline constexpr std::uint32_t kCut = 1;      // the surface passes through a piece
+inline constexpr std::uint32_t kPartial = 2;  // pieces are inside, as far as the sum says
+inline constexpr std::uint32_t kWhole = 4;    // behind the surface
+inline constexpr std::uint32_t kHidden =
+    8;  // by a surface that may be another one: the nearest cut share's plane decides
+inline constexpr std::uint32_t kSummed = 16;        // of a cut share: its sum is noted
+inline constexpr std::uint32_t kCountsPoints = 32;  // the surface may pass the sphere
+inline constexpr std::uint32_t kReached = 64;  // by the flood; only where one block floods alone
+inline constexpr std::uint32_t kCounted =
+    128;  // in the result: as boundary, if it is cut, or as inside
+
+__device__ inline bool may_be_inside(std::uint32_t word) {
+  return (word & kCut) == 0 && (word & (kPartial | kWhole)) != 0;
+}
+__device__ inline bool is_passable(std::uint32_t word) {
+  return may_be_inside(word) && (word & kHidden) == 0;
+}
+
+// Of each share. All are 0 at the start of a query: many threads add to them.
+struct CellNotes {
+  std::uint32_t* words = nullptr;
+  std::uint32_t* points = nullptr;  // of the cloud, in the sphere
+  ToolSum* sums = nullptr;
+  ContactPlane* planes = nullptr;  // of cut shares
+
+  // By a part of the threads.
+  __device__ void clear(const LevelView& level, BlockRange part) const {
+    constexpr unsigned kTogether = 4;  // words whose reads wait together
+    const std::uint32_t step = part.parts * blockDim.x;
+    for (std::uint32_t first = part.part * blockDim.x + threadIdx.x; first < level.count;
+         first += kTogether * step) {
+      std::uint32_t noted[kTogether];
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k)
+        noted[k] = first + k * step < level.count ? words[first + k * step] : 0;
+#pragma unroll
+      for (unsigned k = 0; k < kTogether; ++k) {
+        const std::uint32_t i = first + k * step;
+        if (i < level.count) points[i] = 0;
+        if (noted[k] == 0) continue;
+        words[i] = 0;
+        if ((noted[k] & (kPartial | kWhole | kSummed)) != 0) sums[i] = ToolSum{};
+        if ((noted[k] & kCut) != 0) planes[i] = ContactPlane{};
+      }
+    }
+  }
+};
+
+// The plane that crosses a flat block.
+struct FlatBlock {
+  ClipPlane plane;
+  Vec3 center;
+};
+
+// A piece further behind the surface than the tool's reach, and what it adds where the plane of a
+// cut share vouches for it.
+struct FarPiece {
+  Vec3 at, foot;  // that the surface showed there
+  ToolSum sum;
+  std::uint32_t cell = 0;
+};
+
+// What the memory of one query has room for: the largest level that it is used with.
+struct TeamRoom {
+  std::size_t cells = 0, pieces = 0;
+
+  TeamRoom() = default;
+  explicit TeamRoom(const LevelView& level) : cells(level.count), pieces(level.piece_count) {}
+  bool holds(const TeamRoom& other) const { return cells >= other.cells && pieces >= other.pieces; }
+  TeamRoom with(const TeamRoom& other) const {
+    TeamRoom both;
+    both.cells = std::max(cells, other.cells);
+    both.pieces = std::max(pieces, other.pieces);
+    return both;
+  }
+};
+
+// A patch that the surface crosses as one plane.
+struct PlanarCluster {
+  ClipPlane plane;
+  float least_inverse_depth;  // of the surface there
+};
+
+// Memory of one query.
+struct RefinedSpace {
+  CellNotes notes[2];                // of this query and, cleared by it, of the next: by turns
+  double* gaps = nullptr;            // squared_gap of shares that may be inside
+  std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
+  std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
+  FarPiece* far = nullptr;
+  FlatBlock* flats = nullptr;                // of each thread block's lists of flat tasks
+  PlanarCluster* planar_clusters = nullptr;  // those at which a thread block looks
+};
+
+// Counters of a query; 0 at the start.
+struct RefinedCounters {
+  unsigned hidden = 0;  // shares
+  unsigned far = 0;     // pieces
+  unsigned cut = 0;     // shares, as far as they are listed
+};
+
+// Counts a share to whose word bits were added that say so.
+__device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawResult& result) {
+  const auto is_inside = [](std::uint32_t word) {
+    return (word & kCounted) != 0 && (word & kCut) == 0 ? 1U : 0U;
+  };
+  result.boundary += (bits & ~before & kCut) != 0 ? 1 : 0;
+  result.inside += is_inside(before | bits) - is_inside(before);
+}
+
+__device__ inline unsigned read(const unsigned& counter) {
+  return *const_cast<const volatile unsigned*>(&counter);
+}
+// By one thread for all of its block: so many at one place would wait for each other.
+__device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
+  __shared__ RefinedCounters found;
+  __syncthreads();
+  if (threadIdx.x == 0) found = {read(counters.hidden), read(counters.far), 0};
+  __syncthreads();
+  return found;
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,394 @@
+// The first step of a query: what each share is to the surface, and its sums.
+//
+// What a cluster of shares is to the surface is decided first, by one to four threads for each
+// chunk of its units, more where chunks are few: they read the surface at four places of a patch. A
+// unit (block of a share) of a patch is classified by one to four threads, which read its pixels,
+// others by four, which look at the balls of its share, the block and the sphere. What is to be
+// measured is listed as tasks in shared memory (task_measure.h).
+#pragma once
+
+#include <climits>
+
+#include "libvpm/backend/cuda/task_measure.h"
+
+namespace vpm::cuda {
+
+// Reads a surface at four places by the lanes of a tile, up to four.
+struct SampleByLanes {
+  static constexpr unsigned kPlaces = 4;
+  Subwarp lanes;
+
+  template <class Surface, class Take>
+  __device__ bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
+                             const Take& take) const {
+    SurfaceSample mine;
+#pragma unroll 1
+    for (unsigned k = 0; k < kPlaces; ++k) {
+      const unsigned from = k % lanes.width, at = k + lanes.lane;
+      if (from == 0)
+        mine = surface.sample(at == 0   ? places[0]
+                              : at == 1 ? places[1]
+                              : at == 2 ? places[2]
+                                        : places[3]);
+      SurfaceSample on_surface;
+      on_surface.known = lanes.from(static_cast<int>(mine.known), from) != 0;
+      on_surface.normal = lanes.from(mine.normal, from);
+      on_surface.foot = lanes.from(mine.foot, from);
+      if (!take(on_surface)) return false;
+    }
+    return true;
+  }
+};
+
+template <class Surface>
+class GroupMeasure {
+ public:
+  __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared)
+      : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
+
+  // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
+  __device__ RawResult run() { return run_inlined(); }
+  __device__ __forceinline__ RawResult run_inlined() {
+    if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
+    clear_seen();
+    tasks_.clear();
+    const Subwarp lanes(lanes_of_chunk());
+    // Neighbours go to different warps: they often differ in what takes long.
+    const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
+    const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
+    for (unsigned first = work_.part.part; first < work_.level.task_group_count;
+         first += slots * work_.part.parts) {
+      const unsigned c = first + slot * work_.part.parts;
+      if (c < work_.level.task_group_count) look_at(c, slot, lanes);
+      __syncthreads();
+      note_pushed();
+      classify_seen();
+      __syncthreads();
+      clear_seen();
+      __syncthreads();
+    }
+    tasks_.measure();
+    return tasks_.found();
+  }
+
+ private:
+  using Measure = CellMeasure<Surface>;
+  static constexpr bool kFloods = !Surface::kTellsInside;
+  static constexpr unsigned kLanes = 4;  // of a unit in no patch
+  static constexpr unsigned kSamplesOfBall =
+      4;  // of the surface take as long as the rest of a look
+  // What a round adds to a list is at most a task of each thread: one of each unit in a patch, two
+  // of each other.
+  static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
+
+  __device__ void clear_seen() {
+    if (threadIdx.x == 0) shared_.seen_count = shared_.clipped_count = shared_.pushed_count = 0;
+  }
+  // More lanes have looked at a chunk sooner, fewer leave room for more chunks in a round.
+  __device__ unsigned lanes_of_chunk() const {
+    unsigned best = 1, least = UINT_MAX;
+    for (unsigned lanes = SampleByLanes::kPlaces; lanes > 0; lanes /= 2) {
+      const unsigned at_once = blockDim.x / lanes * work_.part.parts;
+      const unsigned rounds = (work_.level.task_group_count + at_once - 1) / at_once;
+      const unsigned reads = rounds * (kSamplesOfBall + SampleByLanes::kPlaces / lanes);
+      if (reads < least) best = lanes, least = reads;
+    }
+    return best;
+  }
+  // By all threads of a slot; one notes what they have seen.
+  __device__ void look_at(std::uint32_t c, unsigned slot, const Subwarp& lanes) {
+    const TaskGroup& chunk = work_.level.chunks[c];
+    const Vec3 at = work_.to_surface * chunk.ball.center;
+    const auto in_ball = work_.surface.classify_ball(at, chunk.ball.radius);
+    if (in_ball.side == Side::free) return;
+    ClipPlane plane;
+    const ClusterClass seen = classify_cluster(chunk.ball, in_ball, at, lanes, plane);
+    if (!lanes.leads() || seen == ClusterClass::free) return;
+    if (seen == ClusterClass::uniform) {
+      shared_.pushed[atomicAdd(&shared_.pushed_count, 1U)] = c;
+      return;
+    }
+    shared_.first_units[slot] = chunk.begin;
+    const unsigned count = chunk.end - chunk.begin;
+    const bool clipped = seen == ClusterClass::cut;
+    if (clipped) {  // one by one: nvcc copies a whole that ends in padding byte by byte
+      PlanarCluster& planar = planar_cluster_of(slot);
+      planar.plane = plane;
+      planar.least_inverse_depth = least_inverse_depth<Surface>(in_ball);
+    }
+    const unsigned begin =
+        clipped ? MeasureShared::kSeen - count - atomicAdd(&shared_.clipped_count, count)
+                : atomicAdd(&shared_.seen_count, count);
+    for (unsigned u = 0; u < count; ++u) shared_.seen[begin + u] = SeenTask::of(slot, u, seen);
+  }
+  __device__ PlanarCluster& planar_cluster_of(unsigned slot) const {
+    return work_.space.planar_clusters[work_.part.part * blockDim.x + slot];
+  }
+  template <class BallClass>
+  __device__ ClusterClass classify_cluster(const TaskBall& ball, const BallClass& in_ball, Vec3 at,
+                                           const Subwarp& lanes, ClipPlane& plane) {
+    const double tool = work_.level.tool_reach.length;
+    const ClusterClass found = class_of_cluster(work_.surface, in_ball, at, ball.radius, tool);
+    if (found == ClusterClass::no_surface && may_be_planar(ball.radius, tool))
+      return class_by_middle(work_.surface, work_.surface.sample(at), at, ball.radius, tool);
+    TangentPlane tangent;
+    if (found != ClusterClass::ambiguous ||
+        !finds_cluster_plane(work_.surface, in_ball, at, ball.radius, tool, SampleByLanes{lanes},
+                             tangent))
+      return found;
+    plane = {tangent, work_.to_surface};
+    return ClusterClass::cut;
+  }
+  // A thread for each unit; those of a patch find its normal together. It takes long, so the last
+  // warps begin with it while the first ones deal with crossed patches.
+  __device__ void note_pushed() {
+    const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % TaskGroup::kTasks;
+    for (unsigned k = thread / TaskGroup::kTasks; k < shared_.pushed_count;
+         k += blockDim.x / TaskGroup::kTasks) {
+      const TaskGroup& chunk = work_.level.chunks[shared_.pushed[k]];
+      const Vec3 at = work_.to_surface * chunk.ball.center;
+      const Vec3 normal = transpose(work_.to_surface.rotation) *
+                          work_.surface.closest_normal(at, work_.surface.sample(at));
+      if (u >= chunk.end - chunk.begin) continue;
+      const BlockTask& task = work_.level.units[chunk.begin + u];
+      if ((task.flags & BlockTask::is_head) != 0) note_pushed(task, normal);
+    }
+  }
+  // By rounds, before each of which the lists have room for its tasks: units of crossed patches by
+  // the first warps, others by the rest. Neighbours go to different warps.
+  __device__ void classify_seen() {
+    const unsigned clipped_count = shared_.clipped_count, count = shared_.seen_count;
+    const unsigned warps = idle_warps(), lanes = lanes_of_clipped(warps);
+    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+    for (unsigned clipped = 0, others = 0; clipped < clipped_count || others < count;) {
+      const unsigned first =
+          warps_for_clipped(warps, warps_of(clipped_count - clipped, lanes), count - others);
+      const unsigned rest = warps - first;
+      if (warp < first) {
+        const unsigned k = clipped + lane / lanes * first + warp;
+        if (k < clipped_count)
+          classify_clipped(shared_.seen[MeasureShared::kSeen - 1 - k], Subwarp(lanes));
+      } else if (warp < warps && others + warp - first < count) {
+        const unsigned k = others + lane / kLanes * rest + warp - first;
+        const bool active = k < count;
+        classify(shared_.seen[active ? k : 0], active);
+      }
+      clipped = min(clipped_count, clipped + first * (32 / lanes));
+      others = min(count, others + rest * (32 / kLanes));
+      tasks_.make_room(blockDim.x);
+    }
+  }
+  __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
+    return (units * lanes + 31) / 32;
+  }
+  // But for those that still deal with pushed patches.
+  __device__ unsigned idle_warps() const {
+    const unsigned warps = blockDim.x / 32;
+    return warps - min(warps_of(shared_.pushed_count, TaskGroup::kTasks), warps / 2);
+  }
+  // Of each unit in a crossed patch: as many as one round has.
+  __device__ unsigned lanes_of_clipped(unsigned warps) const {
+    const unsigned others = warps_of(shared_.seen_count, kLanes);
+    unsigned lanes = kLanes;
+    while (lanes > 1 && warps_of(shared_.clipped_count, lanes) + others > warps) lanes /= 2;
+    return lanes;
+  }
+  // Where these and other units are left, each has a warp at least, and half of those to spare.
+  __device__ static unsigned warps_for_clipped(unsigned warps, unsigned clipped, unsigned others) {
+    if (clipped == 0 || others == 0) return clipped == 0 ? 0 : warps;
+    const unsigned spare = warps - min(warps, clipped + warps_of(others, kLanes));
+    return min(clipped + spare / 2, warps - 1);
+  }
+  __device__ void classify(SeenTask seen, bool active);
+  __device__ void classify_clipped(SeenTask seen, const Subwarp& lanes);
+  template <class BallClass>
+  __device__ bool is_cell_seen_past(const Subwarp& lanes, const BallClass& in_ball,
+                                    double depth) const;
+  __device__ bool is_seen_past(const Subwarp& lanes, const PixelRectangle& pixels,
+                               double depth) const {
+    return !lanes.any(!work_.surface.is_seen_past(pixels, depth, lanes.lane, lanes.width));
+  }
+  __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const;
+  __device__ void note_pushed(const BlockTask& task, Vec3 normal);
+  __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap);
+  __device__ void list_block(const BlockTask& task, BlockClass found);
+
+  const PoseWork<Surface>& work_;
+  bool counts_points_;
+  MeasureShared& shared_;
+  TaskMeasure<Surface> tasks_;
+};
+
+// By the lanes of each unit, all threads of a warp together; `active`: it is to be noted.
+template <class Surface>
+__device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
+  const Subwarp lanes(kLanes);
+  const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+  const TaskBall ball = task.balls[min(lanes.lane, BlockTask::kBalls - 1U)];
+  const std::uint32_t flags = task.flags;
+  const bool head = (flags & BlockTask::is_head) != 0;
+  const Vec3 at = work_.to_surface * ball.center;
+  decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
+  Side own = in_ball.side;
+  if (seen.side() == Side::ambiguous) {
+    if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres hold points
+      in_ball = work_.surface.classify_ball(at, ball.radius);
+    own = in_ball.side;
+    if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
+  }
+  const auto side_of = [&](unsigned lane) {
+    return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
+  };
+  const Side of_cell = side_of(BlockTask::of_cell), of_sphere = side_of(BlockTask::of_sphere);
+  const Side side = seen.side() == Side::ambiguous ? of_cell : seen.side();
+
+  const bool samples_cell = kFloods && lanes.lane == BlockTask::of_cell && side != Side::free;
+  const bool samples_block = lanes.lane == BlockTask::of_block && side == Side::ambiguous &&
+                             (flags & BlockTask::has_block) != 0 &&
+                             in_ball.side == Side::ambiguous && work_.surface.may_be_flat(in_ball);
+  SurfaceSample on_surface;
+  if (samples_cell || samples_block) on_surface = work_.surface.sample(at, in_ball.point);
+
+  double gap = 0;
+  bool hidden = false, whole = side == Side::behind;
+  if (kFloods) {
+    gap = squared_gap(on_surface);
+    hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
+                            is_hidden_cell(gap, work_.level.tool_reach.length),
+                        BlockTask::of_cell);
+    const bool behind = lanes.from(on_surface.known && on_surface.distance < 0, BlockTask::of_cell);
+    whole |= side == Side::no_surface && behind;
+  }
+  if (!active) return;
+  if (lanes.lane == BlockTask::of_cell && head) {
+    std::uint32_t word = whole ? kWhole : 0;
+    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= kCountsPoints;
+    if ((whole || side == Side::ambiguous) && hidden) {
+      word |= kHidden;
+      atomicAdd(&work_.counters.hidden, 1U);
+    }
+    note_cell(task, word, gap);
+  }
+  if (lanes.lane != BlockTask::of_block) return;
+  if (side == Side::ambiguous && (flags & BlockTask::has_block) != 0) {
+    TangentPlane tangent;
+    const BlockClass found = class_of_block(
+        work_.surface, in_ball, at, ball.radius, work_.level.tool_reach, [&] { return on_surface; },
+        tangent);
+    if (found == BlockClass::cut)
+      tasks_.add_clipped(task, {tangent, work_.to_surface});
+    else
+      list_block(task, found);
+  } else if (whole && (flags & BlockTask::is_compact) != 0) {
+    if (head) tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
+  } else if (whole && (flags & BlockTask::has_block) != 0) {
+    tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
+  }
+}
+
+// True for the share's lane if its ball, whose pixels all lanes read, was seen to be free.
+template <class Surface>
+template <class BallClass>
+__device__ bool GroupMeasure<Surface>::is_cell_seen_past(const Subwarp& lanes,
+                                                         const BallClass& in_ball,
+                                                         double depth) const {
+  if constexpr (SeesFreeSpace<Surface>) {
+    constexpr unsigned kCell = BlockTask::of_cell;
+    if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
+    const PixelRectangle pixels = lanes.from(Surface::pixels_of(in_ball), kCell);
+    const double farthest = lanes.from(depth, kCell);
+    return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
+  } else {
+    return false;
+  }
+}
+
+template <class Surface>
+__device__ void GroupMeasure<Surface>::note_cell(const BlockTask& task, std::uint32_t word,
+                                                 double gap) {
+  const std::uint32_t i = task.cell;
+  if (!kFloods) word &= kCountsPoints;
+  if (word != 0) atomicOr(&work_.notes.words[i], word);
+  if (!kFloods) return;
+  work_.space.gaps[i] = gap;
+  work_.space.parents[i + 1] = i + 1;
+}
+
+// Whether a ball is, its pixels read by all lanes.
+template <class Surface>
+__device__ bool GroupMeasure<Surface>::is_free(const Subwarp& lanes, Vec3 center,
+                                               double radius) const {
+  const auto in_ball = work_.surface.classify_ball(center, radius);
+  const double farthest = center.z + radius;
+  if constexpr (SeesFreeSpace<Surface>) {
+    if (work_.surface.may_be_seen_past(in_ball, farthest))
+      return is_seen_past(lanes, Surface::pixels_of(in_ball), farthest);
+  }
+  return in_ball.side == Side::free;
+}
+
+// One unit of a patch that a plane crosses, by all lanes of a tile.
+template <class Surface>
+__device__ void GroupMeasure<Surface>::classify_clipped(SeenTask seen, const Subwarp& lanes) {
+  const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+  const PlanarCluster& planar = planar_cluster_of(seen.slot());
+  const ClipPlane plane = planar.plane;
+  const TaskBall cell = task.balls[BlockTask::of_cell];
+  const bool head = (task.flags & BlockTask::is_head) != 0;
+  const double distance = plane.distance(cell.center);
+  const Vec3 at = work_.to_surface * cell.center;
+  const PlaneSide side = side_in_cut_cluster(distance, cell.radius, [&] {
+    return may_be_free(work_.surface, planar.least_inverse_depth, at, cell.radius) &&
+           is_free(lanes, at, cell.radius);
+  });
+  if (!lanes.leads()) return;
+  if (head) {
+    std::uint32_t word = 0;
+    if (side == PlaneSide::behind) {
+      tasks_.note_behind(task, plane.normal);
+      if (kFloods) word = kPartial;
+    }
+    if (counts_points_) {
+      const TaskBall& sphere = task.balls[BlockTask::of_sphere];
+      if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
+          Side::ambiguous)
+        word |= kCountsPoints;
+    }
+    note_cell(task, word, distance * distance);
+  }
+  if ((task.flags & BlockTask::has_block) != 0 && side == PlaneSide::cut)
+    tasks_.add_clipped(task, plane);
+}
+
+// A share of a patch behind the surface.
+template <class Surface>
+__device__ void GroupMeasure<Surface>::note_pushed(const BlockTask& task, Vec3 normal) {
+  tasks_.note_behind(task, normal);
+  if (!kFloods) return;
+  const Vec3 at = work_.to_surface * task.balls[BlockTask::of_cell].center;
+  note_cell(task, kWhole, squared_gap(work_.surface.sample(at)));
+}
+
+// Lists a block of a mixed share.
+template <class Surface>
+__device__ void GroupMeasure<Surface>::list_block(const BlockTask& task, BlockClass found) {
+  if (found == BlockClass::free) return;
+  if (found == BlockClass::uncut) {
+    tasks_.add(TaskLists::pieces, {task.cell, Task::block, task.block, 1});
+    return;
+  }
+  const std::uint32_t begin = task.begin, count = task.end - begin;
+  if (count <= TaskLists::kNarrow) {
+    tasks_.add(TaskLists::samples_narrow, {task.cell, Task::samples, begin, count});
+    return;
+  }
+  // Neighbours stay together.
+  constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
+  const std::uint32_t half =
+      count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;
+  tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin, half});
+  if (half < count)
+    tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin + half, count - half});
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,452 @@
+// A chunk of an image's query, by a warp: what each share is to the surface that a camera has seen,
+// and the sums of what is behind it, no further than the tool's reach. For image_measure.h.
+//
+// Some lanes work for each unit. All warps of a launch wait for the slowest one's way, so what may
+// be needed is looked at side by side, before it is known whether it is; and what a device reads
+// first of all is its instructions: each step stands here once, and all lanes go through it
+// together.
+#pragma once
+
+#include <type_traits>
+
+#include "libvpm/backend/cuda/image_sums.h"
+#include "libvpm/backend/cuda/pose_work.h"
+#include "libvpm/scene/depth/depth_surface.h"
+
+namespace vpm::cuda {
+
+// What the lanes of a warp tell each other of the chunk at which they work.
+struct alignas(16) ImageShared {
+  struct OfTask {
+    Side cell = Side::free;
+    BlockClass block = BlockClass::free;
+    bool asks_pixels = false;  // whether the share is free
+    bool may_be_free = false;
+    ClipPlane plane;        // of a block that is cut
+    PixelRectangle pixels;  // of the share
+    double farthest = 0;
+  };
+  // Of the cluster.
+  DepthSurface::BallClass in_ball;
+  Vec3 middle;
+  SurfaceSample on_surface, around[DepthSurface::PlacesAround::kCount];
+  Vec3 normal;  // along which all of it is pushed
+  OfTask units[TaskGroup::kTasks];
+};
+
+// One chunk, by all lanes of a warp. `Found`, of each unit: TaskSums; or ContactPlane, in another
+// turn, since few queries need planes.
+template <class Found>
+class ImageTaskGroup {
+ public:
+  // `lanes` of each unit.
+  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, bool counts_points,
+                            const TaskBall& cluster, const WarpTask* units, unsigned lanes,
+                            ImageShared& shared, ImageSums& sums)
+      : work_(work),
+        counts_points_(counts_points),
+        cluster_(cluster),
+        lanes_(lanes),
+        lane_(threadIdx.x % lanes),
+        unit_(units[threadIdx.x % 32 / lanes]),
+        flags_(unit_.flags),
+        begin_(unit_.begin),
+        end_(unit_.end),
+        shared_(shared),
+        seen_(shared.units[threadIdx.x % 32 / lanes]),
+        sums_(sums) {}
+
+  __device__ void measure() {
+    see_ball();
+    if (shared_.in_ball.side == Side::free) return;
+    Found found;
+    const Counts counts = classify();
+    measure_pieces(counts, found);
+    measure_by_plane(counts, found);
+    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(unit_, found);
+  }
+
+ private:
+  static constexpr bool kFindsPlanes = std::is_same_v<Found, ContactPlane>;
+  using Measure = CellMeasure<DepthSurface>;
+  using PieceSample = Measure::PieceSample;
+
+  // The lanes of a unit that look at its balls, and that of the warp which looks at the cluster's.
+  static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
+                            kOfSphere = BlockTask::of_sphere, kOfCluster = BlockTask::kBalls;
+
+  // How a unit counts.
+  enum class Counts {
+    not_at_all,
+    pushed,      // its share is behind the surface of its patch
+    by_plane,    // its block is crossed
+    whole_cell,  // behind the surface
+    whole_block,
+    by_samples,  // of its block
+  };
+
+  __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
+  __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
+  __device__ Measure measure_of_cell() const {
+    const TaskBall& cell = unit_.balls[kOfCell];
+    return work_.measure_of({.center = cell.center, .reach = cell.radius});
+  }
+  // Whether something is so of any lane of the unit.
+  __device__ bool any(bool value) const {
+    const unsigned mask = (1U << lanes_) - 1;
+    return (__ballot_sync(~0U, value) >> (threadIdx.x % 32 - lane_) & mask) != 0;
+  }
+
+  __device__ static double from(double value, unsigned lane) {
+    return __shfl_sync(~0U, value, static_cast<int>(lane));
+  }
+  // From the lane so many on, of the same unit.
+  __device__ static double from_next(double value, unsigned lanes) {
+    return __shfl_down_sync(~0U, value, lanes);
+  }
+  // Over the lanes of the unit, for each.
+  template <class Sum>
+  __device__ void add_up(Sum& sum) const {
+    std::int64_t* const terms = terms_of(sum);
+#pragma unroll 1
+    for (unsigned half = lanes_ / 2; half > 0; half /= 2) {
+#pragma unroll
+      for (int k = 0; k < kTerms; ++k) terms[k] += __shfl_xor_sync(~0U, terms[k], half);
+    }
+  }
+
+  __device__ void see_ball();
+  __device__ Counts classify();
+  __device__ bool sees_plane();
+  __device__ Counts classify_clipped();
+  __device__ bool is_free_in_cluster(bool may_be_free);
+  __device__ Counts classify_alone(Side side);
+  __device__ Side side_of_cell(bool asks);
+  __device__ void see_block();
+  __device__ bool take_piece(Counts counts, unsigned turn, ToolPiece& piece, Vec3& x) const;
+  __device__ void measure_pieces(Counts counts, Found& found);
+  __device__ Vec3 measure_piece(const ToolPiece& piece, Vec3 x, bool exists, bool is_sample,
+                                Found& found);
+  __device__ void add_piece(const Measure& measure, const ToolPiece& piece,
+                            const PieceSample& sampled, Vec3 normal, Found& found);
+  __device__ void measure_by_plane(Counts counts, Found& found);
+  __device__ ClippedMoments clipped_moments(std::uint32_t count) const;
+
+  const PoseWork<DepthSurface>& work_;
+  bool counts_points_;
+  const TaskBall& cluster_;
+  unsigned lanes_, lane_;
+  const WarpTask& unit_;
+  std::uint32_t flags_, begin_, end_;  // of the unit: read together with its balls
+  ImageShared& shared_;
+  ImageShared::OfTask& seen_;
+  ImageSums& sums_;
+
+  Vec3 middle_;  // of the ball at which this lane has looked
+  double radius_ = 0;
+  DepthSurface::BallClass look_;
+  SurfaceSample on_surface_;  // in the middle of the block
+  ClipPlane plane_;           // of a unit that is crossed or pushed
+};
+
+// At all balls.
+template <class Found>
+__device__ void ImageTaskGroup<Found>::see_ball() {
+  const bool is_of_unit = lane_ < (counts_points_ ? kOfSphere : kOfBlock) + 1;
+  const TaskBall ball = is_of_unit ? unit_.balls[lane_] : cluster_;
+  radius_ = ball.radius;
+  middle_ = work_.to_surface * ball.center;
+  look_ = work_.surface.classify_ball(middle_, radius_);
+  __syncwarp();  // who has read of another chunk is done
+  if (is_of_cluster()) {
+    shared_.in_ball = look_;
+    shared_.middle = middle_;
+  }
+  if (lane_ == kOfCell) {
+    seen_.cell = look_.side;
+    seen_.farthest = middle_.z + radius_;
+    seen_.asks_pixels = work_.surface.may_be_seen_past(look_, seen_.farthest);
+    seen_.pixels = look_.pixels;
+  }
+  __syncwarp();
+}
+
+template <class Found>
+__device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classify() {
+  switch (class_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
+                           work_.level.tool_reach.length)) {
+    case ClusterClass::ambiguous:
+      return sees_plane() ? classify_clipped() : classify_alone(Side::ambiguous);
+    case ClusterClass::uniform:
+      return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+    default:
+      return classify_alone(Side::behind);
+  }
+}
+
+// Whether the surface passes through the cluster as one plane. It is read in the middles of the
+// cluster and of the blocks, and then at four places about that of the cluster.
+template <class Found>
+__device__ bool ImageTaskGroup<Found>::sees_plane() {
+  const bool may_be = may_be_planar(cluster_.radius, work_.level.tool_reach.length) &&
+                      work_.surface.may_be_flat(shared_.in_ball);
+  Vec3 place = middle_;
+  bool reads = is_of_cluster() ? may_be : lane_ == kOfBlock && is(BlockTask::has_block);
+  SurfaceSample on_surface;
+#pragma unroll 1
+  for (bool around = false;; around = true) {
+    if (reads) on_surface = work_.surface.sample(place);
+    if (around) break;
+    on_surface_ = on_surface;
+    if (is_of_cluster()) shared_.on_surface = on_surface;
+    __syncwarp();
+    if (!may_be || !shared_.on_surface.known) return false;
+    const DepthSurface::PlacesAround places(shared_.on_surface, shared_.middle, cluster_.radius);
+    place = places.at(static_cast<int>(threadIdx.x % 32));
+    reads = threadIdx.x % 32 < DepthSurface::PlacesAround::kCount;
+  }
+  if (reads) shared_.around[threadIdx.x % 32] = on_surface;
+  __syncwarp();
+  DepthSurface::PlaneMean mean(shared_.on_surface);
+  for (const SurfaceSample& around : shared_.around)
+    if (!mean.take(around)) return false;
+  const TangentPlane tangent = mean.plane();
+  if (!work_.surface.shows(shared_.in_ball, tangent, cluster_.radius) ||
+      !is_plane_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
+                           tangent))
+    return false;
+  plane_ = {tangent, work_.to_surface};
+  return true;
+}
+
+// Of a patch that is crossed by plane_.
+template <class Found>
+__device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classify_clipped() {
+  const TaskBall& cell = unit_.balls[kOfCell];
+  const PlaneSide side = side_of_plane(plane_.distance(cell.center), cell.radius);
+  if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) &&
+      look_.side == Side::ambiguous)
+    sums_.note_points(unit_);
+  const bool is_reached = side != PlaneSide::before;
+  const bool may_be_free = is_reached && (seen_.cell == Side::free || seen_.asks_pixels);
+  if (__any_sync(~0U, may_be_free) != 0 && is_free_in_cluster(may_be_free))
+    return Counts::not_at_all;
+  if (!is_reached) return Counts::not_at_all;
+  if (side == PlaneSide::behind)
+    return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+  return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
+}
+
+// Of a share that may be, by all lanes: whether its own pixels show it to be free, whatever the
+// plane says.
+template <class Found>
+__device__ bool ImageTaskGroup<Found>::is_free_in_cluster(bool may_be_free) {
+  if (lane_ == kOfCell)
+    seen_.may_be_free =
+        may_be_free && work_.surface.may_be_free(DepthSurface::least_inverse_depth(shared_.in_ball),
+                                                 middle_, radius_);
+  __syncwarp();
+  return side_of_cell(seen_.may_be_free) == Side::free && seen_.may_be_free;
+}
+
+// Of a cluster that is no patch.
+template <class Found>
+__device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classify_alone(Side side) {
+  if (side == Side::ambiguous) {
+    side = side_of_cell(true);
+    if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) && side == Side::ambiguous &&
+        look_.side == Side::ambiguous)
+      sums_.note_points(unit_);
+    const bool asks_block = side == Side::ambiguous && is(BlockTask::has_block);
+    if (lane_ == kOfBlock && asks_block) see_block();
+    __syncwarp();
+    if (asks_block) {
+      plane_ = seen_.plane;
+      switch (seen_.block) {
+        case BlockClass::free:
+          return Counts::not_at_all;
+        case BlockClass::uncut:
+          return Counts::whole_block;
+        case BlockClass::cut:
+          return Counts::by_plane;
+        case BlockClass::ambiguous:
+          return Counts::by_samples;
+      }
+    }
+    if (side == Side::ambiguous) return Counts::not_at_all;
+  }
+  if (side == Side::free) return Counts::not_at_all;
+  if (is(BlockTask::is_compact))
+    return is(BlockTask::is_head) ? Counts::whole_cell : Counts::not_at_all;
+  return is(BlockTask::has_block) ? Counts::whole_block : Counts::not_at_all;
+}
+
+// Its pixels, if they are asked, may show that the share is free.
+template <class Found>
+__device__ Side ImageTaskGroup<Found>::side_of_cell(bool asks) {
+  asks = asks && seen_.asks_pixels;
+  if (__any_sync(~0U, asks) == 0) return seen_.cell;
+  const bool is_past =
+      asks && work_.surface.is_seen_past(seen_.pixels, seen_.farthest, lane_, lanes_);
+  const bool is_near = any(asks && !is_past);
+  return asks && !is_near ? Side::free : seen_.cell;
+}
+
+// By its lane, whether the surface passes through the block as one plane.
+template <class Found>
+__device__ void ImageTaskGroup<Found>::see_block() {
+  TangentPlane tangent;
+  seen_.block = class_of_block(
+      work_.surface, look_, middle_, radius_, work_.level.tool_reach, [&] { return on_surface_; },
+      tangent);
+  if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
+}
+
+// The piece that this lane measures in this turn, if there is one, and where it lies: a sample, or
+// what is taken whole.
+template <class Found>
+__device__ bool ImageTaskGroup<Found>::take_piece(Counts counts, unsigned turn, ToolPiece& piece,
+                                                  Vec3& x) const {
+  if (counts == Counts::by_samples) {
+    const std::uint32_t k = begin_ + turn * lanes_ + lane_;
+    if (k >= end_) return false;
+    piece = piece_of(work_.level.samples[k]);
+  } else {
+    if (counts != Counts::whole_cell && counts != Counts::whole_block) return false;
+    if (turn > 0 || lane_ != 0) return false;
+    const BlockMass& mass = counts == Counts::whole_cell ? unit_.cell_mass : unit_.block_mass;
+    piece = {mass.centroid, 0, mass.weight};
+  }
+  x = work_.to_surface * piece.at;
+  return true;
+}
+
+// Pieces that are measured one by one, and the way out of the middle of a cluster that is pushed.
+template <class Found>
+__device__ void ImageTaskGroup<Found>::measure_pieces(Counts counts, Found& found) {
+  const bool finds_way =
+      __any_sync(~0U, counts == Counts::pushed) != 0 && shared_.in_ball.side == Side::behind;
+  const bool adds_up = __any_sync(~0U, counts == Counts::by_samples) != 0;
+  for (unsigned turn = 0;; ++turn) {
+    ToolPiece piece;
+    Vec3 x = shared_.middle;
+    const bool exists =
+        finds_way ? turn == 0 && is_of_cluster() : take_piece(counts, turn, piece, x);
+    if (__any_sync(~0U, exists) == 0) break;
+    const Vec3 way = measure_piece(piece, x, exists, counts == Counts::by_samples, found);
+    if (finds_way && exists) shared_.normal = transpose(work_.to_surface.rotation) * way;
+  }
+  if (finds_way) {
+    __syncwarp();
+    plane_.normal = shared_.normal;
+  }
+  if (!adds_up) return;
+  if constexpr (kFindsPlanes) {
+    add_up(found);
+  } else {
+    add_up(found.sum);
+    found.is_cut = any(found.is_cut);
+  }
+}
+
+// By all lanes, those that have none too: one of no weight adds nothing. Neighbours among samples
+// are pushed in one direction. Returns the way out of one that is wholly inside.
+template <class Found>
+__device__ Vec3 ImageTaskGroup<Found>::measure_piece(const ToolPiece& piece, Vec3 x, bool exists,
+                                                     bool is_sample, Found& found) {
+  const Measure measure = measure_of_cell();
+  const unsigned lane = threadIdx.x % 32;
+  unsigned leader = lane;
+  bool is_inside = false, searches = false, wants = exists;
+  Vec3 place = x;
+  PieceSample sampled;
+  FootSearch<double> search;
+#pragma unroll 1
+  for (bool is_first = true;; is_first = false) {
+    SurfaceSample on_surface;
+    FootSearch<double>::Neighbors beside;
+    if (wants) {
+      on_surface = work_.surface.sample_and(place, [&](std::int32_t u, std::int32_t v) {
+        beside = FootSearch<double>::neighbors_of(work_.surface, u, v);
+      });
+    }
+    if (is_first) {
+      sampled = measure.sample_of(piece, x, on_surface);
+      is_inside = exists && sampled.is_inside;
+      const bool cells_it = is_inside && is_sample && Measure::shares_direction(piece, sampled);
+      const unsigned sharing = __ballot_sync(~0U, cells_it);
+      if (cells_it) leader = direction_leader(lane, sharing);
+      searches = wants = is_inside && !Measure::is_cut(piece, sampled) && leader == lane;
+      if (wants) search = FootSearch<double>(work_.surface, x, on_surface, beside);
+    } else if (wants) {
+      search.take(work_.surface, on_surface, beside);
+    }
+    wants = wants && search.goes_on();
+    if (__any_sync(~0U, wants) == 0) break;
+    place = search.target();
+  }
+  Vec3 normal;
+  if (searches) normal = search.normal();
+  normal = {from(normal.x, leader), from(normal.y, leader), from(normal.z, leader)};
+  if (is_inside && piece.weight > 0) add_piece(measure, piece, sampled, normal, found);
+  return normal;
+}
+
+// One that is inside.
+template <class Found>
+__device__ void ImageTaskGroup<Found>::add_piece(const Measure& measure, const ToolPiece& piece,
+                                                 const PieceSample& sampled, Vec3 normal,
+                                                 Found& found) {
+  const bool is_cut = Measure::is_cut(piece, sampled);
+  if constexpr (kFindsPlanes) {
+    if (is_cut) measure.add_to_plane(sampled, found);
+  } else {
+    found.is_cut |= is_cut;
+    work_.add_inside(measure, piece, sampled, normal, unit_.cell, found.sum);
+  }
+}
+
+// What a plane says of the unit, by its first lane.
+template <class Found>
+__device__ void ImageTaskGroup<Found>::measure_by_plane(Counts counts, Found& found) {
+  const TaskBall& block = unit_.balls[kOfBlock];
+  const PlaneSide side = counts == Counts::pushed ? PlaneSide::behind
+                         : counts != Counts::by_plane
+                             ? PlaneSide::before
+                             : side_of_plane(plane_.distance(block.center), block.radius);
+  const bool is_crossed = side == PlaneSide::cut;
+  ClippedMoments sums;
+  if (__any_sync(~0U, is_crossed) != 0) sums = clipped_moments(is_crossed ? end_ - begin_ : 0);
+  if (lane_ != 0 || side == PlaneSide::before) return;
+  if constexpr (kFindsPlanes) {
+    if (sums.is_cut) measure_of_cell().add_to_plane(block.center, plane_, found);
+  } else {
+    found.is_cut |= sums.is_cut;
+    add_by_plane(side, counts == Counts::pushed ? unit_.cell_mass : unit_.block_mass, sums,
+                 plane_.normal, work_.level.tool_reach, found.sum);
+  }
+}
+
+// Of the first samples of the block behind its plane, for the first lane: the rows of
+// clipped_in_turn, one for each lane, and these by halves. (Where there are fewer lanes than rows,
+// no lane has more than two samples, and 0 in the rows that are left out.)
+template <class Found>
+__device__ ClippedMoments ImageTaskGroup<Found>::clipped_moments(std::uint32_t count) const {
+  static_assert(WarpTaskGroups::kNarrow == 2 * (32 / TaskGroup::kTasks) &&
+                kSumRows == 32 / WarpTaskGroups::kWideTasks);
+  ClippedMoments row;
+#pragma unroll 4
+  for (std::uint32_t k = lane_; k < count; k += lanes_)
+    add_to_row(work_.level.samples[begin_ + k], plane_, row, row.is_cut);
+  __syncwarp();
+#pragma unroll 1
+  for (unsigned half = lanes_ / 2; half > 0; half /= 2) {
+    row.weight += from_next(row.weight, half);
+    row.moment += Vec3{from_next(row.moment.x, half), from_next(row.moment.y, half),
+                       from_next(row.moment.z, half)};
+  }
+  row.is_cut = any(row.is_cut);
+  return row;
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,299 @@
+// The second step of a query where nobody knows from where points were seen: the flood, and the sum
+// of what it reaches.
+//
+// In a block's own memory the flood goes from share to share until nothing changes. Otherwise,
+// shares that the flood may pass are joined where the graph has an edge, and with the entry where a
+// cut share lets the flood in. What is joined with the entry is inside. The team meets between
+// joining and adding up; where another surface may hide something, which is rare, more often.
+#pragma once
+
+#include "libvpm/backend/cuda/cut_cells.h"
+#include "libvpm/backend/cuda/noted_cells.h"
+#include "libvpm/backend/cuda/union_find.h"
+
+namespace vpm::cuda {
+
+// Shares of a level that one block floods in its own memory.
+inline constexpr std::uint32_t kFloodCells = 3072;
+inline constexpr std::uint32_t kFloodEdges = 4096;  // of such a level
+__host__ __device__ inline bool is_small(const LevelView& level) {
+  return level.count <= kFloodCells && level.edge_count <= kFloodEdges;
+}
+
+struct FloodShared {
+  std::uint32_t words[kFloodCells];
+  Edge edges[kFloodEdges];         // from the front: between shares that the flood may pass
+  unsigned flood_states, entries;  // from the back: by which it may enter
+};
+// What a block needs for one way or the other.
+union FloodBlock {
+  FloodShared shared;
+  NotedList noted;
+};
+
+template <class Team>
+class Flood {
+ public:
+  using Shared = FloodBlock;
+
+  __device__ Flood(const LevelView& level, const Pose& to_surface, const RefinedSpace& space,
+                   unsigned turn, RefinedCounters& counters, Team& team, FloodBlock& block,
+                   bool counts_points)
+      : level_(level),
+        to_surface_(to_surface),
+        space_(space),
+        notes_(space.notes[turn % 2]),
+        counters_(counters),
+        team_(team),
+        shared_(block.shared),
+        counts_points_(counts_points),
+        in_shared_(Team::kIsBlock && is_small(level)),
+        words_(in_shared_ ? block.shared.words : notes_.words),
+        flood_(space.parents),
+        noted_(level, notes_, team, block.noted),
+        cut_(level, to_surface, space, notes_, counters, team) {
+    if (in_shared_) bring_to_shared();
+  }
+
+  // When the first step is done: whether it has left anything.
+  __device__ static bool has_more(unsigned, bool) { return true; }
+  // This thread's part of the result. All threads of the team.
+  __device__ RawResult run() {
+    const RefinedCounters found = read_for_block(counters_);
+    if (found.hidden > 0 || found.far > 0) {
+      cut_.list();
+      team_.sync();
+    }
+    if (found.hidden > 0) {
+      decide_hidden();
+      team_.sync();
+    }
+    if (in_shared_)
+      flood_in_shared();
+    else
+      join_cells();
+    team_.sync();
+    if (found.far > 0) {
+      cut_.add_far(
+          found.far, [&](std::uint32_t i) { return is_inside(i, words_[i]); },
+          [&](std::uint32_t i, const ToolSum& sum) { add_atomically(sum, notes_.sums[i]); });
+      team_.sync();
+    }
+    return add_up_cells();
+  }
+
+ private:
+  static constexpr unsigned kEdges = 4;  // of a thread at once: their reads wait together
+
+  __device__ void bring_to_shared() {
+    if (threadIdx.x == 0) shared_.flood_states = shared_.entries = 0;
+    for (std::uint32_t i = threadIdx.x; i < level_.count; i += blockDim.x)
+      words_[i] = notes_.words[i];
+    __syncthreads();
+  }
+  __device__ Vec3 center(std::uint32_t i) const { return to_surface_ * level_.centers[i]; }
+  __device__ bool is_inside(std::uint32_t i, std::uint32_t word) const {
+    return in_shared_ ? (word & kReached) != 0 : is_passable(word) && flood_.root(i + 1) == 0;
+  }
+
+  struct Edges {
+    Edge edges[kEdges];
+    std::uint32_t words[kEdges][2];  // of larger and smaller; 0 where there is no edge
+  };
+  // Calls visit(edges) for all of them.
+  template <class Visit>
+  __device__ void for_edges(const Visit& visit) const;
+  // Calls join(k, i, j) for those between shares that the flood may pass, enter(k, cut, i) for
+  // those by which it may enter.
+  template <class Join, class Enter>
+  __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter);
+  __device__ void join_cells();
+  __device__ void flood_in_shared();
+  __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
+  __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t sphere) const;
+  __device__ __noinline__ void decide_hidden();
+  __device__ RawResult add_up_cells();
+  __device__ void add_cell(std::uint32_t sphere, std::uint32_t word, RawResult& result) const;
+
+  const LevelView& level_;
+  const Pose& to_surface_;
+  const RefinedSpace& space_;
+  const CellNotes& notes_;
+  RefinedCounters& counters_;
+  Team& team_;
+  FloodShared& shared_;
+  bool counts_points_;
+  bool in_shared_;
+  std::uint32_t* words_;
+  UnionFind flood_;  // node 0 is the entry, node i + 1 share i
+  NotedCells<Team> noted_;
+  CutCells<Team> cut_;
+};
+
+template <class Team>
+template <class Visit>
+__device__ void Flood<Team>::for_edges(const Visit& visit) const {
+  for (std::uint32_t first = team_.thread(); first < level_.edge_count;
+       first += kEdges * team_.threads()) {
+    Edges together;
+#pragma unroll
+    for (unsigned k = 0; k < kEdges; ++k) {
+      const std::uint32_t e = first + k * team_.threads();
+      together.edges[k] = level_.edges[e < level_.edge_count ? e : first];
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kEdges; ++k) {
+      const bool is_one = first + k * team_.threads() < level_.edge_count;
+      together.words[k][0] = is_one ? words_[together.edges[k].larger] : 0;
+      together.words[k][1] = is_one ? words_[together.edges[k].smaller] : 0;
+    }
+    visit(together);
+  }
+}
+
+template <class Team>
+template <class Join, class Enter>
+__device__ void Flood<Team>::look_at(const Edges& together, const Join& join, const Enter& enter) {
+#pragma unroll
+  for (unsigned k = 0; k < kEdges; ++k) {
+    const std::uint32_t i = together.edges[k].larger, j = together.edges[k].smaller;
+    const std::uint32_t word_of_i = together.words[k][0], word_of_j = together.words[k][1];
+    if (is_passable(word_of_i) && is_passable(word_of_j))
+      join(k, i, j);
+    else if ((word_of_i & kCut) != 0 && is_passable(word_of_j))
+      enter(k, i, j);
+    else if ((word_of_j & kCut) != 0 && is_passable(word_of_i))
+      enter(k, j, i);
+  }
+}
+
+// Of a large level, edges are looked at from the shares that have a word: each from its larger
+// index, of which a share has few.
+template <class Team>
+__device__ void Flood<Team>::join_cells() {
+  const auto join_ends = [&](const Edges& together) {
+    std::uint32_t one[kEdges] = {}, other[kEdges] = {};
+    look_at(
+        together,
+        [&](unsigned k, std::uint32_t i, std::uint32_t j) { one[k] = i + 1, other[k] = j + 1; },
+        [&](unsigned k, std::uint32_t cut, std::uint32_t i) {
+          if (enters(cut, i)) one[k] = i + 1;
+        });
+    flood_.join(one, other);
+  };
+  if (level_.edge_count <= kEdges * team_.threads()) {
+    for_edges(join_ends);
+    return;
+  }
+  noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
+    if (!is_passable(word) && (word & kCut) == 0) return;
+    const std::uint32_t end = level_.edge_begin[i + 1];
+    for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kEdges) {
+      Edges together;
+#pragma unroll
+      for (unsigned k = 0; k < kEdges; ++k)
+        together.edges[k] = {i, level_.edges[e + k < end ? e + k : e].smaller};
+#pragma unroll
+      for (unsigned k = 0; k < kEdges; ++k) {
+        together.words[k][0] = word;
+        together.words[k][1] = e + k < end ? words_[together.edges[k].smaller] : 0;
+      }
+      join_ends(together);
+    }
+  });
+}
+
+// Edges that matter are listed first; in each round the flood passes all of them.
+template <class Team>
+__device__ void Flood<Team>::flood_in_shared() {
+  for_edges([&](const Edges& together) {
+    look_at(
+        together,
+        [&](unsigned, std::uint32_t i, std::uint32_t j) {
+          shared_.edges[atomicAdd(&shared_.flood_states, 1U)] = {i, j};
+        },
+        [&](unsigned, std::uint32_t cut, std::uint32_t i) {
+          shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
+        });
+  });
+  __syncthreads();
+  const unsigned entries = shared_.entries, flood_states = shared_.flood_states;
+  for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
+    const Edge entry = shared_.edges[kFloodEdges - 1 - k];
+    if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], kReached);
+  }
+  bool changes = true;
+  while (__syncthreads_or(changes) != 0) {
+    constexpr unsigned kMost = kFloodEdges / kThreads;
+    static_assert(kMost <= 32);
+    unsigned clipped = 0;  // a bit for each edge of this thread
+#pragma unroll 4
+    for (unsigned n = 0; n < kMost; ++n) {
+      const unsigned k = threadIdx.x + n * blockDim.x;
+      if (k >= flood_states) break;
+      const Edge edge = shared_.edges[k];
+      clipped |= ((words_[edge.larger] ^ words_[edge.smaller]) & kReached) != 0 ? 1U << n : 0U;
+    }
+    __syncthreads();
+    changes = clipped != 0;
+    for (; clipped != 0; clipped &= clipped - 1) {
+      const Edge edge =
+          shared_.edges[threadIdx.x + (__ffs(static_cast<int>(clipped)) - 1) * blockDim.x];
+      atomicOr(&words_[edge.larger], kReached);
+      atomicOr(&words_[edge.smaller], kReached);
+    }
+  }
+}
+
+template <class Team>
+__device__ bool Flood<Team>::enters(std::uint32_t cut, std::uint32_t i) const {
+  return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) || lies_behind(cut, i);
+}
+
+template <class Team>
+__device__ bool Flood<Team>::lies_behind(std::uint32_t cut, std::uint32_t i) const {
+  return cut_.at(cut).is_behind(center(i));
+}
+
+// Of the shares that another surface may hide, those before the nearest cut share's plane are
+// closed to the flood.
+template <class Team>
+__device__ void Flood<Team>::decide_hidden() {
+  const Subwarp warp(32);
+  for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
+    const std::uint32_t word = words_[i];
+    if (!may_be_inside(word) || (word & kHidden) == 0) continue;
+    const std::uint32_t cut = cut_.nearest_to(warp, i);
+    if (cut < level_.count && warp.leads() && lies_behind(cut, i)) words_[i] = word & ~kHidden;
+  }
+}
+
+template <class Team>
+__device__ RawResult Flood<Team>::add_up_cells() {
+  RawResult result;
+  const auto add = [&](std::uint32_t i, std::uint32_t word) {
+    if (counts_points_ && (word & kCountsPoints) != 0) result.points += notes_.points[i];
+    if ((word & kCut) != 0 || may_be_inside(word)) add_cell(i, word, result);
+  };
+  if (in_shared_ || level_.count <= team_.threads()) {
+    for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
+      add(i, words_[i]);
+  } else {
+    noted_.for_each(add);
+  }
+  return result;
+}
+
+// A share counts if it is cut, or the flood reaches it; the flood also passes through the hidden.
+template <class Team>
+__device__ void Flood<Team>::add_cell(std::uint32_t i, std::uint32_t word,
+                                      RawResult& result) const {
+  const bool cut = (word & kCut) != 0;
+  const ToolSum sum = notes_.sums[i];
+  if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
+  notes_.words[i] = word | kCounted;
+  result.sum.add(sum);
+  ++(cut ? result.boundary : result.inside);
+}
+
+}  // namespace vpm::cuda

@@ -1,0 +1,193 @@
+#include "libvpm/scene/depth/denoised_image.h"
+
+#include <algorithm>
+
+#include "libvpm/cloud/vector_tile.h"
+#include "libvpm/core/lanes.h"
+#include "libvpm/core/vector_clones.h"
+
+namespace vpm {
+namespace {
+
+// The windows of some pixels of a row, as sums down each of their columns.
+class ColumnSums {
+ public:
+  // So many that what is written of the first ones has left the CPU's queue when it is read again:
+  // across lanes, which CPUs do not take from there.
+  static constexpr int kPixels = 8 * kTile;
+
+  // From pixel `first` of row v on, to the row's last tile.
+  [[gnu::always_inline]] ColumnSums(const PaddedImage& inverse, int first, int v) {
+    const auto stride = static_cast<std::ptrdiff_t>(inverse.stride);
+    const int columns = std::min(kColumns, inverse.width - first + kTile);
+    for (int i = 0; i < columns; i += kLanes) {
+      const float* middle = inverse.at(first + i - kDenoisedRadius, v);
+      set(i, column_of_depths<Floats>([&](int dv) __attribute__((always_inline)) {
+            return load<Floats>(middle + dv * stride);
+          }));
+    }
+  }
+  // About pixels first + i, first + i + 1, ...
+  [[gnu::always_inline]] WindowOfDepths<Floats> windows_at(int i) const {
+    return window_of_depths<Floats>([&](int du) __attribute__((always_inline)) {
+      return at(i + kDenoisedRadius + du);
+    });
+  }
+
+ private:
+  static constexpr int kNumbers = 6;
+  static constexpr int kColumns = kPixels + kLanes;  // to whole lanes
+  static_assert(2 * kDenoisedRadius <= kLanes);
+
+  [[gnu::always_inline]] void set(int i, const WindowOfDepths<Floats>& column) {
+    const Floats values[] = {column.sum,      column.squares,    column.all.low,
+                             column.all.high, column.beside.low, column.beside.high};
+    for (int k = 0; k < kNumbers; ++k) store(values[k], numbers_[k] + i);
+  }
+  [[gnu::always_inline]] WindowOfDepths<Floats> at(int i) const {
+    const auto number = [&](int k) __attribute__((always_inline)) {
+      return load<Floats>(numbers_[k] + i);
+    };
+    WindowOfDepths<Floats> column;
+    column.sum = number(0), column.squares = number(1);
+    column.all = {number(2), number(3)};
+    column.beside = {number(4), number(5)};
+    return column;
+  }
+
+  float numbers_[kNumbers][kColumns];
+};
+
+struct Tile {
+  float inverse[kTile];
+  VectorTile normals;  // before they are made of unit length
+};
+
+// Of an image of normals and one of inverse depths, the pixels from (u, v) on.
+class SeenFrom {
+ public:
+  [[gnu::always_inline]] SeenFrom(const SeenImage& seen, const PaddedImage& inverse, int u, int v)
+      : stride_(static_cast<std::ptrdiff_t>(inverse.stride)),
+        inverse_(inverse.at(u, v)),
+        x_(seen.x.at(u, v)),
+        y_(seen.y.at(u, v)),
+        z_(seen.z.at(u, v)) {}
+
+  // So far aside.
+  [[gnu::always_inline]] SeenPixel<Floats> operator()(int du, int dv) const {
+    const std::ptrdiff_t at = dv * stride_ + du;
+    return {load<Floats>(inverse_ + at), load<Floats>(x_ + at), load<Floats>(y_ + at),
+            load<Floats>(z_ + at)};
+  }
+
+ private:
+  std::ptrdiff_t stride_;
+  const float *inverse_, *x_, *y_, *z_;
+};
+
+// Pixel u of row v and those to its right; `columns` has them from column i on.
+[[gnu::always_inline]] inline void denoise_tile(const SeenImage& seen, int u, int v,
+                                                const ColumnSums& columns, int i, Tile& tile) {
+  for (int k = 0; k < kTile; k += kLanes) {
+    const SeenFrom pixels(seen, seen.marked, u + k, v);
+    const NormalSum<Floats> normal = denoised_normal<Floats>(pixels);
+    store(denoised_inverse_depth(pixels(0, 0), columns.windows_at(i + k)), tile.inverse + k);
+    store(normal.x, tile.normals.x + k);
+    store(normal.y, tile.normals.y + k);
+    store(normal.z, tile.normals.z + k);
+  }
+}
+
+[[gnu::always_inline]] inline VectorTile unit_length(const VectorTile& sums) {
+  VectorTile unit;
+  for (int i = 0; i < kTile; ++i) {
+    const float x = sums.x[i], y = sums.y[i], z = sums.z[i], scale = per_length(x, y, z);
+    unit.x[i] = x * scale, unit.y[i] = y * scale, unit.z[i] = z * scale;
+  }
+  return unit;
+}
+
+VPM_VECTOR_CLONES
+void mark_row(const SeenImage& seen, int v, float* marks) {
+  for (int first = 0; first < seen.inverse.width; first += kTile) {
+    float tile[kTile];
+    for (int k = 0; k < kTile; k += kLanes) {
+      const SeenFrom pixels(seen, seen.inverse, first + k, v);
+      store(marked(pixels(0, 0).inverse, is_clear<Floats>(pixels)), tile + k);
+    }
+    std::copy_n(tile, std::min(kTile, seen.inverse.width - first), marks + first);
+  }
+}
+
+VPM_VECTOR_CLONES
+void denoise_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* normals) {
+  const int width = seen.inverse.width;
+  for (int first = 0; first < width; first += ColumnSums::kPixels) {
+    const ColumnSums columns(seen.inverse, first, v);
+    for (int u = first; u < std::min(first + ColumnSums::kPixels, width); u += kTile) {
+      const int count = std::min(kTile, width - u);
+      Tile tile;
+      denoise_tile(seen, u, v, columns, u - first, tile);
+      for (int k = 0; k < count; ++k) depths[u + k] = {tile.inverse[k], tile.inverse[k]};
+      unit_length(tile.normals).store(count, normals + u);
+    }
+  }
+}
+
+VPM_VECTOR_CLONES
+void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* normals) {
+  const float *inverse = seen.inverse.at(0, v), *x = seen.x.at(0, v), *y = seen.y.at(0, v),
+              *z = seen.z.at(0, v);
+  for (int u = 0; u < seen.inverse.width; ++u) {
+    depths[u] = {inverse[u], inverse[u]};
+    normals[u] = {x[u], y[u], z[u]};
+  }
+}
+
+}  // namespace
+
+void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
+  static_assert(kDenoisedRadius <= kDenoisedReach, "the margin holds windows too");
+  for (PaddedImage* image : {&inverse, &x, &y, &z, &marked})
+    image->resize(width, height, kDenoisedReach);
+}
+
+void SeenImage::set_normal(int u, int v, Vec3f normal) {
+  *x.at(u, v) = normal.x;
+  *y.at(u, v) = normal.y;
+  *z.at(u, v) = normal.z;
+}
+
+void SeenImage::mark_rows(int begin, int end) {
+  for (int v = begin; v < end; ++v) mark_row(*this, v, marked.at(0, v));
+}
+
+void DenoisedImage::resize(std::uint32_t width, std::uint32_t height) {
+  width_ = static_cast<int>(width), height_ = static_cast<int>(height);
+  normals_.resize(first_of_row(height_));
+  measured_.resize(first_of_row(height_));
+  tiles_.resize(width, height);
+}
+
+void DenoisedImage::read_rows(const SeenImage& seen, Denoising points, int begin, int end) {
+  const auto read_row = points == Denoising::on ? denoise_row : take_row;
+  for (int v = begin; v < end; ++v) {
+    read_row(seen, v, tiles_.row(v), normals_.data() + first_of_row(v));
+    std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+  }
+}
+
+DepthSurface DenoisedImage::surface(const Intrinsics& k) const {
+  DepthSurface surface;
+  surface.k = k;
+  surface.width = width_;
+  surface.height = height_;
+  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
+  surface.normals = normals_.data();
+  surface.measured = measured_.data();
+  for (int level = 0; level < surface.levels; ++level)
+    surface.tiles[level] = tiles_.level(level).data();
+  return surface;
+}
+
+}  // namespace vpm

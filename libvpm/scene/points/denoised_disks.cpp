@@ -1,0 +1,184 @@
+#include "libvpm/scene/points/denoised_disks.h"
+
+#include <utility>
+
+#include "libvpm/scene/points/second_planes.h"
+#include "libvpm/scene/points/smoothed_disks.h"
+
+namespace vpm {
+namespace {
+
+constexpr double kOnePlane = 2;      // radii: disks of one plane are no further from it
+constexpr double kApart = 2;         // radii: from either side's plane to the other's middle
+constexpr double kFurther = 2;       // wide windows, where one shows no smooth disk
+constexpr double kExplained = 0.85;  // share of the points about a crease that lie on it
+
+// At a crease the normal was estimated across both its sides, and is that of neither. What is on no
+// plane of two that smooth disks show is left as it is: it may be small, and no crease.
+class CreaseSettling {
+ public:
+  CreaseSettling(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
+                 DenoisedDisks& result)
+      : windows_(windows), kinds_(kinds), result_(result) {
+    smooth_.reserve(kinds.size());
+    for (const DiskKind kind : kinds) smooth_.push_back(is_smooth(kind) ? 1.0F : 0.0F);
+    nodes_with_smooth_ = largest_in_nodes(smooth_);
+  }
+
+  // Reads what became of smooth disks, and writes only others.
+  void run() {
+    for_leaves(windows_, result_, [&](const DiskLeaf& leaf, LeafWork& work) {
+      std::vector<SmoothDisk> disks;
+      for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+        if (is_smooth(kinds_[i])) continue;
+        const std::uint32_t nearest = windows_.nearest_marked(
+            windows_.disk(i).place, {smooth_.data(), nodes_with_smooth_.data()});
+        if (nearest == kNoPoint) return;
+        if (kinds_[i] == DiskKind::stray ||
+            (kinds_[i] == DiskKind::outlier && is_near(nearest, i))) {
+          join(nearest, i);
+        } else if (kinds_[i] == DiskKind::bent && is_within_reach(nearest, i)) {
+          gather_smooth_about(i, disks);
+          if (!disks.empty()) denoise_at_crease(i, disks, work);
+        }
+      }
+    });
+  }
+
+ private:
+  // A smooth disk near a place.
+  struct SmoothDisk {
+    std::uint32_t index;
+    Disk disk;
+    double height;  // of the place above it
+  };
+
+  void denoise_at_crease(std::uint32_t i, const std::vector<SmoothDisk>& disks, LeafWork& work) {
+    const Vec3 place = windows_.disk(i).place;
+    const SmoothDisk* const own = best_of(disks, nullptr);
+    const SmoothDisk* const other = best_of(disks, own);
+    if (other == nullptr || std::fabs(own->height) > kWindow * windows_.radius(i)) return;
+    const double tolerance = kOnePlane * windows_.radius(i);
+    const MeanPlane first = mean_about(own->disk, disks, place, tolerance);
+    const auto second =
+        second_plane({first.place, first.normal}, mean_about(other->disk, disks, place, tolerance),
+                     kApart * windows_.radius(i));
+    if (!second || !explains(first, *second, i)) return;
+    set(i, first);
+    work.found.push_back({i, *second});
+  }
+  void set(std::uint32_t i, const MeanPlane& plane) {
+    result_.feet[i] = narrow(plane.foot);
+    result_.normals[i] = narrow(plane.normal);
+  }
+
+  // An outlier becomes another of the smooth disk that is nearest: on a plane that is seen
+  // elsewhere it would continue a wall where there is none.
+  void join(std::uint32_t nearest, std::uint32_t i) {
+    result_.feet[i] = result_.feet[nearest];
+    result_.normals[i] = result_.normals[nearest];
+    result_.second_of[i] = result_.second_of[nearest];
+    result_.radii[i] = result_.radii[nearest];
+  }
+  // Not further away than that disk's own windows reach: what is may be small, seen by few points.
+  bool is_near(std::uint32_t nearest, std::uint32_t i) const {
+    const double reach = kFurther * kWide * windows_.radius(nearest);
+    const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
+    return squared_norm(away) <= reach * reach;
+  }
+
+  // Returns false if there are too many disks.
+  bool gather_smooth(Vec3 center, double reach, std::uint32_t most,
+                     std::vector<SmoothDisk>& disks) const {
+    disks.clear();
+    return windows_.for_disks_near(center, reach, most, [&](std::uint32_t j) {
+      if (!is_smooth(kinds_[j])) return;
+      const Disk denoised{widen(result_.feet[j]), widen(result_.normals[j])};
+      disks.push_back({j, denoised, dot(denoised.normal, center - denoised.place)});
+    });
+  }
+
+  // Whether gather_smooth_about() may find any: it goes through all that is near.
+  bool is_within_reach(std::uint32_t nearest, std::uint32_t i) const {
+    const double reach = kFurther * windows_.wide_window(i);
+    return squared_norm(windows_.disk(nearest).place - windows_.disk(i).place) <= reach * reach;
+  }
+  void gather_smooth_about(std::uint32_t i, std::vector<SmoothDisk>& disks) const {
+    const Vec3 place = windows_.disk(i).place;
+    double reach = windows_.wide_window(i);
+    DiskWindows::halve_until(reach,
+                             [&](double r) { return gather_smooth(place, r, kMostInWide, disks); });
+    if (disks.empty()) gather_smooth(place, kFurther * reach, 4 * kMostInWide, disks);
+  }
+
+  // The one on whose plane the place lies best; if `other` is given, of those that face elsewhere.
+  static const SmoothDisk* best_of(const std::vector<SmoothDisk>& disks, const SmoothDisk* other) {
+    const SmoothDisk* best = nullptr;
+    for (const SmoothDisk& d : disks) {
+      if (other != nullptr) {
+        const double cosine = dot(d.disk.normal, other->disk.normal);
+        if (cosine >= kAlike || cosine <= kOpposite) continue;
+      }
+      const double off = std::fabs(d.height);
+      if (best == nullptr || off < std::fabs(best->height) ||
+          (off == std::fabs(best->height) && d.index < best->index))
+        best = &d;
+    }
+    return best;
+  }
+  // The mean of the disks that lie on the same plane as one of them.
+  static MeanPlane mean_about(const Disk& one, const std::vector<SmoothDisk>& disks, Vec3 place,
+                              double tolerance) {
+    PlaneSum sum;
+    for (const SmoothDisk& d : disks) {
+      if (dot(d.disk.normal, one.normal) >= kAlike &&
+          std::fabs(dot(one.normal, d.disk.place - one.place)) <= tolerance)
+        sum.add(d.disk, place);
+    }
+    return {sum, place};
+  }
+
+  // Whether most points about a disk lie on what two planes enclose.
+  bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i) const {
+    const Vec3 normal = widen(second.normal), foot = widen(second.foot);
+    const double near = kOnePlane * windows_.radius(i);
+    std::uint32_t on = 0, all = 0;
+    const auto count = [&](std::uint32_t j) {
+      const Disk other = windows_.disk(j);
+      const double a = dot(first.normal, other.place - first.foot),
+                   b = dot(normal, other.place - foot);
+      ++all;
+      on += std::fabs(second.is_convex ? std::max(a, b) : std::min(a, b)) <= near;
+    };
+    windows_.for_disks_near(windows_.disk(i).place, windows_.window(i, windows_.leaf_of(i)),
+                            kMostInWide, count);
+    return on >= kExplained * all;
+  }
+
+  const DiskWindows& windows_;
+  const std::vector<DiskKind>& kinds_;
+  DenoisedDisks& result_;
+  std::vector<float> smooth_, nodes_with_smooth_;  // PointNumbers: 1 or 0
+};
+
+}  // namespace
+
+DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii) {
+  const std::uint32_t count = measured.feet.count;
+  return {{measured.feet.points, measured.feet.points + count},
+          {measured.normals, measured.normals + count},
+          std::vector<std::uint32_t>(count, kNoPoint),
+          std::move(radii),
+          {}};
+}
+
+DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii) {
+  const std::vector<float> as_given = radii;
+  DenoisedDisks result = off(measured, std::move(radii));
+  const DiskWindows windows(measured, as_given);
+  const std::vector<DiskKind> kinds = smooth(windows, result);
+  CreaseSettling(windows, kinds, result).run();
+  return result;
+}
+
+}  // namespace vpm

@@ -1,0 +1,362 @@
+// Readings of a camera's surface by vectors have the bits of single readings.
+#include "libvpm/backend/cpu/depth_samples.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+#include <random>
+
+#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cpu/cell_samples.h"
+#include "libvpm/cloud/normals.h"
+#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/synthetic/kinect_noise.h"
+#include "tests/query/lattice_model.h"
+#include "tests/test_name.h"
+
+namespace vpm {
+namespace {
+
+class Numbers {
+ public:
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_()) / 4294967296.0;
+  }
+  Vec3 place(double half) {
+    return {between(-half, half), between(-half, half), between(-half, half)};
+  }
+
+ private:
+  std::mt19937 random_{1};
+};
+
+// Returns a cloud with creases, jumps, noise and holes.
+Cloud rough_cloud(const char* scene) {
+  Camera camera = synthetic::default_camera();
+  camera.intrinsics = {130, 131, 79.5, 60};
+  camera.width = 160, camera.height = 121;
+  DepthImage image =
+      synthetic::render_with_kinect_noise(*synthetic::make_scene(scene).surface, camera, 1);
+  Numbers numbers;
+  for (float& depth : image.depth) {
+    if (numbers.between(0, 1) < 0.02) depth = 0;
+    if (numbers.between(0, 1) < 0.02) depth *= 1.05F;
+  }
+  return make_cloud(image, camera, {.window = 3});
+}
+
+// Returns a place near the surface, beside the image, behind the camera, or where nothing can be
+// read.
+Vec3 any_place(Numbers& numbers) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  static const Vec3 odd[] = {{0, 0, 0},      {0.1, HUGE_VAL, 1}, {0, 0, 1e-40}, {0, 0, 0x1p-100},
+                             {0, 0, 1e-300}, {kNaN, 0, 1},       {0, 0, kNaN},  {0, 0, HUGE_VAL}};
+  const double kind = numbers.between(0, 1);
+  if (kind < 0.03) return odd[static_cast<std::size_t>(numbers.between(0, std::size(odd)))];
+  const double depth = kind < 0.1 ? numbers.between(-1, 1) : numbers.between(0.6, 1.6);
+  return {depth * numbers.between(-0.7, 0.7), depth * numbers.between(-0.55, 0.55), depth};
+}
+
+std::uint64_t bits(double number) {
+  return std::bit_cast<std::uint64_t>(number);
+}
+void expect_same(double a, double b) {
+  EXPECT_TRUE(bits(a) == bits(b) || (std::isnan(a) && std::isnan(b))) << a << " and " << b;
+}
+void expect_same(Vec3 a, Vec3 b) {
+  expect_same(a.x, b.x);
+  expect_same(a.y, b.y);
+  expect_same(a.z, b.z);
+}
+void expect_same(const SurfaceSample& a, const SurfaceSample& b) {
+  EXPECT_EQ(a.known, b.known);
+  expect_same(a.distance, b.distance);
+  expect_same(a.normal, b.normal);
+  expect_same(a.foot, b.foot);
+  EXPECT_EQ(a.point, b.point);
+}
+
+int known_of_four(const DepthSurface& surface, Numbers& numbers) {
+  Vec3 places[4];
+  SurfaceSample together[4];
+  for (Vec3& place : places) place = any_place(numbers);
+  sample_four(surface, places, together);
+  int known = 0;
+  for (int k = 0; k < 4; ++k) {
+    const SurfaceSample one = surface.sample(places[k]);
+    expect_same(together[k], one);
+    known += one.known ? 1 : 0;
+  }
+  return known;
+}
+
+// Compares the normals of `count` places behind the surface.
+void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers& numbers,
+                         int& turned) {
+  std::vector<PlaceSample> places(count);
+  for (PlaceSample& place : places) {
+    do {
+      place.x = any_place(numbers);
+      place.on_surface = surface.sample(place.x);
+    } while (!(place.on_surface.known && place.on_surface.distance < 0));
+  }
+  std::vector<Vec3> normals(count);
+  closest_normals(surface, places, normals.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 one = surface.closest_normal(places[k].x, places[k].on_surface);
+    expect_same(normals[k], one);
+    turned += one != places[k].on_surface.normal ? 1 : 0;
+  }
+}
+
+class DepthReadings : public ::testing::TestWithParam<const char*> {
+ protected:
+  // Loses some normals, and makes some that cannot be right.
+  DepthReadings() {
+    for (Vec3f& normal : normals_) {
+      const double kind = numbers_.between(0, 1);
+      if (kind < 0.03) normal = kind < 0.01 ? Vec3f{} : Vec3f{1, 0, 0};
+    }
+    surface_.normals = normals_.data();
+  }
+
+  PreparedCloud cloud_{rough_cloud(GetParam())};
+  DepthSurface surface_ = cloud_.depth_surface();
+  std::vector<Vec3f> normals_ = std::vector<Vec3f>(
+      surface_.normals, surface_.normals + std::ptrdiff_t{surface_.width} * surface_.height);
+  Numbers numbers_;
+};
+
+TEST_P(DepthReadings, OfFourPlacesAreThoseOfEach) {
+  int known = 0;
+  for (int k = 0; k < 20000; ++k) known += known_of_four(surface_, numbers_);
+  EXPECT_GT(known, 5000);
+}
+
+TEST_P(DepthReadings, OfSamplesAreThoseOfEachThatTheSurfaceReaches) {
+  int reached = 0, of_no_size = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Pose to_surface{testing::generic_rotation(), any_place(numbers_)};
+    std::vector<CellSample> samples(static_cast<std::size_t>(numbers_.between(0, 40)));
+    for (CellSample& sample : samples) {
+      const double radius = std::max(0.0, numbers_.between(-0.005, 0.02));
+      sample = {narrow(numbers_.place(0.05)), static_cast<float>(radius), 1};
+    }
+    std::vector<SurfaceOfSample> together(samples.size());
+    together.resize(sample_surface(surface_, to_surface, samples, together.data()));
+    std::size_t found = 0;
+    for (std::uint32_t s = 0; s < samples.size(); ++s) {
+      const Vec3 x = to_surface * widen(samples[s].center);
+      const SurfaceSample on_surface = surface_.sample(x);
+      if (!(on_surface.known && on_surface.distance < samples[s].radius)) continue;
+      ASSERT_LT(found, together.size());
+      EXPECT_EQ(together[found].sample, s);
+      expect_same(together[found].at.x, x);
+      expect_same(together[found].at.on_surface, on_surface);
+      ++found;
+      of_no_size += samples[s].radius == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(found, together.size());
+    reached += static_cast<int>(found);
+  }
+  EXPECT_GT(reached, 1000);
+  EXPECT_GT(of_no_size, 100);
+}
+
+TEST_P(DepthReadings, FindTheNormalsThatEachFinds) {
+  int turned = 0;
+  for (std::size_t k = 0; k < 5000; ++k) expect_same_normals(surface_, k % 10, numbers_, turned);
+  EXPECT_GT(turned, 3000);
+}
+
+void expect_same(const CellResult& a, const CellResult& b) {
+  EXPECT_EQ(a.sum.volume.value, b.sum.volume.value);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(a.sum.force[axis].value, b.sum.force[axis].value);
+    EXPECT_EQ(a.sum.torque[axis].value, b.sum.torque[axis].value);
+    EXPECT_EQ(a.plane.normal[axis].value, b.plane.normal[axis].value);
+    EXPECT_EQ(a.plane.foot[axis].value, b.plane.foot[axis].value);
+  }
+  EXPECT_EQ(a.plane.count, b.plane.count);
+  EXPECT_EQ(a.is_far, b.is_far);
+}
+
+TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 5);
+  const Level& level = tool.levels[0];
+  const std::vector<BlockMass> masses = block_masses(level);
+  int cut = 0, pushed = 0, far = 0;  // samples of blocks that are neither flat nor on one side
+  for (int k = 0; k < 300; ++k) {
+    const Pose to_surface{testing::generic_rotation(),
+                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+    // Cells of two blocks.
+    for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
+      const CellMeasure measure(
+          surface_, to_surface, ToolReach{tool.reach, OccludedSpace::within_reach},
+          CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
+                   level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_reach[i]});
+      expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
+      const CellBlock& block = level.blocks[level.block_begin[i]];
+      const auto in_block = measure.look_at(block);
+      if (in_block.found != BlockClass::ambiguous) continue;
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const ToolPiece piece = piece_of(level.samples[s]);
+        const auto in_ball = measure.look_at(piece);
+        if (!in_ball.is_inside) continue;
+        ++(in_ball.is_far ? far : measure.is_cut(piece, in_ball) ? cut : pushed);
+      }
+    }
+  }
+  EXPECT_GT(cut, 500);
+  EXPECT_GT(pushed, 500);
+  if (std::string(GetParam()) == "block") {
+    EXPECT_GT(far, 500);
+  }
+}
+
+Vec3 force_of(const ToolSum& sum) {
+  return {sum.force[0].real(), sum.force[1].real(), sum.force[2].real()};
+}
+
+TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
+  const ToolModel tool = testing::lattice_cube(0.2, 4, 4);
+  const Level& level = tool.levels[0];
+  const std::vector<BlockMass> masses = block_masses(level);
+  double volume = 0;
+  Vec3 together, alone;
+  for (int k = 0; k < 300; ++k) {
+    const Pose to_surface{testing::generic_rotation(),
+                          {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
+    for (std::uint32_t i = 0; i < level.sphere_count; ++i) {
+      const CellMeasure measure(
+          surface_, to_surface, ToolReach{tool.reach, OccludedSpace::within_reach},
+          CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
+                   level.block_begin[i + 1], tool.spheres[i].center, level.cell_reach[i]});
+      const CellBlock& block = level.blocks[level.block_begin[i]];
+      const auto in_block = measure.look_at(block);
+      if (in_block.found != BlockClass::ambiguous) continue;
+      CellResult of_each;
+      bool any_far = false;
+      for (std::uint32_t s = block.begin; s < block.end; ++s) {
+        const ToolPiece piece = piece_of(level.samples[s]);
+        const auto in_ball = measure.look_at(piece);
+        any_far |= in_ball.is_inside && in_ball.is_far;
+        if (in_ball.is_inside) measure.add(piece, in_ball, of_each.sum);
+      }
+      if (any_far) continue;
+      const CellResult result = measure.run(SamplesTogether{});
+      ASSERT_EQ(result.sum.volume.value, of_each.sum.volume.value);
+      volume += result.sum.volume.real();
+      together += force_of(result.sum);
+      alone += force_of(of_each.sum);
+    }
+  }
+  EXPECT_LT(norm(together - alone), 0.01 * volume);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DepthReadings,
+                         ::testing::Values("tilted-wall", "ball", "groove", "step", "plate",
+                                           "block"),
+                         [](const auto& variant) { return test::test_name(variant.param); });
+
+// An image that shows a rough wall at about 1 m.
+struct SmallImage {
+  SmallImage(std::int32_t width, std::int32_t height) {
+    Numbers numbers;
+    for (std::int32_t k = 0; k < width * height; ++k) {
+      const auto inverse_depth = static_cast<float>(numbers.between(0.98, 1.02));
+      pixels.push_back({inverse_depth, inverse_depth});
+      normals.push_back(narrow(normalized_or_zero(numbers.place(0.6) - Vec3{0, 0, 1})));
+    }
+    surface.k = {8, 8, (width - 1) / 2.0, (height - 1) / 2.0};
+    surface.width = width;
+    surface.height = height;
+    surface.levels = 1;
+    surface.tiles[0] = pixels.data();
+    surface.normals = normals.data();
+  }
+
+  std::vector<InverseDepthRange> pixels;
+  std::vector<Vec3f> normals;
+  DepthSurface surface;
+};
+
+TEST(SmallImages, AreReadTogetherAsInTurn) {
+  for (const std::int32_t width : {1, 2, 8, 9, 10}) {
+    for (const std::int32_t height : {1, 8, 9}) {
+      const SmallImage image(width, height);
+      Numbers numbers;
+      int known = 0, turned = 0;
+      for (std::size_t k = 0; k < 2000; ++k) {
+        known += known_of_four(image.surface, numbers);
+        expect_same_normals(image.surface, k % 5, numbers, turned);
+      }
+      EXPECT_GT(known, 100) << width << " x " << height;
+    }
+  }
+}
+
+// There, 0.5 less than an ulp plus another 0.5 rounds to 1, which is no pixel.
+TEST(SmallImages, HaveNoPixelBeyondTheirRim) {
+  const SmallImage image(1, 1);
+  const double rim = 0.5 - 0x1p-54;
+  for (const Vec3 x : {Vec3{rim / 8, 0, 1}, Vec3{0, rim / 8, 1}}) {
+    const SurfaceSample on_surface = image.surface.sample(x);
+    EXPECT_TRUE(!on_surface.known || on_surface.point == 0) << on_surface.point;
+    SurfaceSample together[4];
+    sample_four(image.surface, {x, x, x, x}, together);
+    for (const SurfaceSample& one : together) expect_same(one, on_surface);
+  }
+}
+
+TEST(ClippedSamples, AddUpTogetherAsInTurn) {
+  Numbers numbers;
+  int cut = 0, whole = 0, touched = 0;
+  for (int k = 0; k < 20000; ++k) {
+    ClipPlane plane;
+    plane.normal = normalized_or_zero(numbers.place(1));
+    plane.height = numbers.between(-0.12, 0.12);
+    std::vector<CellSample> samples(static_cast<std::size_t>(numbers.between(0, 40)));
+    for (CellSample& sample : samples) {
+      const double radius = std::max(0.0, numbers.between(-0.01, 0.03));
+      sample = {narrow(numbers.place(0.1)), static_cast<float>(radius), numbers.between(0, 1)};
+    }
+    if (k % 4 == 0 && !samples.empty()) {  // through a centre, or touching, exactly
+      const CellSample& sample = samples.front();
+      plane.normal = {1, 0, 0};
+      const int side = k % 12 / 4 - 1;
+      plane.height = side * double{sample.radius} - double{sample.center.x};
+      touched += std::abs(plane.distance(widen(sample.center))) == sample.radius ? 1 : 0;
+    }
+    const ClippedMoments together = clipped_moments(plane, samples),
+                         in_turn = SamplesInTurn::clipped(
+                             plane, samples.data(), static_cast<std::uint32_t>(samples.size()));
+    expect_same(together.weight, in_turn.weight);
+    expect_same(together.moment, in_turn.moment);
+    EXPECT_EQ(together.is_cut, in_turn.is_cut);
+    double weight = 0;
+    Vec3 moment;
+    bool is_cut = false;
+    for (const CellSample& sample : samples) {
+      bool cuts = false;
+      const double inside =
+          weight_behind(BallShape<double>{sample.radius}, plane.normal,
+                        plane.distance(widen(sample.center)), double{sample.weight}, cuts);
+      is_cut |= cuts;
+      weight += inside;
+      moment += inside * widen(sample.center);
+    }
+    EXPECT_NEAR(in_turn.weight, weight, 1e-13);
+    EXPECT_LE(norm(in_turn.moment - moment), 1e-14);
+    EXPECT_EQ(in_turn.is_cut, is_cut);
+    cut += in_turn.is_cut ? 1 : 0;
+    whole += !in_turn.is_cut && in_turn.weight > 0 ? 1 : 0;
+  }
+  EXPECT_GT(cut, 5000);
+  EXPECT_GT(whole, 100);
+  EXPECT_GT(touched, 500);
+}
+
+}  // namespace
+}  // namespace vpm
