@@ -14,7 +14,7 @@ PointCloud import_cloud(const std::string& path, const ImportParameters& paramet
   check_normal_options(options.normals);
   if (options.intrinsics) check_intrinsics(*options.intrinsics);
   const std::string name = path == "-" ? "standard input" : path;
-  ImportedCloud imported = import_cloud(file::sample_all(path), name, options);
+  ImportedCloud imported = import_cloud(file::read_all(path), name, options);
   return PointCloud(std::make_shared<const Cloud>(std::move(imported.cloud)));
 }
 

@@ -42,7 +42,7 @@ KindNames names_of(Kind kind) {
     case Kind::packing:
       return {"a packing (.vpmp)", "`pack`"};
     case Kind::tool_model:
-      return {"a tool model (.vpmg)", "`build_tool_model`"};
+      return {"a tool model (.vpmg)", "`build_tool`"};
     case Kind::cloud:
       return {"a cloud (.vpmc)", "`import_cloud`"};
   }

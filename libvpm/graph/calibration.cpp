@@ -125,7 +125,7 @@ double fraction_inside(const ToolModel& model, const Level& level, const CellClu
     const bool patch = may_be_planar(cluster.reach, model.reach);
     const Cut of_patch = cut.plane_at(cluster.center, cluster.reach);
     for (std::uint32_t k = cluster.begin; k < cluster.end; ++k) {
-      const std::uint32_t i = clusters.voronoi[k];
+      const std::uint32_t i = clusters.cells[k];
       for (std::uint32_t b = level.block_begin[i]; b < level.block_begin[i + 1]; ++b) {
         const CellBlock& block = level.blocks[b];
         sum +=

@@ -23,9 +23,11 @@ for name, text in texts.items():
 together = re.sub(r"//[^\n]*", "", "\n".join(texts.values()))
 classes = set(re.findall(r"(?:class|struct) VPM_API (\w+)", together))
 functions = set(re.findall(r"VPM_API [^;{()]*?\b(\w+)\(", together))
+all_exported = []
 for library in sys.argv[2:]:
     table = subprocess.run(["nm", "-DC", "--defined-only", library], capture_output=True, text=True, check=True).stdout
     exported = [line.split(maxsplit=2)[2] for line in table.splitlines()]
+    all_exported += exported
     for symbol in exported:
         name = re.sub(r"^(typeinfo name|typeinfo|vtable|VTT|guard variable|construction vtable) for ", "", symbol)
         path = re.match(r"vpm::([\w~:]+)", name)
@@ -36,6 +38,13 @@ for library in sys.argv[2:]:
             faults.append(f"{library} exports {symbol}, which no public header declares")
     if not any(symbol.startswith("vpm::") for symbol in exported):
         faults.append(f"{library} exports nothing of vpm")
+if len(sys.argv) > 3:  # both libraries
+    for name in classes:
+        if not any(symbol.startswith(f"vpm::{name}::") for symbol in all_exported):
+            faults.append(f"no library exports {name}")
+    for name in functions - classes:
+        if not any(re.search(rf"\b{name}(\[|\()", symbol) for symbol in all_exported):
+            faults.append(f"no library exports {name}()")
 
 for fault in faults:
     print(fault)

@@ -68,9 +68,10 @@ TEST(Container, NamesOfFilesNeedNotBeUtf8) {
 
 TEST(Container, AnotherKindIsRefusedByName) {
   const std::string said = refusal_of([] { Reader(example(), "wall.vpmc", Kind::tool_model); });
-  EXPECT_EQ(said,
-            "wall.vpmc: this is a cloud (.vpmc); needed is a tool model (.vpmg), which vpm-graph "
-            "writes");
+  EXPECT_EQ(
+      said,
+      "wall.vpmc: this is a cloud (.vpmc); needed is a tool model (.vpmg), which `build_tool` "
+      "writes");
 }
 
 TEST(Container, MissingChunksAndOtherElementsAreRefused) {

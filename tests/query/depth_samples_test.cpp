@@ -198,11 +198,11 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
                    level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_reach[i]});
       expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
       const CellBlock& block = level.blocks[level.block_begin[i]];
-      const auto in_block = measure.look_at(block);
+      const auto in_block = measure.sample_piece(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const ToolPiece piece = piece_of(level.samples[s]);
-        const auto in_ball = measure.look_at(piece);
+        const auto in_ball = measure.sample_piece(piece);
         if (!in_ball.is_inside) continue;
         ++(in_ball.is_far ? far : measure.is_cut(piece, in_ball) ? cut : pushed);
       }
@@ -234,13 +234,13 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
                    level.block_begin[i + 1], tool.spheres[i].center, level.cell_reach[i]});
       const CellBlock& block = level.blocks[level.block_begin[i]];
-      const auto in_block = measure.look_at(block);
+      const auto in_block = measure.sample_piece(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       CellResult of_each;
       bool any_far = false;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const ToolPiece piece = piece_of(level.samples[s]);
-        const auto in_ball = measure.look_at(piece);
+        const auto in_ball = measure.sample_piece(piece);
         any_far |= in_ball.is_inside && in_ball.is_far;
         if (in_ball.is_inside) measure.add(piece, in_ball, of_each.sum);
       }

@@ -221,7 +221,7 @@ TEST_P(SameBits, FarFromTheOriginToWhatDoubleHolds) {
 // Shows a change of any bit of any result. For a change that is meant, renew the hash (target
 // renew_replay_hash) and give the reason in the commit.
 TEST(Replay, GivesTheBytesThatItAlwaysGave) {
-  const std::vector<std::byte> text = file::sample_all(VPM_SOURCE_DIR "/tests/query/replay.hash");
+  const std::vector<std::byte> text = file::read_all(VPM_SOURCE_DIR "/tests/query/replay.hash");
   const std::string recorded(reinterpret_cast<const char*>(text.data()), text.size());
   EXPECT_EQ(file::content_hash({testing::replay()}) + "\n", recorded);
 }

@@ -109,7 +109,7 @@ class Packings {
                                      {"knot.ply", "knot.ply"}}) {
       const std::string path = options_.meshes + "/" + file;
       if (options_.meshes.empty()) continue;
-      add_shape(name, make_solid(parse_mesh(file::sample_all(path), path), {}).solid);
+      add_shape(name, make_solid(parse_mesh(file::read_all(path), path), {}).solid);
     }
     nlohmann::json names = nlohmann::json::array();
     for (const Shape& s : shapes_) names.push_back(s.name);

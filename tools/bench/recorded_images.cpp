@@ -87,7 +87,7 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
     options.intrinsics = frame.intrinsics;
     options.units_per_metre = frame.units_per_metre;
     try {
-      images.push_back({frame.file, import_cloud(file::sample_all(path), path, options).cloud});
+      images.push_back({frame.file, import_cloud(file::read_all(path), path, options).cloud});
     } catch (const Error& fault) {
       if (fault.kind() != ErrorKind::unavailable) throw;
     }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::array<std::pair<const char*, const char*>, 11> kWords = {{
     {"repair_voxels", "--repair voxel=N"},
     {"pack", "vpm-pack"},
-    {"build_tool_model", "vpm-graph"},
+    {"build_tool", "vpm-graph"},
     {"import_cloud", "vpm-normals"},
     {"calibrate", "vpm-graph --calibrate"},
     {"levels", "vpm-graph --levels"},
