@@ -17,6 +17,7 @@
 #include "tools/common/scene_report.h"
 #include "tools/common/tool.h"
 #include "tools/query/coupled.h"
+#include "tools/query/gone_options.h"
 #include "tools/query/pose_batches.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
@@ -36,11 +37,9 @@ struct Arguments {
   std::optional<double> deadline_us;
   bool for_scene = false, coherent = false, count_points = false, raw_points = false;
   bool no_points = false;  // has no effect
-  std::string reuse;       // gone
   std::optional<double> stiffness;
   std::string coupling;
   std::size_t batch = 1;
-  std::uint32_t standby_us = 0;
   ReplayArguments replay;
 };
 
@@ -78,7 +77,6 @@ void declare(CLI::App& app, Arguments& a) {
       "--coherent", a.coherent,
       "The poses are one motion: a tool that passes wholly behind the surface stays inside "
       "until it comes out");
-  app.add_option("--reuse", a.reuse)->group("");
   app.add_flag("--count-points", a.count_points,
                "Count the cloud's points in spheres into the field points: slower with many "
                "spheres. --measure paper counts them anyway");
@@ -97,11 +95,6 @@ void declare(CLI::App& app, Arguments& a) {
          "Poses that a device takes at once; answers come in their order. Changes no result")
       ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str();
-  app.add_option("--standby-us", a.standby_us,
-                 "Microseconds that a device stays ready for the next pose, and does nothing else; "
-                 "in depth images. Changes no result")
-      ->check(whole_number_in(0, QueryOptions::kLongestStandby))
-      ->capture_default_str();
   declare(app, a.replay);
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
@@ -109,6 +102,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
   app.add_option("--view", a.view,
                  "A page (.html) that shows scene, tool, answers and path in any browser");
+  declare_gone_options(app);
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
@@ -135,19 +129,13 @@ void check(const Arguments& a, const CommonOptions& common) {
         "(--stiffness in N/m^3)");
   if (a.coherent && (a.batch > 1 || a.deadline_us))
     wrong("--coherent goes pose by pose at one level; leave --batch and --deadline-us out");
-  if (!a.reuse.empty())
-    wrong("--reuse is gone: leave it out; a coarser --level trades accuracy for speed");
   if (a.batch > 1 && (a.deadline_us || !a.coupling.empty() || replays))
     wrong("--batch answers many poses at once; leave --deadline-us, --coupling and --frames out");
-  if (a.standby_us > 0 && (a.count_points || a.batch > 1 || a.measure == "paper" || a.coherent))
-    wrong(
-        "--standby-us waits for single poses of the refined measure; leave --count-points, "
-        "--batch, --measure paper and --coherent out");
-  if (a.tools.size() > 1 && (replays || a.deadline_us || !a.coupling.empty() || a.coherent ||
-                             a.standby_us > 0 || !a.spheres_out.empty()))
+  if (a.tools.size() > 1 &&
+      (replays || a.deadline_us || !a.coupling.empty() || a.coherent || !a.spheres_out.empty()))
     wrong(
         "several tools are asked for poses in one cloud; leave --frames, --deadline-us, "
-        "--coupling, --coherent, --standby-us and --spheres-out out, or give one --tool");
+        "--coupling, --coherent and --spheres-out out, or give one --tool");
   if (a.deadline_us && !(*a.deadline_us > 0))
     wrong("--deadline-us must be a positive number of microseconds");
   if (!a.spheres_out.empty()) check_spheres_path(a.spheres_out);
@@ -385,7 +373,6 @@ void run(const Tool& tool, const Arguments& a) {
   options.shadows = a.shadows == "solid" ? Shadows::solid : Shadows::near;
   options.coherent = a.coherent;
   options.counts_points = a.count_points;
-  options.standby_us = a.standby_us;
   options.device = device_of(tool, a.coherent);
   std::optional<PoseView> view;
   if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);

@@ -36,11 +36,6 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --mea
 2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
 [2]
 
-# --reuse is refused with what to do instead.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001
-2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
-[2]
-
 # Parameters that cannot stand the scene's stiffness are warned about, with a cure.
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 1e7 -o /dev/null --quiet
 2> vpm-query: warning: --coupling is stable against contacts up to 6.05e+04 N/m, but with --stiffness 1e+07 this tool can make one of 9.42e+05 N/m: take rate=4242 or more, a larger mass, or less --stiffness

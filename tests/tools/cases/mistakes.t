@@ -121,15 +121,16 @@ $ echo '1e300 0 0 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --pose
 2> vpm-query: error: standard input, line 1: pose: the translation is not finite, or further than 2^100 m from the origin
 [1]
 
-# A device stands by for single poses without counted points; otherwise the option is refused or has no effect.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100 --count-points
-2> vpm-query: error: --standby-us waits for single poses of the refined measure; leave --count-points, --batch, --measure paper and --coherent out
+# Options that are gone are refused with what to do instead, those of a configuration too.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
+2> vpm-query: error: --standby-us is gone: leave it out; a device no longer stands by between poses, and results are the same
 [2]
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 1000001
-2> vpm-query: error: --standby-us: 1000001 is not a whole number from 0 to 1000000 (see vpm-query --help)
+$ echo '{"standby-us": 0}' > old.json; vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --config old.json
+2> vpm-query: error: --standby-us is gone: leave it out; a device no longer stands by between poses, and results are the same
 [2]
-$ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us $s | md5sum; done | uniq | wc -l
-1
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --reuse 0.001
+2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
+[2]
 
 # Help that cannot be written is an error.
 $ vpm-pack --help > /dev/full
