@@ -13,11 +13,11 @@
 namespace vpm::tools {
 namespace {
 
-// Bytes of states that a page holds, and the bounds of its steps.
+// Most bytes of states that a page holds, and the limits of the number of its steps.
 constexpr std::size_t kStateBytes = 1'300'000, kFewestSteps = 50, kMostSteps = 1000;
-// Images of a recording that a page holds, and their pixels in all.
+// Most images of a recording that a page holds, and the most pixels of all of them.
 constexpr std::size_t kMostFrames = 24, kFramePixels = 1'000'000;
-// A state of a sphere beyond the level that a step used.
+// State of a sphere that the level of a step does not have.
 constexpr std::uint8_t kUnused = 3;
 
 constexpr std::array<const char*, 4> kToolColors{"#b08d57", "#6b8e23", "#8968a8", "#4f8a8b"};
@@ -111,7 +111,8 @@ void PoseView::add_batch(std::span<ToolQuery* const> queries, const PreparedClou
   }
 }
 
-// Where there are too many, every second of those that were kept goes.
+// Adds a step if its turn has come. Drops every second of those that were kept if there are too
+// many.
 void PoseView::keep(Step step) {
   const bool is_kept = keeps_next();
   ++seen_;
@@ -167,7 +168,7 @@ void PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const
   if (recording_ != nullptr) add_frames(page, steps);
 }
 
-// Reads again the frames that the steps saw, as many as a page holds.
+// Reads the frames that the steps saw again, as many as a page holds, and adds them.
 void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) const {
   std::set<std::size_t> seen;
   for (const Step& step : steps)
@@ -273,7 +274,7 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
   return add_numbers(page, steps, tool, body);
 }
 
-// Says what a glance at the numbers does not tell: a tool that nobody sees, and empty answers.
+// Adds notes on a tool that no camera sees, and on poses at which nothing is touched.
 void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps) const {
   const bool has_camera =
       std::ranges::any_of(clouds_, [](const auto& c) { return c.second.sensor.has_value(); });

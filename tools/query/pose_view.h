@@ -15,30 +15,32 @@
 
 namespace vpm::tools {
 
-// Records poses, answers and states as they come and writes the page at the end. Of a long run it
-// keeps every n-th pose and the last one, so that its memory and the page stay small.
+// Records poses, answers and states as they come and writes the page at the end. Keeps every n-th
+// pose of a long run and the last one, so that its memory and the page stay small.
 class PoseView {
  public:
-  // `names` are the models' files, which keep their meshes too. The models outlive this. Throws
-  // Error(unavailable) where this build draws no pages.
+  // Reads the meshes from the files of the models, `names`. The models must outlive this. Throws
+  // Error(unavailable) if this build draws no pages.
   PoseView(std::string path, std::span<const ToolModel> models, std::vector<std::string> names,
            const QueryOptions& options);
 
-  // The scene: clouds that do not change, or the frames of a recording, which outlives this.
+  // Adds a cloud to the scene of all poses.
   void add_cloud(const std::string& name, Cloud cloud);
+  // Makes the frames of a recording the scene. The recording must outlive this.
   void set_frames(const std::string& name, const Recording& recording,
                   const ImportOptions& options);
 
-  // Adds the answer of the tool's query to its last pose. Tools come in their order.
+  // Adds the answer of the tool's query to its last pose. Expects the tools in their order.
   void add(std::size_t tool, const Pose& pose, const Result& result, const ToolQuery& query);
-  // Adds poses that were answered together, which leaves no states: those that are kept, and the
-  // last, are asked again.
+  // Adds poses that were answered together. Queries those that are kept, and the last one, again,
+  // since a batch leaves no states of spheres.
   void add_batch(ToolQuery& query, const PreparedCloud& cloud, std::span<const Pose> poses);
   void add_batch(std::span<ToolQuery* const> queries, const PreparedCloud& cloud,
                  std::span<const Pose> poses);
-  // Says which frame of the recording the steps from here on see.
+  // Sets the frame of the recording that the next steps see.
   void see_frame(std::optional<std::size_t> frame) { frame_ = frame; }
 
+  // Writes the page. Throws Error(refused) if no pose was added.
   void write() const;
 
  private:

@@ -1,3 +1,4 @@
+// Lines of results and statistics of vpm-query.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +12,7 @@
 
 namespace vpm::tools {
 
-// Place of a line in a replay.
+// Time and frame of a step through recorded frames.
 struct StepOfReplay {
   double time = 0;    // s since the start of the path
   std::string frame;  // name of the file; "" before the first frame
@@ -28,12 +29,13 @@ std::string result_line(std::size_t pose_index, const Result& result, const Leve
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool = std::nullopt);
 
-// Returns the timings of a run (formats/schemas/query-stats.json), with a deadline also the
-// fraction of the queries that kept it.
+// Returns the timings of a run (formats/schemas/query-stats.json), and with a deadline the fraction
+// of the queries that kept it. Times of poses and of the scene's preparation are in seconds.
 nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_seconds,
                            std::optional<double> deadline_us);
 
-// Notes that rotations of `what` have been normalised, if the deviation is beyond rounding.
+// Notes that rotations have been normalised, if the deviation is beyond rounding. `what` names the
+// file; "" leaves it out.
 void note_deviation(const Tool& tool, const std::string& what, double deviation);
 
 }  // namespace vpm::tools

@@ -4,15 +4,13 @@
 #include <filesystem>
 
 #include "libvpm/core/error.h"
-#include "tools/common/number_checks.h"
-#include "tools/query/coupled.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
 
 namespace vpm::tools {
 namespace {
 
-// Number of warnings about frames; the report counts the others.
+// Most warnings about frames that are printed; the report counts all.
 constexpr std::size_t kMostWarnings = 5;
 
 std::string name_of(const std::string& path) {
@@ -27,54 +25,10 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
 }
 
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
-  if (!a.camera_poses.empty() && import.to_world)
-    throw Error(ErrorKind::invalid_argument, "give either --camera-poses or --camera-pose");
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
 
 }  // namespace
-
-void declare(CLI::App& app, ReplayArguments& a) {
-  CLI::Option* frames = app.add_option("--frames", a.frames,
-                                       "Instead of --cloud: folder of depth images with their "
-                                       "times (TUM RGB-D, 7-Scenes), or a list "
-                                       "of \"time file\" lines; goes with --trajectory");
-  CLI::Option* trajectory = app.add_option("--trajectory", a.trajectory,
-                                           "Path of the tool through the frames, as for --poses");
-  frames->needs(trajectory);
-  app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
-      ->check(number_in(1, 1e6));
-  app.add_option("--camera-poses", a.camera_poses,
-                 "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
-                 "frames, or groundtruth.txt");
-  app.add_option("--frame-rate", a.frame_rate,
-                 "Frames per second, where their names have numbers but no times")
-      ->check(number_in(1e-3, 1e6))
-      ->capture_default_str();
-  app.add_option("--frame-latency", a.frame_latency,
-                 "Seconds from the time of a frame until a step can see it")
-      ->check(number_in(0, 3600))
-      ->capture_default_str();
-  app.add_flag("--align-starts", a.align_starts,
-               "Path and frames begin together, whatever their times say");
-  app.add_flag("--repeat-frames", a.repeat_frames,
-               "Frames go back and forth as long as the path lasts; otherwise the last one stays");
-  app.add_flag("--realtime", a.realtime,
-               "Steps wait for the clock; otherwise as fast as it goes, with the same results");
-  declare(app, a.import);
-  for (const char* name :
-       {"--trajectory", "--rate", "--camera-poses", "--align-starts", "--repeat-frames",
-        "--realtime", "--intrinsics", "--depth-scale", "--camera-pose"})
-    app.get_option(name)->needs(frames);
-  for (const char* name : {"--cloud", "--pose", "--poses"}) frames->excludes(app.get_option(name));
-}
-
-bool is_default(const ReplayArguments& a) {
-  const ReplayArguments other;
-  return a.import.method == other.import.method && a.import.window == other.import.window &&
-         a.import.edge_gate == other.import.edge_gate && a.frame_rate == other.frame_rate &&
-         a.frame_latency == other.frame_latency;
-}
 
 Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
                const Device& device, Denoising points)
@@ -141,6 +95,20 @@ void Replay::find_first_cloud() {
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }
 
+CoupledStep Replay::ask(std::size_t k, LevelToolQuery& query,
+                        std::optional<VirtualCoupling>& coupling) const {
+  CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
+  step.tool = coupling ? coupling->tool() : step.device;
+  const DepthFrame* const frame = feed_->depth_frame();
+  step.contact =
+      frame != nullptr ? query.run(*frame, step.tool) : query.run(feed_->cloud(), step.tool);
+  if (coupling) {
+    step.rendered = coupling->advance(step.device, step.contact.wrench);
+    step.energy = coupling->energy();
+  }
+  return step;
+}
+
 void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
                  file::Output& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
@@ -153,16 +121,9 @@ void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling,
     const PreparedChange* change = arguments_.realtime ? nullptr : feed_->advance_to(k);
     clock_->begin_step();
     if (arguments_.realtime) change = feed_->advance_to(k);
-    CoupledStep step{k, path_.time(k), path_.pose(k), {}, {}, {}, {}};
-    last_pose_ = step.tool = coupling ? coupling->tool() : step.device;
-    const DepthFrame* const frame = feed_->depth_frame();
-    step.contact =
-        frame != nullptr ? query.run(*frame, step.tool) : query.run(feed_->cloud(), step.tool);
-    if (coupling) {
-      step.rendered = coupling->advance(step.device, step.contact.wrench);
-      step.energy = coupling->energy();
-    }
+    const CoupledStep step = ask(k, query, coupling);
     clock_->end_step();
+    last_pose_ = step.tool;
     query_seconds_.push_back(query.seconds());
     if (view) view->see_frame(feed_->frame());
     if (view) view->add(0, step.tool, step.contact, query.query());

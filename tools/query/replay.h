@@ -11,31 +11,18 @@
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
-#include "tools/common/import_arguments.h"
+#include "tools/query/coupled_step.h"
 #include "tools/query/pose_view.h"
+#include "tools/query/replay_arguments.h"
 
 namespace vpm::tools {
 
-struct ReplayArguments {
-  std::string frames, trajectory, camera_poses;
-  std::optional<double> rate;  // steps per second; kRate if not given
-  double frame_rate = 30;      // for numbered frames
-  double frame_latency = 0;    // s
-  bool align_starts = false, repeat_frames = false, realtime = false;
-  ImportArguments import;
-
-  static constexpr double kRate = 1000;
-};
-
-void declare(CLI::App& app, ReplayArguments& arguments);
-// True if every argument that has a default still has it.
-bool is_default(const ReplayArguments& arguments);
-
+// Path of the tool through a recording.
 class Replay {
  public:
-  // Reads the recording and the path. Depth images are prepared on the device of the queries;
-  // frames without a camera are read as `points` says. Throws what the readers throw, and
-  // Error(refused) if recording and path share no time or no frame can be used.
+  // Reads the recording and the path, which has `rate` steps per second. Prepares depth images on
+  // the device of the queries, and reads frames without a camera as `points` says. Throws what the
+  // readers throw, and Error(refused) if recording and path share no time or no frame can be used.
   Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
          Denoising points);
 
@@ -43,16 +30,18 @@ class Replay {
   // Returns the first frame that can be used, by which levels are chosen.
   const PreparedCloud& first_cloud() const { return *first_cloud_; }
 
-  // Queries step by step and writes a line of results for each; notes and warnings about frames
-  // come as they happen.
+  // Queries step by step and writes a line of results for each. Prints notes and warnings about
+  // frames as they happen.
   void run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
            file::Output& output, std::optional<PoseView>& view);
 
-  // Return values that are complete after run().
+  // Returns the last pose of the tool. The values from here on need run().
   const Pose& last_pose() const { return last_pose_; }
   const PreparedCloud& last_cloud() const { return feed_->cloud(); }
+  // Returns the time of each query, s.
   const std::vector<double>& query_seconds() const { return query_seconds_; }
-  double prepare_seconds() const;  // median over the frames
+  // Returns the median time of preparing a frame, s.
+  double prepare_seconds() const;
   // Returns the field "replay" of --stats. `deadline` is in seconds.
   nlohmann::json report(double deadline) const;
 
@@ -63,6 +52,9 @@ class Replay {
   void say(const PreparedChange& change);
   void say_at_end() const;
   std::string frame_name() const;
+  // Returns step k, without rendered wrench and energy if there is no coupling.
+  CoupledStep ask(std::size_t k, LevelToolQuery& query,
+                  std::optional<VirtualCoupling>& coupling) const;
 
   const Tool& tool_;
   const ReplayArguments& arguments_;

@@ -1,3 +1,4 @@
+// Statistics of a run through recorded frames.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +12,7 @@ namespace vpm::tools {
 // `wall` is the time that the loop took and `deadline` that of a step, both in seconds.
 nlohmann::json replay_report(const LoopClock& clock, double rate, double wall, double deadline);
 
-// Returns the field "frames" of that report.
+// Returns the field "frames" of the field "replay".
 nlohmann::json frames_report(const Recording& recording, const FrameCounts& counts);
 
 }  // namespace vpm::tools

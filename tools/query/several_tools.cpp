@@ -1,56 +1,95 @@
-#include "tools/query/several_tools.h"
-
+// Mode of vpm-query that asks every tool at every pose in a cloud.
 #include <chrono>
+#include <deque>
+#include <span>
 
-#include "tools/query/pose_batches.h"
+#include "libvpm/file/stream.h"
+#include "tools/query/cloud_scene.h"
 #include "tools/query/query_report.h"
+#include "tools/query/run_mode.h"
 
 namespace vpm::tools {
+namespace {
 
-SeveralTools::SeveralTools(std::span<const ToolModel> models, const QueryOptions& options,
-                           const LevelRequest& request, const PreparedCloud& cloud,
-                           const Pose& first_pose)
-    : cloud_(cloud), measure_(options.measure) {
-  for (const ToolModel& model : models) {
-    queries_.emplace_back(model, options, request, cloud, first_pose);
-    together_.push_back(&queries_.back().query());
+// Queries of all tools, each at the level that the request chooses for it.
+class SeveralTools {
+ public:
+  SeveralTools(QuerySetup& setup, const PreparedCloud& cloud, const Pose& first_pose)
+      : setup_(setup), cloud_(cloud) {
+    for (const ToolModel& model : setup.models) {
+      queries_.emplace_back(model, setup.options, setup.level, cloud, first_pose);
+      together_.push_back(&queries_.back().query());
+    }
+    for (const LevelToolQuery& query : queries_) note_scale(setup.tool, query);
   }
-}
 
-void SeveralTools::run(std::optional<Pose> next, std::optional<PoseReader>& reader,
-                       std::size_t at_once, file::Output& output, std::optional<PoseView>& view) {
-  in_batches(next, reader, at_once, [&](std::span<const Pose> poses) { ask(poses, output, view); });
-}
-
-void SeveralTools::ask(std::span<const Pose> poses, file::Output& output,
-                       std::optional<PoseView>& view) {
-  const std::size_t tools = queries_.size();
-  std::vector<Job> questions;
-  for (const Pose& pose : poses)
-    for (std::uint32_t t = 0; t < tools; ++t) questions.push_back({pose, t});
-  std::vector<Result> results(questions.size());
-  const auto begin = std::chrono::steady_clock::now();
-  if (poses.size() == 1) {  // the whole device answers each sooner
-    for (std::size_t t = 0; t < tools; ++t) results[t] = together_[t]->run(cloud_, poses.front());
-  } else {
-    ToolQuery::run(together_, cloud_, questions, results);
+  // Writes a line for each pose and tool: pose by pose, in the order of the tools.
+  void ask(std::span<const Pose> poses, file::Output& output) {
+    const std::vector<Result> results = timed_results(poses);
+    const std::size_t tools = queries_.size();
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      const std::size_t tool = k % tools;
+      output.append(result_line(poses_asked_ + k / tools, results[k], together_[tool]->level(),
+                                setup_.options.measure, queries_[tool].reason(), {}, tool));
+    }
+    if (setup_.view) setup_.view->add_batch(together_, cloud_, poses);
+    poses_asked_ += poses.size();
   }
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  seconds_.insert(seconds_.end(), results.size(),
-                  took.count() / static_cast<double>(results.size()));
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const std::size_t tool = k % tools;
-    output.append(result_line(asked_ + k / tools, results[k], together_[tool]->level(), measure_,
-                              queries_[tool].reason(), {}, tool));
-  }
-  if (view) view->add_batch(together_, cloud_, poses);
-  asked_ += poses.size();
-}
 
-std::vector<std::uint32_t> SeveralTools::levels() const {
-  std::vector<std::uint32_t> levels;
-  for (const ToolQuery* query : together_) levels.push_back(query->level().sphere_count);
-  return levels;
+  // Returns the time of each answer, which is the mean of those asked together, s.
+  const std::vector<double>& seconds() const { return seconds_; }
+
+  // Returns the number of spheres of each tool's level.
+  std::vector<std::uint32_t> levels() const {
+    std::vector<std::uint32_t> levels;
+    for (const ToolQuery* query : together_) levels.push_back(query->level().sphere_count);
+    return levels;
+  }
+
+ private:
+  std::vector<Result> timed_results(std::span<const Pose> poses) {
+    std::vector<Job> jobs;
+    for (const Pose& pose : poses)
+      for (std::uint32_t t = 0; t < queries_.size(); ++t) jobs.push_back({pose, t});
+    std::vector<Result> results(jobs.size());
+    const auto start = std::chrono::steady_clock::now();
+    if (poses.size() == 1) {  // the whole device answers each sooner
+      for (std::size_t t = 0; t < queries_.size(); ++t)
+        results[t] = together_[t]->run(cloud_, poses.front());
+    } else {
+      ToolQuery::run(together_, cloud_, jobs, results);
+    }
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    seconds_.insert(seconds_.end(), results.size(),
+                    taken.count() / static_cast<double>(results.size()));
+    return results;
+  }
+
+  QuerySetup& setup_;
+  const PreparedCloud& cloud_;
+  std::deque<LevelToolQuery> queries_;
+  std::vector<ToolQuery*> together_;
+  std::size_t poses_asked_ = 0;
+  std::vector<double> seconds_;
+};
+
+}  // namespace
+
+void run_several_tools(QuerySetup& setup) {
+  const Arguments& a = setup.arguments;
+  PoseSource source(a);
+  const CloudScene scene(setup);
+  const Pose first = source.first();
+  file::Output output(a.output);
+  SeveralTools tools(setup, scene.cloud(), first);
+  for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
+    tools.ask(poses, output);
+  output.finish();
+  note_deviation(setup.tool, "", source.largest_deviation());
+  nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
+  stats["cloud_points"] = scene.cloud().positions().size();
+  stats["levels"] = tools.levels();
+  write_stats_and_view(setup, std::move(stats));
 }
 
 }  // namespace vpm::tools

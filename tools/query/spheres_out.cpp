@@ -10,9 +10,10 @@ namespace vpm::tools {
 
 void check_spheres_path(const std::string& path) {
   if (!view::sphere_format(path)) {
-    throw Error(ErrorKind::invalid_argument, "--spheres-out " + path +
-                                      ": the name must end in .csv, .ply (balls), .points.ply or "
-                                      ".glb");
+    throw Error(ErrorKind::invalid_argument,
+                "--spheres-out " + path +
+                    ": the name must end in .csv, .ply (balls), .points.ply or "
+                    ".glb");
   }
 }
 

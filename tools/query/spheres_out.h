@@ -1,3 +1,4 @@
+// vpm-query --spheres-out: the spheres of a level with their states.
 #pragma once
 
 #include <span>
@@ -8,12 +9,11 @@
 
 namespace vpm::tools {
 
-// Refuses (usage) a path that ends in neither .ply nor .csv.
+// Throws Error(invalid_argument) if the path has none of the suffixes of formats/spheres.md.
 void check_spheres_path(const std::string& path);
 
-// The spheres of a level at a pose, in world coordinates, with their state: 0 outside (grey), 1
-// boundary (orange), 2 inside (red). A .ply holds points with radius and colour, a .csv the columns
-// x,y,z,r,state.
+// Writes the spheres, which are in the tool's coordinates, at the pose in world coordinates, each
+// with its state. The suffix chooses the format (formats/spheres.md).
 void write_spheres(const std::string& path, std::span<const Sphere> spheres,
                    std::span<const SphereState> states, const Pose& pose);
 

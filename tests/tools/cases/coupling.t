@@ -30,15 +30,10 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent | pyt
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
 [0.25, 0.75, 0.75, 0.0]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --batch 2
-2> vpm-query: error: --coherent goes pose by pose at one level; leave --batch and --deadline-us out
+2> vpm-query: error: --coherent does not go with poses in batches, chosen by --batch: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --measure paper
 2> vpm-query: error: coherent poses are a matter of the refined measure on the CPU; leave the other measure or device out
-[2]
-
-# --reuse is refused with what to do instead.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent --reuse 0.001
-2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
 [2]
 
 # Parameters that cannot stand the scene's stiffness are warned about, with a cure.
@@ -53,7 +48,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling sti
 2> vpm-query: error: --coupling stiffness=500,damping=-1: give stiffness=N/m,damping=N s/m and, if wanted, mass=kg,rate=Hz
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling stiffness=500,damping=5
-2> vpm-query: error: --coupling needs the device's path (--poses) and what the scene's volume weighs (--stiffness in N/m^3)
+2> vpm-query: error: --coupling needs --stiffness: give the scene's stiffness in N/m^3
 [2]
 $ printf '%s\n' '1 0 0 0.85 0 0 0 1' '1 0 0 0.9 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4
 2> vpm-query: error: standard input, line 2: times must ascend

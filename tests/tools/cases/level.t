@@ -83,7 +83,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 1% -
 2> vpm-query: error: --max-error is about the refined measure, which calibrations measure; leave --measure paper out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level 10 --for-scene
-2> vpm-query: error: --level, --max-error and --for-scene choose the level: give one of them; --deadline-us goes with the last two only
+2> vpm-query: error: --level and --for-scene exclude each other: leave one of them out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 0
 2> vpm-query: error: --deadline-us must be a positive number of microseconds

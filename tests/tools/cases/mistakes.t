@@ -81,12 +81,31 @@ $ vpm-query --tool cube.vpmg --frames . --trajectory path.txt --rate nan
 [2]
 $ vpm-graph --levels 10,20 cube.vpmp -o - | cmp - cube.vpmg
 
-# Options without effect are refused.
+# Options that do not go together are refused; default values, which --dump-config writes, count as not given.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --dump-config | python3 -c "import json, sys; print(sorted(json.load(sys.stdin).keys() & {'batch', 'level', 'frame-rate', 'window'}))"
+['batch', 'frame-rate', 'level', 'window']
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --dump-config > all.json && vpm-query --config all.json --for-scene --quiet | wc -l
+2
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9 --rate 5 --align-starts
+2> vpm-query: error: --rate, --align-starts and --window do not go with poses in a cloud, chosen because --frames is not given: leave them out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --poses path.txt
+2> vpm-query: error: --pose and --poses exclude each other: leave one of them out
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc
+2> vpm-query: error: --pose or --poses is missing: give one of them
+[2]
+$ vpm-query --cloud wall.vpmc --poses path.txt
+2> vpm-query: error: --tool is missing: give the .vpmg that vpm-graph wrote
+[2]
+$ vpm-query --tool cube.vpmg --poses path.txt
+2> vpm-query: error: --cloud is missing: give the .vpmc that vpm-normals wrote, or --frames
+[2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --window 9
-2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
+2> vpm-query: error: --window does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --frame-latency 1
-2> vpm-query: error: --method, --window, --edge-gate, --frame-rate and --frame-latency belong to --frames
+2> vpm-query: error: --frame-latency does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 
 # Lines that are not poses are refused: binary files, times and number signs in JSON, a time too many.
@@ -121,15 +140,16 @@ $ echo '1e300 0 0 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --pose
 2> vpm-query: error: standard input, line 1: pose: the translation is not finite, or further than 2^100 m from the origin
 [1]
 
-# A device stands by for single poses without counted points; otherwise the option is refused or has no effect.
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100 --count-points
-2> vpm-query: error: --standby-us waits for single poses of the refined measure; leave --count-points, --batch, --measure paper and --coherent out
+# Options that are gone are refused with what to do instead, those of a configuration too.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 100
+2> vpm-query: error: --standby-us is gone: leave it out; a device no longer stands by between poses, and results are the same
 [2]
-$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us 1000001
-2> vpm-query: error: --standby-us: 1000001 is not a whole number from 0 to 1000000 (see vpm-query --help)
+$ echo '{"standby-us": 0}' > old.json; vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --config old.json
+2> vpm-query: error: --standby-us is gone: leave it out; a device no longer stands by between poses, and results are the same
 [2]
-$ for s in 0 100; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --standby-us $s | md5sum; done | uniq | wc -l
-1
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --reuse 0.001
+2> vpm-query: error: --reuse is gone: leave it out; a coarser --level trades accuracy for speed
+[2]
 
 # Help that cannot be written is an error.
 $ vpm-pack --help > /dev/full

@@ -80,13 +80,13 @@ $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 
 2> vpm-query: error: --rate and the rate of --coupling differ; give one of them
 [2]
 $ vpm-query --tool cube.vpmg --cloud two.vpmc --poses still.txt --realtime
-2> vpm-query: error: --realtime requires --frames (see vpm-query --help)
+2> vpm-query: error: --realtime does not go with poses in a cloud, chosen because --frames is not given: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --frames steps
-2> vpm-query: error: --frames requires --trajectory (see vpm-query --help)
+2> vpm-query: error: --trajectory is missing: give the path of the tool through the frames
 [2]
 $ vpm-query --tool cube.vpmg --frames steps --cloud two.vpmc --trajectory still.txt
-2> vpm-query: error: --cloud excludes --frames (see vpm-query --help)
+2> vpm-query: error: --cloud does not go with recorded frames, chosen by --frames: leave it out
 [2]
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt
 2> vpm-query: note: frames have numbers, not times: they begin with the path, at --frame-rate

@@ -22,8 +22,10 @@ $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.tx
 $ vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt --level 60
 2> vpm-query: error: * (glob)
 [2]
-$ for o in '--deadline-us 100' '--coherent' '--spheres-out s.ply' '--standby-us 5'; do vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt $o 2>&1 | cut -c 1-71; done | uniq -c | tr -s ' '
- 4 vpm-query: error: several tools are asked for poses in one cloud; leave
+$ for o in '--deadline-us 100' '--coherent' '--spheres-out s.ply'; do vpm-query --tool cube.vpmg --tool small.vpmg --cloud wall.vpmc --poses path.txt $o; done
+2> vpm-query: error: --deadline-us does not go with several tools in a cloud, chosen by more than one --tool: leave it out
+2> vpm-query: error: --coherent does not go with several tools in a cloud, chosen by more than one --tool: leave it out
+2> vpm-query: error: --spheres-out does not go with several tools in a cloud, chosen by more than one --tool: leave it out
 [2]
 $ vpm-query --tool - --tool - --cloud wall.vpmc --poses path.txt
 2> vpm-query: error: only one of --tool, --cloud, --poses and --trajectory can be standard input

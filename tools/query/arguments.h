@@ -1,0 +1,36 @@
+// Options of vpm-query.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/common/tool.h"
+#include "tools/query/replay_arguments.h"
+
+namespace vpm::tools {
+
+// Values of the options, in the units that --help names.
+struct Arguments {
+  std::vector<std::string> tools;
+  std::string cloud, pose, poses;
+  std::string measure = "refined", shadows = "near";
+  std::uint32_t level = 0;
+  std::string max_error;
+  std::optional<double> deadline_us, stiffness;
+  bool for_scene = false, coherent = false, count_points = false, raw_points = false;
+  bool no_points = false;  // accepted, but has no effect
+  std::string coupling;
+  std::size_t batch = 1;
+  ReplayArguments replay;
+  std::string output = "-", spheres_out, stats, view;
+};
+
+// Adds the options to `app`, which writes their values to `arguments`.
+void declare(CLI::App& app, Arguments& arguments);
+
+// Throws Error(invalid_argument) if two inputs are standard input, or an output's name is refused.
+void check_names(const Arguments& arguments, const CommonOptions& common);
+
+}  // namespace vpm::tools

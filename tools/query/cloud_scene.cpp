@@ -1,0 +1,51 @@
+#include "tools/query/cloud_scene.h"
+
+#include <chrono>
+#include <utility>
+
+#include "libvpm/cloud/cloud_file.h"
+
+namespace vpm::tools {
+
+CloudScene::CloudScene(QuerySetup& setup) {
+  const std::string& name = setup.arguments.cloud;
+  const Cloud cloud = read_cloud(name);
+  const auto start = std::chrono::steady_clock::now();
+  cloud_.emplace(cloud, setup.points);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  prepare_seconds_ = taken.count();
+  if (setup.view) setup.view->add_cloud(name, cloud);
+}
+
+PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {
+  if (!arguments.pose.empty()) pending_ = pose_from_text(arguments.pose, &deviation_);
+}
+
+Pose PoseSource::first() {
+  if (!pending_) pending_ = next_one();
+  if (!pending_) reader_->refuse_empty();
+  return *pending_;
+}
+
+std::optional<Pose> PoseSource::next_one() {
+  if (pending_) return std::exchange(pending_, std::nullopt);
+  if (!arguments_.pose.empty()) return std::nullopt;
+  if (!reader_) reader_.emplace(arguments_.poses);
+  return reader_->next();
+}
+
+std::vector<Pose> PoseSource::next(std::size_t most) {
+  std::vector<Pose> poses;
+  while (poses.size() < most) {
+    const std::optional<Pose> pose = next_one();
+    if (!pose) break;
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+double PoseSource::largest_deviation() const {
+  return reader_ ? reader_->largest_deviation() : deviation_;
+}
+
+}  // namespace vpm::tools

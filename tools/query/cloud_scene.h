@@ -1,0 +1,51 @@
+// Scene and poses of the modes that query a cloud.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "libvpm/recording/pose_reader.h"
+#include "libvpm/scene/prepared_cloud.h"
+#include "tools/query/query_setup.h"
+
+namespace vpm::tools {
+
+// Cloud of --cloud, prepared for queries.
+class CloudScene {
+ public:
+  // Reads and prepares the cloud and adds it to the view, if there is one.
+  explicit CloudScene(QuerySetup& setup);
+
+  const PreparedCloud& cloud() const { return *cloud_; }
+  // Returns the time that the preparation took, s.
+  double prepare_seconds() const { return prepare_seconds_; }
+
+ private:
+  std::optional<PreparedCloud> cloud_;
+  double prepare_seconds_ = 0;
+};
+
+// Pose of --pose, or those of --poses.
+class PoseSource {
+ public:
+  // Parses --pose. Leaves the file of --poses closed until a pose is asked for. The arguments must
+  // outlive this.
+  explicit PoseSource(const Arguments& arguments);
+
+  // Returns the first pose, which next() returns again. Throws Error(refused) if there is none.
+  Pose first();
+  // Returns the next poses, `most` of them or as many as are left. Throws what PoseReader throws.
+  std::vector<Pose> next(std::size_t most);
+  // Returns the largest deviation of a rotation before it was normalised.
+  double largest_deviation() const;
+
+ private:
+  std::optional<Pose> next_one();
+
+  const Arguments& arguments_;
+  std::optional<Pose> pending_;  // pose that was parsed or read, and not yet returned by next()
+  double deviation_ = 0;
+  std::optional<PoseReader> reader_;
+};
+
+}  // namespace vpm::tools

@@ -1,0 +1,80 @@
+// Modes of vpm-query that ask one tool at poses in a cloud, one by one or in batches.
+#include "libvpm/file/stream.h"
+#include "tools/query/cloud_scene.h"
+#include "tools/query/query_report.h"
+#include "tools/query/run_mode.h"
+
+namespace vpm::tools {
+namespace {
+
+// Queries of one tool and the lines of their results.
+class PoseQueries {
+ public:
+  PoseQueries(QuerySetup& setup, const PreparedCloud& cloud, const Pose& first_pose,
+              file::Output& output)
+      : setup_(setup),
+        cloud_(cloud),
+        output_(output),
+        query_(setup.models.front(), setup.options, setup.level, cloud, first_pose) {}
+
+  void ask(const Pose& pose) {
+    const Result result = query_.run(cloud_, pose);
+    write(result);
+    if (setup_.view) setup_.view->add(0, pose, result, query_.query());
+    last_ = pose;
+  }
+
+  void ask_together(const std::vector<Pose>& poses) {
+    std::vector<Result> results(poses.size());
+    query_.run(cloud_, jobs_of(poses), results);
+    for (const Result& result : results) write(result);
+    if (setup_.view) setup_.view->add_batch(query_.query(), cloud_, poses);
+    last_ = poses.back();
+  }
+
+  // Queries the last pose again, since a batch leaves no states of spheres.
+  void ask_last_again() { query_.run(cloud_, last_); }
+
+  const LevelToolQuery& query() const { return query_; }
+  // Returns the time of each answer, s.
+  const std::vector<double>& seconds() const { return seconds_; }
+  const Pose& last() const { return last_; }
+
+ private:
+  void write(const Result& result) {
+    output_.append(result_line(seconds_.size(), result, query_.query().level(),
+                               setup_.options.measure, query_.reason(), {}));
+    seconds_.push_back(query_.seconds());
+  }
+
+  QuerySetup& setup_;
+  const PreparedCloud& cloud_;
+  file::Output& output_;
+  LevelToolQuery query_;
+  std::vector<double> seconds_;
+  Pose last_;
+};
+
+}  // namespace
+
+void run_poses(QuerySetup& setup) {
+  const Arguments& a = setup.arguments;
+  PoseSource source(a);
+  const CloudScene scene(setup);
+  file::Output output(a.output);
+  PoseQueries queries(setup, scene.cloud(), source.first(), output);
+  note_scale(setup.tool, queries.query());
+  const bool together = a.batch > 1;
+  for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
+    together ? queries.ask_together(poses) : queries.ask(poses.front());
+  output.finish();
+  note_deviation(setup.tool, "", source.largest_deviation());
+  if (together && !a.spheres_out.empty()) queries.ask_last_again();
+  nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
+  stats["cloud_points"] = scene.cloud().positions().size();
+  add_level(stats, queries.query());
+  write_last_spheres(setup, queries.query(), queries.last());
+  write_stats_and_view(setup, std::move(stats));
+}
+
+}  // namespace vpm::tools

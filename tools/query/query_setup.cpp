@@ -1,0 +1,101 @@
+#include "tools/query/query_setup.h"
+
+#include "libvpm/core/error.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/model/tool_model_file.h"
+#include "tools/common/number_checks.h"
+#include "tools/common/scene_report.h"
+#include "tools/query/spheres_out.h"
+
+namespace vpm::tools {
+namespace {
+
+LevelRequest level_request(const Arguments& a) {
+  LevelRequest request;
+  if (!a.max_error.empty()) request.max_error = fraction_from_text(a.max_error, "--max-error");
+  if (a.deadline_us) {
+    if (!(*a.deadline_us > 0))
+      throw Error(ErrorKind::invalid_argument,
+                  "--deadline-us must be a positive number of microseconds");
+    request.deadline_seconds = 1e-6 * *a.deadline_us;
+  }
+  request.for_scene = a.for_scene;
+  return request;
+}
+
+std::vector<ToolModel> read_models(const std::vector<std::string>& names) {
+  std::vector<ToolModel> models;
+  for (const std::string& name : names) models.push_back(read_tool_model(name));
+  return models;
+}
+
+// Returns the CPU for coherent poses, which no device computes, unless a device is named.
+Device device_of(const Tool& tool, bool coherent) {
+  return coherent && tool.common().device == "auto" ? Device{} : tool.device();
+}
+
+QueryOptions query_options(const Tool& tool, const Arguments& a) {
+  QueryOptions options;
+  options.measure = a.measure == "paper" ? Measure::paper : Measure::refined;
+  options.level = a.level;
+  options.stiffness = a.stiffness.value_or(1);
+  options.occluded = a.shadows == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach;
+  options.coherent = a.coherent;
+  options.counts_points = a.count_points;
+  options.device = device_of(tool, a.coherent);
+  return options;
+}
+
+// Returns how points are read: as they are for the measure as printed.
+Denoising denoising_of(const Arguments& a) {
+  return a.raw_points || a.measure == "paper" ? Denoising::off : Denoising::on;
+}
+
+}  // namespace
+
+QuerySetup::QuerySetup(const Tool& t, const Arguments& a)
+    : tool(t),
+      arguments(a),
+      level(level_request(a)),
+      models(read_models(a.tools)),
+      points(denoising_of(a)) {
+  for (const ToolModel& model : models) model.level(a.level);  // throws if it has no such level
+  options = query_options(tool, a);
+  if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);
+}
+
+void note_scale(const Tool& tool, const LevelToolQuery& query) {
+  if (!query.scale()) return;
+  tool.note("the scene resolves " + words_of(*query.scale()) + ": the level of " +
+            std::to_string(query.finest().sphere_count) + " is enough");
+}
+
+void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last) {
+  const std::string& path = setup.arguments.spheres_out;
+  if (path.empty()) return;
+  const std::span<const Sphere> spheres(setup.models.front().spheres.data(),
+                                        query.query().level().sphere_count);
+  write_spheres(path, spheres, query.query().states(), last);
+}
+
+void add_level(nlohmann::json& stats, const LevelToolQuery& query) {
+  stats["level"] = query.query().level().sphere_count;
+  if (query.scale()) stats["scene"] = scene_report(*query.scale());
+}
+
+void write_stats_and_view(const QuerySetup& setup, nlohmann::json stats) {
+  const Arguments& a = setup.arguments;
+  if (!a.stats.empty()) {
+    const Device& device = setup.options.device;
+    stats["device"] = device.is_cuda() ? "cuda" : "cpu";
+    if (device.is_cuda()) stats["device_name"] = device_name(device);
+    stats["batch"] = a.batch;
+    stats["threads"] = thread_count();
+    stats["measure"] = a.measure;
+    file::write_all(a.stats, stats.dump(2) + "\n");
+  }
+  if (setup.view) setup.view->write();
+}
+
+}  // namespace vpm::tools

@@ -1,0 +1,45 @@
+// Parts of a run that all modes of vpm-query share.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/level_tool_query.h"
+#include "tools/query/arguments.h"
+#include "tools/query/pose_view.h"
+
+namespace vpm::tools {
+
+// Models and options that every mode begins with.
+struct QuerySetup {
+  // Reads the models. The tool and its arguments must outlive this. Throws Error for what the
+  // arguments, the models or the device refuse.
+  QuerySetup(const Tool& tool, const Arguments& arguments);
+  QuerySetup(const QuerySetup&) = delete;
+  QuerySetup& operator=(const QuerySetup&) = delete;
+
+  const Tool& tool;
+  const Arguments& arguments;
+  LevelRequest level;
+  std::vector<ToolModel> models;  // one per --tool
+  QueryOptions options;
+  Denoising points;              // how points without a camera are read
+  std::optional<PoseView> view;  // empty without --view
+};
+
+// Notes the level that the scene's points resolve, if --for-scene chose it.
+void note_scale(const Tool& tool, const LevelToolQuery& query);
+
+// Writes --spheres-out for the pose that the query answered last.
+void write_last_spheres(const QuerySetup& setup, const LevelToolQuery& query, const Pose& last);
+
+// Adds the level of a single tool and the scene's scale to the statistics.
+void add_level(nlohmann::json& stats, const LevelToolQuery& query);
+
+// Adds device, threads and options to the statistics of a run. Writes them to --stats and the page
+// to --view, if these are given.
+void write_stats_and_view(const QuerySetup& setup, nlohmann::json stats);
+
+}  // namespace vpm::tools
