@@ -11,15 +11,15 @@ namespace vpm {
 
 // Lengths of the tool that the rules compare with, m.
 struct ToolReach {
-  double length = 0;    // radius about the centre of mass that encloses the tool
-  double inverse = 0;   // 1 / length, 1/m: scales arms
-  double occluded = 0;  // places further behind a seen surface need the support of a plane
+  double length = 0;            // radius about the centre of mass that encloses the tool
+  double inverse = 0;           // 1 / length, 1/m: scales arms
+  double supported_beyond = 0;  // places further behind a seen surface need the support of a plane
 
   ToolReach() = default;
   ToolReach(double reach, OccludedSpace occluded)
       : length(reach),
         inverse(1 / reach),
-        occluded(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
+        supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
 // A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
@@ -143,7 +143,7 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
 // plane supports it.
 template <class Surface>
 VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
-  return signed_distance < -(Surface::kTellsInside ? tool.occluded : tool.length);
+  return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);
 }
 // True if a body of this radius is shared out between two walls: smaller ones are pushed to one.
 VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {

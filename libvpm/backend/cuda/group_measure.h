@@ -47,8 +47,7 @@ class GroupMeasure {
       : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
 
   // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
-  __device__ RawResult run() { return run_inlined(); }
-  __device__ __forceinline__ RawResult run_inlined() {
+  __device__ RawResult run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
