@@ -79,9 +79,9 @@ class RefinedOnDevice : public MeasureOnDevice {
     return memory_.space().notes[sequence % 2].words;
   }
   SphereState state_of(std::uint32_t word) const override {
-    return (word & kCounted) == 0 ? SphereState::outside
-           : (word & kCut) != 0   ? SphereState::boundary
-                                  : SphereState::inside;
+    return (word & cell_bit::counted) == 0 ? SphereState::outside
+           : (word & cell_bit::cut) != 0   ? SphereState::boundary
+                                           : SphereState::inside;
   }
 
   template <class Surface>
