@@ -9,8 +9,8 @@
 #
 # Steps: (1) runs every test of tests/cuda; (2) runs small queries under compute-sanitizer's four tools, and the
 # baseline under memcheck; (3) compares the results of CPU and device byte for byte along one path, for both measures,
-# one by one, in batches and standing by, and compares the results of vpm-bench's suites; (4) times ten thousand queries
-# at each level, with eight tools and clouds taking turns, launched and standing by, in ROUNDS (5) rounds, and reports
+# one by one and in batches, and compares the results of vpm-bench's suites; (4) times ten thousand queries
+# at each level, with eight tools and clouds taking turns, in ROUNDS (5) rounds, and reports
 # medians; (5) times a hundred thousand poses in batches, of one tool and of eight; (6) calls
 # scripts/cuda_frames_check.sh, which writes OUT_frames.json.
 set -euo pipefail
@@ -41,10 +41,6 @@ for measure in refined paper; do
     "${ask[@]}" --count-points --device cuda -o "$work/one.jsonl"
     "${ask[@]}" --count-points --device cuda --batch 128 -o "$work/many.jsonl"
     same+=("$measure:$level=$(verdict bash -c "cmp $work/cpu.jsonl $work/one.jsonl && cmp $work/cpu.jsonl $work/many.jsonl")")
-    [[ $measure == refined ]] || continue
-    "${ask[@]}" --device cpu -o "$work/cpu.jsonl" --force
-    "${ask[@]}" --device cuda --standby-us 2000 -o "$work/one.jsonl" --force
-    same+=("standby:$level=$(verdict cmp "$work/cpu.jsonl" "$work/one.jsonl")")
   done
 done
 
@@ -74,7 +70,6 @@ for ((round = 0; round < ${ROUNDS:-5}; ++round)); do
   for level in ${levels//,/ }; do
     row() { "${loop[@]}" level="$level" "${@:2}" json="$work/loop-$level-$1-$round.json" >/dev/null; }
     for copies in 1 8; do row $copies rotate=$copies queries=10000; done
-    row standby rotate=8 queries=10000 standby=2000
     row paper rotate=8 queries=4000 measure=paper
   done
 done
@@ -96,13 +91,13 @@ smi = subprocess.run(["nvidia-smi", "--query-gpu=name,driver_version", "--format
 report = {
     "command": "scripts/cuda_check.sh", "commit": commit, "device": smi, "tests": tests,
     "compute_sanitizer": pairs(sanitizers), "same_bytes_as_cpu": pairs(same),
-    "control_loop": sorted(loop_rounds.loops_in(work), key=lambda r: (r["measure"] != "refined", r["standby_us"], r["spheres"], r["copies"])),
+    "control_loop": sorted(loop_rounds.loops_in(work), key=lambda r: (r["measure"] != "refined", r["spheres"], r["copies"])),
     "batch": sorted((json.load(open(path)) for path in glob.glob(f"{work}/batch-*.json")), key=lambda r: (r["measure"] != "refined", r["tools"], r["spheres"])),
 }
 json.dump(report, open(out, "w"), indent=2)
 print(f"{smi}, commit {commit}: tests {tests}, compute-sanitizer {sanitizers}, CPU and device the same {same}")
 for r in report["control_loop"]:
-    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies{', standing by' if r['standby_us'] else ''}  {loop_rounds.in_words(r)}")
+    print(f"{r['measure']:8} {r['spheres']:8} spheres  {r['copies']} copies  {loop_rounds.in_words(r)}")
 for r in report["batch"]:
     print(f"{r['measure']:8} {r['spheres']:8} spheres  batches of {r['batch']}, tools {r['tools']}  {r['poses_per_second']:9.0f} poses/s")
 PYTHON

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"

@@ -56,6 +56,7 @@ enum class ClusterClass : std::uint8_t {
   free,         // outside of the solid: counts for nothing
   ambiguous,    // the surface may pass through it: its parts decide
   no_surface,   // the surface does not pass; a surface sample tells whether it is behind one
+  by_middle,    // planar without a surface: the sample at its middle decides (class_by_middle)
   behind,       // behind the surface, maybe further than the tool's radius
   behind_near,  // behind it, no place further than the tool's radius
   cut,          // planar: the surface passes through it as one plane
@@ -82,15 +83,17 @@ VPM_HD ClusterClass class_of_ball(const Surface& surface,
                                                                    : ClusterClass::behind;
 }
 
-// Returns the class of a whole cluster: class_of_ball(), but uniform where it is small enough.
+// Returns the class of a whole cluster: class_of_ball(), but uniform, or decided by its middle,
+// where it is small enough.
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_of_cluster(const Surface& surface,
                                      const typename Surface::BallClass& in_ball, Vec3 center,
                                      double radius, double tool_radius) {
   const ClusterClass found = class_of_ball(surface, in_ball, center, radius, tool_radius);
-  return found == ClusterClass::behind_near && may_be_planar(radius, tool_radius)
-             ? ClusterClass::uniform
-             : found;
+  if (!may_be_planar(radius, tool_radius)) return found;
+  return found == ClusterClass::behind_near  ? ClusterClass::uniform
+         : found == ClusterClass::no_surface ? ClusterClass::by_middle
+                                             : found;
 }
 
 // Returns the class of a planar cluster without a surface in it, by the surface sample at its
@@ -98,7 +101,7 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface,
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample& middle,
                                     Vec3 center, double radius, double tool_radius) {
-  if (!(middle.known && middle.distance < 0)) return ClusterClass::free;
+  if (!is_behind_surface(middle)) return ClusterClass::free;
   if (!(norm(middle.foot - center) + radius < tool_radius)) return ClusterClass::behind;
   const TangentPlane wall{surface.closest_normal(center, middle), middle.foot};
   OtherWall other;
@@ -118,13 +121,21 @@ VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::
          !finds_other_wall(surface, center, plane, in_ball.point, radius, kOneDirection, other);
 }
 
+// True if the surface may pass through an ambiguous cluster as one plane, so that the sample at its
+// middle is needed.
+template <MeasuredBody Surface>
+VPM_HD bool may_have_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
+                           double radius, double tool_radius) {
+  return may_be_planar(radius, tool_radius) && surface.may_be_flat(in_ball);
+}
+
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
 // `plane`. `sample_all` is SampleInTurn, or reads the same places side by side.
 template <MeasuredBody Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
                                 const ReadAll& sample_all, TangentPlane& plane) {
-  return may_be_planar(radius, tool_radius) &&
+  return may_have_plane(surface, in_ball, radius, tool_radius) &&
          surface.mean_plane(in_ball, center, radius, radius, sample_all, plane) &&
          is_plane_of_cluster(surface, in_ball, center, radius, plane);
 }

@@ -7,6 +7,13 @@
 
 namespace vpm {
 
+// True if a cut cell, by the squared distance of its sphere's centre and the sphere's index, is
+// nearer than the nearest so far. Equal distances go to the smaller index, so the order is total.
+VPM_HD constexpr bool is_nearer_cut(double squared, std::uint32_t sphere, double least,
+                                    std::uint32_t nearest) {
+  return squared < least || (squared == least && sphere < nearest);
+}
+
 // Squared distance of a place from the surface, m^2; without end where nothing is known.
 VPM_HD inline double squared_gap(const SurfaceSample& on_surface) {
   return on_surface.known ? on_surface.distance * on_surface.distance : HUGE_VAL;

@@ -46,8 +46,6 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
     invalid("the stiffness must be a positive number");
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach)))
     invalid("the stiffness is so large that forces overflow");
-  if (options.standby_us > QueryOptions::kLongestStandby)
-    invalid("a device stands by for a second (1000000 us) at most");
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
             "leave the other measure or device out");

@@ -33,9 +33,19 @@ struct SurfaceSampleOf {
 };
 using SurfaceSample = SurfaceSampleOf<double>;
 
+// True if a place whose sample this is lies behind the surface.
+VPM_HD inline bool is_behind_surface(const SurfaceSample& on_surface) {
+  return on_surface.known && on_surface.distance < 0;
+}
+
 // Reads a surface at several places, one after the other, as long as `take` says to go on. Returns
 // true if it has taken all.
 struct SampleInTurn {
+  // Returns the sample at the middle of a ball, about which the other places lie.
+  template <class Surface>
+  VPM_HD SurfaceSample middle(const Surface& surface, const Vec3& center) const {
+    return surface.sample(center);
+  }
   template <class Surface, int kPlaces, class Take>
   VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
                          const Take& take) const {

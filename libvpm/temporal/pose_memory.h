@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/scene/surface.h"
 
 namespace vpm {

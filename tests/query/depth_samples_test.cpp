@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/scene/prepared_cloud.h"

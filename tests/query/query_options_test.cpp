@@ -38,16 +38,5 @@ TEST(QueryOptions, ThePrintedMeasureCountsPointsAnyway) {
   testing::expect_equal(counting.run(cloud, pose), result);
 }
 
-TEST(QueryOptions, NoDeviceStandsByForLongerThanASecond) {
-  const ToolModel tool = testing::lattice_cube(0.2, 2, 1);
-  EXPECT_NO_THROW(const ToolQuery query(tool, {.standby_us = QueryOptions::kLongestStandby}));
-  try {
-    const ToolQuery query(tool, {.standby_us = QueryOptions::kLongestStandby + 1});
-    FAIL() << "stands by for too long";
-  } catch (const Error& fault) {
-    EXPECT_EQ(fault.kind(), ErrorKind::invalid_argument);
-  }
-}
-
 }  // namespace
 }  // namespace vpm

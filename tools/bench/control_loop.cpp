@@ -12,7 +12,6 @@
 //   method=inverse-depth   or pca: normals of the images
 //   batch=1       number of poses asked at once, as planners do; copies of the tool share them
 //   points=0      1: also counts the cloud's points in spheres, which no control loop needs
-//   standby=0     microseconds that the device stays ready for the next pose
 //   json=FILE     writes the figures as JSON too
 //   poses=FILE    writes the first path=400 poses, for vpm-query --poses
 #include <algorithm>
@@ -291,8 +290,7 @@ nlohmann::json about(const QueryOptions& options, const Level& level, const Prep
   return {{"device", device_name(options.device)},
           {"measure", options.measure == Measure::paper ? "paper" : "refined"},
           {"spheres", level.sphere_count},
-          {"points", cloud.positions().size()},
-          {"standby_us", options.standby_us}};
+          {"points", cloud.positions().size()}};
 }
 
 nlohmann::json to_json(const Figures& figures) {
@@ -323,7 +321,7 @@ Options parse(int argc, char** argv) {
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
                   {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
-                  {"points", "0"},    {"standby", "0"}};
+                  {"points", "0"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
@@ -331,7 +329,7 @@ Options parse(int argc, char** argv) {
       throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
-                      "rotate= frames= behind= method= batch= points= standby= json= poses= path=");
+                      "rotate= frames= behind= method= batch= points= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -350,7 +348,6 @@ QueryOptions query_options(const Options& options) {
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
   query_options.counts_points = number(options, "points", 0) != 0;
-  query_options.standby_us = static_cast<unsigned>(number(options, "standby", 0));
   return query_options;
 }
 

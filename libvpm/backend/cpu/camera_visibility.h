@@ -28,7 +28,7 @@ class CameraVisibility {
     std::transform(states_.cells.begin(), states_.cells.end(), states_.flood_states.begin(),
                    [](CellClass cell) {
                      return cell == CellClass::free || cell == CellClass::cut ? FloodState::closed
-                                                                              : FloodState::taken;
+                                                                              : FloodState::reached;
                    });
   }
 

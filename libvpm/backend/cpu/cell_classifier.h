@@ -75,14 +75,12 @@ class CellClassifier {
     if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
       if (!finds_cluster_plane(surface_, in_ball, center, whole.reach, reach_.length,
-                               ReadTogether{}, plane))
+                               SampleTogether{}, plane))
         return classify_nodes(root);
       states_.planes[root] = {plane, to_surface_};
       return classify_clipped(root, in_ball);
     }
-    if (found == ClusterClass::no_surface && may_be_planar(whole.reach, reach_.length))
-      states_.set(whole, CellClass::open, FloodState::middle);  // decided if the flood comes
-    else if (found == ClusterClass::uniform)
+    if (found == ClusterClass::uniform)
       push_cluster(surface_, to_surface_, whole, root, surface_.sample(center), states_);
     else
       states_.set(whole, found);
@@ -124,7 +122,7 @@ class CellClassifier {
     } else if (side == Side::behind) {
       states_.set(i, CellClass::whole, FloodState::unknown);
     } else if (side == Side::no_surface) {
-      states_.set(i, CellClass::open, FloodState::unknown);
+      states_.set(i, CellClass::no_surface, FloodState::unknown);
     } else {
       states_.results[i] = measure(view).run(samples, in_ball.point);
       take_result(i, FloodState::unknown);
@@ -150,7 +148,7 @@ class CellClassifier {
         node = next;
       } else if (side == PlaneSide::behind &&
                  !may_hold_free(surface_, in_ball, to_surface_ * part.center, part.reach)) {
-        states_.set(part, CellClass::pushed, FloodState::planar);
+        states_.set(part, CellClass::uniform, FloodState::planar);
         node = next;
       } else {
         if (next == node + 1) {
@@ -174,7 +172,7 @@ class CellClassifier {
     if (side == PlaneSide::before) {
       states_.set(i, CellClass::free, FloodState::closed);
     } else if (side == PlaneSide::behind) {
-      states_.set(i, CellClass::pushed, FloodState::planar);
+      states_.set(i, CellClass::uniform, FloodState::planar);
     } else {
       CellResult& result = states_.results[i];
       result = {};

@@ -6,8 +6,8 @@
 #include <span>
 #include <type_traits>
 
-#include "libvpm/backend/cpu/cell_measure.h"
 #include "libvpm/backend/cpu/depth_samples.h"
+#include "libvpm/measure/cell_measure.h"
 
 namespace vpm {
 
@@ -21,8 +21,8 @@ concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4]
   sample_four(surface, places, on_surface_at);
 };
 
-// Reads a surface at four places by vectors where it can be, others one after the other.
-struct ReadTogether {
+// Samples a surface at four places by vectors where it can be, others one after another.
+struct SampleTogether : SampleInTurn {
   template <class Surface, class Take>
   bool operator()(const Surface& surface, const Vec3 (&places)[4], const Take& take) const {
     if constexpr (ReadsTogether<Surface>) {
@@ -88,8 +88,8 @@ class SamplesTogether {
                          result.sum);
       return;
     }
-    if (neighbors_ != k / kNeighborSamples) {
-      neighbors_ = k / kNeighborSamples;
+    if (neighbors_ != neighbors_of(k)) {
+      neighbors_ = neighbors_of(k);
       if (direction_count_ == kAtOnce) flush(measure, result);
       searched_[direction_count_++] = at;
     }

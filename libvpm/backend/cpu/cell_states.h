@@ -6,31 +6,11 @@
 #include <cstring>
 #include <vector>
 
-#include "libvpm/backend/cpu/cell_measure.h"
 #include "libvpm/backend/cpu/spatial_level.h"
+#include "libvpm/measure/cell_measure.h"
+#include "libvpm/measure/flood_state.h"
 
 namespace vpm {
-
-// How the surface meets a sphere's share.
-enum class CellClass : std::uint8_t {
-  free,     // counts for nothing
-  cut,      // the surface passes through it: its result counts
-  partial,  // behind the surface as far as its result says, if it is taken
-  pushed,   // behind the surface of its patch, along the normal of that, if it is taken
-  whole,    // behind the surface, if it is taken
-  open,     // no surface near; its centre decides when the flood comes
-};
-
-// Whether a share is inside, and before that, whether the flood may pass it.
-enum class FloodState : std::uint8_t {
-  closed,  // to what is free or cut, too
-  taken,   // it is inside, or hidden
-  unknown,
-  middle,  // unknown: the middle of its cluster, an open patch, decides
-  open,    // its squared gap is known
-  planar,  // open: the gap is that to the plane of its patch
-  near,    // open: no place of its cluster is further behind the surface than the tool's reach
-};
 
 inline constexpr std::uint32_t kNoRow = UINT32_MAX;
 
@@ -108,7 +88,9 @@ struct CellStates {
   void set(const CellCluster& cluster, ClusterClass found) {
     switch (found) {
       case ClusterClass::no_surface:
-        return set(cluster, CellClass::open, FloodState::unknown);
+        return set(cluster, CellClass::no_surface, FloodState::unknown);
+      case ClusterClass::by_middle:
+        return set(cluster, CellClass::no_surface, FloodState::middle);
       case ClusterClass::behind:
         return set(cluster, CellClass::whole, FloodState::unknown);
       case ClusterClass::behind_near:
@@ -121,7 +103,7 @@ struct CellStates {
   // Whether a row counts, when it is decided what is taken.
   bool counts(std::uint32_t row) const {
     return cells[row] == CellClass::cut ||
-           (flood_states[row] == FloodState::taken && cells[row] != CellClass::free);
+           (flood_states[row] == FloodState::reached && cells[row] != CellClass::free);
   }
 
   // Rows of the SpatialLevel.
@@ -144,7 +126,7 @@ struct CellStates {
 template <class Surface>
 void push_cluster(const Surface& surface, const Pose& to_surface, const CellCluster& cluster,
                   std::uint32_t root, const SurfaceSample& middle, CellStates& states) {
-  states.set(cluster, CellClass::pushed, FloodState::near);
+  states.set(cluster, CellClass::uniform, FloodState::near);
   states.planes[root].normal =
       transpose(to_surface.rotation) * surface.closest_normal(to_surface * cluster.center, middle);
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "libvpm/backend/cpu/cell_states.h"
+#include "libvpm/measure/flood_rules.h"
 
 namespace vpm {
 
@@ -70,8 +71,7 @@ class CutCells {
   void consider(std::uint32_t row, Nearest& nearest) const {
     const std::uint32_t sphere = level_.sphere(row);
     const double squared = squared_norm(tool_.spheres[sphere].center - nearest.from);
-    if (squared > nearest.squared || (squared == nearest.squared && sphere > nearest.sphere))
-      return;
+    if (!is_nearer_cut(squared, sphere, nearest.squared, nearest.sphere)) return;
     nearest.squared = squared;
     nearest.sphere = sphere;
     nearest.row = row;

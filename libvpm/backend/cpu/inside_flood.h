@@ -43,7 +43,7 @@ class InsideFlood {
   void run_from(const PoseMemory& memory, const Pose& to_world) {
     FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
-      if (states_.cells[i] == CellClass::open) states_.cells[i] = CellClass::whole;
+      if (states_.cells[i] == CellClass::no_surface) states_.cells[i] = CellClass::whole;
       take(part, i);
     };
     memory.for_cells([&](std::uint32_t i) {
@@ -180,7 +180,7 @@ class InsideFlood {
   }
 
   void take(FloodPart& part, std::uint32_t j) {
-    states_.flood_states[j] = FloodState::taken;
+    states_.flood_states[j] = FloodState::reached;
     part.front.push_back(j);
   }
   static std::uint32_t next_of(FloodPart& part) {
@@ -191,7 +191,7 @@ class InsideFlood {
 
   bool is_passable(FloodPart& part, std::uint32_t j) {
     FloodState& flood_state = states_.flood_states[j];
-    if (flood_state == FloodState::closed || flood_state == FloodState::taken) return false;
+    if (flood_state == FloodState::closed || flood_state == FloodState::reached) return false;
     if (flood_state == FloodState::middle) decide_cluster(level_.root(j));
     if (flood_state == FloodState::unknown) flood_state = find_flood_state(part, j);
     return flood_state != FloodState::closed;
@@ -212,8 +212,8 @@ class InsideFlood {
   FloodState find_flood_state(FloodPart& part, std::uint32_t j) {
     const Vec3 at = center(j);
     const SurfaceSample on_surface = surface_.sample(at);
-    if (states_.cells[j] == CellClass::open) {
-      if (!(on_surface.known && on_surface.distance < 0)) return FloodState::closed;
+    if (states_.cells[j] == CellClass::no_surface) {
+      if (!is_behind_surface(on_surface)) return FloodState::closed;
       states_.cells[j] = CellClass::whole;
     }
     states_.squared_gaps[j] = squared_gap(on_surface);
@@ -240,11 +240,12 @@ class InsideFlood {
 
   template <class Holds>
   bool is_behind(std::uint32_t i, const Holds& holds) const {
-    if (states_.cells[i] == CellClass::free || states_.flood_states[i] == FloodState::taken)
+    if (states_.cells[i] == CellClass::free || states_.flood_states[i] == FloodState::reached)
       return false;
     const Vec3 at = center(i);
     const SurfaceSample on_surface = surface_.sample(at);
-    if (!on_surface.known || (states_.cells[i] == CellClass::open && !(on_surface.distance < 0)))
+    if (!on_surface.known ||
+        (states_.cells[i] == CellClass::no_surface && !(on_surface.distance < 0)))
       return false;
     return holds(at, on_surface.foot);
   }

@@ -67,7 +67,7 @@ std::uint32_t RefinedMeasure::add_up(const Surface& surface, const Pose& to_surf
   std::uint32_t last_cut = kNoRow, count = 0;
   for_rows_in(CellClass::cut, cells_.cells, begin, end,
               [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
-  for_rows_in(FloodState::taken, cells_.flood_states, begin, end, [&](std::uint32_t i) {
+  for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
     const ToolSum part = sum_of(surface, to_surface, inside, i, last_cut);
     sum.add(part);
     if (part.volume.value != 0)
@@ -82,7 +82,7 @@ template <class Surface, class Inside>
 ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
                                std::uint32_t row, std::uint32_t& last_cut) const {
   ToolSum sum;
-  if (cells_.cells[row] == CellClass::pushed) {
+  if (cells_.cells[row] == CellClass::uniform) {
     add_whole(reach_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
     return sum;
   }

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/backend/cpu/sphere_location.h"
+#include "libvpm/backend/sphere_location.h"
 #include "libvpm/core/parallel_region.h"
 #include "libvpm/scene/prepared_cloud.h"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cell_clusters.h"
 #include "libvpm/measure/tool_piece.h"
 
 namespace vpm {

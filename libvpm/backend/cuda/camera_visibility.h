@@ -39,12 +39,12 @@ class CameraVisibility {
           [&](std::uint32_t i, const ToolSum& sum) {
             result.sum.add(sum);
             if (sum.volume.value != 0)
-              count_cell(atomicOr(&notes_.words[i], kCounted), kCounted, result);
+              count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
           });
     }
     if (counts_points_) {
       noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
-        if ((word & kCountsPoints) != 0) result.points += notes_.points[i];
+        if ((word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
       });
     }
     return result;

@@ -6,29 +6,9 @@
 #include "libvpm/backend/cuda/team.h"
 #include "libvpm/backend/cuda/views.h"
 #include "libvpm/measure/flood_rules.h"
+#include "libvpm/measure/flood_state.h"
 
 namespace vpm::cuda {
-
-// The bits of a share's word. Where a camera tells what is inside, only kCut, kCountsPoints and
-// kCounted are set, and of what is noted of shares only points and planes; the rest serves the
-// flood.
-inline constexpr std::uint32_t kCut = 1;      // the surface passes through a piece
-inline constexpr std::uint32_t kPartial = 2;  // pieces are inside, as far as the sum says
-inline constexpr std::uint32_t kWhole = 4;    // behind the surface
-inline constexpr std::uint32_t kHidden =
-    8;  // by a surface that may be another one: the nearest cut share's plane decides
-inline constexpr std::uint32_t kSummed = 16;        // of a cut share: its sum is noted
-inline constexpr std::uint32_t kCountsPoints = 32;  // the surface may pass the sphere
-inline constexpr std::uint32_t kReached = 64;  // by the flood; only where one block floods alone
-inline constexpr std::uint32_t kCounted =
-    128;  // in the result: as boundary, if it is cut, or as inside
-
-__device__ inline bool may_be_inside(std::uint32_t word) {
-  return (word & kCut) == 0 && (word & (kPartial | kWhole)) != 0;
-}
-__device__ inline bool is_passable(std::uint32_t word) {
-  return may_be_inside(word) && (word & kHidden) == 0;
-}
 
 // Of each share. All are 0 at the start of a query: many threads add to them.
 struct CellNotes {
@@ -53,8 +33,9 @@ struct CellNotes {
         if (i < level.count) points[i] = 0;
         if (noted[k] == 0) continue;
         words[i] = 0;
-        if ((noted[k] & (kPartial | kWhole | kSummed)) != 0) sums[i] = ToolSum{};
-        if ((noted[k] & kCut) != 0) planes[i] = ContactPlane{};
+        if ((noted[k] & (cell_bit::partial | cell_bit::whole | cell_bit::summed)) != 0)
+          sums[i] = ToolSum{};
+        if ((noted[k] & cell_bit::cut) != 0) planes[i] = ContactPlane{};
       }
     }
   }
@@ -116,9 +97,9 @@ struct RefinedCounters {
 // Counts a share to whose word bits were added that say so.
 __device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawResult& result) {
   const auto is_inside = [](std::uint32_t word) {
-    return (word & kCounted) != 0 && (word & kCut) == 0 ? 1U : 0U;
+    return (word & cell_bit::counted) != 0 && (word & cell_bit::cut) == 0 ? 1U : 0U;
   };
-  result.boundary += (bits & ~before & kCut) != 0 ? 1 : 0;
+  result.boundary += (bits & ~before & cell_bit::cut) != 0 ? 1 : 0;
   result.inside += is_inside(before | bits) - is_inside(before);
 }
 

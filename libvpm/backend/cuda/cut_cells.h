@@ -20,7 +20,7 @@ class CutCells {
   // The team meets before others of these are called.
   __device__ __noinline__ void list() {
     for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
-      if ((notes_.words[i] & kCut) != 0) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
+      if ((notes_.words[i] & cell_bit::cut) != 0) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
     }
   }
   __device__ CutCell at(std::uint32_t cut) const {
@@ -39,7 +39,7 @@ class CutCells {
     for (unsigned k = team_.thread() / 32; k < count; k += team_.threads() / 32) {
       const FarPiece& far = space_.far[k];
       const std::uint32_t i = far.cell, word = notes_.words[i];
-      const bool cut = (word & kCut) != 0;
+      const bool cut = (word & cell_bit::cut) != 0;
       if (!cut && !may_count(i)) continue;
       const std::uint32_t by = cut ? i : nearest_to(warp, i);
       if (by < level_.count && warp.leads() &&
@@ -63,7 +63,7 @@ __device__ std::uint32_t CutCells<Team>::nearest_to(const Subwarp& subwarp, std:
   double best_squared = HUGE_VAL;
   std::uint32_t best = level_.count;
   const auto take = [&](double squared, std::uint32_t j) {
-    if (squared > best_squared || (squared == best_squared && j >= best)) return;
+    if (!is_nearer_cut(squared, j, best_squared, best)) return;
     best_squared = squared;
     best = j;
   };

@@ -11,7 +11,6 @@ namespace {
 
 std::unique_ptr<DeviceMeasure> make_on_one(const ToolModel& tool, const Level& level,
                                            const QueryOptions& options, int device) {
-  const cuda::OtherWork other(device);  // kernels are loaded
   return options.measure == Measure::paper
              ? cuda::make_paper_measure(tool, level, device)
              : cuda::make_refined_measure(tool, level, options, device);
@@ -24,11 +23,8 @@ std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const 
   const Device& device = options.device;
   const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
   std::vector<std::unique_ptr<DeviceMeasure>> measures;
-  for (int k = 0; k < count; ++k) {
-    QueryOptions of_one = options;
-    if (k > 0) of_one.standby_us = 0;  // single poses go to the first
-    measures.push_back(make_on_one(tool, level, of_one, device.first() + k));
-  }
+  for (int k = 0; k < count; ++k)
+    measures.push_back(make_on_one(tool, level, options, device.first() + k));
   if (measures.size() == 1) return std::move(measures.front());
   return std::make_unique<SpreadMeasure>(std::move(measures));
 }

@@ -14,7 +14,7 @@
 namespace vpm::cuda {
 
 // Reads a surface at four places by the lanes of a tile, up to four.
-struct SampleByLanes {
+struct SampleByLanes : SampleInTurn {
   static constexpr unsigned kPlaces = 4;
   Subwarp lanes;
 
@@ -47,8 +47,7 @@ class GroupMeasure {
       : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
 
   // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
-  __device__ RawResult run() { return run_inlined(); }
-  __device__ __forceinline__ RawResult run_inlined() {
+  __device__ RawResult run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
@@ -129,12 +128,12 @@ class GroupMeasure {
                                            const Subwarp& lanes, ClipPlane& plane) {
     const double tool = work_.level.tool_reach.length;
     const ClusterClass found = class_of_cluster(work_.surface, in_ball, at, ball.radius, tool);
-    if (found == ClusterClass::no_surface && may_be_planar(ball.radius, tool))
+    if (found == ClusterClass::by_middle)
       return class_by_middle(work_.surface, work_.surface.sample(at), at, ball.radius, tool);
     TangentPlane tangent;
     if (found != ClusterClass::ambiguous ||
-        !finds_cluster_plane(work_.surface, in_ball, at, ball.radius, tool, SampleByLanes{lanes},
-                             tangent))
+        !finds_cluster_plane(work_.surface, in_ball, at, ball.radius, tool,
+                             SampleByLanes{{}, lanes}, tangent))
       return found;
     plane = {tangent, work_.to_surface};
     return ClusterClass::cut;
@@ -256,15 +255,15 @@ __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
     hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
                             is_hidden_cell(gap, work_.level.tool_reach.length),
                         BlockTask::of_cell);
-    const bool behind = lanes.from(on_surface.known && on_surface.distance < 0, BlockTask::of_cell);
+    const bool behind = lanes.from(is_behind_surface(on_surface), BlockTask::of_cell);
     whole |= side == Side::no_surface && behind;
   }
   if (!active) return;
   if (lanes.lane == BlockTask::of_cell && head) {
-    std::uint32_t word = whole ? kWhole : 0;
-    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= kCountsPoints;
+    std::uint32_t word = whole ? cell_bit::whole : 0;
+    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
     if ((whole || side == Side::ambiguous) && hidden) {
-      word |= kHidden;
+      word |= cell_bit::hidden;
       atomicAdd(&work_.counters.hidden, 1U);
     }
     note_cell(task, word, gap);
@@ -307,7 +306,7 @@ template <class Surface>
 __device__ void GroupMeasure<Surface>::note_cell(const BlockTask& task, std::uint32_t word,
                                                  double gap) {
   const std::uint32_t i = task.cell;
-  if (!kFloods) word &= kCountsPoints;
+  if (!kFloods) word &= cell_bit::counts_points;
   if (word != 0) atomicOr(&work_.notes.words[i], word);
   if (!kFloods) return;
   work_.space.gaps[i] = gap;
@@ -346,13 +345,13 @@ __device__ void GroupMeasure<Surface>::classify_clipped(SeenTask seen, const Sub
     std::uint32_t word = 0;
     if (side == PlaneSide::behind) {
       tasks_.note_behind(task, plane.normal);
-      if (kFloods) word = kPartial;
+      if (kFloods) word = cell_bit::partial;
     }
     if (counts_points_) {
       const TaskBall& sphere = task.balls[BlockTask::of_sphere];
       if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
           Side::ambiguous)
-        word |= kCountsPoints;
+        word |= cell_bit::counts_points;
     }
     note_cell(task, word, distance * distance);
   }
@@ -366,7 +365,7 @@ __device__ void GroupMeasure<Surface>::note_pushed(const BlockTask& task, Vec3 n
   tasks_.note_behind(task, normal);
   if (!kFloods) return;
   const Vec3 at = work_.to_surface * task.balls[BlockTask::of_cell].center;
-  note_cell(task, kWhole, squared_gap(work_.surface.sample(at)));
+  note_cell(task, cell_bit::whole, squared_gap(work_.surface.sample(at)));
 }
 
 // Lists a block of a mixed share.

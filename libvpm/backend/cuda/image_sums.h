@@ -21,7 +21,7 @@ class ImageSums {
   __device__ void note(const BlockTask& task, const TaskSums& found) {
     found_.sum.add(found.sum);
     if (!found.is_cut && found.sum.volume.value == 0) return;
-    bits_added_ = kCounted | (found.is_cut ? kCut : 0);
+    bits_added_ = cell_bit::counted | (found.is_cut ? cell_bit::cut : 0);
     word_before_ = atomicOr(&notes_.words[task.cell], bits_added_);
   }
   // The planes of cut shares.
@@ -29,7 +29,7 @@ class ImageSums {
     if (found.count > 0) add_atomically(found, notes_.planes[task.cell]);
   }
   __device__ void note_points(const BlockTask& task) const {
-    atomicOr(&notes_.words[task.cell], kCountsPoints);
+    atomicOr(&notes_.words[task.cell], cell_bit::counts_points);
   }
   __device__ RawResult found() {
     count_cell(word_before_, bits_added_, found_);

@@ -34,6 +34,31 @@ struct alignas(16) ImageShared {
   OfTask units[TaskGroup::kTasks];
 };
 
+// Samples the surface about the middle of a cluster, which has been sampled, by four lanes of a
+// warp.
+struct SampleByWarp {
+  static constexpr unsigned kPlaces = DepthSurface::PlacesAround::kCount;
+  ImageShared& shared;
+
+  __device__ SurfaceSample middle(const DepthSurface&, const Vec3&) const {
+    return shared.on_surface;
+  }
+  template <class Take>
+  __device__ bool operator()(const DepthSurface& surface, const Vec3 (&places)[kPlaces],
+                             const Take& take) const {
+    const unsigned lane = threadIdx.x % 32;
+    if (lane < kPlaces)
+      shared.around[lane] = surface.sample(lane == 0   ? places[0]
+                                           : lane == 1 ? places[1]
+                                           : lane == 2 ? places[2]
+                                                       : places[3]);
+    __syncwarp();
+    for (const SurfaceSample& around : shared.around)
+      if (!take(around)) return false;
+    return true;
+  }
+};
+
 // One chunk, by all lanes of a warp. `Found`, of each unit: TaskSums; or ContactPlane, in another
 // turn, since few queries need planes.
 template <class Found>
@@ -184,36 +209,19 @@ __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classif
   }
 }
 
-// Whether the surface passes through the cluster as one plane. It is read in the middles of the
-// cluster and of the blocks, and then at four places about that of the cluster.
+// True if the surface passes through the cluster as one plane, plane_. It is sampled in the middles
+// of the cluster and of the blocks together, and then at four places about that of the cluster.
 template <class Found>
 __device__ bool ImageTaskGroup<Found>::sees_plane() {
-  const bool may_be = may_be_planar(cluster_.radius, work_.level.tool_reach.length) &&
-                      work_.surface.may_be_flat(shared_.in_ball);
-  Vec3 place = middle_;
-  bool reads = is_of_cluster() ? may_be : lane_ == kOfBlock && is(BlockTask::has_block);
-  SurfaceSample on_surface;
-#pragma unroll 1
-  for (bool around = false;; around = true) {
-    if (reads) on_surface = work_.surface.sample(place);
-    if (around) break;
-    on_surface_ = on_surface;
-    if (is_of_cluster()) shared_.on_surface = on_surface;
-    __syncwarp();
-    if (!may_be || !shared_.on_surface.known) return false;
-    const DepthSurface::PlacesAround places(shared_.on_surface, shared_.middle, cluster_.radius);
-    place = places.at(static_cast<int>(threadIdx.x % 32));
-    reads = threadIdx.x % 32 < DepthSurface::PlacesAround::kCount;
-  }
-  if (reads) shared_.around[threadIdx.x % 32] = on_surface;
+  const double tool_radius = work_.level.tool_reach.length;
+  const bool may_be = may_have_plane(work_.surface, shared_.in_ball, cluster_.radius, tool_radius);
+  if (is_of_cluster() ? may_be : lane_ == kOfBlock && is(BlockTask::has_block))
+    on_surface_ = work_.surface.sample(middle_);
+  if (is_of_cluster()) shared_.on_surface = on_surface_;
   __syncwarp();
-  DepthSurface::PlaneMean mean(shared_.on_surface);
-  for (const SurfaceSample& around : shared_.around)
-    if (!mean.take(around)) return false;
-  const TangentPlane tangent = mean.plane();
-  if (!work_.surface.shows(shared_.in_ball, tangent, cluster_.radius) ||
-      !is_plane_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
-                           tangent))
+  TangentPlane tangent;
+  if (!finds_cluster_plane(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
+                           tool_radius, SampleByWarp{shared_}, tangent))
     return false;
   plane_ = {tangent, work_.to_surface};
   return true;

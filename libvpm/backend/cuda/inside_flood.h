@@ -93,7 +93,8 @@ class Flood {
   }
   __device__ Vec3 center(std::uint32_t i) const { return to_surface_ * level_.centers[i]; }
   __device__ bool is_inside(std::uint32_t i, std::uint32_t word) const {
-    return in_shared_ ? (word & kReached) != 0 : is_passable(word) && flood_.root(i + 1) == 0;
+    return in_shared_ ? (word & cell_bit::reached) != 0
+                      : is_passable(word) && flood_.root(i + 1) == 0;
   }
 
   struct Edges {
@@ -160,9 +161,9 @@ __device__ void Flood<Team>::look_at(const Edges& together, const Join& join, co
     const std::uint32_t word_of_i = together.words[k][0], word_of_j = together.words[k][1];
     if (is_passable(word_of_i) && is_passable(word_of_j))
       join(k, i, j);
-    else if ((word_of_i & kCut) != 0 && is_passable(word_of_j))
+    else if ((word_of_i & cell_bit::cut) != 0 && is_passable(word_of_j))
       enter(k, i, j);
-    else if ((word_of_j & kCut) != 0 && is_passable(word_of_i))
+    else if ((word_of_j & cell_bit::cut) != 0 && is_passable(word_of_i))
       enter(k, j, i);
   }
 }
@@ -186,7 +187,7 @@ __device__ void Flood<Team>::join_cells() {
     return;
   }
   noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
-    if (!is_passable(word) && (word & kCut) == 0) return;
+    if (!is_passable(word) && (word & cell_bit::cut) == 0) return;
     const std::uint32_t end = level_.edge_begin[i + 1];
     for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kEdges) {
       Edges together;
@@ -220,7 +221,7 @@ __device__ void Flood<Team>::flood_in_shared() {
   const unsigned entries = shared_.entries, flood_states = shared_.flood_states;
   for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
     const Edge entry = shared_.edges[kFloodEdges - 1 - k];
-    if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], kReached);
+    if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], cell_bit::reached);
   }
   bool changes = true;
   while (__syncthreads_or(changes) != 0) {
@@ -232,15 +233,16 @@ __device__ void Flood<Team>::flood_in_shared() {
       const unsigned k = threadIdx.x + n * blockDim.x;
       if (k >= flood_states) break;
       const Edge edge = shared_.edges[k];
-      clipped |= ((words_[edge.larger] ^ words_[edge.smaller]) & kReached) != 0 ? 1U << n : 0U;
+      clipped |=
+          ((words_[edge.larger] ^ words_[edge.smaller]) & cell_bit::reached) != 0 ? 1U << n : 0U;
     }
     __syncthreads();
     changes = clipped != 0;
     for (; clipped != 0; clipped &= clipped - 1) {
       const Edge edge =
           shared_.edges[threadIdx.x + (__ffs(static_cast<int>(clipped)) - 1) * blockDim.x];
-      atomicOr(&words_[edge.larger], kReached);
-      atomicOr(&words_[edge.smaller], kReached);
+      atomicOr(&words_[edge.larger], cell_bit::reached);
+      atomicOr(&words_[edge.smaller], cell_bit::reached);
     }
   }
 }
@@ -262,9 +264,10 @@ __device__ void Flood<Team>::decide_hidden() {
   const Subwarp warp(32);
   for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
     const std::uint32_t word = words_[i];
-    if (!may_be_inside(word) || (word & kHidden) == 0) continue;
+    if (!may_be_inside(word) || (word & cell_bit::hidden) == 0) continue;
     const std::uint32_t cut = cut_.nearest_to(warp, i);
-    if (cut < level_.count && warp.leads() && lies_behind(cut, i)) words_[i] = word & ~kHidden;
+    if (cut < level_.count && warp.leads() && lies_behind(cut, i))
+      words_[i] = word & ~cell_bit::hidden;
   }
 }
 
@@ -272,8 +275,8 @@ template <class Team>
 __device__ RawResult Flood<Team>::add_up_cells() {
   RawResult result;
   const auto add = [&](std::uint32_t i, std::uint32_t word) {
-    if (counts_points_ && (word & kCountsPoints) != 0) result.points += notes_.points[i];
-    if ((word & kCut) != 0 || may_be_inside(word)) add_cell(i, word, result);
+    if (counts_points_ && (word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
+    if ((word & cell_bit::cut) != 0 || may_be_inside(word)) add_cell(i, word, result);
   };
   if (in_shared_ || level_.count <= team_.threads()) {
     for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
@@ -288,10 +291,10 @@ __device__ RawResult Flood<Team>::add_up_cells() {
 template <class Team>
 __device__ void Flood<Team>::add_cell(std::uint32_t i, std::uint32_t word,
                                       RawResult& result) const {
-  const bool cut = (word & kCut) != 0;
+  const bool cut = (word & cell_bit::cut) != 0;
   const ToolSum sum = notes_.sums[i];
   if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
-  notes_.words[i] = word | kCounted;
+  notes_.words[i] = word | cell_bit::counted;
   result.sum.add(sum);
   ++(cut ? result.boundary : result.inside);
 }

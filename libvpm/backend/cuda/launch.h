@@ -51,11 +51,9 @@ std::unique_ptr<Teams> make_teams(unsigned most, const Arguments&... arguments) 
   }
 }
 
-// Looks at the host's own memory until the device has written the whole answer there; that is
-// quicker than waiting for the stream. Calls meanwhile() between the looks.
-template <class Meanwhile>
-RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
-                   const Meanwhile& meanwhile) {
+// Returns the answer number `sequence`: polls the host's own memory until the device has written
+// all of it there, which is quicker than waiting for the stream.
+inline RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream) {
   std::uint32_t words[Answer::kWords];
   unsigned looks = 0;
   for (unsigned k = 0; k < Answer::kWords;) {
@@ -64,7 +62,6 @@ RawResult wait_for(const Answer& answer, unsigned sequence, cudaStream_t stream,
       words[k++] = value_of(word);
       continue;
     }
-    meanwhile();
     if (++looks % kLooksPerCheck == 0) is_done(cudaStreamQuery(stream));
   }
   RawResult result;

@@ -16,8 +16,6 @@ void MeasureOnDevice::run(const SceneView& scene, std::span<DeviceMeasure* const
   ask(measures, jobs, results);
 }
 
-// One pose may be answered without a word to the driver: who talks to it makes the device the
-// current one.
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
   const RawResult raw = answer(frame);
@@ -25,46 +23,19 @@ Result MeasureOnDevice::ask(const Pose& pose) {
   return result_of(raw, tool_, pose.rotation);
 }
 
-RawResult MeasureOnDevice::answer_standing_by(const void* launch, const PoseFrame& frame,
-                                              unsigned sequence) {
-  Order order;
-  order.launch = launch;
-  order.to_surface = frame.to_surface;
-  order.turn = sequence;
-  order.waits_us = standby_us_;
-  return standby_->ask(order, *answer_.host(), sequence);
-}
-
 RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
   const unsigned sequence = sequence_ + 1;
-  const bool is_there = frame_ == nullptr || frame_->require(stream());
-  if (standby_ && is_there) {  // otherwise the stream comes to it
-    if (const void* const launch = standing_launch(answer_.device())) {
-      end_launched();
-      const RawResult raw = answer_standing_by(launch, frame, sequence);
-      sequence_ = sequence;
-      return raw;
-    }
-  }
   const CurrentDevice current(device_);
-  const OtherWork other;
-  has_launched_ = true;
+  if (frame_ != nullptr) frame_->require(stream());
   launch(frame, answer_.device(), sequence);
   sequence_ = sequence;
-  return wait_for(*answer_.host(), sequence, stream_.get(), [] {});
-}
-
-void MeasureOnDevice::end_launched() {
-  if (!has_launched_) return;
-  check(cudaStreamSynchronize(stream_.get()));
-  has_launched_ = false;
+  return wait_for(*answer_.host(), sequence, stream_.get());
 }
 
 template <class AnswerPart>
 void MeasureOnDevice::in_launches(std::size_t poses, const AnswerPart& answer_part) {
   const CurrentDevice current(device_);
   if (!batch_) batch_ = std::make_unique<Batch>();
-  const OtherWork other;
   if (frame_ != nullptr) frame_->require(stream());
   for (std::size_t begin = 0; begin < poses; begin += Batch::kPoses)
     answer_part(begin, std::min(Batch::kPoses, poses - begin));

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "libvpm/backend/cuda/launch.h"
-#include "libvpm/backend/cuda/persistent/standby.h"
 #include "libvpm/backend/device_measure.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
@@ -23,9 +22,6 @@ class MeasureOnDevice : public DeviceMeasure {
  protected:
   // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
-  // Where the kernel that stands by finds its arguments for queries of the cloud; null where each
-  // is launched.
-  virtual const void* standing_launch(Answer* /*answer*/) { return nullptr; }
   // Of many poses, those of one tool; they follow those of the tool before.
   struct ToolPart {
     MeasureOnDevice* measure = nullptr;  // of the same class
@@ -38,12 +34,6 @@ class MeasureOnDevice : public DeviceMeasure {
   // A word for each sphere, of query number `sequence`, and what it says.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
-
-  // `waits_us` for each next pose.
-  void stand_by(std::shared_ptr<Standby> standby, std::uint32_t waits_us) {
-    standby_ = std::move(standby);
-    standby_us_ = waits_us;
-  }
 
   int device() const { return device_; }
   const ToolModel& tool() const { return tool_; }
@@ -70,9 +60,6 @@ class MeasureOnDevice : public DeviceMeasure {
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
-  RawResult answer_standing_by(const void* launch, const PoseFrame& frame, unsigned sequence);
-  // The kernel of the last launched query clears what it has noted after its answer.
-  void end_launched();
   void ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
            std::span<Result> results);
   // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
@@ -91,10 +78,7 @@ class MeasureOnDevice : public DeviceMeasure {
   double flood_microseconds_ = 0;
   std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
   std::uint64_t serial_ = 0;
-  const CloudSlot* frame_ = nullptr;  // of the queries under way, if it is made on the device
-  bool has_launched_ = false;         // a query that may not have ended
-  std::shared_ptr<Standby> standby_;
-  std::uint32_t standby_us_ = 0;
+  const CloudSlot* frame_ = nullptr;    // of the queries under way, if it is made on the device
   const DeviceCloud* cloud_ = nullptr;  // of the queries under way
   std::unique_ptr<Batch> batch_;
 };

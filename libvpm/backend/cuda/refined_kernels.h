@@ -78,12 +78,8 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
-// Where a kernel has its arguments. In shared memory they are read soon only by what is inlined
-// into it, which knows that they are there; of a launch, by functions as well.
-enum class Arguments { launched, shared };
-
 // The first step of one query by all blocks of a launch. Returns what this thread has added up.
-template <Arguments kArguments, class Surface>
+template <class Surface>
 __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                                    unsigned turn, BlockShared<Surface>& shared) {
   const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
@@ -100,11 +96,7 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
   }
-  GroupMeasure<Surface> measure(work, launch.counts_points, shared.measure);
-  if constexpr (kArguments == Arguments::shared)
-    return measure.run_inlined();
-  else
-    return measure.run();
+  return GroupMeasure<Surface>(work, launch.counts_points, shared.measure).run();
 }
 
 // The planes of cut shares, where the first step has not noted them: few queries need them.
@@ -130,7 +122,7 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
                    const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<DiskSurface> shared;
   __shared__ RawResult total;
-  measure_cells<Arguments::launched>(launch, frame, sequence, shared);
+  measure_cells(launch, frame, sequence, shared);
   if (!is_last_of(launch.totals->done, gridDim.x)) {
     clear_next(launch, sequence);
     return;
@@ -152,14 +144,13 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
 }
 
 // One query by all blocks of a cooperative launch. Where the first step has found all (no far
-// pieces, and nobody asks for points), the last block to come sends the answer. Whether this block
-// is the last to be done.
-template <Arguments kArguments, class Surface>
-__device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
+// pieces, and nobody asks for points), the last block to come sends the answer.
+template <class Surface>
+__device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
   using Rest = Inside<Surface, GridTeam>;
   Totals* const totals = launch.totals;
-  const RawResult found = measure_cells<kArguments>(launch, frame, sequence, shared);
+  const RawResult found = measure_cells(launch, frame, sequence, shared);
   if (Surface::kTellsInside) add_block(found, totals->result);
   const bool is_last = team.arrive();
   std::uint64_t met = now();
@@ -184,14 +175,13 @@ __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
               shared.inside, launch.counts_points);
     add_block(rest.run(), totals->result);
   }
-  if (!is_last_of(totals->done, gridDim.x)) return false;
+  if (!is_last_of(totals->done, gridDim.x)) return;
   if (has_more()) send(word_of(totals->result), now() - met, launch.answer, sequence);
   __syncthreads();
   if (threadIdx.x == 0) {
     *totals = Totals{};
     *launch.counters = RefinedCounters{};
   }
-  return true;
 }
 
 template <class Surface, unsigned kBlocks>
@@ -200,7 +190,7 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
              const __grid_constant__ PoseFrame frame, unsigned sequence) {
   __shared__ BlockShared<Surface> shared;
   GridTeam team(&launch.totals->arrived);
-  answer_pose<Arguments::launched>(launch, frame, sequence, team, shared);
+  answer_pose(launch, frame, sequence, team, shared);
 }
 
 // Each block a query of its own, one after another.

@@ -2,7 +2,6 @@
 
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/measure_on_device.h"
-#include "libvpm/backend/cuda/persistent/standby_kernel.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
 #include "libvpm/backend/cuda/refined_measure.h"
 #include "libvpm/backend/cuda/refined_memory.h"
@@ -19,16 +18,12 @@ class RefinedOnDevice : public MeasureOnDevice {
         counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
-        standing_by_{stand_by_kernel, blocks_that_fit(stand_by_kernel, kThreads, kFewBlocks),
-                     kThreads},
-        memory_(TeamRoom(level_.view()), 1,
-                std::max({of_images_.blocks, of_points_.blocks, standing_by_.blocks}), kThreads),
+        memory_(TeamRoom(level_.view()), 1, std::max(of_images_.blocks, of_points_.blocks),
+                kThreads),
         totals_(1),
         counters_(1) {
     totals_.clear();
     counters_.clear();
-    if (options.standby_us > 0 && !counts_points_)  // orders say nothing of points
-      stand_by(standby(standing_by_), options.standby_us);
   }
 
  private:
@@ -84,27 +79,9 @@ class RefinedOnDevice : public MeasureOnDevice {
     return memory_.space().notes[sequence % 2].words;
   }
   SphereState state_of(std::uint32_t word) const override {
-    return (word & kCounted) == 0 ? SphereState::outside
-           : (word & kCut) != 0   ? SphereState::boundary
-                                  : SphereState::inside;
-  }
-
-  // Of clouds that a camera has seen. The arguments of the last clouds are kept: frames come by
-  // turns.
-  const void* standing_launch(Answer* answer) override {
-    if (!cloud().frame().is_organised) return nullptr;
-    for (std::size_t k = 0; k < kClouds; ++k)
-      if (clouds_on_device_[k] == cloud().serial()) return arguments_.get() + k;
-    const CurrentDevice current(device());
-    if (arguments_.size() == 0) arguments_ = DeviceArray<RefinedLaunch<DepthSurface>>(kClouds);
-    const std::size_t k = next_cloud_++ % kClouds;
-    const RefinedLaunch<DepthSurface> arguments =
-        arguments_of(cloud().depth_surface(), standing_by_.blocks, answer);
-    clouds_on_device_[k] = 0;
-    check(cudaMemcpy(arguments_.get() + k, &arguments, sizeof(arguments), cudaMemcpyHostToDevice));
-    finish_transfers();
-    clouds_on_device_[k] = cloud().serial();
-    return arguments_.get() + k;
+    return (word & cell_bit::counted) == 0 ? SphereState::outside
+           : (word & cell_bit::cut) != 0   ? SphereState::boundary
+                                           : SphereState::inside;
   }
 
   template <class Surface>
@@ -161,16 +138,10 @@ class RefinedOnDevice : public MeasureOnDevice {
   bool counts_points_;
   PoseKernel<DepthSurface> of_images_;
   PoseKernel<DiskSurface> of_points_;
-  StandbyKernel standing_by_;
   RefinedMemory memory_;
   DeviceArray<Totals> totals_;
   DeviceArray<RefinedCounters> counters_;
   std::unique_ptr<Teams> teams_;
-  // Clouds whose arguments for standing_launch() are kept.
-  static constexpr std::size_t kClouds = 4;
-  DeviceArray<RefinedLaunch<DepthSurface>> arguments_;
-  std::uint64_t clouds_on_device_[kClouds] = {};
-  std::size_t next_cloud_ = 0;
 };
 
 }  // namespace

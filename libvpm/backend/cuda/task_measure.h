@@ -117,7 +117,7 @@ __device__ void TaskMeasure<Surface>::note_behind(const BlockTask& block_task, V
     work_.notes.sums[block_task.cell] = sum;
   } else {
     found_.sum.add(sum);
-    if (sum.volume.value != 0) count(block_task.cell, kCounted);
+    if (sum.volume.value != 0) count(block_task.cell, cell_bit::counted);
   }
 }
 
@@ -235,12 +235,14 @@ __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResu
   const bool cut = result.plane.count > 0;
   if (kFloods) {
     const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
-    const std::uint32_t bits = (cut ? kCut | kSummed : 0) | (partial ? kPartial : 0);
+    const std::uint32_t bits =
+        (cut ? cell_bit::cut | cell_bit::summed : 0) | (partial ? cell_bit::partial : 0);
     if (bits != 0) atomicOr(&work_.notes.words[i], bits);
     add_atomically(result.sum, work_.notes.sums[i]);
   } else {
     found_.sum.add(result.sum);
-    if (cut || result.sum.volume.value != 0) count(i, kCounted | (cut ? kCut : 0));
+    if (cut || result.sum.volume.value != 0)
+      count(i, cell_bit::counted | (cut ? cell_bit::cut : 0));
   }
   if (cut) add_atomically(result.plane, work_.notes.planes[i]);
 }

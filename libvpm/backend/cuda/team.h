@@ -3,7 +3,7 @@
 
 #include <cuda/atomic>
 
-#include "libvpm/backend/cpu/cell_measure.h"
+#include "libvpm/measure/cell_measure.h"
 #include "libvpm/scene/pixel_rectangle.h"
 
 namespace vpm::cuda {
@@ -130,7 +130,7 @@ struct Subwarp {
 // Returns the first of the neighbouring samples that share a direction with this lane's, of which
 // `sharing` has a bit for each lane.
 __device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
-  const unsigned begin = lane / kNeighborSamples * kNeighborSamples;
+  const unsigned begin = neighbors_of(lane) * kNeighborSamples;
   return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
 }
 

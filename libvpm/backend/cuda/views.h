@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "libvpm/backend/cpu/cell_clusters.h"
-#include "libvpm/backend/cpu/cell_measure.h"
-#include "libvpm/backend/cpu/sphere_location.h"
+#include "libvpm/backend/cell_clusters.h"
+#include "libvpm/backend/sphere_location.h"
+#include "libvpm/measure/cell_measure.h"
 #include "libvpm/scene/cuda/cloud_views.h"
 #include "libvpm/scene/depth/depth_surface.h"
 #include "libvpm/scene/pixel_rectangle.h"

@@ -1,5 +1,4 @@
-// Memory of a device, and of the host where a device can write. To take it, clear it or give it
-// back may wait for all kernels, so none stands by meanwhile.
+// Memory of a device, and of the host where a device can write.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +6,6 @@
 #include <vector>
 
 #include "libvpm/device/cuda/current_device.h"
-#include "libvpm/device/cuda/other_work.h"
 
 namespace vpm::cuda {
 
@@ -24,16 +22,12 @@ class DeviceArray {
   DeviceArray() = default;
   explicit DeviceArray(std::size_t count) : count_(count) {
     if (count == 0) return;
-    device_ = current_device();
-    const OtherWork other(device_);
     check(cudaMalloc(&data_, count * sizeof(T)));
   }
   DeviceArray(const T* values, std::size_t count) : DeviceArray(count) { fill(values); }
   explicit DeviceArray(const std::vector<T>& values) : DeviceArray(values.data(), values.size()) {}
   ~DeviceArray() {
-    if (data_ == nullptr) return;
-    const OtherWork other(device_);
-    cudaFree(data_);
+    if (data_ != nullptr) cudaFree(data_);
   }
   DeviceArray(DeviceArray&& other) noexcept { swap(other); }
   DeviceArray& operator=(DeviceArray&& other) noexcept {
@@ -50,7 +44,6 @@ class DeviceArray {
   }
   void clear() {
     if (count_ == 0) return;
-    const OtherWork other(device_);
     check(cudaMemset(data_, 0, count_ * sizeof(T)));
     finish_transfers();
   }
@@ -59,27 +52,21 @@ class DeviceArray {
   void swap(DeviceArray& other) noexcept {
     std::swap(data_, other.data_);
     std::swap(count_, other.count_);
-    std::swap(device_, other.device_);
   }
   T* data_ = nullptr;
   std::size_t count_ = 0;
-  int device_ = 0;
 };
 
 // Values in the host's memory that the device reads and writes over the bus. Owns them.
 template <class T>
 class MappedArray {
  public:
-  explicit MappedArray(std::size_t count) : count_(count), owner_(current_device()) {
-    const OtherWork other(owner_);
+  explicit MappedArray(std::size_t count) : count_(count) {
     check(cudaHostAlloc(&host_, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable));
     check(cudaHostGetDevicePointer(&device_, host_, 0));
     for (std::size_t i = 0; i < count; ++i) host_[i] = T{};
   }
-  ~MappedArray() {
-    const OtherWork other(owner_);
-    cudaFreeHost(host_);
-  }
+  ~MappedArray() { cudaFreeHost(host_); }
   MappedArray(const MappedArray&) = delete;
   MappedArray& operator=(const MappedArray&) = delete;
 
@@ -91,7 +78,6 @@ class MappedArray {
   T* host_ = nullptr;
   T* device_ = nullptr;
   std::size_t count_ = 0;
-  int owner_ = 0;  // the device
 };
 
 }  // namespace vpm::cuda

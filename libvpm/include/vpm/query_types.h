@@ -28,11 +28,6 @@ struct QueryOptions {
   // The refined measure counts Result::points, which takes up to 2.5 times as long; the printed one
   // counts them anyway.
   bool counts_points = false;
-  // Microseconds, at most kLongestStandby, that a device stays ready for the next pose, which then
-  // needs no launch, and does nothing else of this process. Refined measure, in depth images,
-  // without counted points.
-  std::uint32_t standby_us = 0;
-  static constexpr std::uint32_t kLongestStandby = 1'000'000;
   OccludedSpace occluded = OccludedSpace::within_reach;  // solid: refined measure, in depth images
   double stiffness = 1;  // N/m^3: the wrench is in N and N m; 1 leaves it in m^3 and m^4
 };

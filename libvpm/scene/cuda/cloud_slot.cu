@@ -60,7 +60,7 @@ CloudSlot::CloudSlot(const DepthFrameOptions& options)
 }
 
 CloudSlot::~CloudSlot() {
-  cudaEventSynchronize(end_->get());
+  cudaEventSynchronize(end_.get());
 }
 
 void CloudSlot::set_camera() {
@@ -77,16 +77,14 @@ void CloudSlot::begin() {
   cloud_.stand_at(camera().to_world);
   set_camera();
   const CurrentDevice current(options().device.first());
-  const OtherWork other;
   launch();
-  other.goes_on_until(end_);
 }
 
 // What is launched has an end, even if the rest fails.
 void CloudSlot::launch() {
   const auto mark_end = [&] {
     is_there_ = false;
-    return cudaEventRecord(end_->get(), stream_.get());
+    return cudaEventRecord(end_.get(), stream_.get());
   };
   try {
     take(stream_.get());
@@ -100,8 +98,8 @@ void CloudSlot::launch() {
 
 bool CloudSlot::require(cudaStream_t stream) const {
   const std::lock_guard lock(mutex_);
-  is_there_ = is_there_ || has_happened(*end_);
-  if (!is_there_) check(cudaStreamWaitEvent(stream, end_->get()));
+  is_there_ = is_there_ || has_happened(end_);
+  if (!is_there_) check(cudaStreamWaitEvent(stream, end_.get()));
   return is_there_;
 }
 
@@ -131,7 +129,7 @@ bool CloudSlot::is_answered() const {
 
 void CloudSlot::wait_for_answer() const {
   for (unsigned looks = 1; !is_answered(); ++looks)
-    if (looks % kLooksPerCheck == 0 && has_happened(*end_) && !is_answered())
+    if (looks % kLooksPerCheck == 0 && has_happened(end_) && !is_answered())
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
 }
 

@@ -3,7 +3,6 @@
 
 #include <mutex>
 
-#include "libvpm/device/cuda/other_work.h"
 #include "libvpm/device/cuda/stream.h"
 #include "libvpm/scene/cuda/cloud_take.h"
 #include "libvpm/scene/cuda/device_cloud.h"
@@ -54,10 +53,10 @@ class CloudSlot : public FrameSlot {
   CloudRecipe recipe_;  // seen from the camera of the image
   Preparation preparation_;
   bool is_plain_ = false;
-  std::shared_ptr<Event> end_ = std::make_shared<Event>(cudaEventDisableTiming);  // of the making
-  unsigned sequence_ = 0;         // of the last making
-  mutable std::mutex mutex_;      // of is_there_
-  mutable bool is_there_ = true;  // what was launched in this memory has ended
+  Event end_{cudaEventDisableTiming};  // of the making
+  unsigned sequence_ = 0;              // of the last making
+  mutable std::mutex mutex_;           // of is_there_
+  mutable bool is_there_ = true;       // what was launched in this memory has ended
 };
 
 }  // namespace vpm::cuda

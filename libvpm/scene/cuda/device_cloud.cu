@@ -141,10 +141,7 @@ std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {
   std::erase_if(copies, [](const auto& entry) { return entry.second.expired(); });
   std::weak_ptr<const DeviceCloud>& known = copies[{current_device(), cloud.serial()}];
   std::shared_ptr<const DeviceCloud> copy = known.lock();
-  if (!copy) {
-    const OtherWork other;
-    known = copy = std::make_shared<const DeviceCloud>(cloud);
-  }
+  if (!copy) known = copy = std::make_shared<const DeviceCloud>(cloud);
   return copy;
 }
 

@@ -189,7 +189,7 @@ struct DepthSurface : DepthSampler {
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
                          const ReadAll& sample_all, TangentPlane& plane) const {
     if (!may_be_flat(in_ball)) return false;
-    const SurfaceSample middle = sample(center);
+    const SurfaceSample middle = sample_all.middle(*this, center);
     if (!middle.known) return false;
     const PlacesAround around(middle, center, radius);
     const Vec3 places[PlacesAround::kCount] = {around.at(0), around.at(1), around.at(2),

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "libvpm/backend/cpu/sphere_location.h"
 #include "libvpm/backend/cuda/team.h"
 #include "libvpm/backend/cuda/views.h"
+#include "libvpm/backend/sphere_location.h"
 #include "libvpm/measure/paper_contact.h"
 
 namespace vpm::bench {

@@ -34,6 +34,12 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
   if (side == PlaneSide::cut) sum.add_moment(clipped.weight, tool.inverse * clipped.moment, normal);
 }
 
+// Returns the group of neighbouring samples to which sample `k` of a block belongs: those of a
+// group that are wholly behind the surface are pushed in the direction of the first of them.
+VPM_HD constexpr std::uint32_t neighbors_of(std::uint32_t k) {
+  return k / kNeighborSamples;
+}
+
 template <MeasuredBody Surface>
 class CellMeasure {
  public:
@@ -206,9 +212,8 @@ class CellMeasure {
   VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
     return surface_.closest_normal(sampled.x, sampled.on_surface);
   }
-  // Of a block's samples that lie side by side (kNeighborSamples), those that are wholly behind the
-  // surface are pushed in the direction of the first of them, where that is searched for. Far ones
-  // go their own ways.
+  // True if a sample takes the direction of its neighbours (neighbors_of): where directions are
+  // searched for. Far ones have their own.
   VPM_HD static bool shares_direction(const ToolPiece& sample, const PieceSample& sampled) {
     return Surface::kSearchesFoot && sampled.is_inside && !sampled.is_far &&
            !is_cut(sample, sampled);
@@ -253,7 +258,7 @@ class CellMeasure {
   }
   // The same of sample `k` of a block.
   struct SharedDirection {
-    std::uint32_t neighbors = UINT32_MAX;  // samples from kNeighborSamples times this on
+    std::uint32_t neighbors = UINT32_MAX;  // neighbors_of() its samples
     Vec3 normal;
   };
   template <class Near>
@@ -266,8 +271,7 @@ class CellMeasure {
       add(piece, sampled, near, result.sum);
       return;
     }
-    if (shared.neighbors != k / kNeighborSamples)
-      shared = {k / kNeighborSamples, closest_normal(sampled)};
+    if (shared.neighbors != neighbors_of(k)) shared = {neighbors_of(k), closest_normal(sampled)};
     add_pushed(piece, shared.normal, result.sum);
   }
 

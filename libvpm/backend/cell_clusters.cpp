@@ -1,4 +1,4 @@
-#include "libvpm/backend/cpu/cell_clusters.h"
+#include "libvpm/backend/cell_clusters.h"
 
 #include <algorithm>
 #include <numeric>
@@ -36,7 +36,7 @@ BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Ve
 void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end,
                   CellClusters& out) {
   const CellCluster cluster = enclosing_cluster(tool, level, out.cells, begin, end);
-  if (end - begin == 1 || cluster.reach <= kPlanarReach * tool.reach) {
+  if (end - begin == 1 || may_be_planar(cluster.reach, tool.reach)) {
     std::sort(out.cells.begin() + begin, out.cells.begin() + end);
     out.clusters.push_back(cluster);
     return;
