@@ -56,12 +56,12 @@ build_device_code() {
   local root=$1 nvcc cuda
   nvcc=$(command -v nvcc || echo /usr/local/cuda/bin/nvcc)
   cuda=$(dirname "$(dirname "$(readlink -f "$nvcc")")")
-  if [[ ! -x $cuda/bin/nvcc ]]; then
-    echo "== There is no nvcc here: the device code is not built"
+  if [[ ! -x $cuda/bin/nvcc || ! -d $cuda/nvvm/libdevice ]]; then
+    echo "== There is no CUDA here in a folder of its own that the root could be lent: the device code is not built"
     return
   fi
   mkdir -p "$root/usr/local/cuda"
-  mount --bind "$cuda" "$root/usr/local/cuda"
+  mount --rbind "$cuda" "$root/usr/local/cuda"
   mount -o remount,bind,ro "$root/usr/local/cuda"
   run "$root" "cmake --preset release -DVPM_CUDA=ON -DCMAKE_CUDA_COMPILER=/usr/local/cuda/bin/nvcc \
 -DCMAKE_CUDA_ARCHITECTURES=75-virtual && cmake --build --preset release --target device_code"
