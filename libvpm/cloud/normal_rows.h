@@ -59,4 +59,22 @@ std::unique_ptr<NormalRows> pca_rows(const NormalImages& images, const Intrinsic
 std::unique_ptr<NormalRows> normal_rows(const NormalImages& images, const Intrinsics& k,
                                         const NormalOptions& options);
 
+// Estimates the rows of a band, for one thread.
+class NormalBand {
+ public:
+  NormalBand(const NormalImages& images, const Intrinsics& k, const NormalOptions& options)
+      : rows_(normal_rows(images, k, options)),
+        row_(static_cast<std::size_t>(images.inverse.width)) {}
+
+  // Returns the normals of row v, until the next call.
+  const NormalRow& estimate(int v) {
+    rows_->estimate(v, row_);
+    return row_;
+  }
+
+ private:
+  std::unique_ptr<NormalRows> rows_;
+  NormalRow row_;
+};
+
 }  // namespace vpm

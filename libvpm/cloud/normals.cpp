@@ -92,12 +92,9 @@ std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& i
   const auto height = static_cast<int>(depth.height);
   for_bands(height, [&](int begin, int end) { images.take_rows(depth, options, begin, end); });
   for_bands(height, [&](int begin, int end) {
-    const auto rows = normal_rows(images, intrinsics, options);
-    NormalRow row(depth.width);
-    for (int v = begin; v < end; ++v) {
-      rows->estimate(v, row);
-      store_normals(row, normals.data() + static_cast<std::size_t>(v) * depth.width);
-    }
+    NormalBand band(images, intrinsics, options);
+    for (int v = begin; v < end; ++v)
+      store_normals(band.estimate(v), normals.data() + static_cast<std::size_t>(v) * depth.width);
   });
   return normals;
 }

@@ -9,32 +9,16 @@
 #include "libvpm/cloud/vector_tile.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/core/vector_clones.h"
-#include "libvpm/scene/depth/hole_closing.h"
 
 namespace vpm {
 namespace {
 
-// With a camera of less, points lie on the rays of their pixels as far as float can say, so nobody
-// needs to look: off by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
-constexpr double kUsualFocalLength = 0x1p20;
 // Normals are of unit length but for rounding; validate() allows more than this of the square.
 constexpr double kUnitTolerance = 1.9e-3;
 
-double steepest(double size, double centre, double focal) {
-  return std::max(std::abs(centre), std::abs(size - 1 - centre)) / focal;
-}
-
-// Whether nothing can be wrong with a point of this camera that a look at its normal does not tell.
-bool is_usual(const Camera& camera, const DepthImage& depth) {
-  const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
-  if (depth.width != camera.width || depth.height != camera.height || pixels == 0 ||
-      pixels > PreparedCloud::kMaxPoints ||
-      std::max(depth.width, depth.height) > DepthSurface::kMostPixelsASide ||
-      !is_in_range(camera.to_world.translation))
-    return false;
-  const Intrinsics& k = camera.intrinsics;
-  const double x = steepest(camera.width, k.cx, k.fx), y = steepest(camera.height, k.cy, k.fy);
-  return std::max(k.fx, k.fy) * (1 + x) * (1 + y) * (1 + x + y) <= kUsualFocalLength;
+bool is_of_size(const DepthImage& depth, const Camera& camera) {
+  return depth.width == camera.width && depth.height == camera.height && !depth.depth.empty() &&
+         depth.depth.size() == std::size_t{depth.width} * depth.height;
 }
 
 // A row of the frame: what is read, and where the points go, each at its pixel.
@@ -68,7 +52,7 @@ struct RowFacts {
   std::uint32_t exists[kTile], points = 0, odd = 0;
   for (int i = 0; i < kTile; ++i) {
     const double z = depth[i];
-    const Vec3f p = narrow(to_world * Vec3{ray_x[i] * z, ray_y * z, z});
+    const Vec3f p = narrow(to_world * point_on_ray(ray_x[i], ray_y, z));
     const Vec3f n = narrow(to_world * Vec3{nx[i], ny[i], nz[i]});
     const Vec3f b = narrow(to_camera * widen(n));
     const double off = squared_norm(widen(n)) - 1;
@@ -120,8 +104,8 @@ void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
                                PreparedCloud& cloud) {
   try {
     check_intrinsics(camera.intrinsics);
-    if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
-        !prepare_rows(depth, camera, cloud))
+    if (!is_of_size(depth, camera) || !is_usual(camera) ||
+        !is_in_range(camera.to_world.translation) || !prepare_rows(depth, camera, cloud))
       cloud = PreparedCloud(make_cloud(depth, camera, options_),
                             points_);  // tells what is wrong, if anything
   } catch (...) {
@@ -149,30 +133,25 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   rays_.resize(width + kTile);
   for (std::size_t u = 0; u < width; ++u) rays_[u] = (static_cast<double>(u) - k.cx) / k.fx;
   images_.resize(depth.width, depth.height, options_);
-  seen_.resize(depth.width, depth.height);
-  cloud.image_.resize(depth.width, depth.height);
-  static_assert(DenoisedImage::kReach <= FollowingRows::kMostReach);
-  marking_.start(static_cast<int>(height), SeenImage::kReachOfMarks);
-  settling_.start(static_cast<int>(height), DenoisedImage::kReach);
-  for_bands(static_cast<int>(height), [&](int begin, int end) {
+  steps_.resize(depth.width, depth.height);
+  SeenImage& seen = steps_.seen();
+  const auto take = [&](int begin, int end) {
     images_.take_rows(depth, options_, begin, end);
     for (int v = begin; v < end; ++v)
-      std::copy_n(images_.inverse.at(0, v), width, seen_.inverse.at(0, v));
-  });
-  close_holes(seen_.inverse);
+      std::copy_n(images_.inverse.at(0, v), width, seen.inverse.at(0, v));
+  };
   std::atomic<bool> is_sound{true};
-  for_bands(static_cast<int>(height), [&](int begin, int end) {
-    const auto rows = normal_rows(images_, k, options_);
-    NormalRow row(width);
+  const auto find = [&](int begin, int end, const auto& made) {
+    NormalBand band(images_, k, options_);
     std::vector<std::uint8_t> exists(width);
     for (int v = begin; v < end; ++v) {
-      rows->estimate(v, row);
+      const NormalRow& row = band.estimate(v);
       const std::size_t at = static_cast<std::size_t>(v) * width;
       Vec3f *positions = cloud.positions_.data() + at, *normals = cloud.normals_.data() + at;
       const auto [points, sound] =
           place_row({static_cast<int>(width), (v - k.cy) / k.fy, camera.to_world.rotation,
                      to_camera, depth.depth.data() + at, row, rays_.data(), positions, normals,
-                     seen_.x.at(0, v), seen_.y.at(0, v), seen_.z.at(0, v), exists.data()});
+                     seen.x.at(0, v), seen.y.at(0, v), seen.z.at(0, v), exists.data()});
       if (!sound) is_sound = false;
       row_points_[static_cast<std::size_t>(v)] = points;
       std::uint32_t* pixel_begin = cloud.pixel_begin_.data() + at;
@@ -181,16 +160,11 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
                     positions, normals, pixel_begin);
       else
         std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
-      // What is settled reads marks, between bands too: of two threads the one that came first
-      // there has marked its rows before it came here.
-      if (points_ == Denoising::on)
-        marking_.made(v, [&](int first, int last) { seen_.mark_rows(first, last); });
-      settling_.made(
-          v, [&](int first, int last) { cloud.image_.read_rows(seen_, points_, first, last); });
+      made(v);
     }
-  });
+  };
+  steps_.make(points_, take, find, cloud.image_);
   close_ranks(width, cloud);
-  cloud.image_.finish();
   return is_sound;
 }
 

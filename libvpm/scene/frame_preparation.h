@@ -5,7 +5,7 @@
 #pragma once
 
 #include "libvpm/cloud/normal_rows.h"
-#include "libvpm/cloud/row_bands.h"
+#include "libvpm/scene/image_steps.h"
 #include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm {
@@ -27,8 +27,7 @@ class FramePreparation {
   NormalOptions options_;
   Denoising points_;
   NormalImages images_;
-  SeenImage seen_;
-  FollowingRows marking_, settling_;
+  ImageSteps steps_;
   std::vector<double> rays_;               // x / z of each column
   std::vector<std::uint32_t> row_points_;  // of each row
 };

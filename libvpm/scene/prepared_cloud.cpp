@@ -9,10 +9,9 @@
 #include <string>
 #include <tuple>
 
-#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/depth/hole_closing.h"
+#include "libvpm/scene/image_steps.h"
 #include "libvpm/scene/points/leaf_order.h"
 
 namespace vpm {
@@ -52,6 +51,18 @@ void check_extent(const Cloud& cloud) {
 
 }  // namespace
 
+bool is_usual(const Camera& camera) {
+  const Intrinsics& k = camera.intrinsics;
+  const double x = std::max(std::abs(k.cx), std::abs(camera.width - 1 - k.cx)) / k.fx;
+  const double y = std::max(std::abs(k.cy), std::abs(camera.height - 1 - k.cy)) / k.fy;
+  const double longest = std::sqrt(x * x + y * y + 1);
+  constexpr double kLongest = 0x1p10, kWidestPixel = 0x1p10, kError = 0x1p-21;
+  return std::size_t{camera.width} * camera.height <= PreparedCloud::kMaxPoints &&
+         std::max(camera.width, camera.height) <= DepthSurface::kMostPixelsASide &&
+         longest <= kLongest && 1 / k.fx <= kWidestPixel && 1 / k.fy <= kWidestPixel &&
+         std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
+}
+
 std::uint64_t PreparedCloud::next_serial() {
   static std::atomic<std::uint64_t> last{0};
   return ++last;
@@ -86,17 +97,16 @@ PreparedCloud::PreparedCloud(const Cloud& cloud, Denoising points)
 void PreparedCloud::take_image(const Cloud& cloud, Denoising points) {
   camera_ = cloud.sensor->camera;
   const DepthImage& depth = cloud.sensor->depth;
-  SeenImage seen;
-  seen.resize(depth.width, depth.height);
-  take_inverse_depth(depth, 0, seen.inverse.height, seen.inverse);
-  close_holes(seen.inverse);
-  order_by_pixel(cloud, seen);
-  image_.resize(depth.width, depth.height);
-  const int height = seen.inverse.height;
-  if (points == Denoising::on)
-    for_bands(height, [&](int begin, int end) { seen.mark_rows(begin, end); });
-  for_bands(height, [&](int begin, int end) { image_.read_rows(seen, points, begin, end); });
-  image_.finish();
+  ImageSteps steps;
+  steps.resize(depth.width, depth.height);
+  order_by_pixel(cloud, steps.seen());
+  const auto take = [&](int begin, int end) {
+    take_inverse_depth(depth, begin, end, steps.seen().inverse);
+  };
+  const auto find = [](int begin, int end, const auto& made) {
+    for (int v = begin; v < end; ++v) made(v);
+  };
+  steps.make(points, take, find, image_);
 }
 
 void PreparedCloud::order_by_pixel(const Cloud& cloud, SeenImage& seen) {

@@ -91,6 +91,12 @@ class PreparedCloud {
   std::vector<ConeQuad> cones_;  // of the disks
 };
 
+// True if no point of this camera can be refused for where it lies: float positions of usable
+// depths are finite and lie on the rays of their pixels, their disks are finite, and they are no
+// more than a PreparedCloud takes. With rays `longest` times as long as deep, a position errs by
+// less than 2^-22 of its length. Cameras beyond that are not used.
+bool is_usual(const Camera& camera);
+
 template <class Visit>
 void PreparedCloud::for_ranges_in_pixels(const PixelRectangle& r, const Visit& visit) const {
   for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {

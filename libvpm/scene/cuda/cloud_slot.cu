@@ -1,26 +1,9 @@
-#include <algorithm>
-
 #include "libvpm/core/lengths.h"
 #include "libvpm/scene/cuda/cloud_denoise.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace vpm::cuda {
 namespace {
-
-// Bounds within which float positions of usable depths are finite and lie on the rays of their
-// pixels, their disks are finite, and a cloud has no more points than a PreparedCloud takes: with
-// rays `longest` times as long as deep, a position errs by less than 2^-22 of its length.
-bool is_plain(const Camera& camera) {
-  const Intrinsics& k = camera.intrinsics;
-  const double x = std::max(std::abs(k.cx), std::abs(camera.width - 1 - k.cx)) / k.fx;
-  const double y = std::max(std::abs(k.cy), std::abs(camera.height - 1 - k.cy)) / k.fy;
-  const double longest = std::sqrt(x * x + y * y + 1);
-  constexpr double kLongest = 0x1p10, kWidestPixel = 0x1p10, kError = 0x1p-21;
-  return std::size_t{camera.width} * camera.height <= PreparedCloud::kMaxPoints &&
-         std::max(camera.width, camera.height) <= DepthSurface::kMostPixelsASide &&
-         longest <= kLongest && 1 / k.fx <= kWidestPixel && 1 / k.fy <= kWidestPixel &&
-         std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
-}
 
 // As validate() and PreparedCloud ask of a camera.
 bool is_sound_pose(const Pose& pose) {
@@ -69,7 +52,7 @@ void CloudSlot::set_camera() {
 }
 
 void CloudSlot::begin() {
-  is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
+  is_plain_ = preparation_.fits && is_usual(camera()) && is_sound_pose(camera().to_world);
   if (!is_plain_) {
     cloud();  // refuses what is to be refused
     return;
