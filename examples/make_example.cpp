@@ -12,7 +12,7 @@
 #include "examples/write_png.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/synthetic/truth.h"

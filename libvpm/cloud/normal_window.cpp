@@ -18,7 +18,7 @@ constexpr float kOpen = std::numeric_limits<float>::infinity();
 
 // Limits of smooth windows for pca: squares within them stay far from the ends of the range of
 // floats.
-constexpr float kMostRelative = 16, kLeastInverse = 0x1p-44F, kMostInverse = 0x1p42F;
+constexpr float kMaxRelative = 16, kMinInverse = 0x1p-44F, kMaxInverse = 0x1p42F;
 
 }  // namespace
 
@@ -29,8 +29,8 @@ EdgeGate::EdgeGate(const NormalOptions& options, const Intrinsics& k) {
   highest = width > 0 ? static_cast<float>(1 + width) : kOpen;
   least = std::numeric_limits<float>::min(), greatest = kOpen;
   if (options.method == NormalMethod::pca) {
-    lowest = std::max(lowest, 1 / kMostRelative), highest = std::min(highest, kMostRelative);
-    least = kLeastInverse, greatest = kMostInverse;
+    lowest = std::max(lowest, 1 / kMaxRelative), highest = std::min(highest, kMaxRelative);
+    least = kMinInverse, greatest = kMaxInverse;
   }
   gate = width > 0 ? static_cast<float>(width) : kOpen;
   slope = static_cast<float>(kSteepest / std::min(k.fx, k.fy));
@@ -118,8 +118,8 @@ GatedWindows::GatedWindows(const PaddedImage& inverse, const NormalOptions& opti
     : inverse_(inverse), radius_(options.window / 2), gate_(edges.gate) {
   for (int du = -radius_; du <= radius_; ++du) {
     for (int dv = -radius_; dv <= radius_; ++dv) {
-      const float reach = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
-      wide_gates_.push_back(edges.gate + edges.slope * reach);
+      const float distance = static_cast<float>(std::max(std::abs(du), std::abs(dv)));
+      wide_gates_.push_back(edges.gate + edges.slope * distance);
     }
   }
   weights_.resize(wide_gates_.size() * kLanes);

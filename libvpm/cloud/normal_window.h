@@ -102,13 +102,13 @@ class GatedWindows {
 
  private:
   static constexpr int kColumns = kFoldedColumns;
-  static constexpr int kMostColumns = (kMaxWindow + kColumns - 1) / kColumns * kColumns;
+  static constexpr int kMaxColumns = (kMaxWindow + kColumns - 1) / kColumns * kColumns;
   // Sums over the admitted pixels: those of integers are exact in any order; others are kept by
   // column.
   struct Sums {
     Floats n{}, u{}, v{}, uu{}, uv{}, vv{};
     Ints has_edge{};  // -1 where the first choice found an edge
-    Floats column_e[kMostColumns], column_ue[kMostColumns], column_ve[kMostColumns];
+    Floats column_e[kMaxColumns], column_ue[kMaxColumns], column_ve[kMaxColumns];
   };
   template <bool kFirst, class Radius>
   Sums sum_admitted(const float* centre, Radius radius);

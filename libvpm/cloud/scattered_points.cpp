@@ -42,12 +42,12 @@ float median(std::vector<float> values) {
 // Throws Error(refused) if float32 positions are too coarse for the points' spacing. The usual
 // cause is one point far from all others, such as a marker for missing data.
 void refuse_rounded_places(const Cloud& cloud, const std::string& name) {
-  constexpr double kMostRounding = 1.0 / 16;  // part of the sampling radius
+  constexpr double kMaxRounding = 1.0 / 16;  // part of the sampling radius
   float farthest = 0;
   for (const Vec3f& p : cloud.positions)
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * farthest;
-  if (rounding <= kMostRounding * median(cloud.radii)) return;
+  if (rounding <= kMaxRounding * median(cloud.radii)) return;
   std::ostringstream metres;
   metres << rounding;
   refuse("its points are too far apart: float32 rounds their places by up to " + metres.str() +

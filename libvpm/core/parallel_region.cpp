@@ -39,7 +39,7 @@ bool ParallelRegion::Part::take(bool is_first, std::uint64_t& range) {
 
 ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
   if (threads_ == 1) return;
-  part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMostParts);
+  part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMaxParts);
   helpers_ = std::make_unique<Helpers>();
   // A thread that is new to the scheduler has no index yet (negative); it will get index 0.
   first_thread_ = std::max(tbb::this_task_arena::current_thread_index(), 0);

@@ -55,7 +55,7 @@ class ParallelRegion {
     // Index of the first open range; above kEndShift, the index past the last.
     std::atomic<std::uint64_t> open_{0};
   };
-  static constexpr std::size_t kMostParts = 16;  // more threads than this share parts
+  static constexpr std::size_t kMaxParts = 16;  // more threads than this share parts
 
   void loop(std::size_t count, std::size_t grain, BodyView body);
   void help();
@@ -63,7 +63,7 @@ class ParallelRegion {
   void run_ranges(std::size_t own);
   void run(std::uint64_t range);
 
-  Part parts_[kMostParts];
+  Part parts_[kMaxParts];
   std::size_t part_count_ = 1;
   int first_thread_ = 0;  // arena index of the thread that runs the loops
   std::atomic<std::uint64_t> done_{0};

@@ -127,10 +127,10 @@ class TemporaryFile {
 // Follows symbolic links, so that the link stays and its target is written, even if that does not
 // exist yet.
 fs::path end_of_links(fs::path path) {
-  constexpr int kMostLinks = 40;  // the kernel's limit
+  constexpr int kMaxLinks = 40;  // the kernel's limit
   std::error_code fault;
   for (int k = 0; fs::is_symlink(path, fault); ++k) {
-    if (k == kMostLinks) cannot_write(path.string(), ELOOP);
+    if (k == kMaxLinks) cannot_write(path.string(), ELOOP);
     path = path.parent_path() / fs::read_symlink(path);
   }
   return path;

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "libvpm/core/error.h"
-#include "libvpm/graph/cells.h"
-#include "libvpm/graph/edges.h"
+#include "libvpm/graph/cell_pieces.h"
 #include "libvpm/graph/hierarchy.h"
 #include "libvpm/graph/point_location_grid.h"
+#include "libvpm/graph/sphere_graph.h"
 #include "libvpm/mesh/outer_surface.h"
 
 namespace vpm {
@@ -17,7 +17,7 @@ namespace {
 constexpr double kEpsilonPart = 0.1;  // part of the smallest radius, as in the paper
 // Number of segments of the gap: enough for the cell of a single sphere, and for the whole at few
 // spheres.
-constexpr double kPiecesPerSphere = 1000, kFewestPieces = 2e6, kMostPieces = 3e7;
+constexpr double kPiecesPerSphere = 1000, kMinPieces = 2e6, kMaxPieces = 3e7;
 
 // Normalised coordinates: magnitude 1 about the solid's centre. The unit is a power of two, so that
 // scaling a packing by one changes no digit.
@@ -98,35 +98,34 @@ void fill_graph(const SphereBvh& bvh, const Frame& frame, Level& level) {
   level.graph = with_edges(edges, bridges);
 }
 
-CellQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& level) {
-  const double pieces =
-      std::clamp(kPiecesPerSphere * level.sphere_count, kFewestPieces, kMostPieces);
-  const VoronoiCells voronoi =
+VoronoiQuality fill_cells(const Normalized& n, const SphereBvh& bvh, Level& level) {
+  const double pieces = std::clamp(kPiecesPerSphere * level.sphere_count, kMinPieces, kMaxPieces);
+  const VoronoiCells cells =
       find_voronoi_cells(n.solid, n.mass, bvh, std::cbrt(n.mass.volume / pieces));
   for (std::size_t i = 0; i < level.sphere_count; ++i) {
-    level.cell_volume.push_back(n.frame.cubed() * voronoi.volume[i]);
-    level.cell_centroid.push_back(n.frame.from(voronoi.centroid[i]));
-    level.cell_reach.push_back(n.frame.unit * voronoi.reach[i]);
+    level.cell_volume.push_back(n.frame.cubed() * cells.volume[i]);
+    level.cell_centroid.push_back(n.frame.from(cells.centroid[i]));
+    level.cell_reach.push_back(n.frame.unit * cells.radius[i]);
   }
   const double size = std::cbrt(n.mass.volume) / samples_per_length(level.sphere_count);
-  Cells cells =
-      build_cells(bvh.spheres(), voronoi, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
-  level.block_begin = std::move(cells.block_begin);
-  level.blocks = std::move(cells.blocks);
-  level.samples = std::move(cells.samples);
-  return voronoi.quality;
+  CutCells all =
+      cut_cells(bvh.spheres(), cells, size, n.mass.center_of_mass, n.frame.unit, n.mass.volume);
+  level.block_begin = std::move(all.block_begin);
+  level.blocks = std::move(all.blocks);
+  level.samples = std::move(all.samples);
+  return cells.quality;
 }
 
 }  // namespace
 
 double samples_per_length(std::uint32_t spheres) {
   constexpr double kSpheresOfFinest = 1000;
-  return std::clamp(kMostSamplesPerLength * std::cbrt(spheres / kSpheresOfFinest),
-                    kLeastSamplesPerLength, kMostSamplesPerLength);
+  return std::clamp(kMaxSamplesPerLength * std::cbrt(spheres / kSpheresOfFinest),
+                    kMinSamplesPerLength, kMaxSamplesPerLength);
 }
 
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
-                           std::vector<CellQuality>* quality) {
+                           std::vector<VoronoiQuality>* quality) {
   const MassProperties mass = enclosed_mass(packing.solid);
   check(packing, mass, options);
   const Normalized n = normalize(packing, mass);
@@ -134,7 +133,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
   ToolModel model;
   model.volume = mass.volume;
   model.center_of_mass = mass.center_of_mass;
-  model.reach = reach(packing.solid, mass.center_of_mass);
+  model.reach = bounding_radius(packing.solid, mass.center_of_mass);
   model.solid_hash = content_hash(packing.solid);
   model.spheres = packing.spheres;
   const auto counts = level_counts(options, static_cast<std::uint32_t>(packing.spheres.size()));
@@ -148,7 +147,7 @@ ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
     fill_graph(bvh, n.frame, level);
     level.hierarchy = build_hierarchy(spheres);
     level.grid = build_point_location_grid(spheres);
-    const CellQuality found = fill_cells(n, bvh, level);
+    const VoronoiQuality found = fill_cells(n, bvh, level);
     if (quality != nullptr) quality->push_back(found);
     model.levels.push_back(std::move(level));
     if (options.progress) {

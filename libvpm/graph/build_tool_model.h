@@ -17,7 +17,7 @@ namespace vpm {
 // is within 0.03 % of the solid's with 1000 spheres. It is up to 0.2 % for a plane within a
 // sample's size of a parallel face, since samples are balls and blur the face.
 double samples_per_length(std::uint32_t spheres);
-inline constexpr double kMostSamplesPerLength = 32, kLeastSamplesPerLength = 6;
+inline constexpr double kMaxSamplesPerLength = 32, kMinSamplesPerLength = 6;
 
 struct GraphOptions {
   double epsilon = 0;  // in metres; 0 takes a tenth of each level's smallest radius
@@ -31,6 +31,6 @@ struct GraphOptions {
 // Error(refused) for a bad packing. Same bytes for any thread count; scaling all coordinates by a
 // power of two changes exponents only.
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
-                           std::vector<CellQuality>* quality = nullptr);
+                           std::vector<VoronoiQuality>* quality = nullptr);
 
 }  // namespace vpm

@@ -2,11 +2,194 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
 #include "libvpm/core/parallel.h"
-#include "libvpm/graph/line_lattice.h"
 
 namespace vpm {
+namespace {
+
+constexpr double kGoldenRatio = 0.61803398874989485;
+// Bounds the memory of a lattice of any shape: the number of lines over its projection, of rows and
+// of columns.
+constexpr double kMaxLines = 4194304;
+
+// Returns the area of the solid's projections along x, y and z, counting hidden layers.
+Vec3 projected_areas(const Solid& solid) {
+  Vec3 area;
+  for (const Triangle& t : solid.triangles) {
+    const Vec3 a = solid.vertices[t[0]];
+    const Vec3 n = cross(solid.vertices[t[1]] - a, solid.vertices[t[2]] - a);
+    area += 0.25 * Vec3{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  }
+  return area;
+}
+
+std::uint32_t clamp_index(double value, std::uint32_t count) {
+  return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(count)));
+}
+
+// Side of the edge a-b on which a point lies. Both triangles of an edge get the same answer, since
+// the edge is always taken from its lower index to its higher.
+struct EdgeSide {
+  double twice_area = 0;
+  bool left = false;
+};
+EdgeSide side_of_edge(const std::vector<Vec3>& vertices, std::uint32_t from, std::uint32_t to,
+                      double u, double v) {
+  const bool swapped = from > to;
+  const Vec3 a = vertices[swapped ? to : from], b = vertices[swapped ? from : to];
+  const double area = (b.x - a.x) * (v - a.y) - (b.y - a.y) * (u - a.x);
+  return {swapped ? -area : area, (area >= 0) != swapped};
+}
+
+}  // namespace
+
+Vec3 LineLattice::to_uvw(Vec3 p) const {
+  if (axis == 0) return {p.y, p.z, p.x};
+  return axis == 1 ? Vec3{p.z, p.x, p.y} : p;
+}
+
+Vec3 LineLattice::to_xyz(Vec3 q) const {
+  if (axis == 0) return {q.z, q.x, q.y};
+  return axis == 1 ? Vec3{q.y, q.z, q.x} : q;
+}
+
+double LineLattice::u_of(std::uint32_t row, std::uint32_t column) const {
+  const double turns = (row + 1) * kGoldenRatio;
+  return u0 + (column + (turns - std::floor(turns)) - 0.5) * du;
+}
+
+void LineLattice::columns_between(std::uint32_t row, double low, double high, std::uint32_t& begin,
+                                  std::uint32_t& end) const {
+  const double first = u_of(row, 0);
+  begin = clamp_index(std::floor((low - first) / du), columns);
+  end = clamp_index(std::floor((high - first) / du) + 2, columns);
+}
+
+void LineLattice::rows_between(double low, double high, std::uint32_t& begin,
+                               std::uint32_t& end) const {
+  begin = clamp_index(std::floor((low - v0) / dv - 0.5), rows);
+  end = clamp_index(std::floor((high - v0) / dv - 0.5) + 2, rows);
+}
+
+LineLattice make_line_lattice(const Solid& solid, double spacing) {
+  const Vec3 areas = projected_areas(solid);
+  LineLattice lattice;
+  lattice.axis = areas.z >= areas.x && areas.z >= areas.y ? 2 : (areas.y >= areas.x ? 1 : 0);
+  const double area = lattice.to_uvw(areas).z;
+  spacing = std::max(spacing, std::sqrt(area / kMaxLines));
+
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
+  for (const Vec3& vertex : solid.vertices) {
+    const Vec3 q = lattice.to_uvw(vertex);
+    low = {std::min(low.x, q.x), std::min(low.y, q.y), std::min(low.z, q.z)};
+    high = {std::max(high.x, q.x), std::max(high.y, q.y), std::max(high.z, q.z)};
+  }
+  const auto cells = [&](double extent) {
+    return static_cast<std::uint32_t>(std::ceil(std::clamp(extent / spacing, 1.0, kMaxLines)));
+  };
+  const std::uint32_t across = cells(high.x - low.x);
+  // The shift of rows moves half a column out at either end.
+  lattice.columns = across + 1;
+  lattice.rows = cells(high.y - low.y);
+  lattice.u0 = low.x;
+  lattice.v0 = low.y;
+  lattice.du = (high.x - low.x) / across;
+  lattice.dv = (high.y - low.y) / lattice.rows;
+  return lattice;
+}
+
+LatticeRows::LatticeRows(const LineLattice& lattice, const Solid& solid,
+                         std::span<const Sphere> spheres)
+    : lattice_(lattice),
+      triangles_(solid.triangles),
+      triangles_of_row_(lattice.rows),
+      spheres_of_row_(lattice.rows) {
+  for (const Vec3& vertex : solid.vertices) vertices_.push_back(lattice.to_uvw(vertex));
+  for (const Sphere& s : spheres) spheres_.push_back({lattice.to_uvw(s.center), s.radius});
+  std::uint32_t begin = 0, end = 0;
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const auto [low, high] =
+        std::minmax({vertices_[triangles_[t][0]].y, vertices_[triangles_[t][1]].y,
+                     vertices_[triangles_[t][2]].y});
+    lattice.rows_between(low, high, begin, end);
+    for (std::uint32_t row = begin; row < end; ++row) triangles_of_row_[row].push_back(t);
+  }
+  for (std::uint32_t i = 0; i < spheres_.size(); ++i) {
+    lattice.rows_between(spheres_[i].center.y - spheres_[i].radius,
+                         spheres_[i].center.y + spheres_[i].radius, begin, end);
+    for (std::uint32_t row = begin; row < end; ++row) spheres_of_row_[row].push_back(i);
+  }
+}
+
+void LatticeRows::cross_triangle(std::uint32_t row, const Triangle& t,
+                                 std::vector<MeshCrossing>& found) const {
+  const double v = lattice_.v_of(row);
+  // Restricts the search to the columns that the triangle covers on this row.
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 a = vertices_[t[static_cast<std::size_t>(k)]],
+               b = vertices_[t[static_cast<std::size_t>((k + 1) % 3)]];
+    if (std::min(a.y, b.y) > v || std::max(a.y, b.y) < v) continue;
+    const double along = a.y == b.y ? 0 : (v - a.y) / (b.y - a.y);
+    const double u = a.x + along * (b.x - a.x), other = a.y == b.y ? b.x : u;
+    low = std::min({low, u, other});
+    high = std::max({high, u, other});
+  }
+  if (!(low <= high)) return;
+  std::uint32_t begin = 0, end = 0;
+  lattice_.columns_between(row, low - 0.5 * lattice_.du, high + 0.5 * lattice_.du, begin, end);
+  const double a = vertices_[t[0]].z, b = vertices_[t[1]].z, c = vertices_[t[2]].z;
+  for (std::uint32_t column = begin; column < end; ++column) {
+    const double u = lattice_.u_of(row, column);
+    const EdgeSide ab = side_of_edge(vertices_, t[0], t[1], u, v);
+    const EdgeSide bc = side_of_edge(vertices_, t[1], t[2], u, v);
+    const EdgeSide ca = side_of_edge(vertices_, t[2], t[0], u, v);
+    if (ab.left != bc.left || bc.left != ca.left) continue;
+    const double area = ab.twice_area + bc.twice_area + ca.twice_area;
+    // A triangle seen edge-on has no area; any of its points will do.
+    const double w =
+        area != 0 ? (bc.twice_area * a + ca.twice_area * b + ab.twice_area * c) / area : a;
+    found.push_back(
+        {column, std::clamp(w, std::min({a, b, c}), std::max({a, b, c})), ab.left ? -1 : 1});
+  }
+}
+
+std::vector<MeshCrossing> LatticeRows::crossings(std::uint32_t row) const {
+  std::vector<MeshCrossing> found;
+  for (const std::uint32_t t : triangles_of_row_[row]) cross_triangle(row, triangles_[t], found);
+  std::sort(found.begin(), found.end(), [](const MeshCrossing& a, const MeshCrossing& b) {
+    return std::tie(a.column, a.w, b.winding) < std::tie(b.column, b.w, a.winding);
+  });
+  return found;
+}
+
+std::vector<BallChord> LatticeRows::chords(std::uint32_t row) const {
+  std::vector<BallChord> found;
+  const double v = lattice_.v_of(row);
+  std::uint32_t begin = 0, end = 0;
+  for (const std::uint32_t i : spheres_of_row_[row]) {
+    const Sphere& s = spheres_[i];
+    const double across = s.radius * s.radius - (v - s.center.y) * (v - s.center.y);
+    if (!(across > 0)) continue;
+    const double half_width = std::sqrt(across);
+    lattice_.columns_between(row, s.center.x - half_width, s.center.x + half_width, begin, end);
+    for (std::uint32_t column = begin; column < end; ++column) {
+      const double u = lattice_.u_of(row, column) - s.center.x;
+      if (!(across - u * u > 0)) continue;
+      const double half = std::sqrt(across - u * u);
+      found.push_back({column, s.center.z - half, s.center.z + half, i});
+    }
+  }
+  std::sort(found.begin(), found.end(), [](const BallChord& a, const BallChord& b) {
+    return std::tie(a.column, a.low, a.sphere) < std::tie(b.column, b.low, b.sphere);
+  });
+  return found;
+}
+
 namespace {
 
 // Length, in spacings, below which a gap is rounding where a sphere touches another or the mesh.

@@ -8,7 +8,7 @@ namespace vpm {
 namespace {
 
 constexpr double kCellsPerSphere = 4;
-constexpr double kMostCells = 16777216;  // 2^24: 64 MiB of row offsets
+constexpr double kMaxCells = 16777216;  // 2^24: 64 MiB of row offsets
 // Distance, in grid cells, that a point may have from the grid cell of its rounded index.
 constexpr double kIndexMargin = 1e-6;
 
@@ -54,7 +54,7 @@ double cell_for(Vec3 extent, double cells) {
   const auto count = [&] {
     return (extent.x / cell + 1) * (extent.y / cell + 1) * (extent.z / cell + 1);
   };
-  while (count() > std::min(2 * cells, kMostCells)) cell *= kGrow;
+  while (count() > std::min(2 * cells, kMaxCells)) cell *= kGrow;
   return cell;
 }
 
@@ -93,7 +93,7 @@ void for_cells(const PointLocationGrid& grid, const Sphere& s, double margin, Vi
 
 PointLocationGrid build_point_location_grid(std::span<const Sphere> spheres) {
   const Box box = box_of(spheres);
-  const double count = std::min(kCellsPerSphere * static_cast<double>(spheres.size()), kMostCells);
+  const double count = std::min(kCellsPerSphere * static_cast<double>(spheres.size()), kMaxCells);
   PointLocationGrid grid;
   grid.cell = cell_for(box.high - box.low, count);
   const double margin = kIndexMargin * grid.cell + coordinate_rounding(box);

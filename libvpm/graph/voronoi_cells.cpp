@@ -14,12 +14,12 @@ constexpr double kVolumeTolerance = 1e-9;
 constexpr std::size_t kGrain = 256;
 
 // Sorts segments by sphere (counting sort), keeping the order of lines.
-void group_by_sphere(std::size_t spheres, VoronoiCells& voronoi) {
-  std::vector<GapSegment>& segments = voronoi.gap.segments;
-  voronoi.gap_begin.assign(spheres + 1, 0);
-  for (const GapSegment& s : segments) ++voronoi.gap_begin[s.sphere + 1];
-  for (std::size_t i = 0; i < spheres; ++i) voronoi.gap_begin[i + 1] += voronoi.gap_begin[i];
-  std::vector<std::uint32_t> next(voronoi.gap_begin.begin(), voronoi.gap_begin.end() - 1);
+void group_by_sphere(std::size_t spheres, VoronoiCells& cells) {
+  std::vector<GapSegment>& segments = cells.gap.segments;
+  cells.gap_begin.assign(spheres + 1, 0);
+  for (const GapSegment& s : segments) ++cells.gap_begin[s.sphere + 1];
+  for (std::size_t i = 0; i < spheres; ++i) cells.gap_begin[i + 1] += cells.gap_begin[i];
+  std::vector<std::uint32_t> next(cells.gap_begin.begin(), cells.gap_begin.end() - 1);
   std::vector<GapSegment> grouped(segments.size());
   for (const GapSegment& s : segments) grouped[next[s.sphere]++] = s;
   segments = std::move(grouped);
@@ -45,12 +45,12 @@ struct GapPart {
   Vec3 moment;
 };
 
-GapPart gap_of(const VoronoiCells& voronoi, Vec3 center, std::size_t i) {
+GapPart gap_of(const VoronoiCells& cells, Vec3 center, std::size_t i) {
   GapPart part;
   CompensatedSum sum;
-  for (std::uint32_t k = voronoi.gap_begin[i]; k < voronoi.gap_begin[i + 1]; ++k) {
-    const GapSegment& s = voronoi.gap.segments[k];
-    const double v = voronoi.gap_scale * voronoi.gap.volume(s);
+  for (std::uint32_t k = cells.gap_begin[i]; k < cells.gap_begin[i + 1]; ++k) {
+    const GapSegment& s = cells.gap.segments[k];
+    const double v = cells.gap_scale * cells.gap.volume(s);
     sum.add(v);
     part.moment += v * (s.center - center);
   }
@@ -58,33 +58,33 @@ GapPart gap_of(const VoronoiCells& voronoi, Vec3 center, std::size_t i) {
   return part;
 }
 
-double reach_of(const VoronoiCells& voronoi, const Sphere& sphere, std::size_t i) {
-  double reach = sphere.radius;
-  for (std::uint32_t k = voronoi.gap_begin[i]; k < voronoi.gap_begin[i + 1]; ++k) {
-    const GapSegment& s = voronoi.gap.segments[k];
-    const Vec3 apart = s.center - sphere.center, half = voronoi.gap.half_extent(s);
-    reach = std::max(reach, norm({std::abs(apart.x) + half.x, std::abs(apart.y) + half.y,
-                                  std::abs(apart.z) + half.z}));
+double bounding_radius_of(const VoronoiCells& cells, const Sphere& sphere, std::size_t i) {
+  double radius = sphere.radius;
+  for (std::uint32_t k = cells.gap_begin[i]; k < cells.gap_begin[i + 1]; ++k) {
+    const GapSegment& s = cells.gap.segments[k];
+    const Vec3 apart = s.center - sphere.center, half = cells.gap.half_extent(s);
+    radius = std::max(radius, norm({std::abs(apart.x) + half.x, std::abs(apart.y) + half.y,
+                                    std::abs(apart.z) + half.z}));
   }
-  return reach;
+  return radius;
 }
 
 Vec3 centroid_deficit(std::span<const Sphere> spheres, const MassProperties& mass,
-                      const VoronoiCells& voronoi) {
+                      const VoronoiCells& cells) {
   Vec3 deficit;
   for (std::size_t i = 0; i < spheres.size(); ++i) {
-    deficit += voronoi.volume[i] * (mass.center_of_mass - voronoi.centroid[i]);
+    deficit += cells.volume[i] * (mass.center_of_mass - cells.centroid[i]);
   }
   return deficit;
 }
 
-void sum_cells(std::span<const Sphere> spheres, VoronoiCells& voronoi) {
+void sum_cells(std::span<const Sphere> spheres, VoronoiCells& cells) {
   parallel_for(spheres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const GapPart part = gap_of(voronoi, spheres[i].center, i);
-      voronoi.volume[i] = volume(spheres[i]) + part.volume;
-      voronoi.centroid[i] = spheres[i].center + part.moment / voronoi.volume[i];
-      voronoi.reach[i] = reach_of(voronoi, spheres[i], i);
+      const GapPart part = gap_of(cells, spheres[i].center, i);
+      cells.volume[i] = volume(spheres[i]) + part.volume;
+      cells.centroid[i] = spheres[i].center + part.moment / cells.volume[i];
+      cells.radius[i] = bounding_radius_of(cells, spheres[i], i);
     }
   });
 }
@@ -104,37 +104,37 @@ VoronoiCells find_voronoi_cells(const Solid& solid, const MassProperties& mass,
   }
   const double gap_volume = std::max(0.0, mass.volume - balls);
 
-  VoronoiCells voronoi{find_gap_segments(solid, bvh, spacing), {}, 0, {}, {}, {}, {}};
-  group_by_sphere(spheres.size(), voronoi);
+  VoronoiCells cells{find_gap_segments(solid, bvh, spacing), {}, 0, {}, {}, {}, {}};
+  group_by_sphere(spheres.size(), cells);
   CompensatedSum sampled_sum;
-  for (const GapSegment& s : voronoi.gap.segments) sampled_sum.add(voronoi.gap.volume(s));
+  for (const GapSegment& s : cells.gap.segments) sampled_sum.add(cells.gap.volume(s));
   const double sampled = sampled_sum.value();
   if (!(sampled > 0) && gap_volume > kVolumeTolerance * mass.volume) {
     refuse("no point was found between the spheres and the surface of the solid, although " +
                std::to_string(100 * gap_volume / mass.volume) + " % of it lies there",
            {}, "is it turned inside out? pack the mesh again");
   }
-  voronoi.gap_scale = sampled > 0 ? gap_volume / sampled : 0;
+  cells.gap_scale = sampled > 0 ? gap_volume / sampled : 0;
 
-  voronoi.volume.resize(spheres.size());
-  voronoi.centroid.resize(spheres.size());
-  voronoi.reach.resize(spheres.size());
-  sum_cells(spheres, voronoi);
-  const Vec3 deficit = centroid_deficit(spheres, mass, voronoi);
-  voronoi.quality.gap_fraction = gap_volume / mass.volume;
-  voronoi.quality.volume_error = (sampled - gap_volume) / mass.volume;
-  voronoi.quality.centroid_error = norm(deficit) / mass.volume / std::cbrt(mass.volume);
+  cells.volume.resize(spheres.size());
+  cells.centroid.resize(spheres.size());
+  cells.radius.resize(spheres.size());
+  sum_cells(spheres, cells);
+  const Vec3 deficit = centroid_deficit(spheres, mass, cells);
+  cells.quality.gap_fraction = gap_volume / mass.volume;
+  cells.quality.volume_error = (sampled - gap_volume) / mass.volume;
+  cells.quality.centroid_error = norm(deficit) / mass.volume / std::cbrt(mass.volume);
   // Shifts the gap so that the first moment is exact. The shift corrects sampling error and is
   // shorter than a segment, unless `mass` belongs to another solid; then it is left out.
   const Vec3 shift = gap_volume > 0 ? deficit / gap_volume : Vec3{};
   if (norm(shift) < spacing) {
-    for (GapSegment& s : voronoi.gap.segments) s.center += shift;
-    sum_cells(spheres, voronoi);
+    for (GapSegment& s : cells.gap.segments) s.center += shift;
+    sum_cells(spheres, cells);
   }
   double sum = 0;
-  for (const double v : voronoi.volume) sum += v;
-  voronoi.quality.cell_sum_error = std::abs(sum - mass.volume) / mass.volume;
-  return voronoi;
+  for (const double v : cells.volume) sum += v;
+  cells.quality.volume_sum_error = std::abs(sum - mass.volume) / mass.volume;
+  return cells;
 }
 
 }  // namespace vpm

@@ -14,13 +14,13 @@
 namespace vpm {
 
 // Errors of the sampled gap before it is scaled and shifted to the exact integrals.
-struct CellQuality {
+struct VoronoiQuality {
   double gap_fraction = 0;  // volume of the gap / volume of the solid, exact
   double volume_error = 0;  // (sampled - exact volume of the gap) / volume of the solid
   // Distance of the cells' common centroid from the solid's / cube root of the volume.
   double centroid_error = 0;
   // |sum of the cells' volumes - volume| / volume, as stored.
-  double cell_sum_error = 0;
+  double volume_sum_error = 0;
 };
 
 // Cells by sphere, in normalised coordinates.
@@ -31,8 +31,8 @@ struct VoronoiCells {
   std::vector<double> volume;
   std::vector<Vec3> centroid;
   // Largest distance of a cell's points from its sphere's centre; at least the sphere's radius.
-  std::vector<double> reach;
-  CellQuality quality;
+  std::vector<double> radius;
+  VoronoiQuality quality;
 };
 
 // Returns the cells. Their volumes sum to `mass.volume`, and their centroids weighted by volume

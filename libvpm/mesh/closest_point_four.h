@@ -48,8 +48,8 @@ template <class Mask>
   best = foot;
   best2 = on_edge ? infinite : dot(from_foot, from_foot);
   // No edge is nearer than the plane. The slack covers rounding, above all of slivers' normals.
-  const Double4 reach2 = 1.01 * (within2 + 1e-6 * dot(from_a, from_a));
-  if (!any(on_edge & (~flat | (height * height <= reach2 * normal2)))) return;
+  const Double4 limit2 = 1.01 * (within2 + 1e-6 * dot(from_a, from_a));
+  if (!any(on_edge & (~flat | (height * height <= limit2 * normal2)))) return;
   take_segment(x, a, b, on_edge & (~flat | beyond_ab), best, best2);
   take_segment(x, b, c, on_edge & (~flat | beyond_bc), best, best2);
   take_segment(x, c, a, on_edge & (~flat | beyond_ca), best, best2);

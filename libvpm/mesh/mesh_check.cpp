@@ -6,10 +6,10 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
-#include "libvpm/mesh/triangle_intersection.h"
 #include "libvpm/mesh/weld.h"
 
 namespace vpm {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "libvpm/include/vpm/solid.h"
-#include "libvpm/mesh/fill_holes.h"
+#include "libvpm/mesh/holes.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/mesh/raw_mesh.h"
 #include "libvpm/mesh/voxel_repair.h"
 #include "libvpm/model/solid.h"
 

@@ -1,7 +1,7 @@
 #include "libvpm/mesh/mesh_defects.h"
 
 #include "libvpm/core/box.h"
-#include "libvpm/mesh/boundary_loops.h"
+#include "libvpm/mesh/holes.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/topology.h"
 #include "libvpm/mesh/weld.h"

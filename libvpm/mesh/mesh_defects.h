@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libvpm/mesh/mesh_check.h"
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/mesh_reader.h"
 
 namespace vpm {
 

@@ -8,12 +8,36 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/core/vec3.h"
+#include "libvpm/model/solid.h"
 
 namespace vpm {
+
+enum class MeshFormat { obj, off, ply, stl, om };
+
+// Polygons as a file states them, whether or not they bound a solid. Corners are vertex indices,
+// all below vertices.size(); coordinates are finite.
+struct RawMesh {
+  MeshFormat format = MeshFormat::obj;
+  std::string name;  // file name, for messages
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> corners;
+  std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`
+
+  std::size_t polygon_count() const { return polygon_end.size(); }
+};
+
+// Returns "OBJ", "OFF", ...
+const char* name_of(MeshFormat format);
+
+// Cuts polygons into triangles by ear clipping in their own plane; polygons without a plane, or
+// that cross themselves, become fans. Throws Error(refused) for more than 4096 corners.
+std::vector<Triangle> triangulate(const RawMesh& mesh);
 
 // Parses a mesh. The format is recognised by content, or by the extension of `name` if the content
 // does not tell. Throws Error(refused) with the file's name and the line, byte or element for

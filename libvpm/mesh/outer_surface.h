@@ -51,7 +51,7 @@ struct Enclosure {
   // its pieces do not close.
   std::optional<Solid> surface;
   bool faces_tell = true;  // each face of the boundary has the inside behind it
-  double volume = 0;  // m^3
+  double volume = 0;       // m^3
 };
 Enclosure enclosure_of(const Solid& solid);
 Enclosure enclosure_of(const OuterSurface& outer);

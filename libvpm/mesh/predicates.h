@@ -5,6 +5,7 @@
 #pragma once
 
 #include "libvpm/core/vec3.h"
+#include "libvpm/model/solid.h"
 
 namespace vpm {
 
@@ -18,5 +19,12 @@ int orientation(Vec2 a, Vec2 b, Vec2 c);
 // Returns the sign of (a - d) . ((b - d) x (c - d)): +1 if d lies below the plane in which a, b, c
 // turn counter-clockwise seen from above, 0 if on it.
 int orientation(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+
+// True if two triangles of one mesh meet in more than the vertices they share by index. Exact; both
+// must have an area.
+bool triangles_intersect(const std::vector<Vec3>& vertices, const Triangle& s, const Triangle& t);
+
+// True if the corners are not collinear. Exact.
+bool has_area(Vec3 a, Vec3 b, Vec3 c);
 
 }  // namespace vpm

@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/triangle_bvh.h"
-#include "libvpm/mesh/triangle_intersection.h"
 
 namespace vpm {
 namespace {
 
-constexpr std::size_t kMostPartners = 100;
+constexpr std::size_t kMaxPartners = 100;
 constexpr double kTouching = 1e-12;  // relative to the mesh's diagonal
 
 struct Leaf {
@@ -105,7 +105,7 @@ class Search {
         } else if (node.child[slot] >= leaf.node->child[leaf.slot]) {
           compare(leaf, {&node, slot}, pairs);
         }
-        if (pairs.size() >= kMostPartners * leaf.node->count[leaf.slot]) return pairs;
+        if (pairs.size() >= kMaxPartners * leaf.node->count[leaf.slot]) return pairs;
       }
     }
     return pairs;

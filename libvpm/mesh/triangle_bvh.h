@@ -57,4 +57,11 @@ class TriangleBvh {
   Vec3 origin_;
 };
 
+// Distance between two surfaces.
+
+// Returns the largest distance, m, of a point of `from` to the surface `to`. Samples the vertices
+// and points of triangles at most `spacing` apart, so that the true value is at most `spacing`
+// larger. The maximum over both directions is the Hausdorff distance.
+double farthest_from_surface(const Solid& from, const Solid& to, double spacing);
+
 }  // namespace vpm

@@ -2,13 +2,13 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/mesh_reader.h"
 
 namespace vpm {
 namespace {
 
 // Limits corners, since ear clipping takes quadratic time; no honest file has more.
-constexpr std::size_t kMostCorners = 4096;
+constexpr std::size_t kMaxCorners = 4096;
 
 struct Point2 {
   double x = 0, y = 0;
@@ -93,7 +93,7 @@ std::vector<Triangle> triangulate(const RawMesh& mesh) {
     if (end - begin == 3) {
       triangles.push_back({index[0], index[1], index[2]});
     } else {
-      if (end - begin > kMostCorners) {
+      if (end - begin > kMaxCorners) {
         refuse("a polygon has " + std::to_string(end - begin) + " corners", mesh.name,
                "cut it into triangles");
       }

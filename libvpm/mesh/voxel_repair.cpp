@@ -6,7 +6,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/shells.h"
-#include "libvpm/mesh/surface_distance.h"
 #include "libvpm/mesh/topology.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/voxel_surface.h"
@@ -45,8 +44,8 @@ class WindingField : public VoxelField {
   }
 
   float everywhere(Vec3 middle, double half_edge) const override {
-    const double reach = half_diagonal(half_edge) + kBand * voxel_;
-    if (bvh_.closest(middle, reach).triangle != SurfacePoint::kNone) return 0;
+    const double search_radius = half_diagonal(half_edge) + kBand * voxel_;
+    if (bvh_.closest(middle, search_radius).triangle != SurfacePoint::kNone) return 0;
     const bool inside = winding_.at(middle) > 0.5;
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 towards{corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0};
@@ -123,10 +122,10 @@ Solid outermost_shells(const Solid& surface) {
 }
 
 void check_resolution(int voxels) {
-  if (voxels >= kFewestRepairVoxels && voxels <= kMostRepairVoxels) return;
+  if (voxels >= kMinRepairVoxels && voxels <= kMaxRepairVoxels) return;
   throw Error(ErrorKind::invalid_argument,
               "the voxels along the longest side must lie between " +
-                  std::to_string(kFewestRepairVoxels) + " and " + std::to_string(kMostRepairVoxels),
+                  std::to_string(kMinRepairVoxels) + " and " + std::to_string(kMaxRepairVoxels),
               "repair");
 }
 

@@ -12,7 +12,7 @@
 namespace vpm {
 
 // Limits of the number of voxels along the longest side of the mesh's bounding box.
-inline constexpr int kFewestRepairVoxels = 8, kMostRepairVoxels = 1024;
+inline constexpr int kMinRepairVoxels = 8, kMaxRepairVoxels = 1024;
 // Least width of a flood's ball in voxels; smaller ones would slip through the lattice.
 inline constexpr double kNarrowestFlood = 2;
 

@@ -34,7 +34,7 @@ MassProperties mass_properties(const Solid& solid) {
   return {six_volumes / 6, origin + moment / (4 * six_volumes)};
 }
 
-double reach(const Solid& solid, Vec3 from) {
+double bounding_radius(const Solid& solid, Vec3 from) {
   double largest = 0;
   for (const Vec3& p : solid.vertices) largest = std::max(largest, squared_norm(p - from));
   return std::sqrt(largest);

@@ -29,7 +29,7 @@ struct MassProperties {
 MassProperties mass_properties(const Solid& solid);
 
 // Returns the largest distance of a vertex from `from`.
-double reach(const Solid& solid, Vec3 from);
+double bounding_radius(const Solid& solid, Vec3 from);
 
 // Returns 32 hexadecimal digits that identify the solid: XXH3-128 of counts, vertices and triangles
 // as stored.

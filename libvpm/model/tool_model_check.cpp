@@ -23,7 +23,7 @@ constexpr double kFarthestPart = 2;
 // the cell.
 constexpr double kFarthestOfCell = 7;
 // Number of samples per cell up to which a query's counts are exact.
-constexpr std::size_t kMostSamplesOfACell = std::size_t{1} << 20;
+constexpr std::size_t kMaxSamplesOfACell = std::size_t{1} << 20;
 // Limits the depth, since traversals recurse; a hierarchy that halves its spheres at each node
 // needs 32.
 constexpr std::uint32_t kDeepestHierarchy = 1000;
@@ -168,7 +168,7 @@ class LevelCheck {
     for (std::size_t i = 0; i < level_.sphere_count; ++i) {
       const std::uint32_t first = level_.block_begin[i], last = level_.block_begin[i + 1];
       if (first < last &&
-          level_.blocks[last - 1].end - level_.blocks[first].begin > kMostSamplesOfACell)
+          level_.blocks[last - 1].end - level_.blocks[first].begin > kMaxSamplesOfACell)
         fail("the share of sphere " + std::to_string(i) + " has more than 2^20 samples");
     }
     for (std::size_t i = 0; i < level_.samples.size(); ++i) {

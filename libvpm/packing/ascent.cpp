@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "libvpm/packing/max_min_step.h"
+#include "libvpm/packing/linear_programme.h"
 
 namespace vpm {
 namespace {
@@ -12,7 +12,7 @@ constexpr int kMaxSteps = 60;           // convergence is quadratic and needs ab
 constexpr double kConverged = 1e-12;    // smallest relative gain worth a step
 constexpr double kBox = 0.3;            // trust region: |delta| < 0.52 d stays inside the ball
 constexpr double kSmallestBox = 1e-10;  // relative to d
-constexpr std::size_t kMostObstacles = 20;
+constexpr std::size_t kMaxObstacles = 20;
 
 // Obstacles met on the way, with linearisations about the current point.
 struct Contacts {
@@ -42,7 +42,7 @@ struct Contacts {
     }
     obstacles.resize(kept);
     bounds.resize(kept);
-    while (obstacles.size() > kMostObstacles) {
+    while (obstacles.size() > kMaxObstacles) {
       const auto slackest =
           std::max_element(bounds.begin(), bounds.end(),
                            [](const auto& a, const auto& b) { return a.value < b.value; });

@@ -7,7 +7,7 @@
 
 namespace vpm {
 
-// Number of spheres that are placed into contact (Candidates::place_closest).
+// Number of spheres that are placed into contact, to fill tubes well.
 inline constexpr std::size_t kFirstSpheres = 200;
 
 // Places spheres of at least `radius`, cut to `cap`, until none fits or there are `most`; larger

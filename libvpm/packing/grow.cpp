@@ -9,8 +9,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/packing/fill_band.h"
-#include "libvpm/packing/largest_first.h"
 #include "libvpm/packing/linear_programme.h"
 #include "libvpm/packing/packer.h"
 #include "libvpm/packing/solid_distance.h"
@@ -22,16 +22,16 @@ namespace {
 // Largest motion and growth of a sphere per step and axis, in radii. Its centre stays within its
 // old self, hence on its side of the mesh. Larger steps meet more obstacles and converge no faster.
 constexpr double kTrust = 0.2;
-// Steps shorten when they gain less than kSlow of what they may, and end at kLeastTrust.
-constexpr double kSlow = 1e-4, kLeastTrust = 0.01;
+// Steps shorten when they gain less than kSlow of what they may, and end at kMinTrust.
+constexpr double kSlow = 1e-4, kMinTrust = 0.01;
 // Largest decrease of a gap by a full step, per radius: 1 + sqrt(3), rounded up.
-constexpr double kReachOfStep = 2.75;
+constexpr double kApproachOfStep = 2.75;
 // Unforeseen triangles shorten a step. It is then solved again, at most kRounds times, until it
 // keeps this part of its gain.
 constexpr double kKept = 0.9;
 constexpr int kRounds = 4;
 // Number of nearest triangles that a sphere remembers: four can hold it, the others foresee.
-constexpr std::size_t kMostTriangles = 20;
+constexpr std::size_t kMaxTriangles = 20;
 
 // Factor by which a sphere must be larger elsewhere to be moved there.
 constexpr double kMoreRoom = 1.01;
@@ -90,10 +90,10 @@ class Growth {
   }
 
   void run(const GrowOptions& options) {
-    for (int i = 0; i < options.steps && trust_ > kLeastTrust; ++i) {
+    for (int i = 0; i < options.steps && trust_ > kMinTrust; ++i) {
       const double gain = step(i);
       if (gain < kSlow * trust_) trust_ /= 2;
-      if (!(trust_ > kLeastTrust) && relocate()) trust_ = kTrust;
+      if (!(trust_ > kMinTrust) && relocate()) trust_ = kTrust;
       if (options.progress) options.progress(static_cast<double>(i + 1) / options.steps);
     }
   }
@@ -173,9 +173,9 @@ class Growth {
 
   // Lists the pairs of spheres that a step can bring together, by a sweep along x.
   void find_neighbours() {
-    const double reach = 1 + kReachOfStep * trust_;
+    const double half_width = 1 + kApproachOfStep * trust_;
     std::vector<double> low;
-    for (const Sphere& s : spheres_) low.push_back(s.center.x - reach * s.radius);
+    for (const Sphere& s : spheres_) low.push_back(s.center.x - half_width * s.radius);
     Group order(spheres_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -187,10 +187,10 @@ class Growth {
       const Sphere& s = spheres_[i];
       for (std::size_t b = a + 1; b < order.size(); ++b) {
         const std::uint32_t j = order[b];
-        if (low[j] > s.center.x + reach * s.radius) break;
+        if (low[j] > s.center.x + half_width * s.radius) break;
         const Sphere& t = spheres_[j];
         const double gap = norm(s.center - t.center) - s.radius - t.radius;
-        if (gap > kReachOfStep * trust_ * (s.radius + t.radius)) continue;
+        if (gap > kApproachOfStep * trust_ * (s.radius + t.radius)) continue;
         members_[i].near.push_back({j, gap});
         members_[j].near.push_back({i, gap});
       }
@@ -271,7 +271,7 @@ class Growth {
       const Sphere& t = spheres_[j];
       const Vec3 u = normalized_or_zero(s.center - t.center);
       if (members_[j].group != m.group) {  // each of the two groups may use half the gap
-        if (gap < 2 * kReachOfStep * trust_ * s.radius) keep_away(i, u, gap / 2, programme);
+        if (gap < 2 * kApproachOfStep * trust_ * s.radius) keep_away(i, u, gap / 2, programme);
       } else if (i < j) {
         const double unit = std::max(s.radius, t.radius);
         const double f = s.radius / unit, g = t.radius / unit;
@@ -291,10 +291,10 @@ class Growth {
     std::vector<std::pair<double, std::uint32_t>> near;
     for (const std::uint32_t t : known) {
       const double room = norm(s.center - distance_.closest_on(t, s.center)) - s.radius;
-      if (room < kReachOfStep * trust_ * s.radius) near.push_back({room, t});
+      if (room < kApproachOfStep * trust_ * s.radius) near.push_back({room, t});
     }
     std::sort(near.begin(), near.end());
-    if (near.size() > kMostTriangles) near.resize(kMostTriangles);
+    if (near.size() > kMaxTriangles) near.resize(kMaxTriangles);
     known.clear();
     for (const auto& [room, t] : near) {
       known.push_back(t);

@@ -1,4 +1,4 @@
-// Linear programme over blocks of four unknowns, such as the steps of several spheres at once.
+// Small and medium linear programmes.
 #pragma once
 
 #include <array>
@@ -6,8 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "libvpm/core/vec3.h"
+
 namespace vpm {
 
+// Programme over blocks of four unknowns, such as the steps of several spheres at once.
 struct LinearProgramme {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   using Four = std::array<double, 4>;
@@ -29,5 +32,20 @@ struct LinearProgramme {
 // eliminated in the order of blocks, so put blocks first that share rows with few others. Memory
 // grows with the square of the number of blocks.
 std::vector<LinearProgramme::Four> solve(const LinearProgramme& programme);
+
+// Value and gradient of a linear function, in a programme that raises the minimum of a few.
+struct LinearBound {
+  Vec3 gradient;  // unit length
+  double value = 0;
+};
+
+struct MaxMinStep {
+  Vec3 delta;
+  double value = 0;  // minimum of the bounds at delta
+};
+
+// Maximises min_j (value_j + gradient_j . delta) over |delta_x|, |delta_y|, |delta_z| <= box. Needs
+// at least one bound and box > 0. Deterministic; the order of bounds only breaks ties.
+MaxMinStep max_min_step(const std::vector<LinearBound>& bounds, double box);
 
 }  // namespace vpm

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "libvpm/core/error.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/packing/fill_band.h"
-#include "libvpm/packing/inertia.h"
-#include "libvpm/packing/largest_first.h"
+#include "libvpm/packing/fill_quality.h"
 #include "libvpm/packing/solid_distance.h"
 #include "libvpm/packing/space.h"
 
@@ -22,7 +22,7 @@ constexpr double kFirstBand = 0.998, kLaterBand = 0.99;
 // Bands are completed, so that fewer spheres are a prefix of more, unless a band brings more than
 // this beyond twice the number: a plate holds millions of equal spheres.
 constexpr std::size_t kFinishedBand = 1000;
-constexpr std::size_t kMostSpheres = std::size_t{1} << 30;  // keeps indices within 32 bits
+constexpr std::size_t kMaxSpheres = std::size_t{1} << 30;  // keeps indices within 32 bits
 // Number of blocks of Space. Solids of all proportions have about ten blocks per sphere; a plate of
 // 1:100000 would have 10^9 blocks.
 constexpr std::size_t kBlocks = std::size_t{1} << 16, kBlocksPerSphere = 32;
@@ -54,9 +54,9 @@ class Packer {
         stop_(smallest_ > kNumericalFloor * frame_.longest ? StopReason::min_radius
                                                            : StopReason::numerical_floor),
         cap_(options.max_radius / frame_.scale),
-        most_(2 * std::min(options.spheres, kMostSpheres) + kFinishedBand),
+        most_(2 * std::min(options.spheres, kMaxSpheres) + kFinishedBand),
         space_(distance_, smallest_,
-               kBlocks + kBlocksPerSphere * std::min(options.spheres, kMostSpheres)) {
+               kBlocks + kBlocksPerSphere * std::min(options.spheres, kMaxSpheres)) {
     if (options.inertia_error > 0) no_inertia_.emplace(solid);
     if (!(volume_ > 0))
       refuse("the solid has no volume", {}, "check that its triangles face outward");

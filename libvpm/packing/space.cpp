@@ -20,7 +20,7 @@ namespace {
 constexpr double kBlockWidth = 4;
 // Distance, in widths of a block, up to which it lists spheres. The sought radius is at most half
 // the width; the rest is for maxima that a search of a larger radius missed.
-constexpr double kReach = 0.6;
+constexpr double kListDistance = 0.6;
 // Cells with a half diagonal below this part of the radius are searched instead of cut.
 constexpr float kLeaf = 0.25f;
 // A leaf nearer to a known local maximum than this many of its half diagonals lies on its slope.
@@ -115,7 +115,7 @@ SurfacePoint Space::nearest_on_mesh(const Cell& cell, double within) const {
 // Sets d and bound from the spheres and from the triangle nearest to a parent. Needs cell.mesh.
 void Space::estimate(Cell& cell, const std::vector<std::uint32_t>& near) const {
   const Vec3 x = cell.center();
-  double d = reach_, bound = d + half_diagonal(cell.level);
+  double d = list_distance_, bound = d + half_diagonal(cell.level);
   const auto take = [&](const Sphere& s) {
     const double beside = norm(x - s.center) - s.radius;
     if (beside >= d) return;
@@ -196,10 +196,10 @@ Space::Side Space::side_of(const Cell& cell, const std::vector<std::uint32_t>& n
   const Vec3 x = cell.center();
   std::uint32_t nearest = cell.exact ? cell.triangle : SurfacePoint::kNone;
   if (!cell.exact) {
-    double beside = reach_;
+    double beside = list_distance_;
     for (const std::uint32_t i : near)
       beside = std::min(beside, norm(x - spheres_[i].center) - spheres_[i].radius);
-    if (beside < reach_) {
+    if (beside < list_distance_) {
       nearest = solid_.closest(x, std::max(beside, 0.0) * (1 + kBehind) + kTouching).triangle;
       if (nearest == SurfacePoint::kNone) return Side::inside;
     }
@@ -239,47 +239,53 @@ void Space::split(const Cell& cell, const std::vector<std::uint32_t>& near,
   }
 }
 
+void Space::split_cells(Block& block, std::vector<Cell>& cells) const {
+  for (Cell& cell : block.cells) {
+    if (cell.level != level_) {
+      cells.push_back(cell);
+      continue;
+    }
+    if (!cell.measured) measure(cell);  // estimates from estimates would exclude nothing
+    if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
+      settle(cell, side_of(cell, block.spheres));
+    bound_thin_part(cell);
+    if (cell.bound > smallest_) split(cell, block.spheres, cells);
+  }
+}
+
+std::array<Space::Block, 8> Space::split_block(std::uint32_t number, double list_distance) {
+  Block& block = blocks_[number];
+  const Vec3 center = cube_center(index_[number], level_);
+  const double near = list_distance + half_diagonal(level_ + 1), offset = edge(level_ + 2);
+  std::array<Block, 8> parts;
+  std::vector<Cell> cells;
+  split_cells(block, cells);
+  for (const Cell& cell : cells) {
+    parts[(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
+          (cell.z > center.z ? 4u : 0u)]
+        .cells.push_back(cell);
+  }
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    Block& part = parts[octant];
+    if (part.cells.empty()) continue;
+    part.cells.shrink_to_fit();
+    const Vec3 at = center + Vec3{octant & 1 ? offset : -offset, octant & 2 ? offset : -offset,
+                                  octant & 4 ? offset : -offset};
+    for (const std::uint32_t i : block.spheres)
+      if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
+    part.spheres.shrink_to_fit();
+    part.taken = part.spheres.size();
+  }
+  block = {};
+  return parts;
+}
+
 void Space::split_blocks() {
-  const int level = level_ + 1;
-  const double reach = kReach * edge(level);
-  const double near = reach + half_diagonal(level);
+  const double list_distance = kListDistance * edge(level_ + 1);
   std::vector<std::array<Block, 8>> parts(blocks_.size());
   parallel_for(blocks_.size(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-    std::vector<Cell> cells;
-    for (std::size_t b = begin; b < end; ++b) {
-      Block& block = blocks_[b];
-      const Vec3 center = cube_center(index_[static_cast<std::uint32_t>(b)], level_);
-      cells.clear();
-      for (Cell& cell : block.cells) {
-        if (cell.level != level_) {
-          cells.push_back(cell);
-          continue;
-        }
-        if (!cell.measured) measure(cell);  // estimates from estimates would exclude nothing
-        if (cell.side == Side::unknown && cell.mesh > half_diagonal(cell.level))
-          settle(cell, side_of(cell, block.spheres));
-        bound_thin_part(cell);
-        if (cell.bound > smallest_) split(cell, block.spheres, cells);
-      }
-      for (const Cell& cell : cells) {
-        parts[b][(cell.x > center.x ? 1u : 0u) + (cell.y > center.y ? 2u : 0u) +
-                 (cell.z > center.z ? 4u : 0u)]
-            .cells.push_back(cell);
-      }
-      const double offset = edge(level + 1);
-      for (unsigned octant = 0; octant < 8; ++octant) {
-        Block& part = parts[b][octant];
-        if (part.cells.empty()) continue;
-        part.cells.shrink_to_fit();
-        const Vec3 at = center + Vec3{octant & 1 ? offset : -offset, octant & 2 ? offset : -offset,
-                                      octant & 4 ? offset : -offset};
-        for (const std::uint32_t i : block.spheres)
-          if (norm(at - spheres_[i].center) - spheres_[i].radius < near) part.spheres.push_back(i);
-        part.spheres.shrink_to_fit();
-        part.taken = part.spheres.size();
-      }
-      block = {};
-    }
+    for (std::size_t b = begin; b < end; ++b)
+      parts[b] = split_block(static_cast<std::uint32_t>(b), list_distance);
   });
 
   std::vector<BlockIndex::Coordinates> coordinates;
@@ -298,8 +304,8 @@ void Space::split_blocks() {
   for (std::size_t b = 0; b < blocks_.size(); ++b) bounds_[b] = block_bound(blocks_[b]);
   leave_out(coordinates);
   index_.assign(std::move(coordinates));
-  level_ = level;
-  reach_ = reach;
+  ++level_;
+  list_distance_ = list_distance;
 }
 
 // Drops blocks of thin plates, which have more than memory holds, all with equal room. Those that
@@ -420,7 +426,7 @@ double Space::local_maximum(Block& block, const Cell& leaf, double radius, doubl
 SeparationBound Space::separation(Vec3 x, double within) const {
   const std::uint32_t b = index_.find(cube_of(x, level_));
   if (b == BlockIndex::kNone) return {-1, {}, {}};
-  SeparationBound best{std::min(within, reach_), {}, {}};
+  SeparationBound best{std::min(within, list_distance_), {}, {}};
   for (const std::uint32_t i : blocks_[b].spheres) {
     const double d = norm(x - spheres_[i].center) - spheres_[i].radius;
     if (d < best.value) best = {d, {Obstacle::Kind::sphere, i}, {}};
@@ -438,7 +444,7 @@ SeparationBound Space::separation(Vec3 x, double within) const {
 void Space::place(const Sphere& sphere, std::vector<std::uint32_t>& touched) {
   const auto number = static_cast<std::uint32_t>(spheres_.size());
   spheres_.push_back(sphere);
-  const double around = sphere.radius + reach_;
+  const double around = sphere.radius + list_distance_;
   const BlockIndex::Coordinates low = cube_of(sphere.center - Vec3{around, around, around}, level_);
   const BlockIndex::Coordinates high =
       cube_of(sphere.center + Vec3{around, around, around}, level_);

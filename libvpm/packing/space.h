@@ -7,19 +7,37 @@
 // beforehand, so thin parts cost cells only where they are.
 //
 // Blocks are the cubes of one octree level, 2 to 4 times as wide as the sought radius. Each lists
-// all spheres within reach_, so that a clearance costs one lookup.
+// all spheres within list_distance_, so that a clearance costs one lookup.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/core/vec3.h"
 #include "libvpm/model/sphere.h"
 #include "libvpm/packing/block_index.h"
-#include "libvpm/packing/clearance.h"
-#include "libvpm/packing/max_min_step.h"
+#include "libvpm/packing/linear_programme.h"
 #include "libvpm/packing/solid_distance.h"
 
 namespace vpm {
+
+// Triangle of the mesh, or sphere placed so far, by index.
+struct Obstacle {
+  enum class Kind : std::uint8_t { none, triangle, sphere };
+  Kind kind = Kind::none;
+  std::uint32_t index = 0;
+  friend constexpr bool operator==(const Obstacle&, const Obstacle&) = default;
+};
+
+// SeparationBound of a point: radius of the largest sphere about it inside the solid and outside
+// the spheres placed so far, with the obstacle that limits it.
+struct SeparationBound {
+  double value = 0;
+  Obstacle nearest;
+  // Unit vector from the nearest point of the obstacle; zero if there is none.
+  Vec3 away;
+};
 
 class Space {
  public:
@@ -50,7 +68,7 @@ class Space {
   void search(std::uint32_t number, double radius, double cap, std::vector<Sphere>& found);
 
   // Returns the clearance of a point in the solid if it is below `within`. Otherwise kind is none
-  // and the value is min(within, reach_). The value is negative if the point has no room.
+  // and the value is min(within, list_distance_). The value is negative if the point has no room.
   SeparationBound separation(Vec3 x, double within = 2) const;
 
   // Places a sphere and appends the blocks around it to `touched`. Clearances know it at once,
@@ -76,7 +94,7 @@ class Space {
     std::uint8_t level;  // edge length 2^-level
     Side side;           // side of the centre
     Side parent;         // side of the parent cell's centre
-    bool measured;       // d is exact, up to reach_
+    bool measured;       // d is exact, up to list_distance_
     // `triangle` is nearest to this centre, not to a parent's.
     bool exact;
     bool thick;  // holds no thin part (thin_part.h)
@@ -92,6 +110,8 @@ class Space {
   };
 
   void split_blocks();
+  std::array<Block, 8> split_block(std::uint32_t number, double list_distance);
+  void split_cells(Block& block, std::vector<Cell>& cells) const;
   void leave_out(std::vector<BlockIndex::Coordinates>& coordinates);
   void split(const Cell& cell, const std::vector<std::uint32_t>& near,
              std::vector<Cell>& parts) const;
@@ -117,7 +137,7 @@ class Space {
   std::vector<Sphere> spheres_;
   int level_ = 0;  // level of the blocks
   // Clearances in a block are exact up to this. It starts above the cube's diagonal.
-  double reach_ = 2;
+  double list_distance_ = 2;
   BlockIndex index_;
   std::vector<Block> blocks_;
   std::vector<float> bounds_;  // largest cell bound of each block

@@ -11,7 +11,7 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kMostTriangles = 48;
+constexpr std::size_t kMaxTriangles = 48;
 // Size of the region searched, in half edges: the way from a point between the planes to the nearer
 // one must not leave it.
 constexpr double kAround = 1.5;
@@ -72,9 +72,9 @@ std::vector<Face> faces_in(const SolidDistance& solid, std::span<const std::uint
 
 ThinPart thin_part(const SolidDistance& solid, Vec3 center, double half_edge) {
   const double around = kAround * half_edge;
-  std::array<std::uint32_t, kMostTriangles> found;
+  std::array<std::uint32_t, kMaxTriangles> found;
   const std::size_t count = solid.around(center, around, found);
-  if (count == 0 || count > kMostTriangles) return {};
+  if (count == 0 || count > kMaxTriangles) return {};
   const std::span<const std::uint32_t> triangles(found.data(), count);
   const Vec3 first = normal_of(solid.corners(found[0]));
   const auto turns_away = [&](std::uint32_t t) {

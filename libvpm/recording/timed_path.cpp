@@ -35,11 +35,11 @@ Pose TimedPath::at(double time) const {
 }
 
 SampledPath::SampledPath(TimedPath path, double rate) : path_(std::move(path)), rate_(rate) {
-  constexpr double kMostSteps = 1e9;
+  constexpr double kMaxSteps = 1e9;
   const double steps = path_.has_times()
                            ? std::floor((path_.end() - path_.start()) * rate * (1 + 1e-12)) + 1
                            : static_cast<double>(path_.poses().size());
-  if (!(steps <= kMostSteps))
+  if (!(steps <= kMaxSteps))
     refuse("the path is longer than 10^9 steps at this rate", {}, "are its times seconds?");
   steps_ = static_cast<std::size_t>(steps);
 }

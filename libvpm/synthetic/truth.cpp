@@ -12,8 +12,8 @@ namespace {
 // kinks but no jumps.
 const Vec3 kColumn = normalized_or_zero({0.1831, 0.2297, 1});
 
-// Largest size of the pieces of triangles, relative to the reach, so that no corner that barely
-// dips in and no shadow of an edge falls between the points of the rule.
+// Largest size of the pieces of triangles, relative to the bounding radius, so that no corner that
+// barely dips in and no shadow of an edge falls between the points of the rule.
 constexpr double kFaceSize = 1.0 / 12;
 constexpr double kCrossedSize = 1.0 / 32;  // where the surface may cross the triangle
 constexpr int kDeepest = 16;               // halvings: below 4^-16 of a face rounding dominates
@@ -40,8 +40,8 @@ struct Integrals {
 // Integrates over the triangles of a placed solid, one after the other.
 class Cubature {
  public:
-  Cubature(const Surface& surface, Vec3 center, double reach, double allowed)
-      : surface_(surface), center_(center), reach_(reach), allowed_(allowed) {}
+  Cubature(const Surface& surface, Vec3 center, double radius, double allowed)
+      : surface_(surface), center_(center), radius_(radius), allowed_(allowed) {}
 
   Integrals integrate(const Corners& t) { return refine(t, rule(t), 0); }
   double error() const { return error_; }
@@ -73,7 +73,7 @@ class Cubature {
   // Returns the length of the obstacle on the line along kColumn, from the plane before the solid
   // to x.
   double obstacle_before(Vec3 x) {
-    const double back = dot(x - center_, kColumn) + reach_;
+    const double back = dot(x - center_, kColumn) + radius_;
     crossings_.clear();
     surface_.crossings(x, kColumn, crossings_);
     std::erase_if(crossings_, [&](double t) { return !(t > -back && t < 0); });
@@ -97,7 +97,7 @@ class Cubature {
     for (std::size_t k = 0; k < 4; ++k) sum += of_part[k] = rule(parts[k]);
     const double change =
         std::max({std::abs(sum.length - whole.length), std::abs(sum.depth - whole.depth),
-                  norm(sum.moment - whole.moment) / reach_});
+                  norm(sum.moment - whole.moment) / radius_});
     if (depth >= kDeepest || (change <= allowed_ && !is_coarse(t))) {
       error_ += change;
       return sum;
@@ -110,13 +110,13 @@ class Cubature {
   bool is_coarse(const Corners& t) const {
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
     const double radius = std::max({norm(t[0] - middle), norm(t[1] - middle), norm(t[2] - middle)});
-    return radius > kFaceSize * reach_ ||
-           (radius > kCrossedSize * reach_ && std::abs(surface_.distance(middle)) <= radius);
+    return radius > kFaceSize * radius_ ||
+           (radius > kCrossedSize * radius_ && std::abs(surface_.distance(middle)) <= radius);
   }
 
   const Surface& surface_;
   Vec3 center_;
-  double reach_, allowed_;
+  double radius_, allowed_;
   double error_ = 0;
   std::vector<double> crossings_;
 };
@@ -139,18 +139,18 @@ void add(Penetration& sum, const Penetration& part) {
 TrueSolid::TrueSolid(const Solid& solid)
     : solid_(solid),
       mass_(mass_properties(solid)),
-      reach_(vpm::reach(solid, mass_.center_of_mass)) {}
+      radius_(vpm::bounding_radius(solid, mass_.center_of_mass)) {}
 
 Penetration TrueSolid::penetration(const Pose& pose, const Surface& surface,
                                    double tolerance) const {
   const Vec3 center = pose * mass_.center_of_mass;
-  if (surface.distance(center) > reach_) return {};
+  if (surface.distance(center) > radius_) return {};
   const double allowed = tolerance * mass_.volume / kSharers;
   constexpr std::size_t kTogether = 16;  // triangles per task
   std::vector<Penetration> parts((solid_.triangles.size() + kTogether - 1) / kTogether);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t part = begin; part < end; ++part) {
-      Cubature cubature(surface, center, reach_, allowed);
+      Cubature cubature(surface, center, radius_, allowed);
       const std::size_t last = std::min((part + 1) * kTogether, solid_.triangles.size());
       for (std::size_t k = part * kTogether; k < last; ++k) {
         const auto& [a, b, c] = solid_.triangles[k];

@@ -10,7 +10,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "tests/cloud/normal_scene.h"
 #include "tests/refusal.h"
 #include "tests/test_name.h"

@@ -27,7 +27,7 @@ Result run(const ToolModel& tool, const Body& body, const Pose& pose) {
                                    totals.get(),   counters.get(), answer.device()};
   launch_kernel(kKernel, {blocks, kThreads}, LaunchKind::cooperative, stream.get(), launch, frame,
                 1U);
-  const RawResult raw = wait_for(*answer.host(), 1, stream.get(), [] {});
+  const RawResult raw = wait_for(*answer.host(), 1, stream.get());
   check(cudaStreamSynchronize(stream.get()));
   return result_of(raw, tool, pose.rotation);
 }

@@ -12,7 +12,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "tests/cuda/effort.h"
 #include "tests/cuda/frame_memory.h"
 #include "tests/query/expect_equal.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "libvpm/query/tool_query.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "tests/cuda/effort.h"
 #include "tests/cuda/taken_memory.h"
 #include "tests/query/expect_equal.h"

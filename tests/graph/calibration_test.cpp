@@ -91,9 +91,9 @@ TEST(Samples, FollowTheNumberOfSpheres) {
     EXPECT_GT(each, 30);
     EXPECT_LT(each, 120);
   }
-  EXPECT_EQ(samples_per_length(1000), kMostSamplesPerLength);
-  EXPECT_EQ(samples_per_length(1000000), kMostSamplesPerLength);
-  EXPECT_EQ(samples_per_length(1), kLeastSamplesPerLength);
+  EXPECT_EQ(samples_per_length(1000), kMaxSamplesPerLength);
+  EXPECT_EQ(samples_per_length(1000000), kMaxSamplesPerLength);
+  EXPECT_EQ(samples_per_length(1), kMinSamplesPerLength);
 }
 
 }  // namespace

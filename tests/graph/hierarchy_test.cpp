@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "libvpm/graph/batch_neural_gas.h"
 #include "libvpm/graph/enclosing_sphere.h"
 #include "tests/graph/test_packing.h"
 

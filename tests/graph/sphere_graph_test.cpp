@@ -1,3 +1,5 @@
+#include "libvpm/graph/sphere_graph.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -5,7 +7,6 @@
 #include <set>
 
 #include "libvpm/core/error.h"
-#include "libvpm/graph/edges.h"
 #include "tests/graph/test_packing.h"
 
 namespace vpm {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "libvpm/core/error.h"
-#include "libvpm/graph/line_lattice.h"
+#include "libvpm/graph/gap_segments.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/graph/test_packing.h"
@@ -43,23 +43,23 @@ Solid inside_out(Solid solid) {
 
 TEST(VoronoiCells, OneSphereOwnsTheSolid) {
   const Solid cube = shifted(synthetic::make_cube(1), {0.25, 0, 0});
-  const VoronoiCells voronoi = cells_of(cube, {{{0.25, 0, 0}, 0.5}});
-  EXPECT_NEAR(voronoi.volume[0], 1, 1e-13);
-  EXPECT_NEAR(norm(voronoi.centroid[0] - Vec3{0.25, 0, 0}), 0, 1e-13);
-  EXPECT_NEAR(voronoi.reach[0], std::sqrt(0.75), 2 * kSpacing);
-  EXPECT_LT(std::abs(voronoi.quality.volume_error), 1e-3);
+  const VoronoiCells cells = cells_of(cube, {{{0.25, 0, 0}, 0.5}});
+  EXPECT_NEAR(cells.volume[0], 1, 1e-13);
+  EXPECT_NEAR(norm(cells.centroid[0] - Vec3{0.25, 0, 0}), 0, 1e-13);
+  EXPECT_NEAR(cells.radius[0], std::sqrt(0.75), 2 * kSpacing);
+  EXPECT_LT(std::abs(cells.quality.volume_error), 1e-3);
 }
 
-TEST(VoronoiCells, SymmetricSpheresShareAlike) {
+TEST(VoronoiCells, SymmetricSpheresOwnEqualCells) {
   // Eight balls in the octants of a cube own an octant each, whose middle is the ball's.
   std::vector<Sphere> spheres;
   for (int k = 0; k < 8; ++k) {
     spheres.push_back({{k & 1 ? 0.25 : -0.25, k & 2 ? 0.25 : -0.25, k & 4 ? 0.25 : -0.25}, 0.25});
   }
-  const VoronoiCells voronoi = cells_of(synthetic::make_cube(1), spheres);
+  const VoronoiCells cells = cells_of(synthetic::make_cube(1), spheres);
   for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_NEAR(voronoi.volume[i], 0.125, 2e-4);
-    EXPECT_NEAR(norm(voronoi.centroid[i] - spheres[i].center), 0, 1e-3);
+    EXPECT_NEAR(cells.volume[i], 0.125, 2e-4);
+    EXPECT_NEAR(norm(cells.centroid[i] - spheres[i].center), 0, 1e-3);
   }
 }
 
@@ -68,7 +68,7 @@ TEST(VoronoiCells, BoundariesLieWhereSurfacesAreEquallyFar) {
   // far from it, it is a hyperboloid. The volumes are counted on a fine lattice of points.
   const Solid box = synthetic::make_box(2, 0.5, 0.5);
   const std::vector<Sphere> spheres{{{-0.5, 0, 0}, 0.25}, {{0.4, 0.1, 0}, 0.1}};
-  const VoronoiCells voronoi = cells_of(box, spheres);
+  const VoronoiCells cells = cells_of(box, spheres);
   double counted[2] = {0, 0};
   constexpr int kAcross = 50;
   for (int x = 0; x < 4 * kAcross; ++x) {
@@ -79,8 +79,8 @@ TEST(VoronoiCells, BoundariesLieWhereSurfacesAreEquallyFar) {
       }
     }
   }
-  EXPECT_NEAR(voronoi.volume[0], 0.5 * counted[0] / (counted[0] + counted[1]), 1e-3);
-  EXPECT_NEAR(voronoi.volume[1], 0.5 * counted[1] / (counted[0] + counted[1]), 1e-3);
+  EXPECT_NEAR(cells.volume[0], 0.5 * counted[0] / (counted[0] + counted[1]), 1e-3);
+  EXPECT_NEAR(cells.volume[1], 0.5 * counted[1] / (counted[0] + counted[1]), 1e-3);
 }
 
 TEST(VoronoiCells, SumToTheSolidExactly) {
@@ -88,47 +88,47 @@ TEST(VoronoiCells, SumToTheSolidExactly) {
     const Packing packing = test::greedy_packing(shape, 200, 30000);
     const MassProperties mass = mass_properties(packing.solid);
     const SphereBvh bvh(packing.spheres);
-    const VoronoiCells voronoi =
+    const VoronoiCells cells =
         find_voronoi_cells(packing.solid, mass, bvh, 0.01 * std::cbrt(mass.volume));
     double sum = 0;
     Vec3 moment;
     for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
-      EXPECT_GE(voronoi.volume[i], volume(packing.spheres[i]));
-      EXPECT_GE(voronoi.reach[i], packing.spheres[i].radius);
-      sum += voronoi.volume[i];
-      moment += voronoi.volume[i] * (voronoi.centroid[i] - mass.center_of_mass);
+      EXPECT_GE(cells.volume[i], volume(packing.spheres[i]));
+      EXPECT_GE(cells.radius[i], packing.spheres[i].radius);
+      sum += cells.volume[i];
+      moment += cells.volume[i] * (cells.centroid[i] - mass.center_of_mass);
     }
     EXPECT_NEAR(sum / mass.volume, 1, 1e-12) << shape.name;
     EXPECT_LT(norm(moment) / mass.volume, 1e-12) << shape.name;
-    EXPECT_LT(std::abs(voronoi.quality.volume_error), 1e-3) << shape.name;
-    EXPECT_LT(voronoi.quality.centroid_error, 1e-3) << shape.name;
+    EXPECT_LT(std::abs(cells.quality.volume_error), 1e-3) << shape.name;
+    EXPECT_LT(cells.quality.centroid_error, 1e-3) << shape.name;
   }
 }
 
 TEST(VoronoiCells, CavitiesHoldNothing) {
   const Solid hollow = joined(synthetic::make_cube(1), inside_out(synthetic::make_cube(0.6)));
-  const VoronoiCells voronoi = cells_of(hollow, {{{0.4, 0, 0}, 0.1}, {{-0.4, 0, 0}, 0.1}});
-  EXPECT_LT(std::abs(voronoi.quality.volume_error), 2e-3);
-  for (const GapSegment& s : voronoi.gap.segments) {
+  const VoronoiCells cells = cells_of(hollow, {{{0.4, 0, 0}, 0.1}, {{-0.4, 0, 0}, 0.1}});
+  EXPECT_LT(std::abs(cells.quality.volume_error), 2e-3);
+  for (const GapSegment& s : cells.gap.segments) {
     EXPECT_GT(std::max({std::abs(s.center.x), std::abs(s.center.y), std::abs(s.center.z)}), 0.295);
   }
-  EXPECT_NEAR(voronoi.volume[0], voronoi.volume[1], 1e-3);
+  EXPECT_NEAR(cells.volume[0], cells.volume[1], 1e-3);
 }
 
 TEST(VoronoiCells, OverlapsAreCountedOnce) {
   const Solid cross = joined(synthetic::make_box(1, 0.5, 0.5), synthetic::make_box(0.5, 1, 0.5));
   const std::vector<Sphere> spheres{{{0, 0, 0}, 0.25}};
   const SphereBvh bvh(spheres);
-  const VoronoiCells voronoi = find_voronoi_cells(cross, enclosed_mass(cross), bvh, kSpacing);
-  EXPECT_NEAR(voronoi.volume[0], 0.375, 1e-12);
-  EXPECT_LT(std::abs(voronoi.quality.volume_error), 2e-3);
+  const VoronoiCells cells = find_voronoi_cells(cross, enclosed_mass(cross), bvh, kSpacing);
+  EXPECT_NEAR(cells.volume[0], 0.375, 1e-12);
+  EXPECT_LT(std::abs(cells.quality.volume_error), 2e-3);
 }
 
 TEST(VoronoiCells, ThinSheetsAndNeedlesAreFound) {
   for (const Solid& thin : {synthetic::make_box(1, 1e-3, 1), synthetic::make_box(1e-3, 1e-3, 1),
                             synthetic::make_box(1e-3, 1, 1)}) {
-    const VoronoiCells voronoi = cells_of(thin, {{{0, 0, 0}, 4e-4}});
-    EXPECT_LT(std::abs(voronoi.quality.volume_error), 1e-3);
+    const VoronoiCells cells = cells_of(thin, {{{0, 0, 0}, 4e-4}});
+    EXPECT_LT(std::abs(cells.quality.volume_error), 1e-3);
   }
 }
 

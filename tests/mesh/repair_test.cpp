@@ -5,8 +5,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/mesh/boundary_loops.h"
-#include "libvpm/mesh/surface_distance.h"
+#include "libvpm/mesh/holes.h"
+#include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/voxel_repair.h"
 #include "libvpm/model/sphere.h"
 #include "libvpm/synthetic/shapes.h"

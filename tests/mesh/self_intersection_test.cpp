@@ -5,7 +5,7 @@
 #include <random>
 
 #include "libvpm/core/parallel.h"
-#include "libvpm/mesh/triangle_intersection.h"
+#include "libvpm/mesh/predicates.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/mesh/mesh_files.h"
 

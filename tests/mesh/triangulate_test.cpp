@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace vpm::test {

@@ -14,7 +14,7 @@
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/packing/largest_first.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/packing/packer.h"
 #include "test_solids.h"
 

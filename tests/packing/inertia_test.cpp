@@ -1,9 +1,8 @@
-#include "libvpm/packing/inertia.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "libvpm/packing/fill_quality.h"
 #include "libvpm/packing/packer.h"
 #include "test_solids.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libvpm/packing/max_min_step.h"
 #include "test_solids.h"
 
 namespace vpm::test {

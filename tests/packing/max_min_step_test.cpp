@@ -1,9 +1,8 @@
-#include "libvpm/packing/max_min_step.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "libvpm/packing/linear_programme.h"
 #include "test_solids.h"
 
 namespace vpm::test {

@@ -1,11 +1,10 @@
-#include "libvpm/packing/surface_gap.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/packing/fill_quality.h"
 #include "libvpm/synthetic/shapes.h"
 
 namespace vpm {

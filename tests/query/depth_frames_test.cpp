@@ -8,7 +8,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"

@@ -11,7 +11,7 @@
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/scene/prepared_cloud.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "tests/query/lattice_model.h"
 #include "tests/test_name.h"
 
@@ -198,7 +198,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
                    level.block_begin[i + 2], tool.spheres[i].center, 2 * level.cell_reach[i]});
       expect_same(measure.run(SamplesInTurn{}), measure.run(SamplesTogether{}));
       const CellBlock& block = level.blocks[level.block_begin[i]];
-      const auto in_block = measure.sample_piece(block);
+      const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       for (std::uint32_t s = block.begin; s < block.end; ++s) {
         const ToolPiece piece = piece_of(level.samples[s]);
@@ -234,7 +234,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
           CellView{level.blocks.data(), masses.data(), level.samples.data(), level.block_begin[i],
                    level.block_begin[i + 1], tool.spheres[i].center, level.cell_reach[i]});
       const CellBlock& block = level.blocks[level.block_begin[i]];
-      const auto in_block = measure.sample_piece(block);
+      const auto in_block = measure.classify_block(block);
       if (in_block.found != BlockClass::ambiguous) continue;
       CellResult of_each;
       bool any_far = false;

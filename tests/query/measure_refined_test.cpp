@@ -8,7 +8,7 @@
 
 #include "libvpm/cloud/normals.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/query/lattice_model.h"

@@ -12,7 +12,7 @@
 #include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/scene/prepared_cloud.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/test_name.h"
 

@@ -9,7 +9,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/query/lattice_model.h"
 #include "tests/refusal.h"

@@ -1,11 +1,10 @@
-#include "libvpm/synthetic/kinect_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/model/sphere.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 
 namespace vpm::synthetic {

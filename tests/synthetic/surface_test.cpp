@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "libvpm/core/error.h"
-#include "libvpm/synthetic/kinect_noise.h"
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/refusal.h"

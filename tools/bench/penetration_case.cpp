@@ -41,7 +41,8 @@ double z_of_volume(const synthetic::TrueSolid& tool, const Pose& start,
 
 double contact_z(const synthetic::TrueSolid& tool, const Pose& start,
                  const synthetic::Surface& surface) {
-  return z_of_volume(tool, start, surface, 1e-9, 1 - 3 * tool.reach(), 1 + tool.reach());
+  return z_of_volume(tool, start, surface, 1e-9, 1 - 3 * tool.bounding_radius(),
+                     1 + tool.bounding_radius());
 }
 
 std::vector<Pose> between(const Pose& start, double first, double last, int poses) {

@@ -9,7 +9,7 @@
 
 #include "libvpm/device/device.h"
 #include "libvpm/include/vpm/query_types.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/statistics.h"

@@ -6,7 +6,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/temporary_folder.h"
 #include "libvpm/recording/recording.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/penetration_case.h"

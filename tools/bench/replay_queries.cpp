@@ -9,7 +9,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/scene/frame_preparation.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/replay_parts.h"

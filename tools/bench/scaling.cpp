@@ -15,7 +15,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/recording/loop_clock.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tools/bench/paper_baseline.h"
 #include "tools/bench/penetration_case.h"
@@ -54,8 +54,8 @@ std::vector<Pose> part_of(const std::vector<Pose>& path, std::uint32_t spheres) 
 
 // Returns the z at which this fraction of the tool is inside, by bisection from far in front of the
 // wall.
-double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotation& rotation, Vec3 aside,
-                     double fraction) {
+double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotation& rotation,
+                     Vec3 aside, double fraction) {
   const auto is_deeper = [&](double z) {
     return query.run(cloud, {rotation, {aside.x, aside.y, z}}).volume_fraction > fraction;
   };

@@ -14,7 +14,7 @@
 #include "libvpm/packing/packer.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/scene/frame_preparation.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tools/bench/penetration_case.h"

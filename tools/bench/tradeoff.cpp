@@ -16,7 +16,7 @@
 #include "libvpm/query/level_tool_query.h"
 #include "libvpm/query/scene_scale.h"
 #include "libvpm/query/tool_query.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/suite.h"

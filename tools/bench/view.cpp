@@ -1,7 +1,7 @@
 #include "tools/bench/view.h"
 
 #include "libvpm/cloud/normals.h"
-#include "libvpm/synthetic/kinect_noise.h"
+#include "libvpm/synthetic/render.h"
 
 namespace vpm::bench {
 namespace {

@@ -7,9 +7,9 @@
 namespace vpm::tools {
 namespace {
 
-nlohmann::ordered_json level_report(const Level& level, const CellQuality& quality) {
-  double cell_sum = 0;
-  for (const double volume : level.cell_volume) cell_sum += volume;
+nlohmann::ordered_json level_report(const Level& level, const VoronoiQuality& quality) {
+  double share_sum = 0;
+  for (const double volume : level.cell_volume) share_sum += volume;
   return {
       {"spheres", level.sphere_count},
       {"edges", level.graph.neighbors.size() / 2},
@@ -20,8 +20,8 @@ nlohmann::ordered_json level_report(const Level& level, const CellQuality& quali
       {"grid",
        {{"cells", {level.grid.nx, level.grid.ny, level.grid.nz}},
         {"entries", level.grid.spheres.size()}}},
-      {"share_sum", cell_sum},
-      {"share_sum_relative_error", quality.cell_sum_error},
+      {"share_sum", share_sum},
+      {"share_sum_relative_error", quality.volume_sum_error},
       {"gap_fraction", quality.gap_fraction},
       {"gap_sampling_error", std::abs(quality.volume_error)},
       {"centroid_sampling_error", quality.centroid_error},
@@ -31,8 +31,8 @@ nlohmann::ordered_json level_report(const Level& level, const CellQuality& quali
 
 }  // namespace
 
-nlohmann::ordered_json graph_report(const ToolModel& model, const std::vector<CellQuality>& quality,
-                                    double seconds) {
+nlohmann::ordered_json graph_report(const ToolModel& model,
+                                    const std::vector<VoronoiQuality>& quality, double seconds) {
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < model.levels.size(); ++k) {
     levels.push_back(level_report(model.levels[k], quality[k]));

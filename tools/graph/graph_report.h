@@ -10,7 +10,7 @@ namespace vpm::tools {
 
 // Returns the content of --report (formats/schemas/graph-report.json): the finest level at the top,
 // all of them in `levels`.
-nlohmann::ordered_json graph_report(const ToolModel& model, const std::vector<CellQuality>& quality,
-                                    double seconds);
+nlohmann::ordered_json graph_report(const ToolModel& model,
+                                    const std::vector<VoronoiQuality>& quality, double seconds);
 
 }  // namespace vpm::tools

@@ -12,19 +12,16 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
-#include "libvpm/view/page.h"
-#include "libvpm/view/simplify.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/tool.h"
 #include "tools/graph/graph_report.h"
-#include "tools/graph/model_view.h"
 
 namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string packing, output, mesh, report, view;
+  std::string packing, output, mesh, report;
   GraphOptions options;
   bool calibrate = false;
 };
@@ -48,9 +45,6 @@ void declare(CLI::App& app, Arguments& a) {
                "Measure each level's error against the solid and keep it in the model, for "
                "vpm-query --max-error");
   app.add_option("--report", a.report, "Write facts about the model here (JSON)");
-  app.add_option("--view", a.view,
-                 "Write a page (.html) here that shows spheres, edges, bridges and cells of each "
-                 "level in a browser");
 }
 
 // Returns the options by which vpm-pack read the mesh, so that reading it again gives the same
@@ -90,12 +84,10 @@ void run(const Tool& tool, Arguments& a) {
     throw Error(ErrorKind::invalid_argument,
                 "only one of the packing and --mesh can be standard input");
   }
-  check_files({a.packing, a.mesh},
-              {{"--output", a.output, file::Kind::tool_model},
-               {"--report", a.report, std::nullopt},
-               {"--view", a.view, std::nullopt}},
-              tool.common());
-  if (!a.view.empty()) view::check_available();
+  check_files(
+      {a.packing, a.mesh},
+      {{"--output", a.output, file::Kind::tool_model}, {"--report", a.report, std::nullopt}},
+      tool.common());
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
   const std::size_t spheres = packing.spheres.size();
@@ -105,7 +97,7 @@ void run(const Tool& tool, Arguments& a) {
 
   Progress progress("levels", tool.common());
   a.options.progress = [&](double fraction) { progress.update(fraction); };
-  std::vector<CellQuality> quality;
+  std::vector<VoronoiQuality> quality;
   const auto start = std::chrono::steady_clock::now();
   ToolModel model = build_tool_model(packing, a.options, &quality);
   if (a.calibrate) model.calibration = calibrate(model, packing.solid);
@@ -114,9 +106,7 @@ void run(const Tool& tool, Arguments& a) {
                       {"version", VPM_VERSION},
                       {"parameters", tool.parameters()},
                       {"packing", packing.provenance}};
-  const Solid mesh = view::simplified(packing.solid, view::kMostTriangles);
-  write_tool_model(a.output, model, mesh);
-  if (!a.view.empty()) write_model_view(a.view, a.packing, model, mesh);
+  write_tool_model(a.output, model);
   if (!a.report.empty()) {
     file::write_all(a.report, graph_report(model, quality, seconds.count()).dump(2) + "\n");
   }

@@ -67,12 +67,14 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("--validate", a.validate,
                "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
   app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
-  app.add_option("--view", a.view,
-                 "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
-                 "the defects of a mesh that is refused");
-  app.add_option("--export", a.export_path,
-                 "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
-                 "(cuRobo), .urdf or .srdf");
+  app.add_option(
+      "--view", a.view,
+      "Write a page (.html) here that shows solid, spheres and coverage in a browser, or "
+      "the defects of a mesh that is refused");
+  app.add_option(
+      "--export", a.export_path,
+      "Write the spheres here too: .csv, .json, .ply (balls), .points.ply, .glb, .vtk, .yml "
+      "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
                  "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
   app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
@@ -161,7 +163,7 @@ CheckedSolid checked_solid(const Arguments& a, const RawMesh& mesh) {
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
 SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
   const PreparedCloud cloud(read_cloud(a.for_scene));
-  const double size = reach(solid, mass_properties(solid).center_of_mass);
+  const double size = bounding_radius(solid, mass_properties(solid).center_of_mass);
   const SceneScale scale = scene_scale(cloud, size, std::nullopt);
   a.min_radius = std::max(a.min_radius, scale.smallest_radius());
   const double largest = std::min(a.max_radius.value_or(HUGE_VAL), scale.largest_radius());

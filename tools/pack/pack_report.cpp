@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "libvpm/packing/inertia.h"
-#include "libvpm/packing/surface_gap.h"
+#include "libvpm/packing/fill_quality.h"
 
 namespace vpm::tools {
 namespace {

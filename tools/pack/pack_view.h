@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libvpm/mesh/mesh_check.h"
-#include "libvpm/mesh/raw_mesh.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/packing/packer.h"
 
 namespace vpm::tools {

@@ -1,6 +1,8 @@
 // The threads that answer one query: all blocks of a launch together, or one block alone.
 #pragma once
 
+#include <cuda_runtime.h>
+
 #include <cuda/atomic>
 
 #include "libvpm/measure/cell_measure.h"

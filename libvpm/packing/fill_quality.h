@@ -1,7 +1,8 @@
-// Error of spheres as a model of a solid's inertia.
+// How well the spheres of a packing stand for its solid: errors of inertia, gaps at the surface.
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "libvpm/model/solid.h"
 #include "libvpm/model/sphere.h"
@@ -30,5 +31,17 @@ class InertiaError {
   SecondMoments solid_{}, spheres_{};  // solid_ is divided by its volume
   double volume_ = 0;                  // volume of the spheres
 };
+
+// Gaps in metres. The gap of a point of the mesh is its distance to the nearest sphere's surface, 0
+// inside a sphere.
+struct SurfaceGap {
+  double mean = 0;
+  double p95 = 0;      // 95 % quantile over the area
+  double largest = 0;  // maximum over samples and vertices, where gaps are largest
+};
+
+// Measures the gap at 50 000 points spread evenly over the area of the mesh. Needs at least one
+// sphere and a solid with an extent. The same for any number of threads.
+SurfaceGap surface_gap(const Solid& solid, const std::vector<Sphere>& spheres);
 
 }  // namespace vpm

@@ -15,7 +15,7 @@ struct CellPiece {
   double volume = 0;
   // Radius of the ball with the same second moment.
   double moment_radius = 0;
-  double reach = 0;  // largest distance of its points from the centroid
+  double bounding_radius = 0;  // largest distance of its points from the centroid
 };
 
 // Appends pieces of a ball, about size^3 in volume each; their volumes sum to the ball's and their
@@ -25,10 +25,10 @@ struct CellPiece {
 void cut_ball(double radius, double size, std::vector<CellPiece>& pieces);
 
 // Appends pieces of the gap part of a cell, halved until the moment radius fits `size`.
-void cut_gap(const VoronoiCells& voronoi, std::size_t sphere, Vec3 center, double size,
+void cut_gap(const VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
              std::vector<CellPiece>& pieces);
 
-struct Cells {
+struct CutCells {
   std::vector<std::uint32_t> block_begin;
   std::vector<CellBlock> blocks;
   std::vector<CellSample> samples;
@@ -36,7 +36,7 @@ struct Cells {
 
 // Cuts all cells. Coordinates are stored relative to `origin`, times `unit`; weights relative to
 // `volume`.
-Cells build_cells(std::span<const Sphere> spheres, const VoronoiCells& voronoi, double size,
-                  Vec3 origin, double unit, double volume);
+CutCells cut_cells(std::span<const Sphere> spheres, const VoronoiCells& cells, double size,
+                   Vec3 origin, double unit, double volume);
 
 }  // namespace vpm

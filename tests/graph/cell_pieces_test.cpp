@@ -1,4 +1,4 @@
-#include "libvpm/graph/cells.h"
+#include "libvpm/graph/cell_pieces.h"
 
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ TEST_P(Cells, SmoothFacesByLittle) {
   EXPECT_LE(error.worst, 2.5e-3);
 }
 
-TEST_P(Cells, HoldTheCellOfTheirSphere) {
+TEST_P(Cells, HoldTheVolumeOfTheirCell) {
   const Packing packing = test::greedy_packing(GetParam()(), 300, 40000);
   const ToolModel model = build_tool_model(packing, {});
   const Level& level = model.levels.back();
@@ -184,7 +184,7 @@ TEST(BallPieces, SumToTheBall) {
       moment += p.volume * p.centroid;
       second += p.volume * (squared_norm(p.centroid) + 0.6 * p.moment_radius * p.moment_radius);
       EXPECT_LE(norm(p.centroid), radius);
-      EXPECT_GE(p.reach, 0.999 * p.moment_radius);
+      EXPECT_GE(p.bounding_radius, 0.999 * p.moment_radius);
     }
     const double exact = volume({{}, radius});
     EXPECT_NEAR(sum / exact, 1, 1e-13);

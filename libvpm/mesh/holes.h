@@ -1,13 +1,31 @@
-// Closes holes of a mesh with triangles.
+// Holes of an open mesh: their rims, and triangles that close them.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "libvpm/mesh/boundary_loops.h"
+#include "libvpm/mesh/topology.h"
+#include "libvpm/model/solid.h"
 
 namespace vpm {
+
+// Rim of a hole.
+struct BoundaryLoop {
+  // In the order of a face that would close the hole, if the triangles around it are consistently
+  // oriented.
+  std::vector<std::uint32_t> vertices;
+  bool closed = true;  // false if the rim ends at an edge of more than two triangles
+};
+
+// Returns the loops, longest first, then by lower first vertex. A vertex where two holes touch is
+// in both loops.
+std::vector<BoundaryLoop> boundary_loops(const Topology& topology,
+                                         const std::vector<Triangle>& triangles);
+
+// Returns the diameter of a ball that can pass through a nearly flat and convex hole: the rim's
+// narrowest extent across one of its edges, in its mean plane. An upper bound for other rims.
+double width_of(const BoundaryLoop& loop, const std::vector<Vec3>& vertices);
 
 // Largest deviation of a rim from a plane, relative to its size, and largest size of a rim,
 // relative to the mesh's; sizes are diagonals of bounding boxes. A hole within either limit is

@@ -1,0 +1,331 @@
+#include "libvpm/graph/cell_pieces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "libvpm/core/box.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/graph/enclosing_sphere.h"
+
+namespace vpm {
+namespace {
+
+// Number of points per size and axis that measure a piece's moments.
+constexpr double kPointsPerSize = 4;
+// Least distance of sites from the ball's surface, in sizes; nearer ones would have slivers as
+// cells.
+constexpr double kSiteInset = 0.4;
+// Edge of the cubic cell of a body-centred lattice with two sites per cell: cbrt(2).
+constexpr double kCubicEdge = 1.2599210498948732;
+// Rotation of the lattice; any without symmetry will do.
+const Rotation kTurn = rotation_from_quaternion(
+    {0.18257418583505536, 0.36514837167011072, 0.54772255750516607, 0.73029674334022143});
+
+// Sites of a body-centred cubic lattice about the origin, in units of its edge.
+class BodyCenteredSites {
+ public:
+  explicit BodyCenteredSites(double limit)
+      : limit_(limit), half_(static_cast<int>(std::ceil(limit)) + 1), side_(2 * half_ + 1) {
+    const std::size_t cells = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) *
+                              static_cast<std::size_t>(side_);
+    index_.assign(2 * cells, -1);
+  }
+
+  // Returns the index of the site nearest to q; where that lies beyond the limit, the one nearest
+  // to a point further in.
+  int nearest(Vec3 q) {
+    constexpr double kStepInwards = 0.25;
+    for (;;) {
+      const Site site = nearest_of_lattice(q);
+      if (norm(site.position) <= limit_ || site.position == Vec3{}) return index_of(site);
+      q = std::max(0.0, 1 - kStepInwards / norm(q)) * q;
+    }
+  }
+  int count() const { return count_; }
+
+ private:
+  struct Site {
+    Vec3 position;
+    std::size_t slot = 0;
+  };
+
+  Site site(Vec3 q, double offset, std::size_t sublattice) const {
+    const Vec3 cell{std::floor(q.x - offset + 0.5), std::floor(q.y - offset + 0.5),
+                    std::floor(q.z - offset + 0.5)};
+    const auto slot = [&](double k) {
+      return static_cast<std::size_t>(std::clamp(static_cast<int>(k) + half_, 0, side_ - 1));
+    };
+    const std::size_t side = static_cast<std::size_t>(side_);
+    return {cell + Vec3{offset, offset, offset},
+            ((slot(cell.z) * side + slot(cell.y)) * side + slot(cell.x)) * 2 + sublattice};
+  }
+  Site nearest_of_lattice(Vec3 q) const {
+    const Site corner = site(q, 0, 0), middle = site(q, 0.5, 1);
+    return squared_norm(q - corner.position) <= squared_norm(q - middle.position) ? corner : middle;
+  }
+  int index_of(const Site& site) {
+    if (index_[site.slot] < 0) index_[site.slot] = count_++;
+    return index_[site.slot];
+  }
+
+  double limit_;
+  int half_, side_, count_ = 0;
+  std::vector<int> index_;
+};
+
+struct Point {
+  Vec3 position;
+  double weight = 0;
+  int piece = 0;
+};
+
+// Returns a cubic lattice of points in the ball about the origin, symmetric to it. A point at the
+// surface weighs as much as the ball covers of its cube, and is moved to the middle of that.
+std::vector<Point> points_in_ball(double radius, double spacing) {
+  std::vector<Point> points;
+  const int half = static_cast<int>(std::ceil(radius / spacing + 0.5));
+  for (int z = -half; z < half; ++z) {
+    for (int y = -half; y < half; ++y) {
+      for (int x = -half; x < half; ++x) {
+        const Vec3 p = spacing * Vec3{x + 0.5, y + 0.5, z + 0.5};
+        const double distance = norm(p);
+        const double covered = std::min(1.0, (radius - distance) / spacing + 0.5);
+        if (!(covered > 0)) continue;
+        points.push_back({(1 - 0.5 * (1 - covered) * spacing / distance) * p, covered, 0});
+      }
+    }
+  }
+  return points;
+}
+
+// Measures pieces in two passes: volumes and centroids, then moments and radii about the centroids.
+void measure(const std::vector<Point>& points, double spacing, double radius,
+             std::span<CellPiece> pieces) {
+  for (const Point& p : points) {
+    CellPiece& piece = pieces[static_cast<std::size_t>(p.piece)];
+    piece.volume += p.weight;
+    piece.centroid += p.weight * p.position;
+  }
+  double total = 0;
+  Vec3 moment;
+  for (CellPiece& piece : pieces) {
+    total += piece.volume;
+    moment += piece.centroid;
+    piece.centroid = piece.centroid / piece.volume;
+  }
+  for (CellPiece& piece : pieces) piece.centroid -= moment / total;
+  const double half_diagonal = 0.5 * std::sqrt(3.0) * spacing;
+  for (const Point& p : points) {
+    CellPiece& piece = pieces[static_cast<std::size_t>(p.piece)];
+    const double squared = squared_norm(p.position - piece.centroid);
+    piece.moment_radius += p.weight * (squared + spacing * spacing / 4);
+    piece.bounding_radius = std::max(piece.bounding_radius, std::sqrt(squared) + half_diagonal);
+  }
+  const double scale = volume({{}, radius}) / total;
+  for (CellPiece& piece : pieces) {
+    piece.moment_radius = std::sqrt(5.0 / 3 * piece.moment_radius / piece.volume);
+    piece.volume *= scale;
+  }
+}
+
+}  // namespace
+
+void cut_ball(double radius, double size, std::vector<CellPiece>& pieces) {
+  const double edge = kCubicEdge * size;
+  const double limit = radius / edge - kSiteInset / kCubicEdge;  // in units of the lattice
+  if (limit < std::sqrt(0.75)) {  // the sites nearest to the first lie at sqrt(3/4)
+    pieces.push_back({{}, volume({{}, radius}), radius, radius});
+    return;
+  }
+  BodyCenteredSites sites(limit);
+  const double spacing = size / kPointsPerSize;
+  std::vector<Point> points = points_in_ball(radius, spacing);
+  for (Point& p : points) p.piece = sites.nearest(kTurn * (p.position / edge));
+  const std::size_t first = pieces.size();
+  pieces.resize(first + static_cast<std::size_t>(sites.count()));
+  measure(points, spacing, radius, std::span(pieces).subspan(first));
+}
+
+namespace {
+
+// Largest moment radius of a piece, in sizes. A compact piece of volume size^3 has 0.63. Pieces of
+// the gap are smaller, since they line the solid's surface, where errors of neighbours add up
+// instead of cancelling.
+constexpr double kMomentRadius = 0.5;
+
+class GapCutter {
+ public:
+  GapCutter(const GapSegments& gap, double scale, Vec3 center, double size,
+            std::vector<CellPiece>& pieces)
+      : gap_(gap), scale_(scale), center_(center), limit_(kMomentRadius * size), pieces_(pieces) {}
+
+  // Halves the segments at their centroid along the axis of largest spread, until they fit.
+  void cut(std::span<GapSegment> segments) {
+    Vec3 spread;
+    const CellPiece piece = measure(segments, spread);
+    if (segments.size() == 1 || piece.moment_radius <= limit_) {
+      pieces_.push_back(piece);
+      return;
+    }
+    const int axis =
+        spread.x >= spread.y && spread.x >= spread.z ? 0 : (spread.y >= spread.z ? 1 : 2);
+    const double at = coordinate(piece.centroid + center_, axis);
+    const auto middle =
+        std::stable_partition(segments.begin(), segments.end(),
+                              [&](const GapSegment& s) { return coordinate(s.center, axis) < at; });
+    const std::size_t low = static_cast<std::size_t>(middle - segments.begin());
+    if (low == 0 || low == segments.size()) {  // all centres coincide
+      pieces_.push_back(piece);
+      return;
+    }
+    cut(segments.first(low));
+    cut(segments.subspan(low));
+  }
+
+ private:
+  // Returns the piece that the segments form; `spread` receives the second moments of their centres
+  // along the axes.
+  CellPiece measure(std::span<const GapSegment> segments, Vec3& spread) const {
+    CellPiece piece;
+    for (const GapSegment& s : segments) {
+      const double v = scale_ * gap_.volume(s);
+      piece.volume += v;
+      piece.centroid += v * (s.center - center_);
+    }
+    piece.centroid = piece.centroid / piece.volume;
+    double own = 0;  // second moment of the prisms about their own centres
+    for (const GapSegment& s : segments) {
+      const double v = scale_ * gap_.volume(s);
+      const Vec3 d = s.center - center_ - piece.centroid, half = gap_.half_extent(s);
+      spread += v * Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
+      own += v * squared_norm(half) / 3;
+      piece.bounding_radius = std::max(piece.bounding_radius, norm(d) + norm(half));
+    }
+    piece.moment_radius =
+        std::sqrt(5.0 / 3 * (spread.x + spread.y + spread.z + own) / piece.volume);
+    return piece;
+  }
+
+  const GapSegments& gap_;
+  const double scale_;
+  const Vec3 center_;
+  const double limit_;
+  std::vector<CellPiece>& pieces_;
+};
+
+}  // namespace
+
+void cut_gap(const VoronoiCells& cells, std::size_t sphere, Vec3 center, double size,
+             std::vector<CellPiece>& pieces) {
+  const std::uint32_t begin = cells.gap_begin[sphere], end = cells.gap_begin[sphere + 1];
+  if (begin == end || !(cells.gap_scale > 0)) return;
+  std::vector<GapSegment> segments(cells.gap.segments.begin() + begin,
+                                   cells.gap.segments.begin() + end);
+  GapCutter(cells.gap, cells.gap_scale, center, size, pieces).cut(segments);
+}
+
+namespace {
+
+constexpr std::size_t kBlockSamples = 64;
+
+// Sorts pieces into runs of `size` that are compact in space, and appends the ends of the runs. All
+// runs but one of a split are full.
+void group(std::span<CellPiece> pieces, std::size_t size, std::size_t offset,
+           std::vector<std::size_t>& ends) {
+  if (pieces.size() <= size) {
+    ends.push_back(offset + pieces.size());
+    return;
+  }
+  Box box;
+  for (const CellPiece& p : pieces) box.add(p.centroid);
+  const int axis = box.longest_axis();
+  std::stable_sort(pieces.begin(), pieces.end(), [&](const CellPiece& a, const CellPiece& b) {
+    return coordinate(a.centroid, axis) < coordinate(b.centroid, axis);
+  });
+  const std::size_t runs = (pieces.size() + size - 1) / size;
+  const std::size_t middle = runs / 2 * size;
+  group(pieces.first(middle), size, offset, ends);
+  group(pieces.subspan(middle), size, offset + middle, ends);
+}
+
+float round_up(double value) {
+  const float rounded = static_cast<float>(value);
+  return double{rounded} < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                 : rounded;
+}
+
+// Maps pieces about a sphere's centre to stored coordinates.
+struct Placement {
+  Vec3 center;  // sphere's centre relative to the stored origin
+  double unit = 1, volume = 1;
+
+  Vec3f place(Vec3 p) const { return narrow(unit * (center + p)); }
+  CellSample sample(const CellPiece& piece) const {
+    return {place(piece.centroid), static_cast<float>(unit * piece.moment_radius),
+            piece.volume / volume};
+  }
+  CellBlock block(std::span<const CellPiece> pieces) const {
+    std::vector<Sphere> balls;
+    for (const CellPiece& p : pieces) balls.push_back({p.centroid, p.bounding_radius});
+    const Vec3f stored = place(enclosing_sphere(balls).center);
+    const Vec3 at = widen(stored) / unit - center;
+    return {stored, round_up(unit * enclosing_radius(at, balls)), 0, 0};
+  }
+};
+
+struct CutCell {
+  std::vector<CellBlock> blocks;
+  std::vector<CellSample> samples;
+};
+
+CutCell cut_cell(std::vector<CellPiece> pieces, const Placement& placement) {
+  std::vector<std::size_t> ends, of_neighbors;
+  group(pieces, kBlockSamples, 0, ends);
+  CutCell cell;
+  std::size_t begin = 0;
+  for (const std::size_t end : ends) {
+    const std::span<CellPiece> of_block = std::span(pieces).subspan(begin, end - begin);
+    group(of_block, kNeighborSamples, 0, of_neighbors);
+    CellBlock block = placement.block(of_block);
+    block.begin = static_cast<std::uint32_t>(begin);
+    block.end = static_cast<std::uint32_t>(end);
+    cell.blocks.push_back(block);
+    begin = end;
+  }
+  for (const CellPiece& piece : pieces) cell.samples.push_back(placement.sample(piece));
+  return cell;
+}
+
+}  // namespace
+
+CutCells cut_cells(std::span<const Sphere> spheres, const VoronoiCells& cells, double size,
+                   Vec3 origin, double unit, double volume) {
+  std::vector<CutCell> of_sphere(spheres.size());
+  parallel_for(spheres.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::vector<CellPiece> pieces;
+      cut_ball(spheres[i].radius, size, pieces);
+      cut_gap(cells, i, spheres[i].center, size, pieces);
+      of_sphere[i] = cut_cell(std::move(pieces), {spheres[i].center - origin, unit, volume});
+    }
+  });
+  CutCells all;
+  for (const CutCell& cell : of_sphere) {
+    const std::uint32_t first = static_cast<std::uint32_t>(all.samples.size());
+    all.block_begin.push_back(static_cast<std::uint32_t>(all.blocks.size()));
+    for (CellBlock block : cell.blocks) {
+      block.begin += first;
+      block.end += first;
+      all.blocks.push_back(block);
+    }
+    all.samples.insert(all.samples.end(), cell.samples.begin(), cell.samples.end());
+  }
+  all.block_begin.push_back(static_cast<std::uint32_t>(all.blocks.size()));
+  return all;
+}
+
+}  // namespace vpm
