@@ -13,13 +13,13 @@ namespace vpm {
 struct ToolReach {
   double length = 0;    // radius about the centre of mass that encloses the tool
   double inverse = 0;   // 1 / length, 1/m: scales arms
-  double occluded = 0;  // places further behind a seen surface need the support of a plane
+  double supported_beyond = 0;  // places further behind a seen surface need the support of a plane
 
   ToolReach() = default;
   ToolReach(double reach, OccludedSpace occluded)
       : length(reach),
         inverse(1 / reach),
-        occluded(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
+        supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
 // A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
@@ -28,8 +28,8 @@ inline constexpr double kCompactReach = 0.125;
 // Clusters up to this part of the tool's radius may be planar; wider ones, of one large cell, are
 // classified by their blocks.
 inline constexpr double kPlanarReach = 0.1;
-// A block sees one plane where that is right to its radius, and to this part of the tool's radius:
-// blocks of few large cells are wider than the error they may make.
+// A block may be flat if one plane fits it to its own radius and to this part of the tool's radius.
+// The second bound is for blocks of few large cells, which are wider than the error they may make.
 inline constexpr double kFlatness = 0.1;
 
 // True if a cell of this bounding radius may be counted by its centroid, where nothing cuts it.
@@ -62,8 +62,8 @@ enum class ClusterClass : std::uint8_t {
   uniform,      // planar and behind_near: all of it is pushed along one normal
 };
 
-// Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
-// plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
+// Returns the class of a ball as far as classify_ball() tells. An ambiguous one may still be cut by
+// one plane (finds_cluster_plane), a small one without a surface be uniform (class_by_middle).
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_of_ball(const Surface& surface,
                                   const typename Surface::BallClass& in_ball, Vec3 center,
@@ -107,8 +107,8 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample&
              : ClusterClass::uniform;
 }
 
-// True if a plane as which the surface passes through a cluster is the cluster's: it passes no
-// further away than kSheetReach of its radii, and no second surface is near.
+// True if a plane found for a cluster may stand for the surface in it: the plane passes within
+// kSheetReach of its radii, and no second surface is near.
 template <MeasuredBody Surface>
 VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, const TangentPlane& plane) {
@@ -119,7 +119,7 @@ VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::
 }
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
-// `plane`. `sample_all` is SampleInTurn, or reads the same places side by side.
+// `plane`. `sample_all` is SampleInTurn, or samples the same places side by side.
 template <MeasuredBody Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
@@ -143,9 +143,9 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
 // plane supports it.
 template <class Surface>
 VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
-  return signed_distance < -(Surface::kTellsInside ? tool.occluded : tool.length);
+  return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);
 }
-// True if a body of this radius is shared out between two walls: smaller ones are pushed to one.
+// True if a body of this radius, m, is divided between two walls; smaller ones are pushed to one.
 VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
   return radius >= kLeastDivided * tool.length;
 }
@@ -158,7 +158,7 @@ enum class BlockClass : std::uint8_t {
   ambiguous,  // is measured sample by sample
 };
 
-// Returns the class of a block about `center` whose ball was looked at, and the plane of one that
+// Returns the class of a block about `center` whose ball was classified, and the plane of one that
 // is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
 // be.
 template <MeasuredBody Surface, class Read>
