@@ -1,5 +1,4 @@
-// What a query finds of each share of a level: how the surface meets it, and whether the flood may
-// pass it.
+// Holds the state of each cell of a level during a query: its class and its flood state.
 #pragma once
 
 #include <algorithm>
@@ -11,30 +10,30 @@
 
 namespace vpm {
 
-// How the surface meets a sphere's share.
+// Class of a cell, by how the surface meets it.
 enum class CellClass : std::uint8_t {
   free,     // counts for nothing
-  cut,      // the surface passes through it: its result counts
-  partial,  // behind the surface as far as its result says, if it is taken
-  pushed,   // behind the surface of its patch, along the normal of that, if it is taken
-  whole,    // behind the surface, if it is taken
+  cut,      // the surface cuts it: its result counts
+  partial,  // its result counts, if it is taken
+  pushed,   // all of it counts, pushed along its cluster's normal, if it is taken
+  whole,    // all of it is behind the surface and counts, if it is taken
   open,     // no surface near; its centre decides when the flood comes
 };
 
-// Whether a share is inside, and before that, whether the flood may pass it.
+// Flood state of a cell: first whether the flood may pass, at the end whether the cell is inside.
 enum class FloodState : std::uint8_t {
-  closed,  // to what is free or cut, too
-  taken,   // it is inside, or hidden
+  closed,  // free or cut, or the flood may not pass
+  taken,   // inside, or hidden
   unknown,
-  middle,  // unknown: the middle of its cluster, an open patch, decides
-  open,    // its squared gap is known
-  planar,  // open: the gap is that to the plane of its patch
-  near,    // open: no place of its cluster is further behind the surface than the tool's reach
+  middle,  // unknown: the middle of its cluster decides
+  open,    // passable, and its squared gap is known
+  planar,  // passable: the gap is that to its cluster's plane
+  near,    // passable: all of its cluster is within the tool's radius behind the surface
 };
 
 inline constexpr std::uint32_t kNoRow = UINT32_MAX;
 
-// The first row from `begin` on that is not free, or `end`.
+// Returns the first row from `begin` on that is not free, or `end`.
 inline std::uint32_t next_busy(const std::vector<CellClass>& cells, std::uint32_t begin,
                                std::uint32_t end) {
   static_assert(static_cast<int>(CellClass::free) == 0);
@@ -46,7 +45,7 @@ inline std::uint32_t next_busy(const std::vector<CellClass>& cells, std::uint32_
   return begin;
 }
 
-// Where one thread floods: the rows from `begin` to `end`.
+// Rows [begin, end), which one thread floods.
 struct FloodPart {
   struct Step {
     std::uint32_t from, to;
@@ -55,23 +54,23 @@ struct FloodPart {
   bool owns(std::uint32_t row) const { return row - begin < end - begin; }
 
   std::uint32_t begin = 0, end = 0;
-  std::vector<std::uint32_t> front;  // taken, but not yet left
-  std::vector<Step> leaving, left;   // to rows of other parts, in this round and in the last
-  std::uint32_t last_cut = kNoRow;   // nearest to the row that was asked for last, of this run
+  std::vector<std::uint32_t> front;  // taken, neighbours not yet visited
+  std::vector<Step> leaving, left;   // steps to other parts' rows, this round and last
+  std::uint32_t last_cut = kNoRow;   // last result of CutCells::nearest_to() in this run
 };
 
-// A cluster with shares that the surface cuts, which lie side by side in CellStates::cut.
+// A cluster with cut cells, which are a range of CellStates::cut.
 struct CutCluster {
   Vec3 center;  // about the tool's centre of mass
   double reach;
   std::uint32_t begin, end;
 };
 
-// Calls visit(row) for the rows from `begin` to `end` in this state, ascending.
+// Calls visit(row) for the rows in [begin, end) with this state, ascending.
 template <class State, class Visit>
 void for_rows_in(State state, const std::vector<State>& states, std::size_t begin, std::size_t end,
                  const Visit& visit) {
-  static_assert(sizeof(State) == 1);  // memchr looks at many at once
+  static_assert(sizeof(State) == 1);  // for memchr
   while (begin < end) {
     const void* at = std::memchr(states.data() + begin, static_cast<int>(state), end - begin);
     if (at == nullptr) return;
@@ -97,7 +96,6 @@ struct CellStates {
     cells[row] = cell;
     flood_states[row] = flood_state;
   }
-  // Of all rows of a cluster.
   void set(const CellCluster& cluster, CellClass cell, FloodState flood_state) {
     std::fill(cells.begin() + cluster.begin, cells.begin() + cluster.end, cell);
     std::fill(flood_states.begin() + cluster.begin, flood_states.begin() + cluster.end,
@@ -118,23 +116,23 @@ struct CellStates {
     }
   }
 
-  // Whether a row counts, when it is decided what is taken.
+  // True if a row counts. Valid once it is decided what is taken.
   bool counts(std::uint32_t row) const {
     return cells[row] == CellClass::cut ||
            (flood_states[row] == FloodState::taken && cells[row] != CellClass::free);
   }
 
-  // Rows of the SpatialLevel.
+  // Vectors below have one entry per row of the SpatialLevel, unless said otherwise.
   std::vector<CellClass> cells;
   std::vector<FloodState> flood_states;
-  std::vector<CellResult> results;   // of what is cut or partial
-  std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
-  // Of each root that is a patch; of one behind the surface, the normal only.
+  std::vector<CellResult> results;   // valid for cut and partial cells
+  std::vector<double> squared_gaps;  // gap of the centre, valid where asked, m^2
+  // Planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
-  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> cut;  // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
-  std::vector<std::uint32_t> work;  // of the flood, estimated, in chunks of rows
-  // As many as ever flooded side by side; those from `part_count` on are not in use.
+  std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
+  // Kept at the most parts ever used; the first `part_count` are in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;
 };
