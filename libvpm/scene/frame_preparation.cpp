@@ -14,17 +14,17 @@
 namespace vpm {
 namespace {
 
-// With a camera of less, points lie on the rays of their pixels as far as float can say, so nobody
-// needs to look: off by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
+// Focal length, in pixels, below which points surely lie on the rays of their pixels: float
+// rounding moves them by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
 constexpr double kUsualFocalLength = 0x1p20;
-// Normals are of unit length but for rounding; validate() allows more than this of the square.
+// Unit normals deviate by rounding; validate() allows more than this of the squared length.
 constexpr double kUnitTolerance = 1.9e-3;
 
 double steepest(double size, double centre, double focal) {
   return std::max(std::abs(centre), std::abs(size - 1 - centre)) / focal;
 }
 
-// Whether nothing can be wrong with a point of this camera that a look at its normal does not tell.
+// True if the frame can hold no error but a normal that place_row() finds.
 bool is_usual(const Camera& camera, const DepthImage& depth) {
   const std::uint64_t pixels = std::uint64_t{camera.width} * camera.height;
   if (depth.width != camera.width || depth.height != camera.height || pixels == 0 ||
@@ -37,7 +37,7 @@ bool is_usual(const Camera& camera, const DepthImage& depth) {
   return std::max(k.fx, k.fy) * (1 + x) * (1 + y) * (1 + x + y) <= kUsualFocalLength;
 }
 
-// A row of the frame: what is read, and where the points go, each at its pixel.
+// A row of the frame: its inputs, and where each pixel's point goes.
 struct RowOfPoints {
   int width;
   double ray_y;
@@ -46,7 +46,7 @@ struct RowOfPoints {
   const NormalRow& seen;
   const double* ray_x;
   Vec3f *positions, *normals;
-  float *back_x, *back_y, *back_z;  // of the pixels, in the camera's axes
+  float *back_x, *back_y, *back_z;  // normals in camera axes
   std::uint8_t* exists;
 };
 
@@ -97,7 +97,7 @@ RowFacts place_row(const RowOfPoints& row) {
   return facts;
 }
 
-// Takes out what does not exist, and says for each pixel which point is the first from there on.
+// Removes pixels without a point, and writes for each pixel the first point from there on.
 void compact_row(const std::uint8_t* exists, int width, std::uint32_t first, Vec3f* positions,
                  Vec3f* normals, std::uint32_t* begin) {
   std::uint32_t k = 0;
@@ -122,15 +122,14 @@ void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
     check_intrinsics(camera.intrinsics);
     if (!is_usual(camera, depth) || depth.depth.size() != std::size_t{depth.width} * depth.height ||
         !prepare_rows(depth, camera, cloud))
-      cloud = PreparedCloud(make_cloud(depth, camera, options_),
-                            points_);  // tells what is wrong, if anything
+      cloud = PreparedCloud(make_cloud(depth, camera, options_), points_);  // may throw
   } catch (...) {
     cloud = PreparedCloud{Cloud{}};
     throw;
   }
 }
 
-// False where a normal is not sound.
+// Returns false if a normal is not sound.
 bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
                                     PreparedCloud& cloud) {
   validate(camera, "the cloud");
@@ -138,7 +137,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   const Intrinsics& k = camera.intrinsics;
   const Rotation to_camera =
       relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
-  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // forgets all that points need
+  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // clears the data of disks
   cloud.serial_ = PreparedCloud::next_serial();
   cloud.origin_ = camera.to_world.translation;
   cloud.camera_ = camera;
@@ -181,8 +180,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
                     positions, normals, pixel_begin);
       else
         std::iota(pixel_begin, pixel_begin + width, static_cast<std::uint32_t>(at));
-      // What is settled reads marks, between bands too: of two threads the one that came first
-      // there has marked its rows before it came here.
+      // Denoising reads marks across bands: the thread that comes second there finds them made.
       if (points_ == Denoising::on)
         marking_.made(v, [&](int first, int last) { seen_.mark_rows(first, last); });
       settling_.made(
@@ -194,7 +192,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   return is_sound;
 }
 
-// The points of a row lie at its first pixel; now they follow those of the row above.
+// Moves each row's points from its first pixel to behind those of the row above.
 void FramePreparation::close_ranks(std::size_t width, PreparedCloud& cloud) const {
   std::uint32_t first = 0;
   for (std::size_t v = 0; v < row_points_.size(); ++v) {
