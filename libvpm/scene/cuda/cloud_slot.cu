@@ -7,9 +7,9 @@
 namespace vpm::cuda {
 namespace {
 
-// Bounds within which float positions of usable depths are finite and lie on the rays of their
-// pixels, their disks are finite, and a cloud has no more points than a PreparedCloud takes: with
-// rays `longest` times as long as deep, a position errs by less than 2^-22 of its length.
+// True if float positions of usable depths surely are finite and lie on the rays of their pixels,
+// and the cloud is not too large for a PreparedCloud. With rays `longest` times as long as deep a
+// position errs by less than 2^-22 of its length.
 bool is_plain(const Camera& camera) {
   const Intrinsics& k = camera.intrinsics;
   const double x = std::max(std::abs(k.cx), std::abs(camera.width - 1 - k.cx)) / k.fx;
@@ -22,7 +22,7 @@ bool is_plain(const Camera& camera) {
          std::max(k.fx, k.fy) * kError * longest * (longest + 1) <= kPixelTolerance / 2;
 }
 
-// As validate() and PreparedCloud ask of a camera.
+// True if validate() and PreparedCloud accept this pose of a camera.
 bool is_sound_pose(const Pose& pose) {
   return is_rotation(pose.rotation, kRotationExact) && is_in_range(pose.translation);
 }
@@ -71,7 +71,7 @@ void CloudSlot::set_camera() {
 void CloudSlot::begin() {
   is_plain_ = preparation_.fits && is_plain(camera()) && is_sound_pose(camera().to_world);
   if (!is_plain_) {
-    cloud();  // refuses what is to be refused
+    cloud();  // throws what is to be refused
     return;
   }
   cloud_.stand_at(camera().to_world);
@@ -82,7 +82,7 @@ void CloudSlot::begin() {
   other.goes_on_until(end_);
 }
 
-// What is launched has an end, even if the rest fails.
+// Launches the preparation, and marks its end even if a launch fails.
 void CloudSlot::launch() {
   const auto mark_end = [&] {
     is_there_ = false;
@@ -120,7 +120,7 @@ void CloudSlot::take(cudaStream_t stream) {
 void CloudSlot::make(cudaStream_t stream) {
   prepare_on_device(recipe_, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), sequence_ + 1, stream);
-  ++sequence_;  // now that it will be answered
+  ++sequence_;  // after the launch, which will answer it
   denoise_on_device(recipe_, preparation_.overlaps, stream);
 }
 
@@ -135,7 +135,6 @@ void CloudSlot::wait_for_answer() const {
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
 }
 
-// Then the image is not read any more.
 void CloudSlot::wait() const {
   wait_for_answer();
 }
