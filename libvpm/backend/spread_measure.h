@@ -7,7 +7,7 @@ namespace vpm {
 
 class SpreadMeasure : public DeviceMeasure {
  public:
-  // `measures` has at least one entry, each on its own device.
+  // Takes at least one measure, each on its own device.
   explicit SpreadMeasure(std::vector<std::unique_ptr<DeviceMeasure>> measures)
       : measures_(std::move(measures)) {}
 

@@ -9,10 +9,10 @@
 
 namespace vpm {
 
-// Lengths of the tool that the rules compare with, m.
+// Holds the lengths of the tool that the rules compare with, m.
 struct ToolReach {
-  double length = 0;    // radius about the centre of mass that encloses the tool
-  double inverse = 0;   // 1 / length, 1/m: scales arms
+  double length = 0;            // radius about the centre of mass that encloses the tool
+  double inverse = 0;           // 1 / length, 1/m: scales arms
   double supported_beyond = 0;  // places further behind a seen surface need the support of a plane
 
   ToolReach() = default;
@@ -22,14 +22,13 @@ struct ToolReach {
         supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
-// A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
-// centroid.
+// Bounds cells that count by their centroid where wholly behind the surface, in tool radii.
 inline constexpr double kCompactReach = 0.125;
-// Clusters up to this part of the tool's radius may be planar; wider ones, of one large cell, are
-// classified by their blocks.
+// Bounds clusters that may be planar, in tool radii; wider ones, of one large cell, are classified
+// by their blocks.
 inline constexpr double kPlanarReach = 0.1;
-// A block may be flat if one plane fits it to its own radius and to this part of the tool's radius.
-// The second bound is for blocks of few large cells, which are wider than the error they may make.
+// Bounds how well one plane must fit a block, in tool radii, besides the block's own radius: it is
+// for blocks of few large cells, which are wider than the error they may make.
 inline constexpr double kFlatness = 0.1;
 
 // True if a cell of this bounding radius may be counted by its centroid, where nothing cuts it.
@@ -41,7 +40,7 @@ VPM_HD constexpr bool may_be_planar(double cluster_radius, double tool_radius) {
   return cluster_radius <= kPlanarReach * tool_radius;
 }
 
-// The side of a plane on which a body lies.
+// Tells the side of a plane on which a body lies.
 enum class PlaneSide : std::uint8_t { before, cut, behind };
 // Returns the side of a body whose middle is at this signed distance and that reaches so far toward
 // the plane. A body that only touches the plane is not cut.
@@ -51,7 +50,7 @@ VPM_HD constexpr PlaneSide side_of_plane(double distance, double reach) {
                               : PlaneSide::cut;
 }
 
-// How the surface meets a cluster of cells, or a part of one.
+// Tells how the surface meets a cluster of cells, or a part of one.
 enum class ClusterClass : std::uint8_t {
   free,         // outside of the solid: counts for nothing
   ambiguous,    // the surface may pass through it: its parts decide
@@ -150,7 +149,7 @@ VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
   return radius >= kLeastDivided * tool.length;
 }
 
-// How the surface meets a block of samples of an ambiguous cell.
+// Tells how the surface meets a block of samples of an ambiguous cell.
 enum class BlockClass : std::uint8_t {
   free,       // counts for nothing
   uncut,      // is measured as one piece

@@ -9,8 +9,8 @@
 
 namespace vpm {
 
-// A plane that cuts the tool, in the surface's frame and in the tool's axes about its centre of
-// mass.
+// Describes a plane that cuts the tool, in the surface's frame and in the tool's axes about its
+// centre of mass.
 struct ClipPlane {
   TangentPlane seen;
   Vec3 normal;
@@ -26,13 +26,13 @@ struct ClipPlane {
   }
 };
 
-// Volume and first moment of the parts of samples behind a plane.
+// Holds volume and first moment of the parts of samples behind a plane.
 struct ClippedMoments {
   double weight = 0;
   Vec3 moment;  // sum of each weight times its sample's centre
   bool is_cut = false;
 };
-// Number of partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
+// Counts the partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
 // pairwise by halves. Vector lanes or threads can each add a row and get the same bits.
 inline constexpr std::uint32_t kSumRows = 16;
 

@@ -6,14 +6,14 @@
 
 namespace vpm {
 
-// A surface further than this many bounding radii from a cell's centre may be another one than that
-// which cuts the cell.
+// Bounds the distance, in bounding radii of a cell from its centre, within which a surface is
+// surely the one that cuts the cell.
 inline constexpr double kSheetReach = 3;
 
-// Mean plane of the surface inside a cell.
+// Holds the mean plane of the surface inside a cell.
 struct ContactPlane {
-  // Unit normals, and feet relative to the cell's centre in units of its bounding radius, summed
-  // over the samples that are cut. |terms| < 8, so 2^20 samples fit.
+  // Sums unit normals, and feet relative to the cell's centre in units of its bounding radius, over
+  // the samples that are cut. |terms| < 8, so 2^20 samples fit.
   using Sum = FixedSum<40>;
   Sum normal[3], foot[3];
   std::int64_t count = 0;
@@ -41,8 +41,8 @@ struct ContactPlane {
   }
 };
 
-// A cut cell in the surface's frame, m. Its plane decides about places that are far behind the
-// surface or occluded.
+// Describes a cut cell in the surface's frame, m. Its plane decides about places that are far
+// behind the surface or occluded.
 struct CutCell {
   ContactPlane plane;
   Vec3 center;

@@ -63,7 +63,8 @@ VPM_HD inline bool lets_in(const Sphere& boundary, Vec3 normal, const Sphere& ne
   return !(dot(normal, neighbor.center - boundary.center) > -neighbor.radius);
 }
 
-// Units of a ToolSum's terms: the tool's volume, m^3, its centre of mass, and its radius, m.
+// Holds the units of a ToolSum's terms: the tool's volume, m^3, its centre of mass, and its radius,
+// m.
 struct ToolMeasures {
   double volume = 0;
   Vec3 center_of_mass;

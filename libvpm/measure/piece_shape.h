@@ -7,9 +7,9 @@
 
 namespace vpm {
 
-// A ball with the second moment of the piece. The fraction of a thin layer depends on the second
-// moment only, so the ball is right to second order for any compact piece. Real is double, or a
-// vector of doubles.
+// Replaces a piece by the ball with its second moment. The fraction of a thin layer depends on the
+// second moment only, so the ball is right to second order for any compact piece. Real is double,
+// or a vector of doubles.
 template <class Real>
 struct BallShape {
   Real radius;

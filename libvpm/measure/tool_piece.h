@@ -5,7 +5,7 @@
 
 namespace vpm {
 
-// Volume and centroid of a block's samples together, which the file does not store.
+// Holds volume and centroid of a block's samples together, which the file does not store.
 struct BlockMass {
   Vec3 centroid;      // about the tool's centre of mass
   double weight = 0;  // sum of the samples' weights, in parts of the tool's volume
@@ -20,7 +20,8 @@ struct CellView {
   double reach = 0;                  // bounding radius of the cell about `center`, m
 };
 
-// A compact piece of a cell: a sample, or an uncut block or cell taken whole, whose radius is 0.
+// Describes a compact piece of a cell: a sample, or an uncut block or cell taken whole, whose
+// radius is 0.
 struct ToolPiece {
   Vec3 at;  // centroid, about the tool's centre of mass, m
   double radius = 0, weight = 0;

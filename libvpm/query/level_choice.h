@@ -31,9 +31,10 @@ class DeadlineLevel {
   void took(double time);
 
  private:
-  // Part of the deadline that the expected time may use. The rest is for unforeseen poses and load.
+  // Sets the part of the deadline that the expected time may use. The rest is for unforeseen poses
+  // and load.
   static constexpr double kMargin = 0.8;
-  // Number of queries of which the second slowest counts, since a lone slow one says nothing.
+  // Counts the last queries of which the second slowest counts, since a lone slow one says nothing.
   static constexpr std::size_t kRecent = 64;
 
   double slowness() const;

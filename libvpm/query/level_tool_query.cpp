@@ -9,10 +9,10 @@
 namespace vpm {
 namespace {
 
-// Number of places of the cloud at which levels are timed, and of runs at each, whose median
-// counts.
+// Sets the number of places of the cloud at which levels are timed, and of runs at each, whose
+// median counts.
 constexpr std::size_t kProbes = 8, kRunsPerProbe = 3;
-// Shorter than any query, so that ratios of times stay finite, s.
+// Is shorter than any query, so that ratios of times stay finite, s.
 constexpr double kShortest = 1e-8;
 
 }  // namespace

@@ -12,10 +12,10 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kPatches = 64;  // places on the surface that are sampled
-// Number of nearest points that give spacing and noise, which is what a paraboloid over so few
-// leaves.
+// Sets the number of nearest points that give spacing and noise, which is what a paraboloid over so
+// few leaves.
 constexpr std::size_t kNearest = 32;
-// Radius in tool radii, and largest number of points, of the patch that gives curvature. Over a
+// Sets the radius, in tool radii, and the most points of the patch that gives curvature. Over a
 // smaller patch the noise of a depth camera bends more than the scene.
 constexpr double kPatchRadius = 0.25;
 constexpr std::size_t kPatchPoints = 512;

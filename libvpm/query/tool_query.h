@@ -48,7 +48,7 @@ class ToolQuery {
 
   const Level& level_;
   QueryOptions options_;
-  // Exactly one of these is set.
+  // Holds exactly one of these.
   std::unique_ptr<PaperMeasure> paper_;
   std::unique_ptr<RefinedMeasure> refined_;
   std::unique_ptr<DeviceMeasure> device_;

@@ -12,7 +12,7 @@
 
 namespace vpm {
 
-// A body of the scene. Its members:
+// Describes a body of the scene. Its members:
 //   BallClass classify_ball(center, radius)
 //       classifies a ball: `side` holds for all of it, or is ambiguous; `point` is where a search
 //       in it begins, or kNoPoint
@@ -50,8 +50,7 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSam
   { B::kSearchesFoot } -> std::convertible_to<bool>;
 };
 
-// A body that has seen free space, pixel by pixel: what it saw free is free, whatever a mean of the
-// surface says.
+// True for a body that has seen free space, pixel by pixel, which no mean of the surface outvotes.
 template <class B>
 concept SeesFreeSpace = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
@@ -64,14 +63,14 @@ concept SeesFreeSpace = MeasuredBody<B> &&
   { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
 };
 
-// A body that bounds how far places of a ball behind it are from the surface.
+// True for a body that bounds how far places of a ball behind it are from the surface.
 template <class B>
 concept BoundsGap = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
   { body.largest_gap(in_ball, x, length) } -> std::same_as<double>;
 };
 
-// A body, or a part of one about a ball, that may show an obstacle from several sides.
+// True for a body, or a part of one about a ball, that may show an obstacle from several sides.
 template <class B>
 concept HasOtherWalls = requires(const B& body, Vec3 x, double length, TangentPlane plane,
                                  OtherWall& wall) {

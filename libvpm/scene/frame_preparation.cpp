@@ -14,10 +14,10 @@
 namespace vpm {
 namespace {
 
-// Focal length, in pixels, below which points surely lie on the rays of their pixels: float
-// rounding moves them by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
+// Bounds the focal length, in pixels, below which points surely lie on the rays of their pixels:
+// float rounding moves them by at most f (1 + x)(1 + x + y) 2^-23 pixels, x and y the steepest ray.
 constexpr double kUsualFocalLength = 0x1p20;
-// Unit normals deviate by rounding; validate() allows more than this of the squared length.
+// Bounds how far rounding moves squared lengths of unit normals; validate() allows more.
 constexpr double kUnitTolerance = 1.9e-3;
 
 double steepest(double size, double centre, double focal) {
@@ -37,7 +37,7 @@ bool is_usual(const Camera& camera, const DepthImage& depth) {
   return std::max(k.fx, k.fy) * (1 + x) * (1 + y) * (1 + x + y) <= kUsualFocalLength;
 }
 
-// A row of the frame: its inputs, and where each pixel's point goes.
+// Describes a row of the frame: its inputs, and where each pixel's point goes.
 struct RowOfPoints {
   int width;
   double ray_y;

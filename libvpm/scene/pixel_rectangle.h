@@ -18,7 +18,7 @@ VPM_HD constexpr bool is_empty(const PixelRectangle& r) {
   return r.u0 > r.u1 || r.v0 > r.v1;
 }
 
-// Largest offset of a point from its pixel, in pixels, for which searches over pixels find it;
+// Bounds the offset of a point from its pixel, in pixels, for which searches over pixels find it;
 // float32 rounding and recovered intrinsics stay far below.
 inline constexpr double kPixelTolerance = 0.5;
 

@@ -20,7 +20,7 @@ namespace vpm {
 
 class PreparedCloud {
  public:
-  // Largest number of points that the fixed-point sums of a sphere can count (paper_contact.h).
+  // Limits the number of points that the fixed-point sums of a sphere can count (paper_contact.h).
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
 
   // Throws Error(refused) for more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536

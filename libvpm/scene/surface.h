@@ -8,8 +8,8 @@
 
 namespace vpm {
 
-// Side of the surface on which a ball lies. Conservative: any ball may be `ambiguous`, the others
-// hold for all of it.
+// Tells the side of the surface on which a ball lies. Conservative: any ball may be `ambiguous`,
+// the others hold for all of it.
 enum class Side : std::uint8_t {
   free,        // in seen free space, or never seen: counts for nothing
   behind,      // wholly behind the surface
@@ -17,10 +17,10 @@ enum class Side : std::uint8_t {
   ambiguous,   // undecided
 };
 
-// Index of no point.
+// Stands for no point.
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
-// The surface sampled for one place x, or for one per lane of Real.
+// Holds the surface sampled for one place x, or for one per lane of Real.
 template <class Real>
 struct SurfaceSampleOf {
   MaskOf<Real> known{};    // false: nothing was measured in this direction
@@ -43,7 +43,7 @@ struct SampleInTurn {
   }
 };
 
-// Plane of the surface in a ball.
+// Holds the plane of the surface in a ball.
 template <class Real>
 struct TangentPlaneOf {
   PlaceOf<Real> normal;  // unit, into free space
@@ -69,8 +69,8 @@ template <class Real>
                 normalized_or_zero(along_one * one.normal + along_other * other.normal));
 }
 
-// A wall to which a part of a body is nearer than to the wall nearest to its middle. That part lies
-// behind the border, where both walls are equally far.
+// Describes a wall to which a part of a body is nearer than to the wall nearest to its middle. That
+// part lies behind the border, where both walls are equally far.
 struct OtherWall {
   Vec3 normal;
   TangentPlane border;
@@ -81,8 +81,8 @@ inline constexpr double kLeastDivided = 0.012;
 // Two surfaces are two walls if the cosine between their normals is below this; otherwise they are
 // one curved surface, whose mean direction is that in the middle.
 inline constexpr double kTwoWalls = 0.9;
-// Cosine that normals about a planar body must have with the plane's, since all of it is pushed
-// along the plane's normal.
+// Bounds the cosine that normals about a planar body must have with the plane's, since all of it is
+// pushed along the plane's normal.
 inline constexpr double kOneDirection = 0.95;
 
 }  // namespace vpm

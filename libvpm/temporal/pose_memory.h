@@ -61,11 +61,11 @@ class PoseMemory {
   }
 
  private:
-  // The cells [begin, end) of a cluster.
+  // Holds the cells [begin, end) of a cluster.
   struct Rows {
     std::uint32_t cluster, begin, end;
   };
-  // Clusters that are not known cost nothing.
+  // Spends no time on clusters that are not known.
   struct Memory {
     Memory(std::size_t cells, std::size_t clusters)
         : inside(cells), feet(clusters), known(clusters) {

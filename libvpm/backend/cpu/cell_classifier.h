@@ -15,7 +15,7 @@ namespace vpm {
 template <class Surface>
 class CellClassifier {
  public:
-  // `points` counts the cloud's points in ambiguous spheres; null where nobody asks for them.
+  // Counts the cloud's points in ambiguous spheres with `points`; null where nobody asks for them.
   CellClassifier(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
                  const Surface& surface, const Pose& to_surface, const PointsOfSphere* points,
                  CellStates& states)

@@ -14,7 +14,7 @@ struct CellCluster {
   double reach = 0;  // radius of that ball, m
 };
 
-// Clusters of a level; every cell lies in one.
+// Lists the clusters of a level; every cell lies in one.
 struct CellClusters {
   std::vector<CellCluster> clusters;
   std::vector<std::uint32_t> cells;  // ascending within a cluster

@@ -37,7 +37,8 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
 template <MeasuredBody Surface>
 class CellMeasure {
  public:
-  // `to_surface` maps coordinates about the tool's centre of mass to the surface's frame.
+  // Takes a pose `to_surface` that maps coordinates about the tool's centre of mass to the
+  // surface's frame.
   VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
                      const CellView& cell)
       : surface_(surface),
@@ -100,7 +101,7 @@ class CellMeasure {
       add(piece, sampled, sum);
   }
 
-  // Class of one block of the cell.
+  // Holds the class of one block of the cell.
   struct ClassifiedBlock {
     BlockClass found = BlockClass::free;
     TangentPlane plane;  // set for a cut block
@@ -135,7 +136,7 @@ class CellMeasure {
     }
   }
 
-  // Surface sample for one piece, and the decisions from it.
+  // Holds the surface sample for a piece, and the decisions from it.
   struct PieceSample {
     Vec3 x;
     SurfaceSample on_surface;
@@ -145,7 +146,7 @@ class CellMeasure {
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
     return sample_piece(piece, point, surface_);
   }
-  // `near` samples the surface about the piece.
+  // Samples the surface by `near`, a sampler about the piece.
   template <class Near>
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point,
                                   const Near& near) const {
@@ -247,7 +248,7 @@ class CellMeasure {
     result.point = sampled.on_surface.point;
     if (note(piece, sampled, result)) add(piece, sampled, result.sum);
   }
-  // Direction found for a run of neighbouring samples.
+  // Holds the direction found for a run of neighbouring samples.
   struct SharedDirection {
     std::uint32_t neighbors = UINT32_MAX;  // index of the run
     Vec3 normal;

@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// Four rows of partial sums, one in each lane.
+// Holds four rows of partial sums, one in each lane.
 struct FourRows {
   Double4 weight{};
   Vec3x4 moment{Double4{}, Double4{}, Double4{}};

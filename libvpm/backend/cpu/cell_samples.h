@@ -15,7 +15,7 @@ namespace vpm {
 // Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples);
 
-// A surface that vectors sample at several places at once.
+// True for a surface that vectors sample at several places at once.
 template <class Surface>
 concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
                                  SurfaceSample (&on_surface_at)[4]) {

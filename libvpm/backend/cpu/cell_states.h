@@ -10,7 +10,7 @@
 
 namespace vpm {
 
-// Class of a cell, by how the surface meets it.
+// Tells how the surface meets a cell.
 enum class CellClass : std::uint8_t {
   free,     // counts for nothing
   cut,      // the surface cuts it: its result counts
@@ -20,7 +20,7 @@ enum class CellClass : std::uint8_t {
   open,     // no surface near; its centre decides when the flood comes
 };
 
-// Flood state of a cell: first whether the flood may pass, at the end whether the cell is inside.
+// Tells first if the flood may pass a cell, and at the end if the cell is inside.
 enum class FloodState : std::uint8_t {
   closed,  // free or cut, or the flood may not pass
   taken,   // inside, or hidden
@@ -59,7 +59,7 @@ struct FloodPart {
   std::uint32_t last_cut = kNoRow;   // last result of CutCells::nearest_to() in this run
 };
 
-// A cluster with cut cells, which are a range of CellStates::cut.
+// Describes a cluster with cut cells, which are a range of CellStates::cut.
 struct CutCluster {
   Vec3 center;  // about the tool's centre of mass
   double reach;
@@ -122,17 +122,17 @@ struct CellStates {
            (flood_states[row] == FloodState::taken && cells[row] != CellClass::free);
   }
 
-  // Vectors below have one entry per row of the SpatialLevel, unless said otherwise.
+  // Holds one entry per row of the SpatialLevel in each vector, unless said otherwise.
   std::vector<CellClass> cells;
   std::vector<FloodState> flood_states;
   std::vector<CellResult> results;   // valid for cut and partial cells
   std::vector<double> squared_gaps;  // gap of the centre, valid where asked, m^2
-  // Planes of clusters by root: of cut ones, and only the normals of uniform ones.
+  // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
   std::vector<std::uint32_t> cut;  // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
   std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
-  // Kept at the most parts ever used; the first `part_count` are in use.
+  // Keeps as many parts as were ever used; the first `part_count` are in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;
 };

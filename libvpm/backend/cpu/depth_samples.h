@@ -9,7 +9,7 @@
 
 namespace vpm {
 
-// A place and its surface sample, surface frame.
+// Holds a place and its surface sample, surface frame.
 struct PlaceSample {
   Vec3 x;
   SurfaceSample on_surface;

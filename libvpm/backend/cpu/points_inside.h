@@ -78,7 +78,7 @@ class PointsOfSphere {
   }
 
  private:
-  // A ball about the cloud's origin that holds the sphere despite rounding.
+  // Describes a ball about the cloud's origin that holds the sphere despite rounding.
   struct Near {
     const Sphere& sphere;
     Vec3 center;

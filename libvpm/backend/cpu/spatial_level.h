@@ -1,4 +1,4 @@
-// A level as the CPU walks it: neighbours in the tool are neighbours in memory.
+// Stores a level as the CPU walks it: neighbours in the tool are neighbours in memory.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace vpm {
 
-// Node of a tree of clusters; the nodes below it follow it.
+// Describes a node of a tree of clusters; the nodes below it follow it.
 struct CellTreeNode {
   CellCluster cluster;     // rows of SpatialLevel
   std::uint32_t next = 0;  // the first node after all nodes below this one
 };
 
-// Clusters side by side: roots [begin, end), and the ball of their cells.
+// Groups clusters side by side: roots [begin, end), and the ball of their cells.
 struct CellGroup {
   CellCluster ball;
   std::uint32_t begin = 0, end = 0;

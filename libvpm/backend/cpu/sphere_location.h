@@ -12,7 +12,7 @@ VPM_HD constexpr bool strictly_inside(const Sphere& s, Vec3 x) {
   return squared_norm(x - s.center) < s.radius * s.radius;
 }
 
-// Plain pointers to a PointLocationGrid, for host or device.
+// Holds plain pointers to a PointLocationGrid, for host or device.
 struct GridView {
   Vec3 low;
   double cell = 0;

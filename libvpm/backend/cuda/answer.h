@@ -9,7 +9,7 @@
 
 namespace vpm::cuda {
 
-// Words of a RawResult in host memory.
+// Holds the words of a RawResult in host memory.
 struct Answer {
   static constexpr unsigned kWords = 18;
   static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));

@@ -1,4 +1,4 @@
-// Shared lists of a block's threads while they classify and measure cells: block tasks to be
+// Defines the shared lists of a block's threads that classify and measure cells: block tasks to be
 // classified, and pieces to be measured.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace vpm::cuda {
 
-// Pieces of a cell to be measured together.
+// Lists pieces of a cell to be measured together.
 struct Task {
   enum Form : std::uint32_t { samples, block, whole_block, whole_cell };
 
@@ -39,8 +39,8 @@ struct TaskLists {
   }
 };
 
-// A block task to be classified: its index in a task group, the slot of the threads that classified
-// that, and the cluster's class.
+// Packs a block task to be classified: its index in a task group, the slot of the threads that
+// classified that, and the cluster's class.
 struct SeenTask {
   std::uint16_t bits;
 
@@ -59,7 +59,7 @@ struct SeenTask {
 inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;
 static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGroup::kTasks <= 8);
 
-// Shared memory of a block.
+// Lays out a block's shared memory.
 struct MeasureShared {
   static constexpr unsigned kSeen = kMeasureThreads * TaskGroup::kTasks;
   SeenTask seen[kSeen];  // not planar from the front, of cut clusters from the end

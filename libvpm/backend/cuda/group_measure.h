@@ -53,7 +53,7 @@ class GroupMeasure {
     clear_seen();
     tasks_.clear();
     const Subwarp lanes(lanes_of_chunk());
-    // Neighbours go to different warps, since they often take long together.
+    // Deals neighbours to different warps, since they often take long together.
     const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
     const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
     for (unsigned first = work_.part.part; first < work_.level.task_group_count;

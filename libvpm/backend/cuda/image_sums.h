@@ -5,7 +5,7 @@
 
 namespace vpm::cuda {
 
-// Result of a block task.
+// Holds the result of a block task.
 struct TaskSums {
   ToolSum sum;
   bool is_cut = false;

@@ -15,7 +15,7 @@
 
 namespace vpm::cuda {
 
-// Shared memory of a warp for the task group at hand.
+// Lays out a warp's shared memory for the task group at hand.
 struct alignas(16) ImageShared {
   struct OfTask {
     Side cell = Side::free;
@@ -26,7 +26,7 @@ struct alignas(16) ImageShared {
     PixelRectangle pixels;  // the cell's
     double farthest = 0;
   };
-  // Fields of the cluster.
+  // Describes the cluster from here on.
   DepthSurface::BallClass in_ball;
   Vec3 middle;
   SurfaceSample on_surface, around[DepthSurface::PlacesAround::kCount];
@@ -39,7 +39,7 @@ struct alignas(16) ImageShared {
 template <class Found>
 class ImageTaskGroup {
  public:
-  // `lanes` is the number of lanes per block task.
+  // Takes the number of `lanes` per block task.
   __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, bool counts_points,
                             const TaskBall& cluster, const WarpTask* units, unsigned lanes,
                             ImageShared& shared, ImageSums& sums)
@@ -71,12 +71,11 @@ class ImageTaskGroup {
   using Measure = CellMeasure<DepthSurface>;
   using PieceSample = Measure::PieceSample;
 
-  // Lanes of a task that classify its balls, and the warp's lane that classifies the cluster's
-  // ball.
+  // Names the lanes of a task that classify its balls, and the warp's lane for the cluster's ball.
   static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
                             kOfSphere = BlockTask::of_sphere, kOfCluster = BlockTask::kBalls;
 
-  // How a block task counts.
+  // Tells how a block task counts.
   enum class Counts {
     not_at_all,
     pushed,      // its cell is behind the surface of a planar cluster

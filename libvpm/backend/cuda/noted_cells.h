@@ -5,7 +5,7 @@
 
 namespace vpm::cuda {
 
-// Shared memory of a block.
+// Lays out a block's shared memory.
 struct NotedList {
   static constexpr unsigned kRoom = 4096;
 

@@ -8,9 +8,9 @@
 
 namespace vpm::cuda {
 
-// One level of a tool as this measure takes it.
+// Describes one level of a tool as this measure takes it.
 struct PaperLevel {
-  // Most neighbours of a sphere that a subwarp visits; large spheres have thousands.
+  // Limits the neighbours of a sphere that a subwarp visits; large spheres have thousands.
   static constexpr std::uint32_t kMostNeighbors = 64;
 
   std::uint32_t count = 0;
@@ -24,10 +24,11 @@ struct PaperLevel {
   double spheres_reach = 0;  // bounding radius of all spheres about the centre of mass, m
 };
 
-// Memory of one query. Words and contacts are 0 at the start; the lists say which are not.
+// Points to the memory of one query. Words and contacts are 0 at the start; the lists say which are
+// not.
 struct PaperSpace {
-  // Word of a boundary sphere. Others are 0 outside, or the front that reached an inside sphere
-  // (entry: 1).
+  // Marks a boundary sphere. Other words are 0 outside, or the front that reached an inside sphere
+  // (1 is the entry).
   static constexpr std::uint32_t kBoundary = 0xffffffffU;
 
   std::uint32_t* words = nullptr;
@@ -37,7 +38,7 @@ struct PaperSpace {
   std::uint32_t* inside = nullptr;    // front after front, each in any order
 };
 
-// Counters of a query; 0 at the start.
+// Counts a query's finds; 0 at the start.
 struct PaperCounters {
   unsigned points = 0, boundary = 0;
   unsigned fronts[3] = {};  // sizes of a front, the next one, and the one after, in rotation
@@ -79,7 +80,7 @@ __device__ inline void gather(const PaperLevel& level, const PointsView& points,
       });
 }
 
-// Shared memory of a block while it passes a hub.
+// Lays out a block's shared memory while it passes a hub.
 struct HubShared {
   static constexpr unsigned kAtOnce = 32 * 32;  // neighbours: each lane of a warp counts 32
   static constexpr unsigned kOfThread = kAtOnce / kPaperThreads;
@@ -146,7 +147,8 @@ class PaperFlood {
   PaperCounters& counters_;
   Team& team_;
   HubShared& shared_;
-  // Number of the front, and the begin of its spheres and of the next front's in the list.
+  // Holds the number of the front, and the begins of its spheres and of the next front's in the
+  // list.
   std::uint32_t front_ = 0, begin_ = 0, next_ = 0;
   RawResult result_;
 };

@@ -80,7 +80,7 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   }
 }
 
-// Device memory of a number of teams.
+// Holds the device memory of a number of teams.
 class PaperMemory {
  public:
   PaperMemory(std::size_t spheres, std::size_t teams)
@@ -136,7 +136,7 @@ class PaperOnDevice : public MeasureOnDevice {
   }
 
  private:
-  // Teams that share the work of a batch.
+  // Holds the teams that deal with a batch.
   struct Teams {
     Teams(unsigned teams, std::size_t spheres) : count(teams), memory(spheres, count) {}
     unsigned count;

@@ -14,8 +14,8 @@
 namespace vpm::cuda {
 namespace {
 
-// Blocks per multiprocessor. Two spill no registers for an image and finish a pose of up to
-// kSpheresOfFewBlocks spheres sooner; three do with more spheres, or for points.
+// Sets the blocks per multiprocessor. Two spill no registers for an image and finish a pose of up
+// to kSpheresOfFewBlocks spheres sooner; three do with more spheres, or for points.
 constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
 constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
 
@@ -26,14 +26,14 @@ struct RefinedLaunch {
   PointsView points;
   RefinedSpace space;
   bool counts_points = false;
-  // Blocks that measure spheres; the others count points.
+  // Counts the blocks that measure spheres; the others count points.
   unsigned sphere_blocks = 0;
   Totals* totals = nullptr;
   RefinedCounters* counters = nullptr;
   Answer* answer = nullptr;
 };
 
-// Many poses of several tools.
+// Holds the arguments of a launch for many poses of several tools.
 template <class Surface>
 struct BatchLaunch {
   static constexpr unsigned kTools = 16;
@@ -70,7 +70,7 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
 template <class Surface, class Team>
 using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
 
-// Shared memory of a block; the steps of a query use it one after another.
+// Lays out a block's shared memory, which the steps of a query use one after another.
 template <class Surface>
 union BlockShared {
   MeasureShared measure;
@@ -78,8 +78,8 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
-// Where a kernel's arguments lie. Arguments in shared memory are fast only for inlined code, which
-// knows that they are there; those of a launch for functions as well.
+// Tells where a kernel's arguments lie. Arguments in shared memory are fast only for inlined code,
+// which knows that they are there; those of a launch for functions as well.
 enum class Arguments { launched, shared };
 
 // Runs the first step of one query by all blocks of a launch. Returns the sums of this thread.

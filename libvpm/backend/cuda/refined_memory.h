@@ -6,7 +6,7 @@
 
 namespace vpm::cuda {
 
-// Device memory of a number of teams, of one or more blocks each.
+// Holds the device memory of a number of teams, of one or more blocks each.
 class RefinedMemory {
  public:
   RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)

@@ -8,8 +8,9 @@
 
 namespace vpm::cuda {
 
-// Threads of a block: for one pose with other blocks, and for many poses alone. Registers limit the
-// refined measure: fewer threads finish one pose sooner, more of them get through more poses.
+// Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
+// limit the refined measure: fewer threads finish one pose sooner, more of them get through more
+// poses.
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
@@ -36,7 +37,7 @@ struct BlockRange {
   unsigned part = 0, parts = 1;
 };
 
-// One block alone.
+// Makes one block the team.
 class BlockTeam {
  public:
   static constexpr bool kIsBlock = true;
@@ -46,7 +47,7 @@ class BlockTeam {
   __device__ void sync() { __syncthreads(); }
 };
 
-// All blocks of a cooperative launch.
+// Makes all blocks of a cooperative launch the team.
 class GridTeam {
  public:
   static constexpr bool kIsBlock = false;
@@ -82,7 +83,7 @@ class GridTeam {
   unsigned target_ = 0;
 };
 
-// Lanes of a warp that work together; `width` is a power of two.
+// Groups lanes of a warp that work together; `width` is a power of two.
 struct Subwarp {
   unsigned width, lane, mask;
 
@@ -132,7 +133,7 @@ __device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
   return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
 }
 
-// Number of 64-bit terms of a ToolSum or ContactPlane.
+// Counts the 64-bit terms of a ToolSum or ContactPlane.
 inline constexpr int kTerms = 7;
 template <class Sum>
 __device__ std::int64_t* terms_of(Sum& sum) {
@@ -144,7 +145,7 @@ __device__ std::int64_t* terms_of(Sum& sum) {
 template <class Sum>
 __device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   std::int64_t* const terms = terms_of(sum);
-  // All terms per step, so that their shuffles overlap.
+  // Shuffles all terms in each step, so that they overlap.
 #pragma unroll 1
   for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
 #pragma unroll

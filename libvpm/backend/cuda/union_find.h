@@ -69,7 +69,7 @@ class UnionFind {
     walk = {walk.at, parent};
   }
 
-  // Atomic, since other threads write meanwhile.
+  // Uses atomics, since other threads write meanwhile.
   using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
   __device__ std::uint32_t load(std::uint32_t node) const {
     return Parent(parents_[node]).load(::cuda::memory_order_relaxed);

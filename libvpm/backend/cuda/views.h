@@ -18,8 +18,8 @@ struct alignas(32) TaskBall {
   double radius = 0;
 };
 
-// Task of classifying one block of a cell, or a cell without blocks. Its data lie together, since
-// waiting lanes read them once.
+// Describes one block of a cell, or a cell without blocks, to be classified. Its data lie together,
+// since waiting lanes read them once.
 struct alignas(32) BlockTask {
   enum Ball { of_cell, of_block, of_sphere, kBalls };
   enum Flag : std::uint32_t {
@@ -32,24 +32,25 @@ struct alignas(32) BlockTask {
   std::uint32_t flags = 0;
 };
 
-// Block tasks of one cluster that are classified together.
+// Groups block tasks of one cluster that are classified together.
 struct TaskGroup {
   static constexpr unsigned kTasks = 8;
   TaskBall ball;  // the cluster's, about the tool's centre of mass
   std::uint32_t begin = 0, end = 0;
 };
 
-// A block task with the masses of its block and cell.
+// Adds the masses of its block and cell to a block task.
 struct WarpTask : BlockTask {
   BlockMass block_mass, cell_mass;
 };
 
-// Largest number of spheres with a task group for each warp; more have more groups than any device
-// has warps at once.
+// Limits the spheres of levels with a task group for each warp; more have more groups than any
+// device has warps at once.
 inline constexpr std::uint32_t kSpheresOfWarps = 8192;
 
-// The block tasks of a small level for warps that take one group each: kWideTasks tasks with more
-// than kNarrow samples, or TaskGroup::kTasks others. Groups are filled up with tasks without flags.
+// Lists the block tasks of a small level for warps that take one group each: kWideTasks tasks with
+// more than kNarrow samples, or TaskGroup::kTasks others. Groups are filled up with tasks without
+// flags.
 struct WarpTaskGroups {
   static constexpr unsigned kWideTasks = 2;
   static constexpr std::uint32_t kNarrow = 8;
@@ -60,12 +61,12 @@ struct WarpTaskGroups {
                 wide_count = 0;  // groups of wide tasks, which come first; 0 for a large level
 };
 
-// An edge of the graph, by the spheres' indices.
+// Joins two spheres of the graph, by their indices.
 struct Edge {
   std::uint32_t larger, smaller;
 };
 
-// One level of a tool.
+// Points to one level of a tool.
 struct LevelView {
   std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // count: spheres
   std::uint32_t piece_count = 0;  // samples, blocks and cells: bounds what a query finds
@@ -93,7 +94,7 @@ struct LevelView {
   }
 };
 
-// A pose as the steps of a query need it.
+// Holds a pose as the steps of a query need it.
 struct PoseFrame {
   Pose to_surface;        // maps coordinates about the tool's centre of mass
   Pose to_tool;           // maps coordinates about the cloud's origin
@@ -117,7 +118,7 @@ VPM_HD inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud, Vec3
   return frame;
 }
 
-// Result of a kernel, in the tool's axes.
+// Holds the result of a kernel, in the tool's axes.
 struct RawResult {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0, points = 0;

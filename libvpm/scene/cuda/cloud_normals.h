@@ -7,7 +7,7 @@
 
 namespace vpm::cuda {
 
-// A block's tile when normals are estimated.
+// Describes a block's tile while normals are estimated.
 template <class Frame>
 struct TileImage {
   Frame frame;

@@ -7,7 +7,7 @@
 
 namespace vpm::cuda {
 
-// A block's arrays in shared memory.
+// Lays out a block's arrays in shared memory.
 template <class Normals>
 struct TileArrays {
   using Frame = typename Normals::Frame;
@@ -50,7 +50,7 @@ struct TileArrays {
   }
 };
 
-// One tile of an image, for one block.
+// Works on one tile of an image with one block.
 template <class Normals>
 class TileWork {
  public:

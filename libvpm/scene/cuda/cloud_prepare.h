@@ -8,7 +8,7 @@
 
 namespace vpm::cuda {
 
-// Results of an image's preparation, in memory that the host reads.
+// Holds the results of an image's preparation, in memory that the host reads.
 struct CloudAnswer {
   NumberedWord points = 0;    // number of points with a normal
   NumberedWord doubtful = 0;  // not 0: there are points that a PreparedCloud might refuse
@@ -31,7 +31,7 @@ __device__ inline void answer_with(const volatile CloudCounters& counters, Cloud
   put(numbered(sequence, counters.points), answer->points);
 }
 
-// Abilities of the current device for windows of this size.
+// Tells what the current device can do with windows of this size.
 struct Preparation {
   bool fits = false;      // shared memory holds them
   bool overlaps = false;  // the kernel may be launched before take_image() ends

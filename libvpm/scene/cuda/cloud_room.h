@@ -4,7 +4,7 @@
 
 namespace vpm::cuda {
 
-// Device memory for the cloud of an image, by pixel.
+// Points to the device memory for the cloud of an image, by pixel.
 struct CloudRoom {
   Vec3f* positions = nullptr;      // about the camera, world axes; NaN without a point
   Vec3f* normals = nullptr;        // world axes

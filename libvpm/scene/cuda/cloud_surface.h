@@ -8,12 +8,12 @@
 
 namespace vpm::cuda {
 
-// Margins in pixels within which neighbours decide a pixel: those whose normals are averaged, and
-// their windows.
+// Sets the margins, in pixels, within which neighbours decide a pixel: those whose normals are
+// averaged, and their windows.
 inline constexpr int kMarginOfMarks = kDenoisedReach,
                      kDenoiseMargin = kMarginOfMarks + kDenoisedRadius;
 
-// Sizes of a block's arrays.
+// Sets the sizes of a block's arrays.
 struct DenoiseSizes {
   using Frame = TileFrame<kDenoiseMargin>;
   static constexpr int kThreads = CloudTile::kSurfaceThreads;
@@ -38,13 +38,13 @@ struct DenoisedTile {
   float surface[CloudTile::kPixels];
   InverseDepthRange ranges[DenoiseSizes::kRanges];
 };
-// Shared memory: denoised pixels replace the measured ones.
+// Lays out a block's shared memory: denoised pixels replace the measured ones.
 union DenoiseShared {
   SeenTile seen;
   DenoisedTile denoised;
 };
 
-// One tile of an image, for one block.
+// Works on one tile of an image with one block.
 class DenoiseWork {
   using Window = WindowOfDepths<float>;
   static constexpr int kThreads = DenoiseSizes::kThreads, kWidth = DenoiseSizes::kWidth,

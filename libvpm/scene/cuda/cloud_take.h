@@ -5,14 +5,15 @@
 
 namespace vpm::cuda {
 
-// A depth image as the sensor gives it, counts or metres, in host memory mapped to the device.
+// Points to a depth image as the sensor gives it, counts or metres, in host memory mapped to the
+// device.
 struct DepthSource {
   const std::uint16_t* counts = nullptr;
   const float* metres = nullptr;
   double counts_per_metre = 1;
 };
 
-// Pixels per thread; images, and arrays made from them, have room for whole groups.
+// Sets the pixels per thread; images, and arrays made from them, have room for whole groups.
 inline constexpr unsigned kPixelsAtOnce = 8;
 
 // Brings the image to the device. Clears the counters, and the coarse tiles for denoise_on_device()

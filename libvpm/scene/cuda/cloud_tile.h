@@ -12,8 +12,8 @@
 
 namespace vpm::cuda {
 
-// Size of a block's tile in pixels, the number of pyramid levels whose tiles lie whole in it, and
-// the threads that make its points, then its surface.
+// Sets the size of a block's tile in pixels, the number of pyramid levels whose tiles lie whole in
+// it, and the threads that make its points, then its surface.
 struct CloudTile {
   static constexpr int kWidth = 32, kHeight = 16, kPixels = kWidth * kHeight, kLevels = 4;
   static constexpr int kPointThreads = 256, kSurfaceThreads = kPixels;
@@ -40,10 +40,10 @@ VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
   return wanted < most ? wanted : most;
 }
 
-// Radius of the default window, which kernels know at compile time.
+// Is the radius of the default window, which kernels know at compile time.
 inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
 
-// Inputs, parameters and outputs of the preparation of one image.
+// Holds inputs, parameters and outputs of the preparation of one image.
 struct CloudRecipe {
   float* depth = nullptr;    // m, by pixel; 0 if not usable
   float* inverse = nullptr;  // 1/m, by pixel
@@ -60,8 +60,8 @@ struct CloudRecipe {
   CloudRoom room;
 };
 
-// Placement of one of an image's tiles with a margin. `Radius` is that of the windows; 0 if it is
-// known at run time only.
+// Places one of an image's tiles with a margin. `Radius` is that of the windows; 0 if it is known
+// at run time only.
 template <int Radius>
 class TileFrame {
  public:

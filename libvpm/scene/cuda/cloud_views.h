@@ -8,8 +8,8 @@
 
 namespace vpm::cuda {
 
-// The points of a cloud, about its origin: for an image by pixel (NaN where there is none), else in
-// the order of the leaves of their tree.
+// Points to the points of a cloud, about its origin: for an image by pixel (NaN where there is
+// none), else in the order of the leaves of their tree.
 struct PointsView {
   const Vec3f* positions = nullptr;
   const Vec3f* normals = nullptr;
@@ -18,7 +18,7 @@ struct PointsView {
   PointTree tree;          // only without an image
 };
 
-// The parts of a cloud that poses are combined with.
+// Holds the parts of a cloud that poses are combined with.
 struct CloudFrame {
   bool is_organised = false;
   Vec3 origin;

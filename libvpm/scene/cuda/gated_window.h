@@ -21,7 +21,7 @@ class KeptColumn {
   __device__ float ye() const { return ye_; }
 
  private:
-  // First bits of the sums of dv^2 and of dv; the latter is signed and comes last.
+  // Gives the first bits of the sums of dv^2 and of dv; the latter is signed and comes last.
   static constexpr int kSecond = 8, kFirst = 20, kMostAway = kMaxWindow / 2;
   static_assert(kMaxWindow < 1 << kSecond);
   static_assert(kMostAway * (kMostAway + 1) * (2 * kMostAway + 1) / 3 < 1 << (kFirst - kSecond));
@@ -46,7 +46,7 @@ struct KeptCounts {
   }
 };
 
-// Rule by which a window last kept pixels: those no further from a plane than the gate.
+// Holds the rule by which a window last kept pixels: those no further from a plane than the gate.
 struct LastChoice {
   WindowPlane near;
   float gate = HUGE_VALF;
@@ -70,7 +70,7 @@ __device__ __forceinline__ auto fold(const Column& column) {
   return both;
 }
 
-// `Radius` is 0 if it is known at run time only.
+// Works on windows of this `Radius`, 0 if it is known at run time only.
 template <int Radius>
 class GatedWindow {
  public:

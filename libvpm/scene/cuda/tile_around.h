@@ -19,8 +19,9 @@ __device__ __forceinline__ float measured_or_none(float inverse) {
   return inverse == 0 ? unmeasured() : inverse;
 }
 
-// Least and greatest inverse depth of some pixels as integers, which order like floats that are not
-// negative. `high` is a NaN if a pixel is not measured; pixels beyond the image change nothing.
+// Holds least and greatest inverse depth of some pixels as integers, which order like floats that
+// are not negative. `high` is a NaN if a pixel is not measured; pixels beyond the image change
+// nothing.
 struct Extent {
   unsigned low;
   int high;

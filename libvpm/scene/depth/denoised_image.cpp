@@ -12,8 +12,8 @@ namespace {
 // Sums down each column of the windows of some pixels of a row.
 class ColumnSums {
  public:
-  // Enough pixels that what is stored for the first ones has left the CPU's store queue when it is
-  // loaded across lanes, which CPUs do not forward.
+  // Takes enough pixels that what is stored for the first ones has left the CPU's store queue when
+  // it is loaded across lanes, which CPUs do not forward.
   static constexpr int kPixels = 8 * kTile;
 
   // Sums from pixel `first` of row v to the row's last tile.
@@ -63,7 +63,7 @@ struct Tile {
   VectorTile normals;  // not of unit length
 };
 
-// The pixels of normals and inverse depths from (u, v) on.
+// Reads the pixels of normals and inverse depths from (u, v) on.
 class SeenFrom {
  public:
   [[gnu::always_inline]] SeenFrom(const SeenImage& seen, const PaddedImage& inverse, int u, int v)

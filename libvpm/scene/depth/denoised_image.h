@@ -15,7 +15,7 @@
 
 namespace vpm {
 
-// The measured image, and its marks.
+// Holds the measured image, and its marks.
 struct SeenImage {
   // Rows above and below a pixel that decide its mark.
   static constexpr int kReachOfMarks = kDenoisedRadius;

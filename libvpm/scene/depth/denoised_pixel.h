@@ -9,12 +9,13 @@
 
 namespace vpm {
 
-// Half width of a pixel's window, and the spacing of its two rings of eight neighbours, in pixels.
+// Sets the half width of a pixel's window, and the spacing of its two rings of eight neighbours, in
+// pixels.
 inline constexpr int kDenoisedRadius = 3, kDenoisedAcross = DepthSurface::kAcross;
 inline constexpr int kDenoisedReach = 2 * kDenoisedAcross;
 
-// Inverse depth, 1/m, and normal in camera axes of a pixel. Marked images have negative inverse
-// depths where a pixel is not clear (is_clear).
+// Holds inverse depth, 1/m, and normal in camera axes of a pixel. Marked images have negative
+// inverse depths where a pixel is not clear (is_clear).
 template <class Real>
 struct SeenPixel {
   Real inverse, x, y, z;
@@ -52,7 +53,7 @@ template <class Real, class Mask>
   return clear ? inverse : 0.0F - inverse;
 }
 
-// Least and greatest of a set of inverse depths.
+// Holds the least and the greatest of a set of inverse depths.
 template <class Real>
 struct ExtentOfDepths {
   Real low, high;
@@ -67,8 +68,9 @@ struct ExtentOfDepths {
   }
 };
 
-// Moments of a column of a window, or of the window: sums of inverse depths, and of those times the
-// squared distance from the middle; ranges of all pixels, and of those next to the middle.
+// Holds the moments of a column of a window, or of the window: sums of inverse depths, and of those
+// times the squared distance from the middle; ranges of all pixels, and of those next to the
+// middle.
 template <class Real>
 struct WindowOfDepths {
   Real sum, squares;

@@ -17,7 +17,7 @@ class FootSearch {
   using Place = PlaceOf<Real>;
   using Stored = StoredOf<Real>;
 
-  // The pixels kAcross to either side of one, in its row and its column.
+  // Holds the pixels kAcross to either side of one, in its row and its column.
   struct Neighbors {
     Int across{}, down{};              // kAcross, or 0 where one is missing
     Stored left, right, above, below;  // normals
@@ -40,7 +40,7 @@ class FootSearch {
   }
 
   FootSearch() = default;
-  // `first` is the surface sample at x; it must be known.
+  // Begins at `first`, the surface sample at x, which must be known.
   [[gnu::always_inline]] VPM_HD FootSearch(const DepthSampler& image, const Place& x,
                                            SurfaceSampleOf<Real> first, const Neighbors& beside)
       : x_(x) {

@@ -12,8 +12,8 @@
 
 namespace vpm {
 
-// Least and greatest inverse depth, 1/m, of a tile of pixels; low = 0 where a pixel is unknown,
-// both 0 where all are.
+// Holds the least and the greatest inverse depth, 1/m, of a tile of pixels; low = 0 where a pixel
+// is unknown, both 0 where all are.
 struct alignas(8) InverseDepthRange {  // one load
   float low = 0, high = 0;
 };
@@ -25,18 +25,18 @@ VPM_HD inline InverseDepthRange united(InverseDepthRange a, InverseDepthRange b)
 #endif
 }
 
-// Plain pointers to a frame's data, for host or device.
+// Holds plain pointers to a frame's data, for host or device.
 struct DepthSampler {
   static constexpr int kMaxLevels = 16;
-  // Widest and highest image: its coarsest tiles cover any ball three by three.
+  // Limits width and height of an image, so that its coarsest tiles cover any ball three by three.
   static constexpr std::uint32_t kMostPixelsASide = 1U << kMaxLevels;
-  // Pixels whose inverse depths differ by more than this fraction belong to two surfaces. A plane
-  // at 1 m seen by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
+  // Bounds the relative difference of inverse depths of pixels on one surface. A plane at 1 m seen
+  // by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
   static constexpr double kJump = 0.03;
-  // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
-  // or curved; those of a crease differ by more.
+  // Bounds the cosine (25 degrees) between normals of one smooth surface, noisy or curved; those of
+  // a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
-  // Windows of normals that lie this many pixels to either side see one side of a crease each: they
+  // Sets the pixels to either side at which windows of normals see one side of a crease each: they
   // are up to twice as wide (7 pixels by default).
   static constexpr std::int32_t kAcross = 4;
 
@@ -44,9 +44,9 @@ struct DepthSampler {
   std::int32_t width = 0, height = 0;
   std::int32_t levels = 0;
   const Vec3f* normals = nullptr;  // one per pixel, camera axes; zero where unknown
-  // tiles[l] cover 2^l by 2^l pixels; tiles[0].high is the pixel's own inverse depth.
+  // Holds ranges over 2^l by 2^l pixels in tiles[l]; tiles[0].high is a pixel's inverse depth.
   const InverseDepthRange* tiles[kMaxLevels] = {};
-  // Inverse depth before denoising: what was seen to be free stays so.
+  // Holds inverse depth, 1/m, before denoising: what was seen to be free stays so.
   const float* measured = nullptr;
 
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
@@ -89,10 +89,10 @@ struct DepthSampler {
   }
 
  private:
-  // Below this cosine between normal and ray the normal is not trusted to scale a distance.
+  // Bounds the cosine between ray and normal below which the normal does not scale a distance.
   static constexpr double kGrazing = 0.05;
 
-  // The image in the direction of a place.
+  // Describes the image in the direction of a place.
   template <class Real>
   struct Pixel {
     MaskOf<Real> known{};

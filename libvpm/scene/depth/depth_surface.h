@@ -1,4 +1,4 @@
-// The surface of an organised cloud: a camera's image, in camera coordinates.
+// Defines the surface of an organised cloud: a camera's image, in camera coordinates.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace vpm {
 
-// Plain pointers to a frame's data, for host or device.
+// Holds plain pointers to a frame's data, for host or device.
 struct DepthSurface : DepthSampler {
   static constexpr bool kSearchesFoot = true;
   // A ray that has passed the surface is inside as far as anybody knows, so places behind it count
@@ -32,7 +32,7 @@ struct DepthSurface : DepthSampler {
     return search_normal(*this, x, on_surface);
   }
 
-  // Class of a ball, and the range of inverse depth over the tiles that cover its pixels.
+  // Holds the class of a ball, and the range of inverse depth over the tiles that cover its pixels.
   struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // always: projection needs no start
@@ -95,7 +95,7 @@ struct DepthSurface : DepthSampler {
     }
     in_ball.leaves_image =
         u_low < -0.5 || v_low < -0.5 || u_high >= width - 0.5 || v_high >= height - 0.5;
-    // All pixels that look_up may touch for a place in the ball.
+    // Covers all pixels that look_up may touch for a place in the ball.
     in_ball.pixels = {u_low < 0 ? 0 : static_cast<std::int32_t>(u_low),
                       v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
                       u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
@@ -199,8 +199,8 @@ struct DepthSurface : DepthSampler {
     plane = mean.plane();
     return shows(in_ball, plane, tolerance);
   }
-  // The four places around the middle. `middle` is the sample at the ball's centre and must be
-  // known.
+  // Holds the four places around the middle. `middle` is the sample at the ball's centre and must
+  // be known.
   struct PlacesAround {
     static constexpr int kCount = 4;
     Vec3 below, side, other;
@@ -217,7 +217,7 @@ struct DepthSurface : DepthSampler {
       return place % 2 == 0 ? below + aside : below - aside;
     }
   };
-  // Mean of five samples of one smooth surface.
+  // Computes the mean of five samples of one smooth surface.
   struct PlaneMean {
     Vec3 middle_normal, direction, feet;
 
@@ -257,7 +257,7 @@ struct DepthSurface : DepthSampler {
     return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
   }
 
-  // Normals halfway between the middle of a ball and the corners of its pixels.
+  // Holds the normals halfway between the middle of a ball and the corners of its pixels.
   struct CornerNormals {
     Vec3f at[4];
   };

@@ -6,7 +6,8 @@
 
 namespace vpm {
 
-// Number of passes; each closes pixels next to the last, so holes up to twice as wide are closed.
+// Sets the number of passes; each closes pixels next to the last, so holes up to twice as wide are
+// closed.
 inline constexpr int kFillPasses = 2;
 
 // Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a

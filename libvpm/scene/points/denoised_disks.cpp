@@ -46,7 +46,7 @@ class CreaseSettling {
   }
 
  private:
-  // A smooth disk near a place.
+  // Describes a smooth disk near a place.
   struct SmoothDisk {
     std::uint32_t index;
     Disk disk;

@@ -12,11 +12,11 @@ struct Disk {
   Vec3 place, normal;
 };
 
-// Classes of two disks by the cosine between their normals.
+// Sorts pairs of disks by the cosine between their normals.
 inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
 inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
 
-// Largest height, as a part of the ball's radius, at which another disk shows the same surface.
+// Bounds the height, as a part of the ball's radius, at which another disk shows the same surface.
 inline constexpr double kOneSurface = 0.7;
 
 // Sum of planes to be averaged, with the heights of a place above them.

@@ -1,6 +1,6 @@
-// The surface of an unorganised cloud: disks (point, normal, sampling radius) in a bounding volume
-// hierarchy. The nearest disk decides on which side a place lies. Places are in the cloud's frame,
-// about its origin.
+// Defines the surface of an unorganised cloud: disks (point, normal, sampling radius) in a bounding
+// volume hierarchy. The nearest disk decides on which side a place lies. Places are in the cloud's
+// frame, about its origin.
 #pragma once
 
 #include "libvpm/scene/ball_fraction.h"
@@ -11,8 +11,8 @@
 
 namespace vpm {
 
-// A second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or behind
-// either of them (a concave edge, a slot).
+// Describes a second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or
+// behind either of them (a concave edge, a slot).
 struct SecondPlane {
   Vec3f normal, foot;
   bool is_convex = false;
@@ -20,7 +20,7 @@ struct SecondPlane {
   VPM_HD TangentPlane plane() const { return {widen(normal), widen(foot)}; }
 };
 
-// Plain pointers to a cloud's data, for host or device.
+// Holds plain pointers to a cloud's data, for host or device.
 struct DiskSurface {
   static constexpr bool kTellsInside = false;   // disks may be seen from anywhere
   static constexpr bool kSearchesFoot = false;  // the sampled disk is the nearest
@@ -110,7 +110,7 @@ struct DiskSurface {
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const;
 
-  // Class of a ball. Disks bound no gap.
+  // Holds the class of a ball. Disks bound no gap.
   struct BallClass {
     Side side = Side::free;
     std::uint32_t point = kNoPoint;  // nearest to the centre, if any disk touches the ball
@@ -216,7 +216,7 @@ struct DiskSurface {
     return depth > 0 &&
            !face_one_way(x - away * own.normal, depth + away + rim_of(point), own.normal, unlike);
   }
-  // `near` samples the surface about these places.
+  // Chooses another wall for find_other_wall(); `near` samples the surface about its places.
   template <class Near>
   VPM_HD bool choose_other_wall(const Near& near, Vec3 x, const TangentPlane& own,
                                 std::uint32_t point, double radius, double unlike,

@@ -11,8 +11,8 @@
 
 namespace vpm {
 
-// Radii of windows in sampling radii: a little wider than the 7 x 7 pixels by which normals are
-// estimated, and wide enough to reach beyond windows that hold both sides of a crease.
+// Sets the radii of windows in sampling radii: a little wider than the 7 x 7 pixels by which
+// normals are estimated, and wide enough to reach beyond windows that hold both sides of a crease.
 inline constexpr double kWindow = 6.3, kWide = 14;
 
 // Limits of windows, since disks may be much wider than their spacing (seen at a grazing angle by
@@ -22,7 +22,7 @@ inline constexpr double kLeavesInWindow = 2.5, kLeavesInWide = 5;
 inline constexpr std::uint32_t kMostInWindow = 512, kMostInWide = 2048;
 inline constexpr int kHalvings = 10;
 
-// A leaf of the tree of disks: eight neighbours.
+// Describes a leaf of the tree of disks: eight neighbours.
 struct DiskLeaf {
   std::uint32_t begin = 0, end = 0;
   Vec3 center;

@@ -9,7 +9,7 @@
 namespace vpm {
 namespace {
 
-// A point and its rank in the given order.
+// Holds a point and its rank in the given order.
 struct Ranked {
   float at[3];
   std::uint32_t rank;

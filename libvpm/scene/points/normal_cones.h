@@ -11,7 +11,8 @@ namespace vpm {
 
 struct DiskSurface;
 
-// Cones of four nodes: the cosine between the axis and any normal of the node is at least `cosine`.
+// Holds the cones of four nodes: the cosine between the axis and any normal of the node is at least
+// `cosine`.
 struct alignas(16) ConeQuad {
   float axis[3][4] = {};
   float cosine[4] = {};
@@ -22,7 +23,7 @@ struct alignas(16) ConeQuad {
   }
 };
 
-// Plain pointers to the cones of a tree.
+// Holds plain pointers to the cones of a tree.
 struct NormalCones {
   const ConeQuad* quads = nullptr;  // node k is entry k % 4 of quad k / 4
 
@@ -34,7 +35,7 @@ struct NormalCones {
     const std::uint32_t k = node % 4;
     const double cosine = quad.cosine[k],
                  off = dot({quad.axis[0][k], quad.axis[1][k], quad.axis[2][k]}, n);
-    // cos(a + b) = cos a cos b - sin a sin b; the last term is known by its square.
+    // Uses cos(a + b) = cos a cos b - sin a sin b; the last term is known by its square.
     const double above = off * cosine - (least + kSlack);
     return off > 0 && cosine > 0 && above > 0 &&
            above * above > (1 - off * off) * (1 - cosine * cosine);

@@ -13,7 +13,7 @@
 
 namespace vpm {
 
-// Axis-aligned box; an empty one (padding) has low > high.
+// Describes an axis-aligned box; an empty one (padding) has low > high.
 struct PointBox {
   Vec3f low, high;
 
@@ -27,7 +27,8 @@ struct PointBox {
   }
 };
 
-// Four boxes in vector layout. Empty ones reach from infinity to -infinity and are infinitely far.
+// Holds four boxes in vector layout. Empty ones reach from infinity to -infinity and are infinitely
+// far.
 struct alignas(16) BoxQuad {
   float low[3][4], high[3][4];
 
@@ -37,10 +38,11 @@ struct alignas(16) BoxQuad {
   void set(std::uint32_t k, const PointBox& box);
 };
 
-// Nodes left to search. Pushes have no branches that depend on distances, which no CPU predicts.
+// Stacks nodes left to search. Pushes have no branches that depend on distances, which no CPU
+// predicts.
 class NodeStack {
  public:
-  // Room for trees of up to 2^22 leaves: three of each quad on the way down, and one more.
+  // Has room for trees of up to 2^22 leaves: three of each quad on the way down, and one more.
   static constexpr int kRoom = 3 * 11 + 1;
 
   // Returns the key above which a node holds no point nearer than, or as near as, `squared`, m^2.
@@ -93,15 +95,15 @@ class NodeStack {
   int size_ = 0;
 };
 
-// A number per point, such as the radius of a ball about it, and the largest per node of their
-// tree.
+// Points to a number per point, such as the radius of a ball about it, and the largest per node of
+// their tree.
 struct PointNumbers {
   const float* of_points = nullptr;
   const float* of_nodes = nullptr;
 };
 
-// Nodes of a tree that hold all points near a place, where searches begin to skip the rest. Host
-// only.
+// Holds nodes of a tree that hold all points near a place, where searches begin to skip the rest.
+// Host only.
 struct TreeEntry {
   BoxQuad boxes;
   std::uint32_t nodes[4] = {};  // ascending; unused ones have empty boxes
@@ -114,8 +116,8 @@ struct TreeEntry {
   }
 };
 
-// Plain pointers to a complete tree, for host or device: node k has the children 2k and 2k+1, the
-// root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A step goes
+// Holds plain pointers to a complete tree, for host or device: node k has the children 2k and 2k+1,
+// the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A step goes
 // down two levels, from the root or from its children, so that it ends at a leaf.
 struct PointTree {
   static constexpr std::uint32_t kLeafSize = 8;
@@ -130,7 +132,7 @@ struct PointTree {
   // Lets searches at places within `reach`, m, of a centre begin near it.
   void enter_near(Vec3 center, double reach);
 
-  // Best point so far; kNoPoint where none was within the bound.
+  // Holds the best point so far; kNoPoint where none was within the bound.
   struct Nearest {
     double squared = HUGE_VAL;
     std::uint32_t point = kNoPoint;
@@ -204,8 +206,8 @@ struct PointTree {
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
     return for_leaves_in_ball<OneByOne>(center, squared_radius, EachNode{}, visit);
   }
-  // As above, for leaves in nodes for which enters(node) is true. `Distances` is OneByOne or
-  // ByVectors (point_tree_vectors.h).
+  // Calls visit(begin, end) likewise for leaves in nodes for which enters(node) is true.
+  // `Distances` is OneByOne or ByVectors (point_tree_vectors.h).
   template <class Distances, class Enters, class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
                                  const Visit& visit) const;
@@ -235,8 +237,8 @@ struct PointTree {
     VPM_HD bool operator()(std::uint32_t) const { return true; }
   };
 
-  // Filters of a search, by node and by point with squared distances. within() bounds the distance
-  // of the best point, if that is not the nearest of all.
+  // Filters a search, by node and by point with squared distances. within() bounds the distance of
+  // the best point, if that is not the nearest of all.
   struct EachPoint {
     static double within(const PointTree&) { return 0; }
     VPM_HD bool takes_node(std::uint32_t, double) const { return true; }

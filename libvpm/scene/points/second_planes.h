@@ -12,7 +12,7 @@
 
 namespace vpm {
 
-// Mean of several planes, through `foot`; `place` is the mean of their disks.
+// Holds the mean of several planes, through `foot`; `place` is the mean of their disks.
 struct MeanPlane {
   Vec3 normal, foot, place;
 
@@ -22,7 +22,8 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
-// A plate thinner than this part of the sideways distance between its sides has no thickness.
+// Bounds the thickness, as a part of the sideways distance between its sides, of a plate that is a
+// sheet.
 inline constexpr double kNoThickness = 1e-6;
 
 // Returns the second plane if each plane's disks lie behind the other, or in front of it, by at
@@ -40,7 +41,7 @@ inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlan
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
 }
 
-// Scratch and results of a thread that goes over leaves.
+// Holds scratch and results of a thread that goes over leaves.
 struct LeafWork {
   struct Found {
     std::uint32_t disk;

@@ -12,7 +12,7 @@ constexpr double kStandsOff = 2;  // radii, from the disks about it
 // Fewer alike disks, also within twice the distance, make a stray; fewer than kFewAlike an outlier,
 // if others are unlike it.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
-// Largest parts of unlike disks, relative to the alike ones.
+// Bounds the parts of unlike disks, relative to the alike ones.
 constexpr double kUnlikeOfSmooth = 0.1;
 constexpr double kUnlikeOfCalm = 0.02;  // few enough to be noise
 
