@@ -19,9 +19,9 @@ class DeviceMeasure {
   // Stores the results of `jobs`, whose tools are indices into `measures`: this one and others made
   // with the same options save the level. Poses must be exact (tool_query.h). A single job of a
   // single measure takes at most one launch and one wait, and allocates nothing after the first
-  // call on a scene; batches are cut to the device's memory. A cloud is copied to the device when
-  // first asked; a frame made for this device lies there already. Throws Error(unavailable) if the
-  // device fails.
+  // call on a scene; batches are cut to the device's memory. Copies a cloud to the device on its
+  // first use; a frame made for it lies there already. Throws Error(unavailable) if the device
+  // fails.
   virtual void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
                    std::span<const Job> jobs, std::span<Result> results) = 0;
 

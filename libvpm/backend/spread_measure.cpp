@@ -15,8 +15,8 @@ class Rest {
   struct Part {
     std::size_t begin = 0, count = 0;
   };
-  // Takes half of a taker's even part of the rest, so that all end together, but at least what
-  // keeps a device busy.
+  // Takes half of an even part of the rest, so that all end together, but enough to keep a device
+  // busy.
   Part take() {
     constexpr std::size_t kLeast = 512;
     const std::lock_guard lock(mutex_);

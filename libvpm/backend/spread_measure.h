@@ -12,8 +12,7 @@ class SpreadMeasure : public DeviceMeasure {
       : measures_(std::move(measures)) {}
 
   // Leaves a single job to the first device. A batch is prepared on the CPU, and a thread for each
-  // device takes jobs as long as any are left. `measures` must be SpreadMeasures over the same
-  // devices.
+  // device takes jobs as long as any are left. All `measures` must spread over the same devices.
   void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
            std::span<const Job> jobs, std::span<Result> results) override;
 

@@ -24,8 +24,7 @@ struct ToolReach {
 
 // Bounds cells that count by their centroid where wholly behind the surface, in tool radii.
 inline constexpr double kCompactReach = 0.125;
-// Bounds clusters that may be planar, in tool radii; wider ones, of one large cell, are classified
-// by their blocks.
+// Bounds clusters that may be planar, in tool radii; the blocks of wider ones decide.
 inline constexpr double kPlanarReach = 0.1;
 // Bounds how well one plane must fit a block, in tool radii, besides the block's own radius: it is
 // for blocks of few large cells, which are wider than the error they may make.
@@ -92,8 +91,7 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface,
              : found;
 }
 
-// Returns the class of a planar cluster without a surface in it, by the surface sample at its
-// middle.
+// Returns the class of a small cluster without a surface, by the surface sample at its middle.
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample& middle,
                                     Vec3 center, double radius, double tool_radius) {
@@ -138,8 +136,7 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
   return side != PlaneSide::before && is_seen_free() ? PlaneSide::before : side;
 }
 
-// True if a place at this signed distance is so far behind the surface that it is inside only if a
-// plane supports it.
+// True if a place at this signed distance, m, is inside only if a plane supports it.
 template <class Surface>
 VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
   return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);

@@ -9,8 +9,7 @@
 
 namespace vpm {
 
-// Describes a plane that cuts the tool, in the surface's frame and in the tool's axes about its
-// centre of mass.
+// Describes a plane that cuts the tool, in the surface's frame and about the tool's centre of mass.
 struct ClipPlane {
   TangentPlane seen;
   Vec3 normal;
@@ -38,8 +37,7 @@ inline constexpr std::uint32_t kSumRows = 16;
 
 // Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
 // the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
-// lanes would all wait for the slowest. Real is double, or a vector of doubles; Shape is as in
-// piece_shape.h.
+// lanes would all wait for the slowest. Real is double or a vector; see piece_shape.h for Shape.
 template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,
@@ -50,8 +48,7 @@ template <class Shape, class Real, class Mask>
   const Real part = weight * shape.fraction_behind(distance, normal);
   return reached ? (is_cut ? part : weight) : Real{};
 }
-// Adds the part of a sample behind a plane to its row. Adds zeros too, so that a row is never -0 on
-// any backend.
+// Adds the part of a sample behind a plane to its row. Adds zeros too, so that no row is ever -0.
 VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, ClippedMoments& row,
                               bool& is_cut) {
   bool cut = false;

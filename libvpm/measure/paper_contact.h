@@ -9,8 +9,7 @@
 
 namespace vpm {
 
-// Returns the volume of a cap of height `height` (0 to 2) of the unit ball (Kaluschke et al. 2017,
-// section 4).
+// Returns the volume of a cap of height `height` (0 to 2) of the unit ball (the paper's section 4).
 VPM_HD constexpr double unit_cap_volume(double height) {
   return kPi * height * height * (3 - height) / 3;
 }
@@ -63,8 +62,7 @@ VPM_HD inline bool lets_in(const Sphere& boundary, Vec3 normal, const Sphere& ne
   return !(dot(normal, neighbor.center - boundary.center) > -neighbor.radius);
 }
 
-// Holds the units of a ToolSum's terms: the tool's volume, m^3, its centre of mass, and its radius,
-// m.
+// Holds the units of a ToolSum's terms: volume, m^3, centre of mass, and radius, m, of the tool.
 struct ToolMeasures {
   double volume = 0;
   Vec3 center_of_mass;

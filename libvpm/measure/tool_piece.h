@@ -20,8 +20,7 @@ struct CellView {
   double reach = 0;                  // bounding radius of the cell about `center`, m
 };
 
-// Describes a compact piece of a cell: a sample, or an uncut block or cell taken whole, whose
-// radius is 0.
+// Describes a compact piece of a cell: a sample, or an uncut block or cell (radius 0).
 struct ToolPiece {
   Vec3 at;  // centroid, about the tool's centre of mass, m
   double radius = 0, weight = 0;

@@ -1,5 +1,4 @@
-// Chooses the level of a tool model: the coarsest that is accurate enough, or the finest that is
-// fast enough.
+// Chooses the level of a tool model: the coarsest accurate enough, or the finest fast enough.
 #pragma once
 
 #include <array>
@@ -31,8 +30,7 @@ class DeadlineLevel {
   void took(double time);
 
  private:
-  // Sets the part of the deadline that the expected time may use. The rest is for unforeseen poses
-  // and load.
+  // Sets the part of the deadline that the expected time may use. The rest is a reserve.
   static constexpr double kMargin = 0.8;
   // Counts the last queries of which the second slowest counts, since a lone slow one says nothing.
   static constexpr std::size_t kRecent = 64;

@@ -9,8 +9,7 @@
 namespace vpm {
 namespace {
 
-// Sets the number of places of the cloud at which levels are timed, and of runs at each, whose
-// median counts.
+// Sets the places of the cloud at which levels are timed, and the runs whose median counts.
 constexpr std::size_t kProbes = 8, kRunsPerProbe = 3;
 // Is shorter than any query, so that ratios of times stay finite, s.
 constexpr double kShortest = 1e-8;

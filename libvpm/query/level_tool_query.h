@@ -23,8 +23,8 @@ class LevelToolQuery {
 
   // Returns the answer at the current level, and chooses the next level if there is a deadline.
   Result run(const SceneView& scene, const Pose& pose);
-  // Stores the answers of many jobs; the request must have no deadline. seconds() is then the mean
-  // per job.
+  // Stores the answers of many jobs. Requires a request without deadline. seconds() is then the
+  // mean per job.
   void run(const SceneView& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Returns the query that ran last; without a deadline there is no other.

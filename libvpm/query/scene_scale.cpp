@@ -12,8 +12,7 @@ namespace vpm {
 namespace {
 
 constexpr std::size_t kPatches = 64;  // places on the surface that are sampled
-// Sets the number of nearest points that give spacing and noise, which is what a paraboloid over so
-// few leaves.
+// Sets the nearest points that give spacing and, as the residual of a paraboloid, noise.
 constexpr std::size_t kNearest = 32;
 // Sets the radius, in tool radii, and the most points of the patch that gives curvature. Over a
 // smaller patch the noise of a depth camera bends more than the scene.

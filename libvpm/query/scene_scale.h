@@ -1,5 +1,4 @@
-// Measures how small and how large the spheres of a tool should be for a scene. scene-scale.md
-// derives the rule.
+// Measures how large the spheres of a tool should be for a scene, as scene-scale.md derives.
 #pragma once
 
 #include <cstddef>

@@ -69,8 +69,7 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
   }
 }
 
-// Checks that solid occluded space has a camera. A frame has one, and must not be prepared by the
-// CPU here.
+// Checks that solid occluded space has a camera. A frame has one; the CPU must not prepare it here.
 void ToolQuery::check(const SceneView& scene) const {
   if (options_.occluded != OccludedSpace::solid || scene.frame() != nullptr) return;
   if (!scene.cloud().is_organised() && !scene.cloud().positions().empty())

@@ -5,8 +5,7 @@
 
 namespace vpm {
 
-// Returns ball_fraction_inside() for distances within [-1, 1]. Real is double, or a vector of
-// doubles.
+// Returns ball_fraction_inside() for distances within [-1, 1]. Real is double or a vector.
 template <class Real>
 [[gnu::always_inline]] VPM_HD constexpr Real fraction_of_cut_ball(const Real& distance) {
   const Real away = 1 - distance;

@@ -77,8 +77,7 @@ concept HasOtherWalls = requires(const B& body, Vec3 x, double length, TangentPl
   { body.find_other_wall(x, plane, kNoPoint, length, length, wall) } -> std::same_as<bool>;
 };
 
-// Returns the side of a classified ball. An ambiguous ball may still be free by its own pixels
-// alone.
+// Returns the side of a classified ball. Its own pixels may show an ambiguous one free.
 template <MeasuredBody B>
 VPM_HD Side side_of(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                     double radius) {
@@ -113,8 +112,8 @@ VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 
   else
     return true;
 }
-// Returns the least inverse depth, 1/m, of the surface in a classified ball; 0 for a body that has
-// seen no free space.
+// Returns the least inverse depth, 1/m, of the surface in a classified ball; 0 where no free space
+// was seen.
 template <MeasuredBody B>
 VPM_HD float least_inverse_depth(const typename B::BallClass& in_ball) {
   if constexpr (SeesFreeSpace<B>)

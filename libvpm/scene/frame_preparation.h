@@ -15,8 +15,7 @@ class FramePreparation {
   explicit FramePreparation(const NormalOptions& options, Denoising points = Denoising::on);
 
   // Makes `cloud` that of the frame, without new memory if it held a frame of the same size; nobody
-  // may use it meanwhile. Throws what make_cloud() and PreparedCloud() throw; then `cloud` is
-  // empty.
+  // may use it meanwhile. Throws as make_cloud() and PreparedCloud() do; `cloud` is empty then.
   void prepare(const DepthImage& depth, const Camera& camera, PreparedCloud& cloud);
 
  private:

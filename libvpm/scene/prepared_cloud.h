@@ -30,8 +30,7 @@ class PreparedCloud {
   // millisecond for an image, otherwise a second or two.
   explicit PreparedCloud(const Cloud& cloud, Denoising points = Denoising::on);
 
-  // Returns a number shared by copies of a cloud only, so that copies elsewhere (on a device) can
-  // be recognised.
+  // Returns a number shared by copies of a cloud only, to recognise copies on a device.
   std::uint64_t serial() const { return serial_; }
 
   Vec3 origin() const { return origin_; }
@@ -50,8 +49,7 @@ class PreparedCloud {
   DiskSurface disk_surface() const;                      // requires !is_organised()
   const DenoisedDisks& disks() const { return disks_; }  // in the order of positions()
 
-  // Calls visit(begin, end) for ranges of points that hold all in the ball (about origin()), and
-  // others.
+  // Calls visit(begin, end) for ranges that hold all points in the ball, and others.
   template <class Visit>
   void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const;
   // Calls visit(begin, end) for the points of these pixels. Requires is_organised().

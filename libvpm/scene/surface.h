@@ -31,8 +31,8 @@ struct SurfaceSampleOf {
 };
 using SurfaceSample = SurfaceSampleOf<double>;
 
-// Samples a surface at several places in turn, as long as `take` returns true. Returns true if it
-// has taken all.
+// Samples a surface at several places in turn, as long as `take` returns true. True if all were
+// taken.
 struct SampleInTurn {
   template <class Surface, int kPlaces, class Take>
   VPM_HD bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],

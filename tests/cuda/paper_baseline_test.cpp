@@ -1,5 +1,4 @@
-// The algorithm as printed gives the same volume, counts and states on the device as the printed
-// measure on the CPU.
+// The algorithm as printed gives the volume, counts and states of the CPU's printed measure.
 
 #include "tools/bench/paper_baseline.h"
 

@@ -1,5 +1,4 @@
-// A depth image prepared by the device has the bits of one prepared by the CPU, and so do queries
-// on it.
+// Depth images prepared by the device, and queries on them, have the bits of the CPU's.
 
 #include <gtest/gtest.h>
 

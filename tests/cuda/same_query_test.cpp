@@ -1,5 +1,5 @@
-// Queries on the device give the bits of queries on the CPU: every field and state, one by one and
-// in batches.
+// Queries on the device give the bits of queries on the CPU: all fields and states, also in
+// batches.
 
 #include <gtest/gtest.h>
 
@@ -160,8 +160,7 @@ TEST(ImagesAndPoints, GiveTheSameByTurns) {
   }
 }
 
-// Returns a lattice whose middle sphere has all others as neighbours, as large spheres of packings
-// do.
+// Returns a lattice whose middle sphere has all others as neighbours, as large spheres do.
 ToolModel lattice_with_hub(std::uint32_t n) {
   ToolModel tool = testing::lattice_cube(0.3, n, 1);
   const std::uint32_t count = n * n * n, hub = count / 2;
@@ -352,8 +351,7 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
     if (expected.back().volume > 0) touching.insert(tool);
   }
   EXPECT_GT(touching.size(), 8U);
-  // Runs twice, since a launch must leave its teams' memory clean. Then runs alone, in memory for
-  // larger tools.
+  // Runs twice, since a launch must leave its teams' memory clean. Then runs each tool alone.
   for (int turn = 0; turn < 2; ++turn) {
     std::vector<Result> results(poses.size());
     ToolQuery::run(together, cloud, poses, results);

@@ -1,5 +1,4 @@
-// Only two functions know a piece's shape: with another shape the rule of clipped weights gives
-// that shape's volumes.
+// With another piece shape the rule of clipped weights gives that shape's volumes.
 
 #include <gtest/gtest.h>
 

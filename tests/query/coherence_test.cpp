@@ -69,8 +69,7 @@ TEST(CoherentPoses, ForgetWhenTold) {
   EXPECT_EQ(query.run(cloud, deep).volume, 0);
 }
 
-// The tool is in free space behind an object, further from its front than the tool's radius. It is
-// never inside.
+// The tool is free behind an object, further from its front than the tool's radius.
 TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));

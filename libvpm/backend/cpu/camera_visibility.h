@@ -1,6 +1,5 @@
-// Decides which cells are inside where a camera has seen the surface: those behind it by no more
-// than the tool's radius. Further behind, the plane of the nearest cut cell decides, or the pose
-// memory.
+// Decides which cells are inside where a camera has seen the surface: those behind it within the
+// tool's radius. Further behind, the nearest cut cell's plane or the pose memory decides.
 #pragma once
 
 #include <algorithm>
@@ -56,8 +55,7 @@ class CameraVisibility {
     if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
     plane_ = memory.touched();
   }
-  // True if one remembered cell makes its whole cluster remembered; else follows() decides cell by
-  // cell.
+  // True if one remembered cell makes its whole cluster remembered; else follows() decides.
   bool all_follow() const { return !cut_.are_none(); }
   bool follows(std::uint32_t row) const { return has_stayed(row); }
   // True if a cell behind the surface's place `foot`, world frame, may be remembered.

@@ -37,8 +37,7 @@ VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
 template <MeasuredBody Surface>
 class CellMeasure {
  public:
-  // Takes a pose `to_surface` that maps coordinates about the tool's centre of mass to the
-  // surface's frame.
+  // Maps coordinates about the tool's centre of mass to the surface's frame by `to_surface`.
   VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
                      const CellView& cell)
       : surface_(surface),
@@ -48,8 +47,8 @@ class CellMeasure {
         center_(to_surface * cell.center) {}
 
   // Returns the part of an ambiguous cell that is inside. Far pieces of a cell that turns out uncut
-  // are left to add_far(). `samples` is SamplesInTurn or adds the same faster; disks are searched
-  // from `point`.
+  // are left to add_far(). `samples` is SamplesInTurn or adds the same faster. Searches start at
+  // `point`.
   template <class Samples>
   VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
@@ -175,8 +174,7 @@ class CellMeasure {
                   ToolSum& sum) const {
     add(piece, sampled, is_cut(piece, sampled) ? Vec3{} : closest_normal(sampled), near, sum);
   }
-  // Adds a piece that is inside. A cut one is pushed along the sampled normal, others along
-  // `way_out`.
+  // Adds a piece that is inside. Pushes a cut one along the sampled normal, others along `way_out`.
   template <class Near>
   VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, Vec3 way_out,
                   const Near& near, ToolSum& sum) const {
@@ -210,8 +208,7 @@ class CellMeasure {
     return Surface::kSearchesFoot && sampled.is_inside && !sampled.is_far &&
            !is_cut(sample, sampled);
   }
-  // Adds a piece at x that is divided between two walls; `normal` is that of the wall nearest to
-  // its middle.
+  // Adds a piece at x that is divided between two walls; `normal` is the nearest wall's.
   VPM_HD void add_divided(const ToolPiece& piece, Vec3 x, Vec3 normal, const OtherWall& other,
                           ToolSum& sum) const {
     ClippedMoments part;
@@ -272,8 +269,7 @@ class CellMeasure {
     mean.add(plane.seen.normal,
              relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
   }
-  // Adds one block of a cell that is cut by a plane. `clipped` is clipped_in_turn or returns the
-  // same faster.
+  // Adds one block of a cell that is cut by a plane. `clipped` works as clipped_in_turn().
   template <class Clipped>
   VPM_HD void add_block(std::uint32_t b, const ClipPlane& plane, const Clipped& clipped,
                         CellResult& result) const {

@@ -1,5 +1,4 @@
-// Adds many samples of a cell's blocks at once by vectors, with the bits of SamplesInTurn. Host
-// only.
+// Adds many samples of a cell's blocks by vectors, with the bits of SamplesInTurn. Host only.
 #pragma once
 
 #include <algorithm>

@@ -42,8 +42,8 @@ class CutCells {
     return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center, level_.reach(cut)};
   }
   // Returns the cut cell whose sphere's centre is nearest; ties go to the smaller sphere index.
-  // Requires one. `last` is the result's row, and before it a hint for the search: kNoRow, or the
-  // last result.
+  // Requires one. `last` becomes the result's row, and is a hint before: the last result, or
+  // kNoRow.
   CutCell nearest_to(std::uint32_t row, std::uint32_t& last) const {
     const Vec3 from = level_.cell(row).center;
     Nearest nearest(tool_.spheres[level_.sphere(row)].center);

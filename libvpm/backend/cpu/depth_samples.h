@@ -24,8 +24,7 @@ void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]);
 
 // Samples the surface for those tool samples that it reaches: whose distance is less than their
-// radius. Writes these in order to `on_surface_at`, which has room for all, and returns their
-// number.
+// radius. Writes them in order to `on_surface_at` and returns their number.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
 

@@ -1,6 +1,5 @@
 // Decides which cells are inside where points were seen from unknown places: those behind the
-// surface that the graph reaches from cut cells. The result does not depend on the order of
-// traversal.
+// surface that the graph reaches from cut cells. The order of traversal does not matter.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +25,7 @@ class InsideFlood {
         states_(states) {}
 
   // Floods with all threads of the region, each in its part of the tool. Steps to other parts wait
-  // for the next round.
+  // a round.
   void run(ParallelRegion& region) {
     split(region.threads());
     region.loop(states_.part_count, 1,
@@ -196,8 +195,7 @@ class InsideFlood {
     return flood_state != FloodState::closed;
   }
 
-  // Decides a cluster without surface by its middle. Only the part that owns the cluster may call
-  // it.
+  // Decides a cluster without surface by its middle. Only the part that owns it may call this.
   void decide_cluster(std::uint32_t root) {
     const CellCluster& cluster = level_.cluster(root);
     const Vec3 at = to_surface_ * cluster.center;

@@ -1,5 +1,5 @@
-// Computes the refined measure: cells instead of spheres, the surface instead of points. See
-// measure/README.md.
+// Computes the refined measure: cells instead of spheres, the surface instead of points
+// (measure/README.md).
 #pragma once
 
 #include <optional>

@@ -1,5 +1,4 @@
-// Defines the steps of the refined measure for any body, for measure_refined.cpp and tests with
-// bodies of their own.
+// Defines the steps of the refined measure for any body, for measure_refined.cpp and for tests.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,4 @@
-// Walks the cloud's points strictly inside spheres of a tool. Cost follows the tool's radius, not
-// the cloud.
+// Walks the cloud's points strictly inside spheres of a tool. Cost follows the tool, not the cloud.
 #pragma once
 
 #include <atomic>

@@ -34,8 +34,8 @@ __device__ inline std::uint32_t word_of(const RawResult& result) {
   return k < Answer::kWords ? reinterpret_cast<const std::uint32_t*>(&result)[k] : 0;
 }
 
-// Sends a result, given as each thread's word, with `flood_ns` put in. Call from all threads of a
-// block.
+// Sends a result, given as each thread's word, with `flood_ns` put in. All threads of a block call
+// it.
 __device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* answer,
                             unsigned sequence) {
   constexpr unsigned kFlood = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t);

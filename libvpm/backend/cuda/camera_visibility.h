@@ -26,8 +26,7 @@ class CameraVisibility {
   __device__ static bool has_more(unsigned far, bool counts_points) {
     return counts_points || far > 0;
   }
-  // Returns this thread's part of the result, beyond that of the first step. Call from all threads
-  // of the team.
+  // Returns what this thread adds to the first step's result. Call from all threads of the team.
   __device__ RawResult run() {
     RawResult result;
     const unsigned far = read_for_block(counters_).far;

@@ -30,7 +30,7 @@ class CutCells {
   // Call from all lanes of a subwarp.
   __device__ std::uint32_t nearest_to(const Subwarp& subwarp, std::uint32_t i) const;
 
-  // Adds the far pieces that count. `may_count(cell)` is asked for uncut cells; one thread calls
+  // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
   // add(cell, sum).
   template <class MayCount, class Add>
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,

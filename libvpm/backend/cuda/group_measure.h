@@ -45,7 +45,7 @@ class GroupMeasure {
   __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared)
       : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
 
-  // Classifies the task groups of the block's part. Returns the sums of this thread. Call from all
+  // Classifies the task groups of the block's part. Returns this thread's sums. Call from all
   // threads.
   __device__ RawResult run() { return run_inlined(); }
   __device__ __forceinline__ RawResult run_inlined() {
@@ -76,15 +76,13 @@ class GroupMeasure {
   static constexpr bool kFloods = !Surface::kTellsInside;
   static constexpr unsigned kLanes = 4;          // lanes of a block task outside planar clusters
   static constexpr unsigned kSamplesOfBall = 4;  // take as long as the rest of a classification
-  // A round adds at most one task per thread to a list: one for each block task of a cut cluster,
-  // two for each other.
+  // Adds at most a task per thread and round to a list: one per task of a cut cluster, else two.
   static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
 
   __device__ void clear_seen() {
     if (threadIdx.x == 0) shared_.seen_count = shared_.clipped_count = shared_.pushed_count = 0;
   }
-  // Returns the lanes per task group. More of them finish a group sooner, fewer take more groups in
-  // a round.
+  // Returns the lanes per task group. More finish a group sooner, fewer take more groups at once.
   __device__ unsigned lanes_of_chunk() const {
     unsigned best = 1, least = UINT_MAX;
     for (unsigned lanes = SampleByLanes::kPlaces; lanes > 0; lanes /= 2) {
@@ -139,9 +137,8 @@ class GroupMeasure {
     plane = {tangent, work_.to_surface};
     return ClusterClass::cut;
   }
-  // Notes the cells of uniform clusters, a thread for each block task; those of a cluster find its
-  // normal together. That takes long, so the last warps begin with it while the first ones handle
-  // cut clusters.
+  // Notes the cells of uniform clusters, a thread for each block task. Finding the normals takes
+  // long, so the last warps do it while the first ones handle cut clusters.
   __device__ void note_pushed() {
     const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % TaskGroup::kTasks;
     for (unsigned k = thread / TaskGroup::kTasks; k < shared_.pushed_count;
@@ -221,8 +218,7 @@ class GroupMeasure {
   TaskMeasure<Surface> tasks_;
 };
 
-// Classifies one block task per kLanes lanes; all threads of a warp take part. Only `active` ones
-// are noted.
+// Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
 template <class Surface>
 __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
   const Subwarp lanes(kLanes);

@@ -16,8 +16,7 @@ class ImageSums {
  public:
   __device__ explicit ImageSums(const CellNotes& notes) : notes_(notes) {}
 
-  // Notes the result of a task's cell, once per thread at most; other threads may note the same
-  // cell.
+  // Notes the result of a task's cell, once per thread; others may note the same cell.
   __device__ void note(const BlockTask& task, const TaskSums& found) {
     found_.sum.add(found.sum);
     if (!found.is_cut && found.sum.volume.value == 0) return;

@@ -237,8 +237,7 @@ __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classif
   return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
 }
 
-// True if the cell's own pixels show it to be free, although it lies behind the plane. Call from
-// all lanes.
+// True if the cell's own pixels show it free though it is behind the plane. Call from all lanes.
 template <class Found>
 __device__ bool ImageTaskGroup<Found>::is_free_in_cluster(bool may_be_free) {
   if (lane_ == kOfCell)

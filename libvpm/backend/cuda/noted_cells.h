@@ -21,8 +21,7 @@ class NotedCells {
       : level_(level), notes_(notes), team_(team), list_(list) {}
 
   // Calls visit(i, word) for the cells with a word, spread over the threads of the team. Blocks
-  // list such cells in turns of neighbouring ones. A list that holds all of them is kept for the
-  // next call.
+  // list such cells in turns of neighbouring ones. A list that holds all serves again.
   template <class Visit>
   __device__ void for_each(const Visit& visit) {
     constexpr unsigned kTogether = 8;  // loads in flight

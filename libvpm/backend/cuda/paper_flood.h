@@ -24,11 +24,9 @@ struct PaperLevel {
   double spheres_reach = 0;  // bounding radius of all spheres about the centre of mass, m
 };
 
-// Points to the memory of one query. Words and contacts are 0 at the start; the lists say which are
-// not.
+// Points to the memory of one query. Words and contacts that the lists do not name are 0.
 struct PaperSpace {
-  // Marks a boundary sphere. Other words are 0 outside, or the front that reached an inside sphere
-  // (1 is the entry).
+  // Marks a boundary sphere. Other words are 0 outside, or the front that reached a sphere.
   static constexpr std::uint32_t kBoundary = 0xffffffffU;
 
   std::uint32_t* words = nullptr;
@@ -45,8 +43,8 @@ struct PaperCounters {
   unsigned inside = 0;      // written when the flood is done
 };
 
-// Resets `space` after the query that `counters` are of. Each thread takes every `step` entry from
-// `first`.
+// Resets `space` after the query that `counters` are of. A thread takes entries first, first +
+// step, ...
 __device__ inline void clear(const PaperSpace& space, const PaperCounters& counters,
                              std::uint32_t first, std::uint32_t step) {
   for (std::uint32_t k = first; k < counters.boundary; k += step) {
@@ -57,8 +55,7 @@ __device__ inline void clear(const PaperSpace& space, const PaperCounters& count
   for (std::uint32_t k = first; k < counters.inside; k += step) space.words[space.inside[k]] = 0;
 }
 
-// Gathers the points of spheres (steps 1 and 2) in a block's range. Call from all threads of a
-// block.
+// Gathers the points of spheres (steps 1 and 2) in a block's range, by all its threads.
 __device__ inline void gather(const PaperLevel& level, const PointsView& points,
                               const PoseFrame& frame, BlockRange part, const PaperSpace& space,
                               PaperCounters& counters) {
@@ -103,8 +100,7 @@ class PaperFlood {
   // Returns this thread's part of the result. Call from all threads of the team.
   __device__ RawResult run() {
     enter();
-    // Synchronises the team between fronts: each reads the words and normals of the one before and
-    // claims the next.
+    // Synchronises the team between fronts: each reads the one before and claims the next.
     for (front_ = 1;; ++front_) {
       team_.sync();
       const unsigned size = read(counters_.fronts[front_ % 3]);
@@ -147,8 +143,7 @@ class PaperFlood {
   PaperCounters& counters_;
   Team& team_;
   HubShared& shared_;
-  // Holds the number of the front, and the begins of its spheres and of the next front's in the
-  // list.
+  // Holds the front's number, and where its spheres and the next front's begin in the list.
   std::uint32_t front_ = 0, begin_ = 0, next_ = 0;
   RawResult result_;
 };
@@ -205,8 +200,7 @@ __device__ void PaperFlood<Team>::pass_front(unsigned size) {
   for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
 }
 
-// Claims the sphere's neighbours and returns its normal, which adds normals in the order of the
-// neighbours.
+// Claims the sphere's neighbours and returns its normal, summed in the order of neighbours.
 template <class Team>
 __device__ Vec3 PaperFlood<Team>::pass(const Subwarp& subwarp, std::uint32_t j) {
   const std::uint32_t end = level_.graph_begin[j + 1];

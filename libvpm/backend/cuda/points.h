@@ -1,5 +1,4 @@
-// Visits the cloud's points that a pose can reach, and counts those strictly inside each sphere of
-// a tool.
+// Visits the cloud's points that a pose can reach, and counts those strictly inside spheres.
 #pragma once
 
 #include <math_constants.h>
@@ -31,8 +30,7 @@ __device__ inline void count_point(const LevelView& level, const Pose& to_tool, 
 }
 
 // Calls visit(index, point, active) for a part of the pixels that the pose can reach, from all
-// threads of a warp; warps take pieces of rows. `active` is true for a point within `reach`, m, of
-// the centre of mass.
+// threads of a warp; warps take pieces of rows. `active` means within `reach`, m, of the centre.
 template <class Visit>
 __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, double reach,
                            std::uint32_t warp, std::uint32_t warps, const Visit& visit) {
@@ -61,8 +59,7 @@ __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, dou
   }
 }
 
-// Calls visit(index, point, active) for the points of any cloud, as for_pixels(). Call from all
-// threads of a block.
+// Calls visit(index, point, active) for the points of any cloud, by all threads of a block.
 template <class Visit>
 __device__ void for_points(const PointsView& points, const PoseFrame& frame, double reach,
                            BlockRange part, const Visit& visit) {

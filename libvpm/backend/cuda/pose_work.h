@@ -30,8 +30,7 @@ struct PoseWork {
     return {surface, to_surface, level.tool_reach, view};
   }
 
-  // Adds a piece that is inside, or cut; lists it if it is far. `normal` is the way out of an uncut
-  // one.
+  // Adds a piece that is inside or cut; lists a far one. `normal` is the way out of an uncut one.
   __device__ void add_inside(const CellMeasure<Surface>& measure, const ToolPiece& piece,
                              const typename CellMeasure<Surface>::PieceSample& sampled, Vec3 normal,
                              std::uint32_t cell, ToolSum& total) const {

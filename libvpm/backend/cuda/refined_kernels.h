@@ -152,8 +152,7 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
 }
 
 // Answers one query by all blocks of a cooperative launch. If the first step has found all (no far
-// pieces, no points asked), the last block to arrive sends the answer. True for the last block to
-// finish.
+// pieces, no points asked), the last block to arrive sends it. True for the last to finish.
 template <Arguments kArguments, class Surface>
 __device__ bool answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {

@@ -1,6 +1,6 @@
 // Measures the tasks listed during classification by the warps of a block: a lane for each sample,
-// each row of clipped samples, or each piece taken whole. Where no flood decides, each thread sums
-// what it finds.
+// each row of clipped samples, or each piece taken whole. Without a flood, each thread sums what it
+// finds.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_tasks.h"
@@ -199,9 +199,8 @@ __device__ unsigned TaskMeasure<Surface>::first_neighbor(const Subwarp& subwarp,
   return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
 }
 
-// Measures a block that is cut by one plane, a row of samples per lane. Loads early: the block's
-// data before the first wait, each sample before the last is added. Returns the result to the first
-// lane.
+// Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before
+// the last one is added. Returns the result to the first lane.
 template <class Surface>
 __device__ CellResult TaskMeasure<Surface>::measure_flat(const Subwarp& subwarp,
                                                          const FlatBlock& flat, const Task& task) {

@@ -9,8 +9,7 @@
 namespace vpm::cuda {
 
 // Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
-// limit the refined measure: fewer threads finish one pose sooner, more of them get through more
-// poses.
+// limit the refined measure: fewer finish a pose sooner, more get through more poses.
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;

@@ -49,8 +49,7 @@ struct WarpTask : BlockTask {
 inline constexpr std::uint32_t kSpheresOfWarps = 8192;
 
 // Lists the block tasks of a small level for warps that take one group each: kWideTasks tasks with
-// more than kNarrow samples, or TaskGroup::kTasks others. Groups are filled up with tasks without
-// flags.
+// more than kNarrow samples, or TaskGroup::kTasks others. Tasks without flags fill groups up.
 struct WarpTaskGroups {
   static constexpr unsigned kWideTasks = 2;
   static constexpr std::uint32_t kNarrow = 8;

@@ -51,8 +51,7 @@ struct TileImage {
   }
 };
 
-// Return the extent of inverse depth down a column about its middle, and of a window about its
-// middle column.
+// Return the extent of inverse depth in a column, and in a window, about the middle.
 __device__ __forceinline__ Extent extent_of_column(const TileAround& inverse, int radius) {
   Extent extent(inverse.at(0, 0));
 #pragma unroll
@@ -94,8 +93,8 @@ class InverseDepthNormals {
             extent_of_column(inverse, radius())};
   }
 
-  // Computes the normal of a pixel from its `column` and those beside it. Returns false if its
-  // window is not smooth.
+  // Computes the normal of a pixel from its `column` and those beside it. False if its window is
+  // not smooth.
   template <bool kMayBeCut>
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {

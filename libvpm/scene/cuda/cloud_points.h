@@ -121,8 +121,7 @@ class TileWork {
     }
   }
 
-  // Computes normals of smooth windows, lists the other windows, and stores the image without
-  // holes.
+  // Computes normals of smooth windows, lists the other windows, and closes holes.
   __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
     if (tile_.may_be_cut())
       find_normals<true>(has_holes, gated);

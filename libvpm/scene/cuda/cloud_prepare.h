@@ -19,8 +19,7 @@ struct CloudCounters {
   unsigned done = 0;  // finished blocks of a launch; 0 between launches
 };
 
-// Adds a block's counts; call it from one thread of each block. After all blocks one thread calls
-// answer_with().
+// Adds a block's counts; call it from one thread of each block. At last one calls answer_with().
 __device__ inline void count(unsigned points, unsigned doubtful, CloudCounters& counters) {
   if (points > 0) atomicAdd(&counters.points, points);
   if (doubtful > 0) atomicAdd(&counters.doubtful, doubtful);

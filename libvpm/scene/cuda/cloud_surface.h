@@ -139,8 +139,8 @@ class DenoiseWork {
       shared_.denoised.surface[thread() + i * kThreads] = surface[i];
   }
 
-  // Writes levels 1 to CloudTile::kLevels and adds this tile to higher levels. Synchronises after
-  // each level.
+  // Writes levels 1 to CloudTile::kLevels and adds this tile to higher levels. Synchronises per
+  // level.
   __device__ void write_tiles() const {
     InverseDepthRange* fine = nullptr;
     InverseDepthRange* coarse = shared_.denoised.ranges;

@@ -60,8 +60,7 @@ struct CloudRecipe {
   CloudRoom room;
 };
 
-// Places one of an image's tiles with a margin. `Radius` is that of the windows; 0 if it is known
-// at run time only.
+// Places one of an image's tiles with a margin. `Radius` is the windows', or 0 if not constant.
 template <int Radius>
 class TileFrame {
  public:
@@ -84,8 +83,7 @@ class TileFrame {
   __device__ int rows() const { return CloudTile::kHeight + 2 * margin(); }
   // Returns the number of window columns: the tile's and those beside it.
   __device__ int columns() const { return CloudTile::kWidth + 2 * radius(); }
-  // Returns the index of the tile's pixel (x, y), which counts from -margin, in an array with the
-  // margin.
+  // Returns the index of the tile's pixel (x, y), from -margin on, in an array with the margin.
   __device__ int index(int x, int y) const { return (y + margin()) * pitch() + x + margin(); }
   __device__ std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(v0 + y) * static_cast<std::size_t>(width) +
@@ -110,8 +108,7 @@ class TileFrame {
   int radius_;
 };
 
-// Copies the rows of a block's tile to their places in the image, word by word for coalesced
-// stores.
+// Copies the rows of a block's tile to the image, word by word for coalesced stores.
 template <class Frame>
 __device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from, Vec3f* to) {
   const auto* const words = reinterpret_cast<const float*>(from);
@@ -142,8 +139,7 @@ class SharedArrays {
   unsigned char* next_;
 };
 
-// Waits, in a kernel launched with LaunchKind::overlapping, until all work before it in the stream
-// is done.
+// Waits, in a kernel launched with LaunchKind::overlapping, for all work before it in the stream.
 __device__ __forceinline__ void wait_for_last() {
 #if __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
@@ -159,8 +155,7 @@ bool waits_for_last(void (*kernel)(Parameters...)) {
   return attributes.ptxVersion >= 90 && attributes.binaryVersion >= 90;
 }
 
-// Lets a kernel use this much shared memory per block. Returns false if the current device has
-// less.
+// Lets a kernel use this much shared memory per block. False if the device has less.
 template <class... Parameters>
 bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   constexpr std::size_t kWithoutAsking = 48 * 1024;
@@ -174,8 +169,7 @@ bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   return true;
 }
 
-// Launches a block for each of the image's tiles. With `overlaps` the kernel must call
-// wait_for_last().
+// Launches a block for each of the image's tiles. With `overlaps` it must wait_for_last().
 template <class... Parameters, class... Arguments>
 void launch_over_tiles(const Camera& camera, void (*kernel)(Parameters...), unsigned threads,
                        std::size_t shared, bool overlaps, cudaStream_t stream,

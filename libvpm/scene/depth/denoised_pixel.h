@@ -9,8 +9,7 @@
 
 namespace vpm {
 
-// Sets the half width of a pixel's window, and the spacing of its two rings of eight neighbours, in
-// pixels.
+// Sets the half width of a pixel's window, and the spacing of its two rings, in pixels.
 inline constexpr int kDenoisedRadius = 3, kDenoisedAcross = DepthSurface::kAcross;
 inline constexpr int kDenoisedReach = 2 * kDenoisedAcross;
 

@@ -119,8 +119,7 @@ class FootSearch {
     }
     searches_ &= negated(has_met_noise_ | has_met_groove_);
   }
-  // True if two walls, each sampled at its plane's foot, enclose a groove above x, which is behind
-  // both.
+  // True if two walls, each with a sampled foot, enclose a groove above x, which is behind both.
   [[gnu::always_inline]] VPM_HD Mask meet_above(const TangentPlaneOf<Real>& one,
                                                 const TangentPlaneOf<Real>& other) const {
     return (one.distance(other.foot) > 0) & (other.distance(one.foot) > 0) &

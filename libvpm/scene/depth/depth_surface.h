@@ -139,8 +139,7 @@ struct DepthSurface : DepthSampler {
            1;
   }
 
-  // False only if may_be_free() is false for every ball in this one, which lies in a classified
-  // ball.
+  // False only if may_be_free() is false for every ball in this part of a classified ball.
   VPM_HD bool may_hold_free(const BallClass& in_ball, Vec3 center, double radius) const {
     constexpr double kRounding = 1 - 1e-9;
     return (center.z - radius) * in_ball.range.low * kRounding < 1;
@@ -199,8 +198,7 @@ struct DepthSurface : DepthSampler {
     plane = mean.plane();
     return shows(in_ball, plane, tolerance);
   }
-  // Holds the four places around the middle. `middle` is the sample at the ball's centre and must
-  // be known.
+  // Holds the four places around the middle. `middle` is the known sample at the centre.
   struct PlacesAround {
     static constexpr int kCount = 4;
     Vec3 below, side, other;
@@ -234,8 +232,7 @@ struct DepthSurface : DepthSampler {
     VPM_HD TangentPlane plane() const { return {normalized_or_zero(direction), 0.2 * feet}; }
   };
 
-  // Returns a bound of the distance, m, from any place in a classified ball to the foot of its
-  // sample.
+  // Bounds the distance, m, from any place in a classified ball to the foot of its sample.
   VPM_HD double largest_gap(const BallClass& in_ball, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;
     if (!(nearest >= kSmallestLength && in_ball.range.high > 0)) return HUGE_VAL;

@@ -6,8 +6,8 @@
 
 namespace vpm {
 
-// Sets the number of passes; each closes pixels next to the last, so holes up to twice as wide are
-// closed.
+// Sets the passes, each of which closes pixels next to the last, so holes of twice that width
+// close.
 inline constexpr int kFillPasses = 2;
 
 // Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a

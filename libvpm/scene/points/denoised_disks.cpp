@@ -72,16 +72,15 @@ class CreaseSettling {
     result_.normals[i] = narrow(plane.normal);
   }
 
-  // Makes an outlier a copy of the nearest smooth disk. A plane of its own would continue a wall
-  // where there is none.
+  // Makes an outlier a copy of the nearest smooth disk. Its own plane would continue a wall into
+  // nothing.
   void join(std::uint32_t nearest, std::uint32_t i) {
     result_.feet[i] = result_.feet[nearest];
     result_.normals[i] = result_.normals[nearest];
     result_.second_of[i] = result_.second_of[nearest];
     result_.radii[i] = result_.radii[nearest];
   }
-  // True if a disk lies within the nearest smooth disk's windows; others may be small, seen by few
-  // points.
+  // True if a disk lies within the nearest smooth disk's windows; others may be something small.
   bool is_near(std::uint32_t nearest, std::uint32_t i) const {
     const double reach = kFurther * kWide * windows_.radius(nearest);
     const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
@@ -112,7 +111,7 @@ class CreaseSettling {
     if (disks.empty()) gather_smooth(place, kFurther * reach, 4 * kMostInWide, disks);
   }
 
-  // Returns the disk on whose plane the place lies best; with `other`, among disks that face
+  // Returns the disk on whose plane the place lies best; with `other`, among those that face
   // elsewhere.
   static const SmoothDisk* best_of(const std::vector<SmoothDisk>& disks, const SmoothDisk* other) {
     const SmoothDisk* best = nullptr;

@@ -48,7 +48,7 @@ struct DiskInBall {
   double reach = 0;  // radius of the ball, m
 };
 
-// Sums up the disks about four disks at once by vectors. `near` holds all disks in their balls, and
+// Sums up the disks about four disks at once by vectors. `near` holds all in their balls, and
 // others.
 void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
                  Neighborhood (&found)[4]);

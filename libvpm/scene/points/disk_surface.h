@@ -32,8 +32,7 @@ struct DiskSurface {
   PointNumbers radii{};
   NormalCones cones{};
 
-  // Samples the nearest disk, which stands for the surface around x. Unknown only in an empty
-  // cloud.
+  // Samples the nearest disk, which stands for the surface. Unknown only in an empty cloud.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
     return read_point(x, feet.nearest(x, HUGE_VAL, near));
   }
@@ -165,14 +164,12 @@ struct DiskSurface {
   // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
   static constexpr double kMiddle = 0.65;
   static constexpr double kOffPlane = 0.5;  // part of the tolerance
-  // Other walls are searched this many radii aside and as many further behind, which is at a body's
-  // end.
+  // Sets how many radii aside, and as many further behind, other walls are searched.
   static constexpr double kFurther = 0.85;
   static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
   // The wall beyond a border is searched again this many radii from it.
   static constexpr double kBeyondBorder = 0.2;
-  // A disk's rim lies this many sampling radii from its middle, so that noise leaves no gaps
-  // between disks.
+  // Sets the rim of disks, in sampling radii, so that noise leaves no gaps between them.
   static constexpr double kRim = 3;
   static constexpr double kSlot = -0.8;  // largest cosine between the sides of a slot
 
@@ -208,8 +205,7 @@ struct DiskSurface {
     return seconds[second_of[i]];
   }
 
-  // False if no other wall than `own` can be nearest to a place about a body at which walls are
-  // searched.
+  // False if no other wall than `own` can be nearest to places where one is searched.
   VPM_HD bool may_meet_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point,
                                   double radius, double unlike) const {
     const double away = kFurther * radius, depth = away - own.distance(x);
@@ -234,8 +230,7 @@ struct DiskSurface {
       other = wall;
     }
     if (!(least < radius)) return false;
-    // Searches beyond the border: a wall that ends at a crease may be nearest there in another
-    // direction.
+    // Searches beyond the border: there a wall may end at a crease.
     const Vec3 beyond = other.border.foot - kBeyondBorder * radius * other.border.normal;
     if (!find_border(near, beyond, x, own, point, unlike, wall, least)) return true;
     other = wall;

@@ -53,8 +53,7 @@ class DiskWindows {
   double wide_window(std::uint32_t i) const {
     return std::min(kWide * radii_[i], kLeavesInWide * leaf_of(i).diagonal);
   }
-  // Returns the radius of the ball about a leaf's centre that holds the windows of all its disks,
-  // m.
+  // Returns the radius about a leaf's centre that holds the windows of all its disks, m.
   double reach(const DiskLeaf& leaf) const {
     double widest = 0;
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
@@ -71,8 +70,7 @@ class DiskWindows {
       return ++count <= most;
     });
   }
-  // Calls visit(begin) with the first disk of each leaf that a ball touches, until it returns
-  // false.
+  // Calls visit(first disk) for each leaf that a ball touches, until it returns false.
   template <class Visit>
   bool for_leaves_near(Vec3 center, double reach, const Visit& visit) const {
     return measured_.feet.for_leaves_in_ball(

@@ -15,8 +15,7 @@ struct Ranked {
   std::uint32_t rank;
 };
 
-// Partitions points along the longest side of their box, so that the first `count` are the lower
-// ones.
+// Partitions points along the longest side of their box, the `count` lower ones first.
 void part(std::span<Ranked> points, std::size_t count) {
   Box box;
   for (const Ranked& p : points) box.add({p.at[0], p.at[1], p.at[2]});

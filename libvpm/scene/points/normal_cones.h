@@ -1,5 +1,4 @@
-// Bounds the directions of disks by cones about the normals in each node of their PointTree, for
-// host and device.
+// Bounds the normals of disks in each node of their PointTree by cones, for host and device.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +10,7 @@ namespace vpm {
 
 struct DiskSurface;
 
-// Holds the cones of four nodes: the cosine between the axis and any normal of the node is at least
-// `cosine`.
+// Holds the cones of four nodes: a normal's cosine with the axis is at least `cosine`.
 struct alignas(16) ConeQuad {
   float axis[3][4] = {};
   float cosine[4] = {};
@@ -27,8 +25,7 @@ struct alignas(16) ConeQuad {
 struct NormalCones {
   const ConeQuad* quads = nullptr;  // node k is entry k % 4 of quad k / 4
 
-  // True only if the cosine between the unit vector n and each normal of a node is surely above
-  // `least`.
+  // True only if each normal of a node surely has a cosine above `least` with the unit vector n.
   VPM_HD bool are_within(std::uint32_t node, Vec3 n, double least) const {
     constexpr double kSlack = 1e-3;  // far above the rounding of float axes
     const ConeQuad& quad = quads[node / 4];

@@ -27,8 +27,7 @@ struct PointBox {
   }
 };
 
-// Holds four boxes in vector layout. Empty ones reach from infinity to -infinity and are infinitely
-// far.
+// Holds four boxes in vector layout. Empty ones span infinity to -infinity: infinitely far.
 struct alignas(16) BoxQuad {
   float low[3][4], high[3][4];
 
@@ -57,8 +56,7 @@ class NodeStack {
     keys_[0] = 0;
     nodes_[size_++] = 1;
   }
-  // Pushes those of four nodes that are near enough, the nearest last. `node_of(k)` is node k, 0 to
-  // 3.
+  // Pushes those of four nodes that are near enough, the nearest last; node_of(k), k in 0 to 3.
   template <class NodeOf>
   VPM_HD void push(const NodeOf& node_of, const double (&squared)[4], std::uint64_t last) {
     std::uint64_t key[4];
@@ -380,8 +378,7 @@ VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, co
   return true;
 }
 
-// Returns the number of leaves of a tree of this many points; PointTree::kMostLeaves can be
-// searched.
+// Returns the number of leaves for this many points; kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
 // Returns the boxes of a tree of points in the order of order_by_leaves() (leaf_order.h).

@@ -22,8 +22,7 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
-// Bounds the thickness, as a part of the sideways distance between its sides, of a plate that is a
-// sheet.
+// Bounds a sheet's thickness, as a part of the sideways distance between its sides' disks.
 inline constexpr double kNoThickness = 1e-6;
 
 // Returns the second plane if each plane's disks lie behind the other, or in front of it, by at

@@ -61,8 +61,7 @@ class Smoothing {
   }
   // Returns the measured disk with the mean normal of those about it.
   Disk turned(std::uint32_t i) const { return {windows_.disk(i).place, widen(result_.normals[i])}; }
-  // Moves a disk along its normal to the mean height of those about it, and gives it their mean
-  // normal.
+  // Moves a disk along its normal to the mean height of those about it, and gives it their normal.
   void set(std::uint32_t i, const Disk& disk, const Neighborhood& around) {
     result_.feet[i] = narrow(disk.place + around.height / around.alike * disk.normal);
     result_.normals[i] = narrow(normalized_or_zero(around.normals));
@@ -151,8 +150,7 @@ class Smoothing {
         });
   }
 
-  // Denoises disks beside creases by clear ones only, since the windows of other normals may cross
-  // the crease.
+  // Denoises disks beside creases by clear ones only, since other windows may cross the crease.
   void denoise_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
     if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0) return;
     work.near.clear();
