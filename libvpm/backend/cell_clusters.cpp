@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// Rounding must not let a share's ball leave its cluster's.
+// Keeps a cell's ball inside its cluster's despite rounding.
 constexpr double kRounding = 1 + 1e-12;
 
 Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& cells,
@@ -18,7 +18,7 @@ Box box_of_centers(const ToolModel& tool, const std::vector<std::uint32_t>& cell
   return box;
 }
 
-// Of all samples of blocks [begin, end); without any its centroid is `otherwise`.
+// Returns the mass of all samples of blocks [begin, end); without any its centroid is `otherwise`.
 BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Vec3 otherwise) {
   BlockMass mass;
   Vec3 moment;
@@ -32,7 +32,7 @@ BlockMass mass_of(const Level& level, std::uint32_t begin, std::uint32_t end, Ve
   return mass;
 }
 
-// Halves what is not small.
+// Adds rows [begin, end) as one cluster, or halves them where that is too wide to be planar.
 void add_clusters(const ToolModel& tool, const Level& level, std::uint32_t begin, std::uint32_t end,
                   CellClusters& out) {
   const CellCluster cluster = enclosing_cluster(tool, level, out.cells, begin, end);

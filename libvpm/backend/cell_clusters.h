@@ -1,4 +1,4 @@
-// Shares of a level in compact groups: what is seen of a group as a whole is decided once.
+// Groups the cells of a level into compact clusters, which are classified as a whole.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,29 @@
 namespace vpm {
 
 struct CellCluster {
-  std::uint32_t begin = 0, end = 0;  // rows of CellClusters::shares
-  Vec3 center;                       // of a ball that encloses the shares, about the centre of mass
-  double reach = 0;                  // radius of that ball
+  std::uint32_t begin = 0, end = 0;  // rows of CellClusters::cells
+  Vec3 center;       // centre of a ball about all cells, about the centre of mass, m
+  double reach = 0;  // radius of that ball, m
 };
 
-// Every share lies in one cluster.
+// Lists the clusters of a level; every cell lies in one.
 struct CellClusters {
   std::vector<CellCluster> clusters;
   std::vector<std::uint32_t> cells;  // ascending within a cluster
-  std::vector<BlockMass> masses;     // of each share
+  std::vector<BlockMass> masses;     // for each cell
 };
 
 std::vector<BlockMass> block_masses(const Level& level);
 
 CellClusters cluster_cells(const ToolModel& tool, const Level& level);
 
-// Of the shares listed in rows [begin, end): the ball that encloses them.
+// Returns the ball that encloses the cells in rows [begin, end).
 CellCluster enclosing_cluster(const ToolModel& tool, const Level& level,
                               const std::vector<std::uint32_t>& cells, std::uint32_t begin,
                               std::uint32_t end);
 
-// Sorts rows [begin, end) by the longest side of their centres' box, as far as the median needs it,
-// and returns the row in the middle.
+// Partitions rows [begin, end) at the median of their centres along the longest side of the
+// centres' box. Returns the middle row.
 std::uint32_t halve(const ToolModel& tool, std::vector<std::uint32_t>& cells, std::uint32_t begin,
                     std::uint32_t end);
 

@@ -12,7 +12,7 @@ VPM_HD constexpr bool strictly_inside(const Sphere& s, Vec3 x) {
   return squared_norm(x - s.center) < s.radius * s.radius;
 }
 
-// A view of a PointLocationGrid: plain pointers, for host or device.
+// Holds plain pointers to a PointLocationGrid, for host or device.
 struct GridView {
   Vec3 low;
   double cell = 0;
@@ -24,7 +24,7 @@ inline GridView view_of(const PointLocationGrid& grid) {
   return {grid.low, grid.cell, grid.nx, grid.ny, grid.nz, grid.begin.data(), grid.spheres.data()};
 }
 
-// Calls visit(index) for every sphere that holds x, a place in tool coordinates.
+// Calls visit(index) for every sphere that strictly holds x, tool coordinates.
 template <class Visit>
 VPM_HD void for_spheres_at(const GridView& grid, const Sphere* spheres, Vec3 x,
                            const Visit& visit) {

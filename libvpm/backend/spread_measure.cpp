@@ -7,7 +7,7 @@
 namespace vpm {
 namespace {
 
-// Deals out what is left of a batch.
+// Deals out the jobs of a batch.
 class Rest {
  public:
   Rest(std::size_t count, std::size_t takers) : count_(count), takers_(takers) {}
@@ -15,8 +15,8 @@ class Rest {
   struct Part {
     std::size_t begin = 0, count = 0;
   };
-  // Half of a taker's share of what is left, so that all end together; but no less than what keeps
-  // a device busy.
+  // Takes half of an even part of the rest, so that all end together, but enough to keep a device
+  // busy.
   Part take() {
     constexpr std::size_t kLeast = 512;
     const std::lock_guard lock(mutex_);
@@ -59,7 +59,7 @@ void SpreadMeasure::run(const SceneView& scene, std::span<DeviceMeasure* const> 
                            results.subspan(part.begin, part.count));
     }));
   }
-  for (auto& each : runs) each.get();  // throws what the run threw
+  for (auto& each : runs) each.get();  // rethrows
 }
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// One measure on several devices: the jobs of a batch are spread over them.
+// Spreads the jobs of a batch over several devices.
 #pragma once
 
 #include "libvpm/backend/device_measure.h"
@@ -7,13 +7,12 @@ namespace vpm {
 
 class SpreadMeasure : public DeviceMeasure {
  public:
-  // Needs at least one measure, each on a device of its own.
+  // Takes at least one measure, each on its own device.
   explicit SpreadMeasure(std::vector<std::unique_ptr<DeviceMeasure>> measures)
       : measures_(std::move(measures)) {}
 
-  // Leaves a single job to the first device. For more the CPU prepares a frame, and a thread for
-  // each device takes the next jobs that are left, so a device with slow ones takes fewer.
-  // `measures` must be SpreadMeasures over the same devices.
+  // Leaves a single job to the first device. A batch is prepared on the CPU, and a thread for each
+  // device takes jobs as long as any are left. All `measures` must spread over the same devices.
   void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
            std::span<const Job> jobs, std::span<Result> results) override;
 

@@ -1,8 +1,8 @@
-// The part of one sphere's share that lies behind the surface.
+// Measures the part of one cell that lies behind the surface, for host and device.
 //
-// The share is known as samples: compact pieces with centroid, volume and size, in blocks with an
-// enclosing ball. A block that the surface cannot reach counts whole or not at all; where it may
-// pass, each sample gives the fraction of a ball of its size. One definition for host and device.
+// Samples are compact pieces with centroid, volume and radius, in blocks with an enclosing ball. A
+// block without surface counts whole or not at all; in the others each sample counts by its
+// fraction.
 #pragma once
 
 #include "libvpm/measure/classify.h"
@@ -16,17 +16,17 @@ namespace vpm {
 struct CellResult {
   ToolSum sum;                     // tool axes, arms about the centre of mass
   ContactPlane plane;              // plane.count > 0: the surface cuts the cell
-  bool is_far = false;             // a piece is: see CellMeasure::is_far
-  std::uint32_t point = kNoPoint;  // of disks: where the surface was read last
+  bool is_far = false;             // a piece needs the support of a plane (is_far_behind)
+  std::uint32_t point = kNoPoint;  // disk sampled last, where the next search begins
 };
 
-// Adds what is wholly behind the surface, pushed along a normal in the tool's axes.
+// Adds a mass wholly behind the surface, pushed along a normal in the tool's axes.
 VPM_HD inline void add_whole(const ToolReach& tool, const BlockMass& mass, Vec3 normal,
                              ToolSum& sum) {
   sum.add(mass.weight, normal, tool.inverse * mass.centroid);
 }
-// Adds what a plane leaves of a block: nothing before it, all of its mass behind it, the clipped
-// moments of one that is cut. Along the plane's normal, in the tool's axes.
+// Adds the part of a block behind a plane: nothing, all of its mass, or the clipped moments of a
+// cut one. `normal` is the plane's, in the tool's axes.
 VPM_HD inline void add_by_plane(PlaneSide side, const BlockMass& mass,
                                 const ClippedMoments& clipped, Vec3 normal, const ToolReach& tool,
                                 ToolSum& sum) {
@@ -43,8 +43,7 @@ VPM_HD constexpr std::uint32_t neighbors_of(std::uint32_t k) {
 template <MeasuredBody Surface>
 class CellMeasure {
  public:
-  // `to_surface` maps coordinates about the tool's centre of mass to the surface's; `reach` is the
-  // tool's, and scales the arms.
+  // Maps coordinates about the tool's centre of mass to the surface's frame by `to_surface`.
   VPM_HD CellMeasure(const Surface& surface, const Pose& to_surface, ToolReach tool_reach,
                      const CellView& cell)
       : surface_(surface),
@@ -53,9 +52,9 @@ class CellMeasure {
         cell_(cell),
         center_(to_surface * cell.center) {}
 
-  // What of a cell through which the surface may pass is inside; of a cell that it does not cut,
-  // without the far pieces. `samples`: SamplesInTurn, or what adds the same sooner. `point`: where
-  // to begin to read disks.
+  // Returns the part of an ambiguous cell that is inside. Far pieces of a cell that turns out uncut
+  // are left to add_far(). `samples` is SamplesInTurn or adds the same faster. Searches start at
+  // `point`.
   template <class Samples>
   VPM_HD CellResult run(Samples&& samples, std::uint32_t point = kNoPoint) const {
     CellResult result;
@@ -70,11 +69,9 @@ class CellMeasure {
     return result;
   }
 
-  // A surface further away than the tool's reach may be another one than that which cuts the tool:
-  // a place behind it is merely hidden by it, unless the plane of a cut cell vouches for both.
-  // `vouches(x, foot)`: whether one does for a place at x, behind the surface's place `foot`.
-  //
-  // Adds the far pieces, which run() leaves out.
+  // Adds the far pieces that run() leaves out. `supports(x, foot)` is true if the plane of a cut
+  // cell supports a place x behind the surface's place `foot`: a surface further away than the
+  // tool's radius may be another one than that which cuts the tool.
   template <class Supports>
   VPM_HD void add_far(const Supports& supports, ToolSum& sum) const {
     const auto add_if_far = [&](const ToolPiece& piece) {
@@ -93,7 +90,7 @@ class CellMeasure {
         add_if_far(piece_of(cell_.samples[s]));
     }
   }
-  // What of a cell wholly behind some surface is inside.
+  // Returns the part of a cell wholly behind the surface that is inside.
   template <class Supports>
   VPM_HD ToolSum whole(const Supports& supports) const {
     ToolSum sum;
@@ -109,12 +106,12 @@ class CellMeasure {
       add(piece, sampled, sum);
   }
 
-  // How the surface meets one block of the cell.
+  // Holds the class of one block of the cell.
   struct ClassifiedBlock {
     BlockClass found = BlockClass::free;
-    TangentPlane plane;  // of a block that is cut
+    TangentPlane plane;  // set for a cut block
     Vec3 center;
-    std::uint32_t point = kNoPoint;  // where to begin to read the surface
+    std::uint32_t point = kNoPoint;  // disk where the next search begins
   };
   VPM_HD ClassifiedBlock classify_block(const CellBlock& block) const {
     ClassifiedBlock result;
@@ -144,24 +141,24 @@ class CellMeasure {
     }
   }
 
-  // One piece as the surface shows it.
+  // Holds the surface sample for a piece, and the decisions from it.
   struct PieceSample {
     Vec3 x;
     SurfaceSample on_surface;
-    bool is_inside = false;  // a part of it at least; the rest is said of such only
+    bool is_inside = false;  // at least a part of it is
     bool is_far = false;
   };
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
     return sample_piece(piece, point, surface_);
   }
-  // `near`: the surface as far as it concerns the piece.
+  // Samples the surface by `near`, a sampler about the piece.
   template <class Near>
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point,
                                   const Near& near) const {
     const Vec3 x = to_surface_ * piece.at;
     return sample_of(piece, x, near.sample(x, point));
   }
-  // The same of a piece at x of the surface's frame, where that was read.
+  // Returns the decisions for a piece at x, surface frame, from a known surface sample.
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
                                const SurfaceSample& on_surface) const {
     PieceSample sampled{x, on_surface};
@@ -183,8 +180,7 @@ class CellMeasure {
                   ToolSum& sum) const {
     add(piece, sampled, is_cut(piece, sampled) ? Vec3{} : closest_normal(sampled), near, sum);
   }
-  // Adds a piece that is inside, whose way out, where it is not cut, is known: a cut one is pushed
-  // along the normal that was read.
+  // Adds a piece that is inside. Pushes a cut one along the sampled normal, others along `way_out`.
   template <class Near>
   VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, Vec3 way_out,
                   const Near& near, ToolSum& sum) const {
@@ -192,12 +188,12 @@ class CellMeasure {
     add_behind(cut ? part_behind(piece, sampled) : piece, sampled,
                cut ? sampled.on_surface.normal : way_out, near, sum);
   }
-  // What of a cut piece is behind the surface, at its middle still.
+  // Returns the part of a cut piece behind the surface, with the piece's centroid.
   VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
     piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.radius);
     return piece;
   }
-  // Adds what is behind the surface, where the way out of its middle is known.
+  // Adds a piece behind the surface; `normal` is the way out of its middle.
   template <class Near>
   VPM_HD void add_behind(const ToolPiece& piece, const PieceSample& sampled, Vec3 normal,
                          const Near& near, ToolSum& sum) const {
@@ -218,8 +214,7 @@ class CellMeasure {
     return Surface::kSearchesFoot && sampled.is_inside && !sampled.is_far &&
            !is_cut(sample, sampled);
   }
-  // Adds a piece at x that is shared out between two walls; its middle is nearer to the one with
-  // this normal.
+  // Adds a piece at x that is divided between two walls; `normal` is the nearest wall's.
   VPM_HD void add_divided(const ToolPiece& piece, Vec3 x, Vec3 normal, const OtherWall& other,
                           ToolSum& sum) const {
     ClippedMoments part;
@@ -234,7 +229,7 @@ class CellMeasure {
     sum.add_moment(piece.weight - part.weight, arm(piece.weight * piece.at - part.moment),
                    in_tool(normal));
   }
-  // Adds one that is pushed along one normal.
+  // Adds a piece that is pushed along one normal.
   VPM_HD void add_pushed(const ToolPiece& piece, Vec3 normal, ToolSum& sum) const {
     sum.add(piece.weight, in_tool(normal), arm(piece.at));
   }
@@ -243,20 +238,20 @@ class CellMeasure {
     plane.add(at.normal, relative(sampled.x - at.distance * at.normal));
   }
 
-  // Notes what a piece says of its cell. Returns whether run() adds it.
+  // Notes a piece's state in its cell's result. Returns true if run() adds the piece.
   VPM_HD bool note(const ToolPiece& piece, const PieceSample& sampled, CellResult& result) const {
     if (!sampled.is_inside) return false;
     result.is_far |= sampled.is_far;
     if (is_cut(piece, sampled)) add_to_plane(sampled, result.plane);
     return !sampled.is_far;
   }
-  // Adds what one piece contributes to run().
+  // Adds one piece to run()'s result.
   VPM_HD void add_piece(const ToolPiece& piece, CellResult& result) const {
     const PieceSample sampled = sample_piece(piece, result.point);
     result.point = sampled.on_surface.point;
     if (note(piece, sampled, result)) add(piece, sampled, result.sum);
   }
-  // The same of sample `k` of a block.
+  // Holds the direction found for a run of neighbouring samples.
   struct SharedDirection {
     std::uint32_t neighbors = UINT32_MAX;  // neighbors_of() its samples
     Vec3 normal;
@@ -279,8 +274,7 @@ class CellMeasure {
     mean.add(plane.seen.normal,
              relative(to_surface_ * center - plane.distance(center) * plane.seen.normal));
   }
-  // Adds one block of a cell that lies where the surface is one plane. `crossed`: clipped_in_turn,
-  // or what returns the same sooner.
+  // Adds one block of a cell that is cut by a plane. `clipped` works as clipped_in_turn().
   template <class Clipped>
   VPM_HD void add_block(std::uint32_t b, const ClipPlane& plane, const Clipped& clipped,
                         CellResult& result) const {
@@ -310,7 +304,7 @@ class CellMeasure {
   Vec3 center_;  // in the surface's frame
 };
 
-// The samples of a block that the surface may cut, one after another.
+// Adds the samples of ambiguous blocks one after another.
 struct SamplesInTurn {
   template <class Measure, class Near>
   VPM_HD void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
@@ -320,7 +314,7 @@ struct SamplesInTurn {
       measure.add_sample(k, piece_of(samples[k]), shared, result, near);
   }
   template <class Measure>
-  VPM_HD void flush(const Measure&, CellResult&) const {}  // nothing is put off
+  VPM_HD void flush(const Measure&, CellResult&) const {}
   static VPM_HD ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
                                        std::uint32_t count) {
     return clipped_in_turn(plane, samples, count);

@@ -9,7 +9,7 @@
 
 namespace vpm {
 
-// Lengths of the tool that the rules compare with, m.
+// Holds the lengths of the tool that the rules compare with, m.
 struct ToolReach {
   double length = 0;            // radius about the centre of mass that encloses the tool
   double inverse = 0;           // 1 / length, 1/m: scales arms
@@ -22,14 +22,12 @@ struct ToolReach {
         supported_beyond(occluded == OccludedSpace::solid ? HUGE_VAL : reach) {}
 };
 
-// A cell up to this part of the tool's radius that lies wholly behind the surface is counted by its
-// centroid.
+// Bounds cells that count by their centroid where wholly behind the surface, in tool radii.
 inline constexpr double kCompactReach = 0.125;
-// Clusters up to this part of the tool's radius may be planar; wider ones, of one large cell, are
-// classified by their blocks.
+// Bounds clusters that may be planar, in tool radii; the blocks of wider ones decide.
 inline constexpr double kPlanarReach = 0.1;
-// A block sees one plane where that is right to its radius, and to this part of the tool's radius:
-// blocks of few large cells are wider than the error they may make.
+// Bounds how well one plane must fit a block, in tool radii, besides the block's own radius: it is
+// for blocks of few large cells, which are wider than the error they may make.
 inline constexpr double kFlatness = 0.1;
 
 // True if a cell of this bounding radius may be counted by its centroid, where nothing cuts it.
@@ -41,7 +39,7 @@ VPM_HD constexpr bool may_be_planar(double cluster_radius, double tool_radius) {
   return cluster_radius <= kPlanarReach * tool_radius;
 }
 
-// The side of a plane on which a body lies.
+// Tells the side of a plane on which a body lies.
 enum class PlaneSide : std::uint8_t { before, cut, behind };
 // Returns the side of a body whose middle is at this signed distance and that reaches so far toward
 // the plane. A body that only touches the plane is not cut.
@@ -51,7 +49,7 @@ VPM_HD constexpr PlaneSide side_of_plane(double distance, double reach) {
                               : PlaneSide::cut;
 }
 
-// How the surface meets a cluster of cells, or a part of one.
+// Tells how the surface meets a cluster of cells, or a part of one.
 enum class ClusterClass : std::uint8_t {
   free,         // outside of the solid: counts for nothing
   ambiguous,    // the surface may pass through it: its parts decide
@@ -63,8 +61,8 @@ enum class ClusterClass : std::uint8_t {
   uniform,      // planar and behind_near: all of it is pushed along one normal
 };
 
-// Returns the class of a ball as far as its look tells: `ambiguous` ones may still be cut by one
-// plane (finds_cluster_plane), planar ones without a surface be uniform (class_by_middle).
+// Returns the class of a ball as far as classify_ball() tells. An ambiguous one may still be cut by
+// one plane (finds_cluster_plane), a small one without a surface be uniform (class_by_middle).
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_of_ball(const Surface& surface,
                                   const typename Surface::BallClass& in_ball, Vec3 center,
@@ -96,8 +94,7 @@ VPM_HD ClusterClass class_of_cluster(const Surface& surface,
                                              : found;
 }
 
-// Returns the class of a planar cluster without a surface in it, by the surface sample at its
-// middle.
+// Returns the class of a small cluster without a surface, by the surface sample at its middle.
 template <MeasuredBody Surface>
 VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample& middle,
                                     Vec3 center, double radius, double tool_radius) {
@@ -110,8 +107,8 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample&
              : ClusterClass::uniform;
 }
 
-// True if a plane as which the surface passes through a cluster is the cluster's: it passes no
-// further away than kSheetReach of its radii, and no second surface is near.
+// True if a plane found for a cluster may stand for the surface in it: the plane passes within
+// kSheetReach of its radii, and no second surface is near.
 template <MeasuredBody Surface>
 VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, const TangentPlane& plane) {
@@ -130,7 +127,7 @@ VPM_HD bool may_have_plane(const Surface& surface, const typename Surface::BallC
 }
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
-// `plane`. `sample_all` is SampleInTurn, or reads the same places side by side.
+// `plane`. `sample_all` is SampleInTurn, or samples the same places side by side.
 template <MeasuredBody Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
@@ -150,18 +147,17 @@ VPM_HD PlaneSide side_in_cut_cluster(double distance, double cell_radius,
   return side != PlaneSide::before && is_seen_free() ? PlaneSide::before : side;
 }
 
-// True if a place at this signed distance is so far behind the surface that it is inside only if a
-// plane supports it.
+// True if a place at this signed distance, m, is inside only if a plane supports it.
 template <class Surface>
 VPM_HD bool is_far_behind(double signed_distance, const ToolReach& tool) {
   return signed_distance < -(Surface::kTellsInside ? tool.supported_beyond : tool.length);
 }
-// True if a body of this radius is shared out between two walls: smaller ones are pushed to one.
+// True if a body of this radius, m, is divided between two walls; smaller ones are pushed to one.
 VPM_HD inline bool is_divisible(double radius, const ToolReach& tool) {
   return radius >= kLeastDivided * tool.length;
 }
 
-// How the surface meets a block of samples of an ambiguous cell.
+// Tells how the surface meets a block of samples of an ambiguous cell.
 enum class BlockClass : std::uint8_t {
   free,       // counts for nothing
   uncut,      // is measured as one piece
@@ -169,7 +165,7 @@ enum class BlockClass : std::uint8_t {
   ambiguous,  // is measured sample by sample
 };
 
-// Returns the class of a block about `center` whose ball was looked at, and the plane of one that
+// Returns the class of a block about `center` whose ball was classified, and the plane of one that
 // is cut. `read()` returns the surface sample at the centre; it is called only where a plane may
 // be.
 template <MeasuredBody Surface, class Read>

@@ -1,4 +1,4 @@
-// A plane through a tool, and what of samples lies behind it.
+// Clips samples of the tool by a plane.
 #pragma once
 
 #include "libvpm/core/division.h"
@@ -9,12 +9,11 @@
 
 namespace vpm {
 
-// A plane that crosses the tool: as the surface shows it, and in the tool's axes about its centre
-// of mass.
+// Describes a plane that cuts the tool, in the surface's frame and about the tool's centre of mass.
 struct ClipPlane {
   TangentPlane seen;
   Vec3 normal;
-  double height = 0;  // of the centre of mass
+  double height = 0;  // signed distance of the centre of mass from the plane, m
 
   ClipPlane() = default;
   VPM_HD ClipPlane(const TangentPlane& plane, const Pose& to_surface)
@@ -26,20 +25,19 @@ struct ClipPlane {
   }
 };
 
-// Of samples behind a plane.
+// Holds volume and first moment of the parts of samples behind a plane.
 struct ClippedMoments {
   double weight = 0;
-  Vec3 moment;  // of each weight times its sample's centre
+  Vec3 moment;  // sum of each weight times its sample's centre
   bool is_cut = false;
 };
-// Samples are added in so many rows, sample k in row k % kSumRows, and these by halves: so lanes of
-// vectors, or threads, can add a row each.
+// Counts the partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
+// pairwise by halves. Vector lanes or threads can each add a row and get the same bits.
 inline constexpr std::uint32_t kSumRows = 16;
 
-// Returns the weight of a piece that lies behind a plane with this normal, at these signed
-// distances from the piece's middle, and in `is_cut` whether the plane cuts it. Without branches:
-// pieces wait together for the slowest division, of which one that is not cut needs none. Real:
-// double, or a vector of such; Shape: piece_shape.h.
+// Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
+// the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
+// lanes would all wait for the slowest. Real is double or a vector; see piece_shape.h for Shape.
 template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,
@@ -50,8 +48,7 @@ template <class Shape, class Real, class Mask>
   const Real part = weight * shape.fraction_behind(distance, normal);
   return reached ? (is_cut ? part : weight) : Real{};
 }
-// Adds what of a sample lies behind a plane to its row. Zeros too: a row that begins with 0 is
-// never -0, whoever adds it.
+// Adds the part of a sample behind a plane to its row. Adds zeros too, so that no row is ever -0.
 VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, ClippedMoments& row,
                               bool& is_cut) {
   bool cut = false;
@@ -62,7 +59,7 @@ VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, 
   row.weight += inside;
   row.moment += inside * widen(sample.center);
 }
-// Of samples one after another.
+// Returns the clipped moments of samples, one after another.
 VPM_HD inline ClippedMoments clipped_in_turn(const ClipPlane& plane, const CellSample* samples,
                                              std::uint32_t count) {
   ClippedMoments rows[kSumRows];

@@ -1,4 +1,4 @@
-// The mean plane of the surface in a share that it cuts, which speaks for places out of sight.
+// Averages the surface in a cell that it cuts to a plane, which decides about occluded places.
 #pragma once
 
 #include "libvpm/core/fixed_sum.h"
@@ -6,14 +6,14 @@
 
 namespace vpm {
 
-// A surface further than this many reaches from a share's centre may be another one than that which
-// cuts the share.
+// Bounds the distance, in bounding radii of a cell from its centre, within which a surface is
+// surely the one that cuts the cell.
 inline constexpr double kSheetReach = 3;
 
-// The surface inside a cell, averaged: used for what lies out of the direct view.
+// Holds the mean plane of the surface inside a cell.
 struct ContactPlane {
-  // Unit normals, and feet relative to the cell's reach, of samples that they cut: |terms| < 8;
-  // 2^20 samples fit.
+  // Sums unit normals, and feet relative to the cell's centre in units of its bounding radius, over
+  // the samples that are cut. |terms| < 8, so 2^20 samples fit.
   using Sum = FixedSum<40>;
   Sum normal[3], foot[3];
   std::int64_t count = 0;
@@ -24,25 +24,25 @@ struct ContactPlane {
     ++count;
   }
   VPM_HD Vec3 normals() const { return {normal[0].real(), normal[1].real(), normal[2].real()}; }
-  // Where count > 0.
+  // Returns the mean foot. Requires count > 0.
   VPM_HD Vec3 mean_foot() const {
     const double per = 1 / static_cast<double>(count);
     return {per * foot[0].real(), per * foot[1].real(), per * foot[2].real()};
   }
-  // Height of a place above the plane, both relative to the cell's centre and reach; negative
-  // behind it.
+  // Returns the height of a place above the plane, negative behind it. Place and height are
+  // relative to the cell's centre, in units of its bounding radius.
   VPM_HD double height(Vec3 relative) const {
     return dot(normalized_or_zero(normals()), relative - mean_foot());
   }
-  // Whether a place lies behind the plane and what hides it belongs to the same surface: not to an
-  // object more than `near` in front of it. Without a plane nothing does.
+  // True if a place lies behind the plane and the surface point that hides it is at most `near` in
+  // front of it, so that both belong to one surface. False without a plane. Units as for height().
   VPM_HD bool supports(Vec3 relative, Vec3 hiding, double near) const {
     return count > 0 && height(relative) < 0 && height(hiding) <= near;
   }
 };
 
-// A cut share, in the surface's frame: its plane speaks for what is too far behind the surface, or
-// out of sight.
+// Describes a cut cell in the surface's frame, m. Its plane decides about places that are far
+// behind the surface or occluded.
 struct CutCell {
   ContactPlane plane;
   Vec3 center;

@@ -1,5 +1,5 @@
-// Which shares behind the surface the flood may pass, and which it enters from a cut share. One
-// definition for host and device; inside_flood.h says in which order they are asked.
+// Decides which cells behind the surface the inside flood may pass, and which it enters from a cut
+// cell. inside_flood.h holds the traversal.
 #pragma once
 
 #include "libvpm/measure/contact_plane.h"
@@ -14,20 +14,19 @@ VPM_HD constexpr bool is_nearer_cut(double squared, std::uint32_t sphere, double
   return squared < least || (squared == least && sphere < nearest);
 }
 
-// Squared distance of a place from the surface, m^2; without end where nothing is known.
+// Returns the squared distance to the surface, m^2; infinite where nothing was measured.
 VPM_HD inline double squared_gap(const SurfaceSample& on_surface) {
   return on_surface.known ? on_surface.distance * on_surface.distance : HUGE_VAL;
 }
 
-// A share may be behind a surface that is not the tool's business: one further away than the tool's
-// reach only hides it. Then the plane of the nearest cut share decides: before it, the share is out
-// of sight, not inside.
+// True if a place at this squared distance, m^2, behind a surface may merely be hidden by it: it is
+// further away than the tool's radius. The plane of the nearest cut cell then decides.
 VPM_HD inline bool is_hidden_cell(double gap_squared, double tool_reach) {
   return !(gap_squared <= tool_reach * tool_reach);
 }
 
-// Whether the surface that cuts one share is what another lies behind, as far as distance tells:
-// where it does not, the cut share's plane does.
+// True if a cell at this squared distance, m^2, from the surface is behind the same sheet as its
+// cut neighbour, by the cells' bounding radii, m. Where false, the cut cell's plane decides.
 VPM_HD inline bool lies_near_sheet(double gap_squared, double cut_reach, double reach) {
   const double near = kSheetReach * (cut_reach + reach);
   return gap_squared <= near * near;

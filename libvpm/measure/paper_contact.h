@@ -1,6 +1,5 @@
-// The math of the measure as printed, for host and device: what points say of a sphere, which
-// neighbours a boundary sphere lets in, and what spheres add to the result. Steps as numbered in
-// README.md.
+// Computes the measure as printed, for host and device: sums over the points in a sphere, the entry
+// test, and what spheres add to the result. README.md numbers the steps.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +9,20 @@
 
 namespace vpm {
 
-// Volume of the cap of height `height` (0..2) of the unit ball. Kaluschke et al. 2017, section 4.
+// Returns the volume of a cap of height `height` (0 to 2) of the unit ball (the paper's section 4).
 VPM_HD constexpr double unit_cap_volume(double height) {
   return kPi * height * height * (3 - height) / 3;
 }
 
-// Steps 2 and 3: sums over the points in a sphere, in fixed point. Terms are local to the sphere:
-// |terms| <= 4 pi / 3 < 8, so that 2^kPointBits points stay below 2^(3 + 24 + 36) = 2^63.
+// Sums over the points in a sphere, in fixed point (steps 2 and 3). Terms are local to the sphere
+// and below 4 pi / 3 < 8, so 2^kPointBits points stay below 2^(3 + 24 + 36) = 2^63.
 struct PaperContact {
   static constexpr int kPointBits = 24;
   using Sum = FixedSum<36>;
 
   std::int64_t points = 0, cap = 0, normal[3] = {}, offset[3] = {};
 
-  // Of one point at x with the unit normal n; tool axes.
+  // Returns the sums of one point at x with the unit normal n, in tool axes.
   VPM_HD static PaperContact of_point(const Sphere& s, Vec3 x, Vec3 n) {
     const Vec3 from_center = (x - s.center) / s.radius;
     const double depth = 1 + dot(n, from_center);  // r - d, d = n . (c - p), in radii
@@ -34,7 +33,7 @@ struct PaperContact {
             {Sum::round(from_center.x), Sum::round(from_center.y), Sum::round(from_center.z)}};
   }
 
-  // Calls add(sum, term) for each sum of `total`: many threads may do so at once.
+  // Calls add(sum, term) for each sum of `total`. An atomic `add` lets many threads do so at once.
   template <class Add>
   VPM_HD void add_to(PaperContact& total, const Add& add) const {
     add(total.points, points);
@@ -58,12 +57,12 @@ struct PaperContact {
   }
 };
 
-// Step 4: whether a boundary sphere lets a neighbour in that is not boundary.
+// True if a boundary sphere lets a neighbour in that is not boundary (step 4).
 VPM_HD inline bool lets_in(const Sphere& boundary, Vec3 normal, const Sphere& neighbor) {
   return !(dot(normal, neighbor.center - boundary.center) > -neighbor.radius);
 }
 
-// What sums are relative to.
+// Holds the units of a ToolSum's terms: volume, m^3, centre of mass, and radius, m, of the tool.
 struct ToolMeasures {
   double volume = 0;
   Vec3 center_of_mass;
@@ -73,7 +72,8 @@ inline ToolMeasures measures_of(const ToolModel& tool) {
   return {tool.volume, tool.center_of_mass, tool.reach};
 }
 
-// Step 6. Caps and spheres lie in disjoint spheres inside the solid, so the sums of a ToolSum hold.
+// Adds the mean cap of a boundary sphere (step 6). Caps and spheres lie in disjoint spheres inside
+// the solid, so the bounds of ToolSum hold.
 VPM_HD inline void add_boundary(const ToolMeasures& tool, const Sphere& s,
                                 const PaperContact& contact, Vec3 normal, ToolSum& sum) {
   sum.add(contact.mean_cap(s) / tool.volume, normal,

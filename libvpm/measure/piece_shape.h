@@ -1,5 +1,4 @@
-// The shape that a piece of the tool is taken for, known to two functions: how far it reaches
-// toward a plane, and which fraction of it lies behind one.
+// Defines the shape that stands for a piece of the tool. Only its two functions know it.
 #pragma once
 
 #include "libvpm/core/division.h"
@@ -8,17 +7,16 @@
 
 namespace vpm {
 
-// A ball with the second moment of the piece: right to second order for any compact piece, since
-// the fraction of a thin layer depends on its second moment only. Real: double, or a vector of
-// such.
+// Replaces a piece by the ball with its second moment. The fraction of a thin layer depends on the
+// second moment only, so the ball is right to second order for any compact piece. Real is double,
+// or a vector of doubles.
 template <class Real>
 struct BallShape {
   Real radius;
 
-  // Returns how far the piece reaches from its middle toward a plane with this normal, m.
+  // Returns the extent of the piece from its middle toward a plane with this normal, m.
   [[gnu::always_inline]] VPM_HD Real reach_toward(const Vec3& /*normal*/) const { return radius; }
-  // Returns the fraction of the piece that lies behind a plane which cuts it at this signed
-  // distance from its middle.
+  // Returns the fraction of the piece behind a plane that cuts it at this signed distance, m.
   [[gnu::always_inline]] VPM_HD Real fraction_behind(const Real& distance,
                                                      const Vec3& /*normal*/) const {
     return fraction_of_cut_ball(quotient(distance, radius));

@@ -1,14 +1,14 @@
-// What a share consists of.
+// Defines the parts of a cell: blocks, samples, and pieces as the measure adds them.
 #pragma once
 
 #include "libvpm/model/tool_model.h"
 
 namespace vpm {
 
-// What a level knows of its blocks beyond the file: volume and centroid of the samples together.
+// Holds volume and centroid of a block's samples together, which the file does not store.
 struct BlockMass {
   Vec3 centroid;      // about the tool's centre of mass
-  double weight = 0;  // sum of the samples' weights
+  double weight = 0;  // sum of the samples' weights, in parts of the tool's volume
 };
 
 struct CellView {
@@ -16,17 +16,16 @@ struct CellView {
   const BlockMass* masses = nullptr;
   const CellSample* samples = nullptr;
   std::uint32_t begin = 0, end = 0;  // blocks of the cell
-  Vec3 center;                       // of the sphere, about the tool's centre of mass
-  double reach = 0;                  // of the share, from the sphere's centre
+  Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
+  double reach = 0;                  // bounding radius of the cell about `center`, m
 };
 
-// A compact piece of a share: a sample, or what is not cut taken whole (radius 0): a block, or the
-// share.
+// Describes a compact piece of a cell: a sample, or an uncut block or cell (radius 0).
 struct ToolPiece {
-  Vec3 at;  // centroid, about the tool's centre of mass
+  Vec3 at;  // centroid, about the tool's centre of mass, m
   double radius = 0, weight = 0;
-  double extent = 0;                 // how far it reaches from there, nearly
-  std::uint32_t begin = 0, end = 0;  // its samples, of what is taken whole
+  double extent = 0;                 // bounding radius about the centroid, nearly, m
+  std::uint32_t begin = 0, end = 0;  // samples of a block or cell taken whole
 };
 VPM_HD inline ToolPiece piece_of(const CellSample& sample) {
   return {widen(sample.center), sample.radius, sample.weight, sample.radius, 0, 0};

@@ -1,4 +1,4 @@
-// Volume, force and torque summed over parts of a tool, whatever the order.
+// Sums volume, force and torque over parts of a tool, with the same bits in any order.
 #pragma once
 
 #include "libvpm/core/atomic_add.h"
@@ -9,16 +9,15 @@
 
 namespace vpm {
 
-// Terms are relative to the tool: volumes in parts of its volume, arms in parts of its reach. The
-// parts of a tool do not overlap, so every sum lies in [-1, 1], far from the limit of 8 of 60
-// fractional bits.
+// Sums in units of the tool: volumes in parts of its volume, arms in parts of its radius. Parts of
+// a tool do not overlap, so every sum lies in [-1, 1]; 60 fractional bits hold up to 8.
 struct ToolSum {
   using Sum = FixedSum<60>;
   Sum volume, force[3], torque[3];
 
   VPM_HD void add(double part, Vec3 normal, Vec3 arm) { add_moment(part, part * arm, normal); }
-  // Of several parts pushed in one direction: their sum, and the sum of each times its arm. What
-  // has no volume here adds nothing, so that nobody needs to ask whether it is in a sum.
+  // Adds parts that are pushed along one normal: the sum of their volumes, and the sum of each
+  // volume times its arm. Skips what rounds to no volume, so that such parts change no sum.
   VPM_HD void add_moment(double part, Vec3 moment, Vec3 normal) {
     Sum resolved;
     resolved.add(part);
@@ -33,7 +32,7 @@ struct ToolSum {
     for (int k = 0; k < 3; ++k) force[k].add(other.force[k]), torque[k].add(other.torque[k]);
   }
 
-  // Many threads may do so at once.
+  // Adds `other`; many threads may do so at once.
   void add_atomically(const ToolSum& other) {
     vpm::add_atomically(volume.value, other.volume.value);
     for (int k = 0; k < 3; ++k) {
@@ -42,9 +41,9 @@ struct ToolSum {
     }
   }
 
-  // In world axes; `rotation` takes the axes of the terms there.
+  // Writes the sums in SI units and world axes; `rotation` maps tool axes to the world's.
   VPM_HD void write(const ToolModel& tool, const Rotation& rotation, Result& result) const {
-    result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // of shares that sum to 1
+    result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // rounding may pass 1
     result.volume = tool.volume * result.volume_fraction;
     result.wrench.force =
         tool.volume * (rotation * Vec3{force[0].real(), force[1].real(), force[2].real()});

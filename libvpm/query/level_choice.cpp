@@ -42,8 +42,8 @@ DeadlineLevel::DeadlineLevel(std::vector<double> probed, double deadline, std::s
   choose();
 }
 
-// 1 where queries take what was probed. Never less: a tool in free space is quick and says nothing
-// of the next contact.
+// Returns the ratio of times taken to times probed, at least 1: a tool in free space is fast and
+// says nothing about the next contact.
 double DeadlineLevel::slowness() const {
   std::array<double, kRecent> sorted = recent_;
   std::nth_element(sorted.begin(), sorted.end() - 2, sorted.end());

@@ -1,5 +1,4 @@
-// Which level of a tool model to query: the coarsest that is accurate enough, the finest that is
-// fast enough.
+// Chooses the level of a tool model: the coarsest accurate enough, or the finest fast enough.
 #pragma once
 
 #include <array>
@@ -10,30 +9,30 @@
 
 namespace vpm {
 
-// Index of the coarsest level whose worst calibrated error is at most `max_error` (a fraction of
-// the tool's volume). Errors: invalid_argument for an error that is no fraction; refused for a
-// model without a calibration, with one level only, or none of whose levels is that accurate.
+// Returns the index of the coarsest level whose worst calibrated error is at most `max_error`, a
+// fraction of the tool's volume. Throws Error(invalid_argument) for an error outside (0, 1);
+// Error(refused) for a model without a calibration, with one level only, or without a level that
+// accurate.
 std::size_t coarsest_level_within(const ToolModel& tool, double max_error);
 
-// The finest level that keeps a deadline, from the times of queries. Knows no clock: the caller
-// measures. Feed it and it steps down before a deadline is missed, and up again when there is room.
+// Chooses the finest level that keeps a deadline from the times of queries, which the caller
+// measures. Steps down before a deadline is missed, and up again when there is time.
 class DeadlineLevel {
  public:
-  // `probed` holds the time that each level needs in the midst of a contact, coarsest first;
-  // `deadline` in the same unit, positive. Levels after `finest` are never taken.
+  // `probed` holds the time of each level in the midst of a contact, coarsest first; `deadline` is
+  // positive and in the same unit. Levels after `finest` are never taken.
   DeadlineLevel(std::vector<double> probed, double deadline, std::size_t finest);
 
   std::size_t level() const { return level_; }
-  bool keeps() const;  // false: even the coarsest level is expected to miss the deadline
+  bool keeps() const;  // false if even the coarsest level is expected to miss the deadline
 
-  // How long the last query took, at level().
+  // Adds the time of the last query, which ran at level().
   void took(double time);
 
  private:
-  // Part of the deadline that the expected time may use; the rest is for what poses and machine
-  // add unforeseen.
+  // Sets the part of the deadline that the expected time may use. The rest is a reserve.
   static constexpr double kMargin = 0.8;
-  // A lone slow query says nothing; the second slowest of this many does.
+  // Counts the last queries of which the second slowest counts, since a lone slow one says nothing.
   static constexpr std::size_t kRecent = 64;
 
   double slowness() const;

@@ -9,9 +9,9 @@
 namespace vpm {
 namespace {
 
-// Places of the cloud on which the levels are timed, and runs at each, of which the middle counts.
+// Sets the places of the cloud at which levels are timed, and the runs whose median counts.
 constexpr std::size_t kProbes = 8, kRunsPerProbe = 3;
-// Less than any query takes, so that ratios of times stay finite.
+// Is shorter than any query, so that ratios of times stay finite, s.
 constexpr double kShortest = 1e-8;
 
 }  // namespace
@@ -39,7 +39,7 @@ LevelToolQuery::LevelToolQuery(const ToolModel& tool, const QueryOptions& option
   reason_ = reason_now();
 }
 
-// The finest level to be used, by index: the finest there is for nothing but a deadline.
+// Returns the index of the finest level that the request allows.
 std::size_t LevelToolQuery::finest_wanted(const ToolModel& tool, const QueryOptions& options,
                                           const SceneView& scene, const Pose& pose) {
   if (request_.max_error) {

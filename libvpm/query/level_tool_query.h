@@ -1,4 +1,4 @@
-// Queries of one tool at the level that a request chooses. vpm/level_query.h is what programs see.
+// Runs queries of one tool at the level that a request chooses. Programs see vpm/level_query.h.
 #pragma once
 
 #include <deque>
@@ -17,14 +17,14 @@ namespace vpm {
 // Refers to its model, which must outlive it.
 class LevelToolQuery {
  public:
-  // Chooses the level; contract as LevelQuery.
+  // Chooses the level. Has the contract of LevelQuery.
   LevelToolQuery(const ToolModel& tool, const QueryOptions& options, const LevelRequest& request,
                  const SceneView& scene, const Pose& first_pose);
 
-  // Returns the answer at the level of the moment, and chooses the next one if there is a deadline.
+  // Returns the answer at the current level, and chooses the next level if there is a deadline.
   Result run(const SceneView& scene, const Pose& pose);
-  // Stores the answers of many jobs; needs a request without a deadline. seconds() is then the mean
-  // time of a job.
+  // Stores the answers of many jobs. Requires a request without deadline. seconds() is then the
+  // mean per job.
   void run(const SceneView& scene, std::span<const Job> jobs, std::span<Result> results);
 
   // Returns the query that ran last; without a deadline there is no other.

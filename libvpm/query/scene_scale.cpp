@@ -11,15 +11,14 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kPatches = 64;  // places on the surface that are looked at
-// Spacing and noise come from this many nearest points: noise is what a paraboloid over so few
-// leaves.
+constexpr std::size_t kPatches = 64;  // places on the surface that are sampled
+// Sets the nearest points that give spacing and, as the residual of a paraboloid, noise.
 constexpr std::size_t kNearest = 32;
-// Curvature comes from a patch of this many reaches, thinned to so many points: over a smaller one
-// the noise of a depth camera bends more than the scene.
+// Sets the radius, in tool radii, and the most points of the patch that gives curvature. Over a
+// smaller patch the noise of a depth camera bends more than the scene.
 constexpr double kPatchRadius = 0.25;
 constexpr std::size_t kPatchPoints = 512;
-constexpr double kSameSide = 0.5;    // cosine to the patch's normal: the rest is another surface
+constexpr double kSameSide = 0.5;  // least cosine to the patch's normal; others are another surface
 constexpr double kMostCurved = 0.9;  // quantile over the patches
 
 double quantile(std::vector<double> values, double part) {
@@ -95,7 +94,7 @@ std::vector<std::uint32_t> points_near(const PreparedCloud& cloud, Vec3 place, d
 }  // namespace
 
 double SceneScale::smallest_radius() const {
-  constexpr double kCovers = 0.70710678118654752;  // spacings: radius that covers a square grid
+  constexpr double kCovers = 0.70710678118654752;  // in spacings: radius that covers a square grid
   constexpr double kDeviations = 2;
   return std::max(kCovers * spacing, kDeviations * noise);
 }

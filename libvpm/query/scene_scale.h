@@ -1,5 +1,4 @@
-// How small and how large the spheres of a tool should be for a scene: scene-scale.md derives the
-// rule.
+// Measures how large the spheres of a tool should be for a scene, as scene-scale.md derives.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +10,17 @@
 
 namespace vpm {
 
-// Of the surface within kNear reaches of `place` (world), or of the whole cloud where that holds
-// too few points or no place is given. `reach` is that of the tool, m. Same bits for any thread
-// count and order of the points. Throws Error(refused) for clouds of fewer than kFewestPoints
-// points.
+// Returns the scale of the surface within kNear tool radii of `place` (world), or of the whole
+// cloud where that holds too few points or no place is given. `reach` is the tool's radius, m. The
+// same bits for any thread count and order of points. Throws Error(refused) for fewer than
+// kFewestPoints points.
 inline constexpr double kNear = 1.5;
 inline constexpr std::size_t kFewestPoints = 32;
 SceneScale scene_scale(const PreparedCloud& cloud, double reach, std::optional<Vec3> place);
 
-// Index of the finest level without spheres below scale.smallest_radius(), or the coarsest level
-// where all have such; where the model is calibrated, of the coarsest one whose mean error is that
-// of the former within kNoBetter.
+// Returns the index of the finest level without spheres below scale.smallest_radius(), else the
+// coarsest. For a calibrated model, returns the coarsest level whose mean error is within kNoBetter
+// of that level's.
 inline constexpr double kNoBetter = 1.25;
 std::size_t level_for_scene(const ToolModel& tool, const SceneScale& scale);
 

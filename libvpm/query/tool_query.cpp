@@ -14,8 +14,8 @@ namespace {
   throw Error(ErrorKind::invalid_argument, what, {}, hint);
 }
 
-// Returns the pose to compute with. Pruning relies on exact rotations, and is not the same on all
-// devices: with a rounded rotation their bits would differ.
+// Returns the pose with an exact rotation. Pruning relies on exact rotations and differs between
+// devices, so a rounded one would change bits.
 Pose exact_pose(const Pose& pose) {
   if (!is_in_range(pose.translation))
     refuse("the translation is not finite, or further than 2^100 m from the origin", "pose");
@@ -26,7 +26,7 @@ Pose exact_pose(const Pose& pose) {
   return {exact_rotation(pose.rotation), pose.translation};
 }
 
-// Calls body(k) for each job, in parallel, since a device waits for it.
+// Calls body(k) for each job in parallel, since a device waits for it.
 template <class Body>
 void for_each_job(std::size_t count, const Body& body) {
   constexpr std::size_t kJobsPerTask = 4096;
@@ -67,7 +67,7 @@ ToolQuery::ToolQuery(const ToolModel& tool, const QueryOptions& options)
   }
 }
 
-// A frame always has a camera, and must not be prepared by the CPU for a device.
+// Checks that solid occluded space has a camera. A frame has one; the CPU must not prepare it here.
 void ToolQuery::check(const SceneView& scene) const {
   if (options_.occluded != OccludedSpace::solid || scene.frame() != nullptr) return;
   if (!scene.cloud().is_organised() && !scene.cloud().positions().empty())

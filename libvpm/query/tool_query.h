@@ -1,5 +1,5 @@
-// Queries of one tool at one level: checks what is asked, and leaves the measure to its backend.
-// vpm/query.h is what programs see.
+// Runs queries of one tool at one level: checks arguments and calls the measure of the chosen
+// backend. Programs see vpm/query.h.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,19 @@
 
 namespace vpm {
 
-// Refers to its model, which must outlive it and be one that validate() of tool_model.h accepts.
+// Refers to its model, which must outlive it and pass validate() of tool_model.h.
 class ToolQuery {
  public:
   // Throws what Query throws (vpm/query.h).
   ToolQuery(const ToolModel& tool, const QueryOptions& options);
 
-  // Returns the answer for one pose; contract as Query::run.
+  // Returns the answer for one pose. Has the contract of Query::run.
   Result run(const SceneView& scene, const Pose& pose);
 
-  // Stores the answers of many jobs, whose tools are places in `queries`; contract as Query::run.
-  // The queries must have been made with the same options, except level and stiffness, else throws
-  // Error(invalid_argument). A device puts up to 16 tools in one launch of the refined measure, one
-  // in one of the measure as printed.
+  // Stores the answers of many jobs, whose tools are indices into `queries`. Has the contract of
+  // Query::run. Throws Error(invalid_argument) unless the queries have the same options save level
+  // and stiffness. A device launches the refined measure for up to 16 tools at once, the printed
+  // one for each tool.
   static void run(std::span<ToolQuery* const> queries, const SceneView& scene,
                   std::span<const Job> jobs, std::span<Result> results);
 
@@ -48,7 +48,7 @@ class ToolQuery {
 
   const Level& level_;
   QueryOptions options_;
-  // One of these.
+  // Holds exactly one of these.
   std::unique_ptr<PaperMeasure> paper_;
   std::unique_ptr<RefinedMeasure> refined_;
   std::unique_ptr<DeviceMeasure> device_;

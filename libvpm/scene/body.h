@@ -12,28 +12,26 @@
 
 namespace vpm {
 
-// A body of the scene. Its members:
-//   BallClass classify_ball(center, radius)  classifies a ball: `side` is true of all of the ball,
-//   or
-//                                      `mixed`; `point` is where to begin a search in it, or
-//                                      kNoPoint
-//   SurfaceSample sample(x, point)       samples the surface for a place x: signed distance
-//   (negative
-//                                      inside), unit normal into free space, foot; unknown where
-//                                      nothing was measured
-//   Vec3 closest_normal(x, reading)    returns the unit direction of the nearest way out of a place
-//                                      behind the surface, where `reading` was sampled
-//   bool may_be_flat(look)             false if the surface in the ball is surely not one plane
-//   bool mean_plane(look, center, radius, tolerance, sample_all, plane)
-//                                      finds the mean plane of the surface across the ball
-//   bool is_flat(look, read, tolerance, plane)
-//                                      finds the plane at the ball's middle, which read() samples
-//   double fraction_inside(reading, x, radius)
-//                                      returns the part of a ball about x behind what was sampled
-//   around_ball(center, radius, point) returns what answers read() for places in the ball sooner
-// kTellsInside says that what lies behind the surface is inside as far as anybody knows, so that no
-// flood decides; kSearchesFoot, that closest_normal() searches, so that neighbours share its
-// result.
+// Describes a body of the scene. Its members:
+//   BallClass classify_ball(center, radius)
+//       classifies a ball: `side` holds for all of it, or is ambiguous; `point` is where a search
+//       in it begins, or kNoPoint
+//   SurfaceSample sample(x, point)
+//       samples the surface for a place x; unknown where nothing was measured
+//   Vec3 closest_normal(x, sample)
+//       returns the unit direction of the nearest way out of a place x behind the surface
+//   bool may_be_flat(in_ball)
+//       false if the surface in the ball is surely not one plane
+//   bool mean_plane(in_ball, center, radius, tolerance, sample_all, plane)
+//       finds the mean plane of the surface across the ball
+//   bool is_flat(in_ball, read, tolerance, plane)
+//       finds the plane at the ball's middle, which read() samples
+//   double fraction_inside(sample, x, radius)
+//       returns the part of a ball about x behind the sampled surface
+//   around_ball(center, radius, point)
+//       returns a sampler for places in the ball, faster than the body itself
+// kTellsInside is true if places behind the surface are inside as far as anybody knows, so that no
+// flood decides; kSearchesFoot, if closest_normal() searches, so that neighbours share its result.
 template <class B>
 concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSample on_surface,
                                 TangentPlane plane, const typename B::BallClass& in_ball,
@@ -52,8 +50,7 @@ concept MeasuredBody = requires(const B& body, Vec3 x, double length, SurfaceSam
   { B::kSearchesFoot } -> std::convertible_to<bool>;
 };
 
-// A body that has seen free space, pixel by pixel: what it saw to be free is free, whatever a mean
-// of the surface says.
+// True for a body that has seen free space, pixel by pixel, which no mean of the surface outvotes.
 template <class B>
 concept SeesFreeSpace = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
@@ -66,22 +63,21 @@ concept SeesFreeSpace = MeasuredBody<B> &&
   { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
 };
 
-// A body that bounds how far places of a ball behind it are from the surface.
+// True for a body that bounds how far places of a ball behind it are from the surface.
 template <class B>
 concept BoundsGap = MeasuredBody<B> &&
     requires(const B& body, Vec3 x, double length, const typename B::BallClass& in_ball) {
   { body.largest_gap(in_ball, x, length) } -> std::same_as<double>;
 };
 
-// A body, or a part of one about a ball, that may show an obstacle from several sides.
+// True for a body, or a part of one about a ball, that may show an obstacle from several sides.
 template <class B>
 concept HasOtherWalls = requires(const B& body, Vec3 x, double length, TangentPlane plane,
                                  OtherWall& wall) {
   { body.find_other_wall(x, plane, kNoPoint, length, length, wall) } -> std::same_as<bool>;
 };
 
-// Returns the side of a ball that was looked at; where its look does not decide, what was seen of
-// it alone may show it to be free.
+// Returns the side of a classified ball. Its own pixels may show an ambiguous one free.
 template <MeasuredBody B>
 VPM_HD Side side_of(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                     double radius) {
@@ -90,7 +86,7 @@ VPM_HD Side side_of(const B& body, const typename B::BallClass& in_ball, Vec3 ce
   else
     return in_ball.side;
 }
-// True if a look at a ball tells of the balls in it (is_free_part).
+// True if the class of a ball tells about the balls in it (is_free_part).
 template <MeasuredBody B>
 VPM_HD bool tells_of_parts(const B& body, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
@@ -98,7 +94,7 @@ VPM_HD bool tells_of_parts(const B& body, Vec3 center, double radius) {
   else
     return false;
 }
-// True if such a look shows a ball in the one that was looked at to be free.
+// True if the class of a ball shows a ball in it to be free.
 template <MeasuredBody B>
 VPM_HD bool is_free_part(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                          double radius) {
@@ -107,7 +103,7 @@ VPM_HD bool is_free_part(const B& body, const typename B::BallClass& in_ball, Ve
   else
     return false;
 }
-// False if the surface surely does not touch a ball in the one that was looked at.
+// False if the surface surely does not touch a ball inside a classified one.
 template <MeasuredBody B>
 VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                       double radius) {
@@ -116,8 +112,8 @@ VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 
   else
     return true;
 }
-// Returns the least inverse depth, 1/m, of the surface in a ball that was looked at; 0 of a body
-// that has seen no free space.
+// Returns the least inverse depth, 1/m, of the surface in a classified ball; 0 where no free space
+// was seen.
 template <MeasuredBody B>
 VPM_HD float least_inverse_depth(const typename B::BallClass& in_ball) {
   if constexpr (SeesFreeSpace<B>)
@@ -125,8 +121,8 @@ VPM_HD float least_inverse_depth(const typename B::BallClass& in_ball) {
   else
     return 0;
 }
-// True if a ball may have been seen to be free though the plane of the surface about it says no.
-// `least` is least_inverse_depth() of a ball that holds it.
+// True if a ball may have been seen free although it lies behind the mean plane of the surface.
+// `least` is the least_inverse_depth() of a ball that holds it.
 template <MeasuredBody B>
 VPM_HD bool may_be_free(const B& body, float least, Vec3 center, double radius) {
   if constexpr (SeesFreeSpace<B>)
@@ -134,7 +130,7 @@ VPM_HD bool may_be_free(const B& body, float least, Vec3 center, double radius) 
   else
     return false;
 }
-// False if may_be_free() says so of every ball in this one, which lies in one that was looked at.
+// False if may_be_free() is false for every ball in this one, which lies in a classified ball.
 template <MeasuredBody B>
 VPM_HD bool may_hold_free(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                           double radius) {
@@ -143,8 +139,8 @@ VPM_HD bool may_hold_free(const B& body, const typename B::BallClass& in_ball, V
   else
     return false;
 }
-// Returns a bound of the distance, m, from any place of a ball that was looked at to the foot of
-// its surface sample; without end where the body knows none.
+// Returns a bound of the distance, m, from any place of a classified ball to the foot of its
+// surface sample; infinite where the body knows none.
 template <MeasuredBody B>
 VPM_HD double gap_bound(const B& body, const typename B::BallClass& in_ball, Vec3 center,
                         double radius) {
@@ -153,8 +149,8 @@ VPM_HD double gap_bound(const B& body, const typename B::BallClass& in_ball, Vec
   else
     return HUGE_VAL;
 }
-// True if a part of a ball about x is nearer to another wall than its middle, which is nearest to
-// `own`; walls whose normals have a cosine above `unlike` are one. `other` is the wall.
+// True if a part of a ball about x is nearer to another wall than to `own`, which its middle is
+// nearest to. Walls whose normals have a cosine above `unlike` are one. `other` receives the wall.
 template <class B>
 VPM_HD bool finds_other_wall(const B& body, Vec3 x, const TangentPlane& own, std::uint32_t point,
                              double radius, double unlike, OtherWall& other) {

@@ -66,7 +66,7 @@ DepthFrames::DepthFrames(const DepthFrameOptions& options) : options_(options) {
   next();
 }
 
-// One that nobody holds.
+// Returns a slot that nobody holds; makes one if there is none.
 FrameSlot& DepthFrames::next() {
   for (std::size_t k = 0; k < slots_.size() && !next_; ++k) {
     if (slots_[k].use_count() == 1) next_ = slots_[k];
@@ -76,7 +76,7 @@ FrameSlot& DepthFrames::next() {
                                       : std::make_shared<HostSlot>(options_);
     slots_.push_back(next_);
   }
-  // What other threads did with the frame before they let it go comes before what is written now.
+  // Acquire: other threads' last reads of the frame happen before its memory is overwritten.
   std::atomic_thread_fence(std::memory_order_acquire);
   next_->wait();
   return *next_;

@@ -1,5 +1,5 @@
-// Depth images as they come from a camera, made ready for queries: on a device without a way back
-// over the host's memory.
+// Prepares depth images for queries as they come from a camera; on a device without a way back over
+// the host's memory.
 //
 //   DepthFrames frames({intrinsics, 640, 480, 1000.0, {}, device_from_text("auto")});
 //   camera.read(frames.counts());                               // 30 times a second
@@ -7,13 +7,13 @@
 //   const Result r = query.run(frame, pose);                    // a thousand times a second
 //
 // A query gives the bits that it gives on PreparedCloud(make_cloud(image, camera, normals),
-// points), whatever the device.
+// points), on any device.
 //
-// Frames are immutable and may be held, copied, and queried by several threads; memory of one that
-// nobody holds is used again. So while the loop queries one frame, the next can be filled and
-// prepared. DepthFrames itself belongs to one thread at a time, and frames may outlive it. On a
-// device nothing is allocated once there is memory for as many frames as are held at a time, and
-// the one to come; a CPU takes some for each frame while it prepares it.
+// Frames are immutable and may be held, copied, and queried by several threads; the memory of one
+// that nobody holds is used again, so the next image can be prepared while one is queried.
+// DepthFrames belongs to one thread at a time, and frames may outlive it. On a device nothing is
+// allocated once there is memory for the frames held at a time and one more; a CPU allocates while
+// it prepares a frame.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ struct DepthFrameOptions {
   std::uint32_t width = 0, height = 0;     // pixels
   std::optional<double> counts_per_metre;  // images are 16-bit counts; otherwise metres in float
   NormalOptions normals;
-  Device device;  // that of the queries; others than it copy what the CPU prepares
+  Device device;  // for queries on other devices the CPU prepares frames
   Denoising points = Denoising::on;
 };
 
@@ -43,7 +43,7 @@ class DepthFrame {
   // Returns the number of pixels that have a normal. Waits for the preparation.
   std::size_t points() const;
 
-  // The frame as the CPU prepares it, when first asked for. Throws what PreparedCloud throws.
+  // Returns the frame as the CPU prepares it, on the first call. Throws what PreparedCloud throws.
   const PreparedCloud& cloud() const;
 
   const FrameSlot& slot() const { return *slot_; }
@@ -60,14 +60,14 @@ class DepthFrames {
   // or counts per metre that are not positive; Error(unavailable) where the device is not there.
   explicit DepthFrames(const DepthFrameOptions& options);
 
-  // Where the next image belongs, row by row: one of them, as the options say. Pinned memory, so
-  // that the device copies at full speed. To be written before prepare(), and not after it.
+  // Return the pixels of the next image, row by row, in pinned memory: counts() if the options give
+  // counts per metre, else metres(). Write them before prepare(), and not after it.
   std::span<std::uint16_t> counts();
   std::span<float> metres();
 
-  // Returns the frame of that image. On a device this only begins; queries wait there for its end.
-  // What PreparedCloud would refuse (of the image, its size or the pose, which maps the camera's
-  // coordinates to the world's) is refused here or by the first query.
+  // Returns the frame of that image. `camera_to_world` maps the camera's coordinates to the
+  // world's. On a device this only begins the preparation, and queries wait for its end there. An
+  // image or a pose that PreparedCloud refuses is refused here or by the first query.
   DepthFrame prepare(const Pose& camera_to_world);
 
  private:

@@ -13,7 +13,7 @@
 namespace vpm {
 namespace {
 
-// Normals are of unit length but for rounding; validate() allows more than this of the square.
+// Bounds how far rounding moves squared lengths of unit normals; validate() allows more.
 constexpr double kUnitTolerance = 1.9e-3;
 
 bool is_of_size(const DepthImage& depth, const Camera& camera) {
@@ -21,7 +21,7 @@ bool is_of_size(const DepthImage& depth, const Camera& camera) {
          depth.depth.size() == std::size_t{depth.width} * depth.height;
 }
 
-// A row of the frame: what is read, and where the points go, each at its pixel.
+// Describes a row of the frame: its inputs, and where each pixel's point goes.
 struct RowOfPoints {
   int width;
   double ray_y;
@@ -30,7 +30,7 @@ struct RowOfPoints {
   const NormalRow& seen;
   const double* ray_x;
   Vec3f *positions, *normals;
-  float *back_x, *back_y, *back_z;  // of the pixels, in the camera's axes
+  float *back_x, *back_y, *back_z;  // normals in camera axes
   std::uint8_t* exists;
 };
 
@@ -81,7 +81,7 @@ RowFacts place_row(const RowOfPoints& row) {
   return facts;
 }
 
-// Takes out what does not exist, and says for each pixel which point is the first from there on.
+// Removes pixels without a point, and writes for each pixel the first point from there on.
 void compact_row(const std::uint8_t* exists, int width, std::uint32_t first, Vec3f* positions,
                  Vec3f* normals, std::uint32_t* begin) {
   std::uint32_t k = 0;
@@ -107,14 +107,14 @@ void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
     if (!is_of_size(depth, camera) || !is_usual(camera) ||
         !is_in_range(camera.to_world.translation) || !prepare_rows(depth, camera, cloud))
       cloud = PreparedCloud(make_cloud(depth, camera, options_),
-                            points_);  // tells what is wrong, if anything
+                            points_);  // may throw
   } catch (...) {
     cloud = PreparedCloud{Cloud{}};
     throw;
   }
 }
 
-// False where a normal is not sound.
+// Returns false if a normal is not sound.
 bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
                                     PreparedCloud& cloud) {
   validate(camera, "the cloud");
@@ -122,7 +122,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   const Intrinsics& k = camera.intrinsics;
   const Rotation to_camera =
       relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
-  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // forgets all that points need
+  if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // clears the data of disks
   cloud.serial_ = PreparedCloud::next_serial();
   cloud.origin_ = camera.to_world.translation;
   cloud.camera_ = camera;
@@ -168,7 +168,7 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   return is_sound;
 }
 
-// The points of a row lie at its first pixel; now they follow those of the row above.
+// Moves each row's points from its first pixel to behind those of the row above.
 void FramePreparation::close_ranks(std::size_t width, PreparedCloud& cloud) const {
   std::uint32_t first = 0;
   for (std::size_t v = 0; v < row_points_.size(); ++v) {

@@ -1,7 +1,6 @@
-// From a depth image to a prepared cloud without the cloud between them: what PreparedCloud(
-// make_cloud(...), points) gives, bit for bit, several times as fast. A frame's rows go through the
-// normals to the points that queries read while they are in the cache, pixels are in canonical
-// order as they come, and memory is that of the frame before.
+// Prepares a cloud from a depth image with the bits of PreparedCloud(make_cloud(...), points),
+// several times as fast: rows go through all steps while they are in the cache, pixels need no
+// sorting, and the memory of the last frame is used again.
 #pragma once
 
 #include "libvpm/cloud/normal_rows.h"
@@ -15,9 +14,8 @@ class FramePreparation {
   // Throws Error(invalid_argument) for options out of range.
   explicit FramePreparation(const NormalOptions& options, Denoising points = Denoising::on);
 
-  // `cloud` becomes that of the frame and takes no new memory if it held a frame of the same size;
-  // nobody may ask it meanwhile. Throws what make_cloud() and PreparedCloud() throw; then `cloud`
-  // is empty.
+  // Makes `cloud` that of the frame, without new memory if it held a frame of the same size; nobody
+  // may use it meanwhile. Throws as make_cloud() and PreparedCloud() do; `cloud` is empty then.
   void prepare(const DepthImage& depth, const Camera& camera, PreparedCloud& cloud);
 
  private:
@@ -28,8 +26,8 @@ class FramePreparation {
   Denoising points_;
   NormalImages images_;
   ImageSteps steps_;
-  std::vector<double> rays_;               // x / z of each column
-  std::vector<std::uint32_t> row_points_;  // of each row
+  std::vector<double> rays_;               // x / z for each column
+  std::vector<std::uint32_t> row_points_;  // number of points in each row
 };
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// The memory of one depth frame: the image as it came, and what was made of it.
+// Holds the memory of one depth frame: the image, and what is prepared from it.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class FrameSlot {
   FrameSlot(const FrameSlot&) = delete;
   FrameSlot& operator=(const FrameSlot&) = delete;
 
-  // Room for the image, as counts or as metres.
+  // Returns the memory for the image, as counts or metres.
   virtual std::byte* image() = 0;
   const std::byte* image() const { return const_cast<FrameSlot*>(this)->image(); }
   std::size_t image_bytes() const {
@@ -28,19 +28,19 @@ class FrameSlot {
   }
   std::size_t pixels() const { return std::size_t{options_.width} * options_.height; }
 
-  // Takes the image for one seen from here.
+  // Prepares the image in memory, seen from this pose.
   void prepare(const Pose& camera_to_world) {
     camera_ = {options_.intrinsics, options_.width, options_.height, camera_to_world};
     has_cloud_ = false;
     begin();
   }
-  // Until the image may be written anew.
+  // Waits until the image may be overwritten.
   virtual void wait() const {}
   virtual std::size_t points() const { return cloud().positions().size(); }
 
   const DepthFrameOptions& options() const { return options_; }
   const Camera& camera() const { return camera_; }
-  // By the CPU, when first asked for.
+  // Returns the cloud as the CPU prepares it, on the first call.
   const PreparedCloud& cloud() const;
 
  protected:
@@ -55,7 +55,7 @@ class FrameSlot {
   mutable bool has_cloud_ = false;
 };
 
-// On the device of the options, which is a CUDA one. Throws Error(unavailable).
+// Makes a slot on the CUDA device of the options. Throws Error(unavailable).
 std::shared_ptr<FrameSlot> make_device_slot(const DepthFrameOptions& options);
 
 }  // namespace vpm

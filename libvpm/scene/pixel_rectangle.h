@@ -1,4 +1,4 @@
-// The pixels in which a camera sees a ball. One definition for host and device.
+// Computes the pixels in which a camera sees a ball, for host and device.
 #pragma once
 
 #include <cmath>
@@ -18,11 +18,12 @@ VPM_HD constexpr bool is_empty(const PixelRectangle& r) {
   return r.u0 > r.u1 || r.v0 > r.v1;
 }
 
-// A point off its pixel by more than this would be missed by the search over pixels; float32
-// rounding and recovered intrinsics stay far below.
+// Bounds the offset of a point from its pixel, in pixels, for which searches over pixels find it;
+// float32 rounding and recovered intrinsics stay far below.
 inline constexpr double kPixelTolerance = 0.5;
 
-// Along one axis: the ball spans [low, high] sideways, and [nearest, farthest] in depth (both > 0).
+// Computes the pixels [first, last] along one axis of a ball that spans [low, high] sideways and
+// [nearest, farthest] in depth (both > 0).
 VPM_HD inline void pixel_range(double low, double high, double nearest, double farthest, double f,
                                double c, std::int32_t size, std::int32_t& first,
                                std::int32_t& last) {
@@ -34,7 +35,7 @@ VPM_HD inline void pixel_range(double low, double high, double nearest, double f
       static_cast<std::int32_t>(highest > -1 ? (highest < size - 1 ? highest : size - 1.0) : -1.0);
 }
 
-// Camera coordinates. Holds every pixel whose point may lie in the ball.
+// Returns a rectangle with every pixel whose point may lie in the ball. Camera coordinates.
 VPM_HD inline PixelRectangle rectangle_of_ball(const Intrinsics& k, std::int32_t width,
                                                std::int32_t height, Vec3 center, double radius) {
   const double nearest = center.z - radius, farthest = center.z + radius;

@@ -17,7 +17,7 @@
 namespace vpm {
 namespace {
 
-// -0 and 0 are one place: they must sort and merge as one.
+// Returns 0 for -0, so that both sort and merge as one place.
 float positive_zero(float x) {
   return x == 0 ? 0.0f : x;
 }
@@ -29,7 +29,7 @@ auto order_key(const Cloud& cloud, std::uint32_t i) {
                          cloud.radii[i]);
 }
 
-// What validate() leaves to those who compute with a cloud.
+// Checks the limits that validate() leaves to the code that computes with a cloud.
 void check_extent(const Cloud& cloud) {
   if (!is_in_range(cloud.origin) ||
       (cloud.sensor && !is_in_range(cloud.sensor->camera.to_world.translation)))
@@ -152,7 +152,7 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud, SeenImage& seen) {
 }
 
 std::vector<float> PreparedCloud::order_in_space(const Cloud& cloud) {
-  struct Placed {  // side by side, so that the sort does not fetch places from all over the cloud
+  struct Placed {  // side by side, for the cache
     Vec3f at;
     std::uint32_t index;
   };

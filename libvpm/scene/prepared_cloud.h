@@ -1,4 +1,4 @@
-// A cloud made ready for queries: everything that depends on the frame alone is done once, here.
+// Prepares a cloud for queries: all that depends on the frame alone is computed once, here.
 //
 // Points are put into a canonical order and equal points are merged, so that the order of the
 // points, or giving each twice, changes no result. Immutable; safe to share between threads.
@@ -20,19 +20,17 @@ namespace vpm {
 
 class PreparedCloud {
  public:
-  // The most points a cloud may have: what the fixed-point sums of a sphere can count (see
-  // measure_paper.h).
+  // Limits the number of points that the fixed-point sums of a sphere can count (paper_contact.h).
   static constexpr std::size_t kMaxPoints = std::size_t{1} << 24;
 
-  // Throws Error(refused): more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536 a
-  // side, an origin, a camera or a point beyond kLargestLength, or what validate(cloud)
-  // refuses. Depths outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured. From
-  // a depth image, FramePreparation (frame_preparation.h) is quicker. To settle 300 000 points
-  // takes one core a millisecond where a camera saw them, otherwise a second or two (README.md).
+  // Throws Error(refused) for more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536
+  // a side, an origin, a camera or a point beyond kLargestLength, or what validate(cloud) refuses.
+  // Depths outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured.
+  // FramePreparation is faster for depth images. Denoising 300 000 points takes a core a
+  // millisecond for an image, otherwise a second or two.
   explicit PreparedCloud(const Cloud& cloud, Denoising points = Denoising::on);
 
-  // The same for copies, different for any two clouds of a process: what is known of a cloud
-  // elsewhere (on a device) can be told by it.
+  // Returns a number shared by copies of a cloud only, to recognise copies on a device.
   std::uint64_t serial() const { return serial_; }
 
   Vec3 origin() const { return origin_; }
@@ -41,24 +39,23 @@ class PreparedCloud {
   }  // about origin(), canonical order
   const std::vector<Vec3f>& normals() const { return normals_; }
 
-  // The camera's surface, where there is one; in the frame of camera_to_world().
+  // Returns the camera's surface, in the frame of camera_to_world(). Requires is_organised().
   bool is_organised() const { return camera_.has_value(); }
   const Pose& camera_to_world() const { return camera_->to_world; }
   DepthSurface depth_surface() const { return image_.surface(camera_->intrinsics); }
-  // Of organised clouds: the first point at or after each pixel; pixels + 1.
+  // Returns the first point at or after each pixel, pixels + 1 entries. Requires is_organised().
   const std::vector<std::uint32_t>& pixel_begin() const { return pixel_begin_; }
-  PointTree point_tree() const;                          // of the positions; and
-  DiskSurface disk_surface() const;                      // of clouds that are not organised
-  const DenoisedDisks& disks() const { return disks_; }  // the same; in the order of positions()
+  PointTree point_tree() const;                          // tree of the positions
+  DiskSurface disk_surface() const;                      // requires !is_organised()
+  const DenoisedDisks& disks() const { return disks_; }  // in the order of positions()
 
-  // Calls visit(begin, end) for ranges of points that hold all that lie in the ball (about
-  // origin()), and others.
+  // Calls visit(begin, end) for ranges that hold all points in the ball, and others.
   template <class Visit>
   void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const;
-  // Of organised clouds: for the points of these pixels.
+  // Calls visit(begin, end) for the points of these pixels. Requires is_organised().
   template <class Visit>
   void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
-  // Bound of their number.
+  // Returns a bound of the number of ranges in a ball.
   std::size_t most_ranges() const {
     return is_organised() ? camera_->height : leaves_for(positions_.size());
   }
@@ -67,7 +64,7 @@ class PreparedCloud {
   friend class FramePreparation;
 
   void take_image(const Cloud& cloud, Denoising points);
-  // Notes the pixels' normals in `seen`, which has the image's size.
+  // Writes the pixels' normals to `seen`, which has the image's size.
   void order_by_pixel(const Cloud& cloud, SeenImage& seen);
   std::vector<float> order_in_space(const Cloud& cloud);  // returns the sampling radii
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
@@ -84,11 +81,11 @@ class PreparedCloud {
   std::vector<std::uint32_t> pixel_begin_;
   DenoisedImage image_;
 
-  std::vector<BoxQuad> boxes_;        // of the positions
-  std::vector<float> largest_radii_;  // of the disks in each node of their tree
-  std::vector<BoxQuad> foot_boxes_;   // of the disks' feet; none where those are the positions
+  std::vector<BoxQuad> boxes_;        // bounds of the positions
+  std::vector<float> largest_radii_;  // largest radius of a disk in each tree node
+  std::vector<BoxQuad> foot_boxes_;   // bounds of the disks' feet, unless those are positions_
   DenoisedDisks disks_;
-  std::vector<ConeQuad> cones_;  // of the disks
+  std::vector<ConeQuad> cones_;  // cones of the disks' normals
 };
 
 // True if no point of this camera can be refused for where it lies: float positions of usable

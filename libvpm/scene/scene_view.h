@@ -1,4 +1,4 @@
-// Scene as queries take it: one body, which is a prepared cloud or a frame of a depth camera.
+// Refers to a scene as queries take it: one body, a prepared cloud or a frame of a depth camera.
 #pragma once
 
 #include "libvpm/scene/depth_frames.h"
@@ -6,7 +6,7 @@
 
 namespace vpm {
 
-// Points to one of both, which must outlive it.
+// Points to a cloud or a frame, which must outlive it.
 class SceneView {
  public:
   SceneView(const PreparedCloud& cloud) : cloud_(&cloud) {}

@@ -1,6 +1,5 @@
-// The scanned surface as a query asks it. Two kinds of cloud answer: DepthSurface (a camera's
-// image, by projection) and DiskSurface (points without a camera, by the nearest disk). README.md
-// has the reasons.
+// Defines what queries learn of a scanned surface. DepthSurface (a camera's image, by projection)
+// and DiskSurface (points without a camera, by the nearest disk) answer; README.md has the reasons.
 #pragma once
 
 #include <cstdint>
@@ -9,27 +8,26 @@
 
 namespace vpm {
 
-// Where a ball lies, decided conservatively: `ambiguous` may be said of any ball, the others only
-// where they are true.
+// Tells the side of the surface on which a ball lies. Conservative: any ball may be `ambiguous`,
+// the others hold for all of it.
 enum class Side : std::uint8_t {
-  free,        // seen free space, or never seen: counts for nothing
-  behind,      // wholly behind the seen surface
+  free,        // in seen free space, or never seen: counts for nothing
+  behind,      // wholly behind the surface
   no_surface,  // no surface passes through it; a sample at its centre holds for all of it
-  ambiguous,   // look closer
+  ambiguous,   // undecided
 };
 
-// A point of the cloud by its index, for surfaces that have such.
+// Stands for no point.
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
-// The surface as seen from one place x, or from as many as a Real has lanes.
+// Holds the surface sampled for one place x, or for one per lane of Real.
 template <class Real>
 struct SurfaceSampleOf {
   MaskOf<Real> known{};    // false: nothing was measured in this direction
   Real distance{};         // signed distance to the surface along its normal; negative inside
   PlaceOf<Real> normal{};  // unit, into free space
-  PlaceOf<Real> foot{};    // the surface point that was read
-  IndexOf<Real> point =
-      ~IndexOf<Real>{};  // the same, by index (or kNoPoint): a good place to begin the next search
+  PlaceOf<Real> foot{};    // sampled surface point
+  IndexOf<Real> point = ~IndexOf<Real>{};  // pixel or disk of the foot, or kNoPoint; a search hint
 };
 using SurfaceSample = SurfaceSampleOf<double>;
 
@@ -38,8 +36,8 @@ VPM_HD inline bool is_behind_surface(const SurfaceSample& on_surface) {
   return on_surface.known && on_surface.distance < 0;
 }
 
-// Reads a surface at several places, one after the other, as long as `take` says to go on. Returns
-// true if it has taken all.
+// Samples a surface at several places in turn, as long as `take` returns true. True if all were
+// taken.
 struct SampleInTurn {
   // Returns the sample at the middle of a ball, about which the other places lie.
   template <class Surface>
@@ -55,7 +53,7 @@ struct SampleInTurn {
   }
 };
 
-// The surface in a ball, where it is flat: a plane.
+// Holds the plane of the surface in a ball.
 template <class Real>
 struct TangentPlaneOf {
   PlaceOf<Real> normal;  // unit, into free space
@@ -68,7 +66,7 @@ struct TangentPlaneOf {
 using TangentPlane = TangentPlaneOf<double>;
 
 // Returns the direction from a place x behind both of two planes to the nearest place of the solid
-// that lies behind either: that of one of the planes, or to where they meet.
+// behind either: a plane's normal, or the direction to the line in which they meet.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline PlaceOf<Real> normal_below_groove(
     const PlaceOf<Real>& x, const TangentPlaneOf<Real>& one, const TangentPlaneOf<Real>& other) {
@@ -81,20 +79,20 @@ template <class Real>
                 normalized_or_zero(along_one * one.normal + along_other * other.normal));
 }
 
-// A wall to which a part of a body is nearer than to the wall that its middle is nearest to. That
-// part is behind the border, which is as far from both.
+// Describes a wall to which a part of a body is nearer than to the wall nearest to its middle. That
+// part lies behind the border, where both walls are equally far.
 struct OtherWall {
   Vec3 normal;
   TangentPlane border;
 };
 
-// Bodies smaller than this part of the tool's reach are pushed to one wall only.
+// Bodies smaller than this part of the tool's radius are pushed to one wall only.
 inline constexpr double kLeastDivided = 0.012;
-// Two walls, by the cosine between them: what turns less is taken for the turning of one surface,
-// whose direction in the middle is that of the mean.
+// Two surfaces are two walls if the cosine between their normals is below this; otherwise they are
+// one curved surface, whose mean direction is that in the middle.
 inline constexpr double kTwoWalls = 0.9;
-// Where the surface is one plane, all that is behind it is pushed along its normal. So nothing in
-// the ball may be nearest to a place that faces elsewhere by more than this.
+// Bounds the cosine that normals about a planar body must have with the plane's, since all of it is
+// pushed along the plane's normal.
 inline constexpr double kOneDirection = 0.95;
 
 }  // namespace vpm

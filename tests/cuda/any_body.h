@@ -1,4 +1,4 @@
-// The refined measure on a device, for bodies of the tests.
+// Runs the refined measure on a device for bodies of the tests.
 #pragma once
 
 #include "libvpm/include/vpm/query_types.h"

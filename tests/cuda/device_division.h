@@ -1,4 +1,4 @@
-// Quotients and square roots (libvpm/core/division.h) on a device.
+// Computes quotients and square roots (libvpm/core/division.h) on a device.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,12 @@ struct Operands {
 };
 template <class Real>
 struct Divided {
-  Real quotient = 0;     // of a and b
-  Real square_root = 0;  // of |a|
-  Real reciprocal = 0;   // of b
+  Real quotient = 0;     // a / b
+  Real square_root = 0;  // square root of |a|
+  Real reciprocal = 0;   // 1 / b
 };
 
-// float and double.
+// Returns the results for each pair of operands; Real is float or double.
 template <class Real>
 std::vector<Divided<Real>> divide_on_device(const std::vector<Operands<Real>>& operands);
 

@@ -53,8 +53,9 @@ TEST(SameDivision, OfDoubles) {
   expect_same_division(operands_of_all_kinds());
 }
 
-// Every fraction of an even and an odd exponent, which is all that reciprocals and square roots
-// depend on, far from the ends of the range and near them; and quotients by some other number.
+// Tries every fraction with an even and an odd exponent, far from the ends of the range and near
+// them, since reciprocals and square roots depend on nothing else; and quotients by some other
+// number.
 TEST(SameDivision, OfFloats) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   constexpr std::uint32_t kFractions = 1U << 23, kOne = 127 * kFractions;

@@ -1,4 +1,4 @@
-// How much a test of the device tries: an emulated one takes a thousand times as long.
+// Limits what a test of the device tries, since an emulated device takes a thousand times as long.
 #pragma once
 
 namespace vpm::testing {
@@ -14,7 +14,7 @@ constexpr int effort(int count) {
   constexpr int kPart = 40;
   return !kIsEmulated ? count : count / kPart < 2 ? 2 : count / kPart;
 }
-// Returns how many of the tried cases must be of some kind: none where few are tried.
+// Returns how many of the tried cases must be of some kind: none if few are tried.
 constexpr unsigned expected_of(unsigned count) {
   return kIsEmulated ? 0 : count;
 }

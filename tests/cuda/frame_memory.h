@@ -1,4 +1,4 @@
-// What queries read of a depth frame, fetched from the device.
+// Fetches the data of a depth frame from the device.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 namespace vpm::testing {
 
 struct FrameMemory {
-  std::vector<Vec3f> positions, normals, pixel_normals;  // by pixel; positions NaN without a point
+  std::vector<Vec3f> positions, normals, pixel_normals;  // per pixel; positions NaN without a point
   std::vector<float> measured;
   std::vector<std::vector<InverseDepthRange>> tiles;
 };
 
-// Nothing where the frame's cloud is not made on the device.
+// Returns nothing if the frame's cloud is not made on the device.
 std::optional<FrameMemory> memory_on_device(const DepthFrame& frame);
-// What it should hold.
+// Returns the data that the frame should have.
 FrameMemory memory_of(const PreparedCloud& cloud);
 
-// The bytes are the same, but for those of NaN.
+// True if all bytes are the same, NaNs being equal.
 bool same_bits(const FrameMemory& a, const FrameMemory& b);
 
 }  // namespace vpm::testing

@@ -1,5 +1,4 @@
-// The algorithm as printed, on the device, finds what the measure as printed finds on the CPU: the
-// same volume, counts and states.
+// The algorithm as printed gives the volume, counts and states of the CPU's printed measure.
 
 #include "tools/bench/paper_baseline.h"
 
@@ -13,13 +12,13 @@
 namespace vpm {
 namespace {
 
-// Deeper and deeper, turned by no simple angle.
+// Returns poses deeper and deeper, turned by no simple angle.
 Pose pose_of(int k, int count) {
   const double depth = static_cast<double>(k) / count;
   return {testing::generic_rotation(), {0.02 * depth, -0.03 * depth, 0.85 + 0.25 * depth}};
 }
 
-// How many poses had spheres of each kind.
+// Number of poses with spheres of each kind.
 struct Met {
   int boundary = 0, inside = 0;
 };
@@ -77,7 +76,7 @@ TEST_F(PaperBaseline, FindsTheSameByTraversalsThatTheDeviceLaunches) {
   expect_what_the_measure_finds(bench::Traversals::launched);
 }
 
-// Small enough for compute-sanitizer.
+// Is small enough for compute-sanitizer.
 TEST_F(PaperBaseline, SmallQuery) {
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.2, 4, 1);

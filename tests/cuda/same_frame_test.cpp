@@ -1,5 +1,4 @@
-// A depth image that the device makes ready has the bits of one that the CPU prepares, and so do
-// queries on it.
+// Depth images prepared by the device, and queries on them, have the bits of the CPU's.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +32,7 @@ float uniform(std::mt19937& random, float low, float high) {
   return low + (high - low) * static_cast<float>(random() >> 8) * 0x1p-24F;
 }
 
-// Tilted, with holes and noise.
+// Returns a tilted wall with holes and noise.
 Depths wall(float hole_cell, float noise) {
   return [=](std::uint32_t u, std::uint32_t v, std::mt19937& random) {
     const float z = 1.0F / (1.0F + 1e-3F * static_cast<float>(u) - 5e-4F * static_cast<float>(v));
@@ -173,8 +172,8 @@ TEST_P(SameFrame, OfCounts) {
   }
 }
 
-// Depths over the whole range of lengths, without a gate: sums overflow, so some normals may be no
-// unit vectors. What the CPU refuses is refused, what it takes gives the same.
+// Depths span the whole range of lengths without a gate, so sums overflow and normals may not be of
+// unit length. Both refuse the same images, and the others have the same bits.
 TEST_P(SameFrame, OrTheSameRefusal) {
   const auto wild = [](auto, auto, auto& random) {
     return std::ldexp(1.0F, static_cast<int>(random() % 150) - 75);
@@ -220,7 +219,7 @@ Pose pose_of(int k) {
   return {testing::generic_rotation(), {0.02 * std::sin(k), 0.03 * std::cos(k), 0.8 + 0.01 * k}};
 }
 
-// The next frame is on its way while queries, of several threads, look at the one before.
+// Queries of several threads use one frame while the next is prepared.
 TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Camera camera = synthetic::default_camera();
@@ -254,7 +253,7 @@ TEST(FramesOnDevice, MayBeQueriedWhileTheNextIsPrepared) {
   EXPECT_GE(boundary, testing::expected_of(100));
 }
 
-// Images come by turns in the same memory, by a kernel that stays as by one that is launched.
+// Prepares images in turn in the same memory.
 TEST_P(SameFrame, EachImageAnew) {
   std::vector<DepthImage> images;
   for (int k = 0; k < 3; ++k) {
@@ -280,7 +279,7 @@ TEST_P(SameFrame, EachImageAnew) {
   EXPECT_NE(expected[0].volume, expected[1].volume);
 }
 
-// The memory of a frame of which all is known but the surface, which is still being made.
+// Reuses a frame's memory while its surface is still being made.
 TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   const DepthImage image = image_of(wall(0.05F, 0.002F), 1024, 1024);
   const DepthFrameOptions options = options_of(image, {GetParam()});
@@ -302,7 +301,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   }
 }
 
-// Small enough for compute-sanitizer.
+// Is small enough for compute-sanitizer.
 TEST(FramesOnDevice, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   for (const NormalMethod method : {NormalMethod::inverse_depth, NormalMethod::pca}) {

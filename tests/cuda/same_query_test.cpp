@@ -1,5 +1,5 @@
-// Queries on the device give the bits of queries on the CPU: every field, every state, one by one
-// and in batches.
+// Queries on the device give the bits of queries on the CPU: all fields and states, also in
+// batches.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace {
 
 using testing::expect_equal;
 
-// Golden ratio and friends: places that never repeat.
+// Returns poses that never repeat, by the golden ratio and similar steps.
 Pose pose_of(int k) {
   const auto fraction = [&](double step) { return k * step - std::floor(k * step); };
   const Vec3 axis =
@@ -40,7 +40,7 @@ std::vector<Pose> poses_of(int count) {
   return poses;
 }
 
-// Where there are more poses than results, they begin again.
+// Compares a batch with results that repeat for further poses.
 void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
   std::vector<Result> batch(poses.size());
@@ -51,7 +51,7 @@ void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::
   }
 }
 
-using SceneCase = std::tuple<const char*, bool, Measure>;  // with camera
+using SceneCase = std::tuple<const char*, bool, Measure>;  // scene, with camera, measure
 
 std::string name_of(const ::testing::TestParamInfo<SceneCase>& tested) {
   const auto& [scene, camera, measure] = tested.param;
@@ -97,7 +97,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
       if (measure == Measure::refined) uncounted.points.reset();
       expect_equal(uncounted, without_points.run(cloud, poses.back()));
     }
-    // More than a device takes at a time, so that memory is used again.
+    // Asks for more than a device takes at once, so that memory is used again.
     for (int k = kPoses; k < testing::effort(16 * 48); ++k) poses.push_back(poses[k % kPoses]);
     expect_same_batch(on_device, cloud, poses, expected);
   }
@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SameQuery,
                                             ::testing::Values(Measure::refined, Measure::paper)),
                          name_of);
 
-// At 3 m, where single pixels show past a small share that lies behind the plane of all of them.
+// Looks from 3 m, where single pixels show past a small cell that lies behind their mean plane.
 TEST(NoisyImageOnDevice, GivesTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   synthetic::Scene scene = synthetic::make_scene("wall");
@@ -141,8 +141,7 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   }
 }
 
-// Images and points by turns: what one way through the kernels notes must not be there for the
-// other.
+// Alternates images and points: notes of one path through the kernels must not reach the other.
 TEST(ImagesAndPoints, GiveTheSameByTurns) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
@@ -161,7 +160,7 @@ TEST(ImagesAndPoints, GiveTheSameByTurns) {
   }
 }
 
-// Its middle sphere is joined to all others, as a large sphere of a packing is to small ones.
+// Returns a lattice whose middle sphere has all others as neighbours, as large spheres do.
 ToolModel lattice_with_hub(std::uint32_t n) {
   ToolModel tool = testing::lattice_cube(0.3, n, 1);
   const std::uint32_t count = n * n * n, hub = count / 2;
@@ -180,7 +179,7 @@ ToolModel lattice_with_hub(std::uint32_t n) {
   return tool;
 }
 
-// Through the wall, so that the hub is cut by it and reached by the flood.
+// Moves the tool through the wall, so that the hub is cut and reached by the flood.
 void expect_same_at_hub(std::uint32_t n) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   constexpr int kPoses = testing::kIsEmulated ? 4 : 16;
@@ -209,7 +208,7 @@ void expect_same_at_hub(std::uint32_t n) {
   EXPECT_GT(reached, 0);
 }
 
-// The hash of tests/query/replay.hash is that of the CPU's.
+// Expects the bytes of the CPU's replay.
 TEST(ReplayOnDevice, GivesTheSameBytes) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   EXPECT_TRUE(testing::replay() == testing::replay({Device::Kind::cuda, 0}));
@@ -223,8 +222,8 @@ TEST(SmallQueryOnDevice, GivesTheSameAtAHub) {
   expect_same_at_hub(5);
 }
 
-// Small enough for compute-sanitizer, with every path through the kernels: contact, hidden places,
-// one pose and several.
+// Takes every path through the kernels, small enough for compute-sanitizer: contact, occluded
+// places, one pose and several.
 TEST(SmallQueryOnDevice, GivesTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
@@ -250,7 +249,7 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   }
 }
 
-// Rotations in single precision, as many programs have them.
+// Gives rotations in single precision, as many programs have them.
 TEST(RoundedPosesOnDevice, GiveTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("step"));
@@ -309,7 +308,7 @@ TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
   EXPECT_GE(hidden, static_cast<int>(testing::expected_of(31)));
 }
 
-// Small and large tools by turns, more than one launch takes, and one without a pose.
+// Alternates small and large tools, more than one launch takes, and one without a pose.
 class ToolsTogether : public ::testing::TestWithParam<std::tuple<bool, Measure>> {
  protected:
   void SetUp() override {
@@ -346,8 +345,7 @@ TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
     if (expected.back().volume > 0) touching.insert(tool);
   }
   EXPECT_GT(touching.size(), 8U);
-  // Twice: a launch leaves the memory of its teams as it found it. Then alone, in memory that
-  // has room for larger ones.
+  // Runs twice, since a launch must leave its teams' memory clean. Then runs each tool alone.
   for (int turn = 0; turn < 2; ++turn) {
     std::vector<Result> results(poses.size());
     ToolQuery::run(together, cloud, poses, results);
@@ -377,7 +375,7 @@ INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether,
                                                                                : "_refined");
                          });
 
-// Small enough for compute-sanitizer.
+// Is small enough for compute-sanitizer.
 TEST(ToolsTogetherSmall, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
@@ -397,7 +395,7 @@ TEST(ToolsTogetherSmall, SmallQuery) {
     expect_equal(queries[poses[k].tool].run(cloud, poses[k].pose), results[k]);
 }
 
-// As where other programs use the device too: what does not fit is cut, not refused.
+// Leaves little free memory, as other programs do: batches are cut, not refused.
 TEST(TakenDevice, AnswersABatch) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
@@ -420,7 +418,7 @@ TEST(TakenDevice, HasRoomForFewerTeams) {
   EXPECT_EQ(test::kind_of_fault([] { testing::teams_made(64, 1.1); }), ErrorKind::unavailable);
 }
 
-// More poses than one device takes at a time.
+// Asks for more poses than one device takes at once.
 TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
   if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";
   const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));

@@ -31,7 +31,7 @@ TakenMemory::~TakenMemory() {
 unsigned teams_made(unsigned wanted, double part_of_free) {
   const auto bytes = static_cast<std::size_t>(part_of_free * static_cast<double>(free_memory()));
   const unsigned count = cuda::make_teams<Teams>(wanted, bytes)->count;
-  cuda::check(cudaGetLastError());  // none is left of what did not fit
+  cuda::check(cudaGetLastError());  // clears the error of what did not fit
   return count;
 }
 

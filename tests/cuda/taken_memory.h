@@ -1,11 +1,11 @@
-// A device whose memory others have taken.
+// Takes a device's memory, as other programs may.
 #pragma once
 
 #include <cstddef>
 
 namespace vpm::testing {
 
-// Takes memory of the current device until about so much is left, in bytes.
+// Takes memory of the current device until about `left` bytes are free.
 class TakenMemory {
  public:
   explicit TakenMemory(std::size_t left);
@@ -17,8 +17,7 @@ class TakenMemory {
   void* taken_ = nullptr;
 };
 
-// How many teams find room, of which each takes this part of the memory that is free, if so many
-// are wanted.
+// Returns how many of the wanted teams find room if each takes this part of the free memory.
 unsigned teams_made(unsigned wanted, double part_of_free);
 
 }  // namespace vpm::testing

@@ -1,4 +1,4 @@
-// Bodies of the scene whose truth is plain: what the measure asks of any body, in few lines.
+// Defines bodies of the scene whose truth is analytic.
 #pragma once
 
 #include "libvpm/scene/ball_fraction.h"
@@ -6,7 +6,7 @@
 
 namespace vpm::testing {
 
-// A solid below a plane, without an end.
+// A solid below an endless plane.
 struct HalfSpace {
   static constexpr bool kTellsInside = false, kSearchesFoot = false;
   struct BallClass {
@@ -53,8 +53,8 @@ inline HalfSpace below(Vec3 normal, double height) {
   return {{unit, height * unit}};
 }
 
-// Asks two bodies at one place, as several cameras will be: what one of them shows to be free is
-// free, so the greater distance counts.
+// Asks two bodies at one place, as several cameras will be: what one shows to be free is free, so
+// the greater distance counts.
 template <class One, class Other>
 struct Both {
   static constexpr bool kTellsInside = false, kSearchesFoot = false;
@@ -85,7 +85,7 @@ struct Both {
   VPM_HD Vec3 closest_normal(Vec3, const SurfaceSample& on_surface) const {
     return on_surface.normal;
   }
-  // One plane only where the other body's surface does not pass.
+  // May be one plane only where the other body's surface does not pass.
   VPM_HD bool may_be_flat(const BallClass& in_ball) const {
     return in_ball.one.side != Side::ambiguous || in_ball.other.side != Side::ambiguous;
   }

@@ -1,5 +1,5 @@
-// The measure takes any body of the scene: with analytic ones it gives the volume of the tool's
-// samples behind them, and the wrench that is due.
+// The measure takes any body of the scene: for analytic ones it gives the volume of the tool's
+// samples behind them, and the right wrench.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ static_assert(!SeesFreeSpace<DiskSurface> && !BoundsGap<DiskSurface>);
 
 constexpr double kEdge = 0.2;
 
-// Returns the part of the tool's samples, taken for balls, at distances below 0.
+// Returns the part of the tool's samples, taken as balls, at distances below 0.
 template <class Distance>
 double part_behind(const ToolModel& tool, const Pose& pose, const Distance& distance) {
   double part = 0;
@@ -43,7 +43,7 @@ TEST(AnyBody, AHalfSpaceHoldsWhatOfTheToolIsBelowIt) {
       const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.03}};
       const Result result = measure.run_on(body, Pose{}, pose, nullptr);
       const double expected = part_behind(tool, pose, [&](Vec3 x) { return body.top.distance(x); });
-      // Where the plane cuts nothing, nobody knows from points alone that the tool is inside.
+      // Where the plane cuts nothing, points alone cannot tell that the tool is inside.
       if (result.boundary == 0) continue;
       EXPECT_NEAR(result.volume_fraction, expected, 1e-12) << height;
       EXPECT_NEAR(norm(result.wrench.force - result.volume * body.top.normal), 0,
@@ -57,7 +57,7 @@ TEST(AnyBody, TwoBodiesAtOnePlaceAreOne) {
   RefinedMeasure measure(tool, tool.levels[0], {});
   const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.03}};
   for (double height = -0.1; height < 0.1; height += 0.021) {
-    // Two cameras that see one wall, of which one errs by 4 mm: the lower reading is free space.
+    // Two cameras see one wall, and one errs by 4 mm: the lower surface shows free space.
     const HalfSpace near = below({0.2, -0.3, 0.9}, height),
                     far = below({0.2, -0.3, 0.9}, height - 0.004);
     const Result expected = measure.run_on(far, Pose{}, pose, nullptr);

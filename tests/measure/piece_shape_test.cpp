@@ -1,5 +1,4 @@
-// A piece's shape is known to two functions: with another shape the rule of clipped weights gives
-// that shape's volumes.
+// With another piece shape the rule of clipped weights gives that shape's volumes.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,7 @@
 namespace vpm {
 namespace {
 
-// An axis-parallel box, for planes that face along an axis.
+// An axis-parallel box, for planes with normals along an axis.
 struct BoxShape {
   Vec3 half;
 

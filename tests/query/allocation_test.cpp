@@ -1,4 +1,4 @@
-// Control loops rely on it: no memory is allocated after the first query.
+// Control loops rely on queries that allocate no memory after the first one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

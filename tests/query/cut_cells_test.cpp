@@ -1,4 +1,4 @@
-// Search for the nearest of the cells that a surface cuts.
+// Tests the search for the nearest of the cells that a surface cuts.
 #include "libvpm/backend/cpu/cut_cells.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace vpm {
 namespace {
 
-// Goes through all of them.
+// Returns the nearest one by comparing all.
 std::uint32_t nearest_of_all(const ToolModel& tool, const SpatialLevel& level,
                              const std::vector<std::uint32_t>& cut, std::uint32_t row) {
   const auto rank = [&](std::uint32_t k) {

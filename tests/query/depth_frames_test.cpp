@@ -1,4 +1,4 @@
-// Depth frames on the CPU; tests/cuda has those on a device.
+// Tests depth frames on the CPU; tests/cuda tests those on a device.
 
 #include "libvpm/scene/depth_frames.h"
 

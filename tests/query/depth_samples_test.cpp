@@ -1,4 +1,4 @@
-// Readings of a camera's surface by vectors have the bits of single readings.
+// Surface samples by vectors have the bits of single samples.
 #include "libvpm/backend/cpu/depth_samples.h"
 
 #include <gtest/gtest.h>
@@ -46,8 +46,8 @@ Cloud rough_cloud(const char* scene) {
   return make_cloud(image, camera, {.window = 3});
 }
 
-// Returns a place near the surface, beside the image, behind the camera, or where nothing can be
-// read.
+// Returns a place near the surface, beside the image, behind the camera, or where nothing was
+// measured.
 Vec3 any_place(Numbers& numbers) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   static const Vec3 odd[] = {{0, 0, 0},      {0.1, HUGE_VAL, 1}, {0, 0, 1e-40}, {0, 0, 0x1p-100},
@@ -112,7 +112,7 @@ void expect_same_normals(const DepthSurface& surface, std::size_t count, Numbers
 
 class DepthReadings : public ::testing::TestWithParam<const char*> {
  protected:
-  // Loses some normals, and makes some that cannot be right.
+  // Removes some normals, and turns some so that they cannot be right.
   DepthReadings() {
     for (Vec3f& normal : normals_) {
       const double kind = numbers_.between(0, 1);
@@ -190,7 +190,7 @@ TEST_P(DepthReadings, AddToACellWhatOneAfterTheOtherDoes) {
   for (int k = 0; k < 300; ++k) {
     const Pose to_surface{testing::generic_rotation(),
                           {numbers_.between(-0.3, 0.3), 0, numbers_.between(0.8, 1.2)}};
-    // Cells of two blocks.
+    // Takes the cells of two blocks.
     for (std::uint32_t i = 0; i + 1 < level.sphere_count; ++i) {
       const CellMeasure measure(
           surface_, to_surface, ToolReach{tool.reach, OccludedSpace::within_reach},
@@ -297,7 +297,7 @@ TEST(SmallImages, AreReadTogetherAsInTurn) {
   }
 }
 
-// There, 0.5 less than an ulp plus another 0.5 rounds to 1, which is no pixel.
+// At the rim, 0.5 less than an ulp plus another 0.5 rounds to 1, which is no pixel.
 TEST(SmallImages, HaveNoPixelBeyondTheirRim) {
   const SmallImage image(1, 1);
   const double rim = 0.5 - 0x1p-54;

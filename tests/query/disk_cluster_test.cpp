@@ -1,4 +1,4 @@
-// The surface of points alone across a patch, seen as one plane.
+// Tests planar clusters of points without a camera.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace vpm {
 namespace {
 
-constexpr double kReach = 0.02;  // radius of the patches
+constexpr double kReach = 0.02;  // radius of the clusters, m
 constexpr double kSpacing = 0.002;
 
 class Noise {

@@ -1,4 +1,4 @@
-// Points alone that show two walls: directions in which tools behind both are pushed.
+// Tests the directions in which tools are pushed behind two walls of points without a camera.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -146,7 +146,7 @@ TEST(TwoWallsOfPoints, ConesSayWhatEachDiskSays) {
   }
 }
 
-// In the nodes of a bowl no cone leaves a normal out, and none is much wider than its normals.
+// Cones in the nodes of a bowl leave no normal out, and none is much wider than its normals.
 TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
   Cloud seen = TwoWalls{true}.seen();
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -179,7 +179,7 @@ TEST(NormalCones, HoldTheNormalsOfTheirNodes) {
   EXPECT_GT(held, 1000);
 }
 
-// A list of near disks gives the readings of all disks.
+// Samples from a list of near disks equal those from all disks.
 TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
   const PreparedCloud cloud(TwoWalls{true}.seen());
   const DiskSurface disks = cloud.disk_surface();
@@ -204,7 +204,7 @@ TEST(TwoWallsOfPoints, AreTheSameAmongTheDisksNearABlock) {
   EXPECT_GT(found, 50);
 }
 
-// Seen at a grazing angle, a disk of a room may be wide. Far from it that changes nothing.
+// A disk seen at a grazing angle may be wide. It changes nothing far from it.
 TEST(DisksOfSeveralSizes, AWideOneIsFeltWhereItIs) {
   Cloud seen = TwoWalls{false}.seen();
   const PreparedCloud alone(seen);

@@ -1,4 +1,4 @@
-// Results that must have the same bits.
+// Compares results that must have the same bits.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Inputs at the edge of what is possible: answered right or refused with a message, never by a
+// Inputs at the edge of what is possible are answered right or refused with a message, never by a
 // result that is not finite.
 
 #include <gtest/gtest.h>

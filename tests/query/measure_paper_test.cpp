@@ -30,7 +30,7 @@ Result paper(const ToolModel& tool, const Cloud& cloud, const Pose& pose = {}) {
 TEST(PaperMeasure, OnePointInOneSphereGivesItsCap) {
   const ToolModel tool = lattice_cube(2, 1, 1);  // the unit sphere
   const Result r = paper(tool, points({{0, 0, -0.5f}}, {0, 0, 1}));
-  const double height = 0.5;  // of the sphere's part below the plane z = -0.5
+  const double height = 0.5;  // height of the sphere's part below the plane z = -0.5
   const double cap = kPi * height * height * (3 - height) / 3;
   EXPECT_NEAR(r.volume, cap, 1e-9);
   EXPECT_NEAR(r.wrench.force.z, cap, 1e-9);

@@ -1,4 +1,4 @@
-// Compares the refined measure with analytic truth, through all steps that a camera's cloud passes.
+// Compares the refined measure with analytic truth, through all steps that a camera's cloud takes.
 
 #include <gtest/gtest.h>
 
@@ -23,14 +23,13 @@ using testing::see;
 
 constexpr double kEdge = 0.2;
 constexpr double kDegrees = 1;         // bound of the force's direction
-constexpr double kNotNearZero = 0.03;  // fraction of the tool's volume from which it holds
+constexpr double kNotNearZero = 0.03;  // fraction of the tool's volume above which the bound holds
 
 struct SceneCase {
   const char* scene;
   bool camera;
   double volume_bound;     // worst error, fraction of the tool's volume
-  bool sees_whole_wrench;  // the step's riser is thinner than a pixel: what it pushes cannot be
-                           // known
+  bool sees_whole_wrench;  // false where the riser is thinner than a pixel
 };
 
 class RefinedScene : public ::testing::TestWithParam<SceneCase> {};
@@ -194,7 +193,7 @@ TEST(RefinedMeasure, WhatAnObjectHidesIsNotInsideTheWallBehindIt) {
     const double truth = solid.penetration(pose, *scene.surface).volume;
     const double error = (query.run(cloud, pose).volume - truth) / tool.volume;
     EXPECT_LE(error, 0.02) << k << " of " << truth / tool.volume;
-    if (truth > 0.1 * tool.volume) {  // by now in sight too; the hidden part, up to 2/3, is missing
+    if (truth > 0.1 * tool.volume) {  // in sight too; up to 2/3 is hidden and missing
       EXPECT_GE(error, -0.67 * truth / tool.volume) << k;
     }
   }

@@ -44,7 +44,8 @@ TEST(SolidOccludedSpace, CountAllThatIsBehindTheImage) {
   ToolQuery query(tool, solid()), near(tool, {});
   int hidden = 0;
   for (int k = 0; k < 300; ++k) {
-    // The tool passes through the block, its shadow, the gap beside it and the wall.
+    // The tool passes through the block, the space that it occludes, the gap beside it and the
+    // wall.
     const Pose pose{generic_rotation(), {0.004 * (k % 75), 0.01, 0.95 + 0.15 * (k / 75)}};
     const Result r = query.run(cloud, pose);
     const double expected = part_behind_what_is_seen(places, pose);

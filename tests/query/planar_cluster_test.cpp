@@ -1,4 +1,4 @@
-// The surface across a patch, seen as one plane.
+// Tests planar clusters before a camera.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,17 +13,17 @@ namespace {
 
 using testing::see;
 
-constexpr double kReach = 0.015;  // radius of the patches
+constexpr double kReach = 0.015;  // radius of the clusters, m
 
-// Finds the plane of a patch about a place of the scene, in camera coordinates. Returns false if
-// the patch is not seen as one plane.
+// Finds the plane of a cluster about a place of the scene, in camera coordinates. Returns false if
+// it is not planar.
 bool plane_at(const PreparedCloud& cloud, Vec3 center, TangentPlane& plane) {
   const DepthSurface surface = cloud.depth_surface();
   return finds_cluster_plane(surface, surface.classify_ball(center, kReach), center, kReach,
                              HUGE_VAL, SampleInTurn{}, plane);
 }
 
-// Returns the mean height of the plane over the surface, at places of a box in the patch's ball.
+// Returns the mean height of the plane over the surface, at places of a box in the cluster's ball.
 double mean_height(const TangentPlane& plane, const synthetic::Surface& surface, Vec3 center) {
   constexpr int kPlaces = 5;
   const double half = kReach / std::sqrt(3.0);
@@ -115,7 +115,7 @@ bool is_seen_free(const DepthImage& depth, const Intrinsics& k, Vec3 center, dou
   return true;
 }
 
-// Small pits in a wall leave patches unchanged, and are wider than cells.
+// Small pits in a wall leave planar clusters unchanged, and are wider than cells.
 TEST(Patch, CellsThatAreSeenFreeDoNotCount) {
   constexpr std::uint32_t kPit = 14, kEvery = 40;  // pixels
   constexpr float kDeep = 0.016F;

@@ -1,4 +1,4 @@
-// Tests options that change no more than they say.
+// Tests that options change no more than they say.
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"

@@ -1,4 +1,4 @@
-// vpm-replay [FILE]: prints the hash of the replay's bytes; FILE receives them.
+// vpm-replay [FILE]: prints the hash of the replay's bytes and writes these to FILE.
 #include <cstdio>
 #include <exception>
 

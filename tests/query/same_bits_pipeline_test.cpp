@@ -1,5 +1,5 @@
-// From the mesh to the wrench: packing, graph, normals and query of a scene scaled by a power of
-// two give the same digits; only exponents change.
+// Scales a scene by a power of two from the mesh to the wrench: packing, graph, normals and query
+// give the same digits, and only exponents change.
 
 #include <gtest/gtest.h>
 

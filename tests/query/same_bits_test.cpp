@@ -1,5 +1,5 @@
-// The same input gives the same bits: threads, order of the points, points given twice, powers of
-// two, far origins, and one replay from every compiler.
+// The same input gives the same bits for any threads, order of points, points given twice, scale by
+// a power of two, far origin and compiler.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Poses of several tools in one call.
+// Tests poses of several tools in one call.
 #include <gtest/gtest.h>
 
 #include <deque>

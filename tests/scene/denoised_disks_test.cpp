@@ -1,4 +1,4 @@
-// Points without a camera after denoising, at edges and thin plates.
+// Tests points without a camera after denoising, at edges and thin plates.
 #include "libvpm/scene/points/denoised_disks.h"
 
 #include <gtest/gtest.h>
@@ -297,8 +297,8 @@ TEST(DenoisedDisks, SmallFeaturesStay) {
 // A place beyond an outlier's plane is not behind the surface.
 TEST(DenoisedDisks, OutliersJoinTheirSurface) {
   Cloud seen = plate(0.002, 0.0003);
-  add_point({0.0102, 0.0107, 0.008}, {0, 0, -1}, seen);  // of the back, in front of the front
-  add_point({-0.0201, -0.0052, 0.010}, {-0.5, 0.2, 0.8}, seen);  // of no surface
+  add_point({0.0102, 0.0107, 0.008}, {0, 0, -1}, seen);  // from the back, in front of the front
+  add_point({-0.0201, -0.0052, 0.010}, {-0.5, 0.2, 0.8}, seen);  // on no surface
   const auto distance = [](Vec3 x) { return std::fabs(x.z) - 0.002; };
   EXPECT_EQ(part_wrong(PreparedCloud(seen), 0.001, distance), 0);
   EXPECT_GT(part_wrong(PreparedCloud(seen, Denoising::off), 0.001, distance), 0.001);

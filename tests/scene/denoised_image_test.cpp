@@ -52,7 +52,7 @@ double angle(Vec3f a, Vec3 b) {
   return std::atan2(norm(cross(widen(a), b)), dot(widen(a), b));
 }
 
-// Errors of depths and normals where a smooth surface faces the camera.
+// Errors of depths, m, and normals where a smooth surface faces the camera.
 struct Errors {
   double depth = 0, normal = 0;  // root mean squares
 };

@@ -132,7 +132,7 @@ TEST_P(TreeOf, FindsTheNearestOfTheBallsThatTouch) {
   }
 }
 
-// Searches begin near a place, for places about it and elsewhere.
+// Searches that begin near a place find the same points, about it and elsewhere.
 TEST_P(TreeOf, FindsTheSameFromNearby) {
   const OrderedPoints ordered(scattered(GetParam(), true));
   std::mt19937 random(3);

@@ -15,7 +15,7 @@ namespace vpm::bench {
 namespace {
 
 // Bounds that --measure refined must keep. Volumes are fractions of the tool's, angles degrees,
-// torques fractions of volume times reach.
+// torques fractions of volume times tool radius.
 struct Bounds {
   const char *noise, *spheres;
   double mean, worst, jump;
@@ -69,7 +69,7 @@ class Accuracy {
       step();
     }
     std::vector<CloudKind> kinds{CloudKind::camera};
-    if (!is_solid()) kinds.push_back(CloudKind::points);  // points without a camera have no shadows
+    if (!is_solid()) kinds.push_back(CloudKind::points);  // they have no occluded space
     for (const SweepCase& c : all) {
       sweeps_.run(c, {{1000, 10000}, kinds, 51});
       step();
@@ -260,7 +260,7 @@ class Accuracy {
     for (const char* cloud : {"camera", "points"}) {
       for (const Bounds& b : kBounds) {
         const auto found = sweeps_.groups().find({"all", cloud, b.noise, "refined", b.spheres});
-        if (found == sweeps_.groups().end()) continue;  // points are left out with solid shadows
+        if (found == sweeps_.groups().end()) continue;  // no points with solid occluded space
         const GroupErrors& e = found->second;
         const std::string which =
             std::string(", ") + cloud + ", noise " + b.noise + ", " + b.spheres + " spheres";

@@ -18,9 +18,9 @@ inline constexpr double kForceMatters = 0.01;
 // compared below it.
 inline constexpr double kDepthKnown = 0.01;
 
-// Errors over one path. Volumes are fractions of the tool's, torques fractions of volume times
-// reach, angles degrees. `jump` is how much the volume moves between neighbouring poses beyond what
-// the truth and the unknown part move.
+// Errors over one path. Volumes are fractions of the tool's, torques fractions of volume times tool
+// radius, angles degrees. `jump` is how much the volume moves between neighbouring poses beyond
+// what the truth and the unknown part move.
 struct Errors {
   MeanAndWorst volume, jump, force, direction, torque;
 };

@@ -16,7 +16,7 @@
 
 namespace vpm::bench {
 
-inline constexpr double kLeak = 0.02;  // of the tool's volume
+inline constexpr double kLeak = 0.02;  // in parts of the tool's volume
 
 struct RandomPoses {
   MeanAndWorst error[2];  // indexed by Measure::refined, Measure::paper
@@ -28,9 +28,9 @@ struct RandomPoses {
 Camera camera_of_spacing(double spacing);
 
 // Runs `poses` poses with 0 to 60 % of the tool inside, the same for the same seed; tools take
-// turns. The surface is rendered without noise and normals are estimated from the image. `shadows`
-// are those of the refined measure. The measure as printed runs at every eighth pose only, since it
-// takes most of the time.
+// turns. The surface is rendered without noise and normals are estimated from the image. `occluded`
+// is for the refined measure. The measure as printed runs at every eighth pose only, since it takes
+// most of the time.
 RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
                              int poses, std::uint64_t seed, OccludedSpace occluded,

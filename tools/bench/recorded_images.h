@@ -27,15 +27,15 @@ void require_recorded_images(const std::string& folder);
 // a damaged one.
 std::vector<RecordedImage> recorded_images(const std::string& folder);
 
-// Returns the k-th random pose: near a random point, on its free side, about a tool's reach off.
+// Returns the k-th random pose: near a random point, on its free side, about a tool radius off.
 Pose random_pose_before(const Cloud& cloud, std::uint64_t k, double reach);
 
 // Largest fraction of the tool inside, by the count, of the poses that are compared. The count
-// takes shadows as solid, as OccludedSpace::solid does. OccludedSpace::within_reach is also
-// compared without the places in shadows, which lie further behind the surface than the tool's
-// reach and may count or not.
+// takes occluded space as solid, as OccludedSpace::solid does. OccludedSpace::within_reach is also
+// compared without occluded places, which lie further behind the surface than the tool's radius and
+// may count or not.
 inline constexpr double kShallow = 0.1;
-inline constexpr double kFrameBound = 0.05;  // of the tool's volume
+inline constexpr double kFrameBound = 0.05;  // in parts of the tool's volume
 
 struct FrameResult {
   std::string frame;
@@ -49,8 +49,8 @@ struct FrameResult {
       beyond += difference > kFrameBound;
     }
   };
-  Difference solid, near, paper;  // Measure::refined with both kinds of shadows, Measure::paper
-  Difference without_occluded;    // of near, where places in shadows may count or not
+  Difference solid, near, paper;  // Measure::refined by its occluded space, Measure::paper
+  Difference without_occluded;    // `near` where occluded places may count or not
   int counted_in_free_space = 0;  // spheres of solid and near, over all poses
 };
 

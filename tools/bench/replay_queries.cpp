@@ -19,7 +19,7 @@ namespace vpm::bench {
 namespace {
 
 constexpr std::uint64_t kNoiseSeed = 1;
-constexpr double kInside = 0.05;          // of the tool's volume
+constexpr double kInside = 0.05;          // in parts of the tool's volume
 constexpr double kCoherentStep = 0.5e-3;  // m
 
 synthetic::Scene the_scene() {

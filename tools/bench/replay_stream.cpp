@@ -25,7 +25,7 @@ constexpr std::size_t kProfileEvery = 10;  // steps between two points of a volu
 struct Stream {
   Recording recording;
   ImportOptions import;
-  Device device;  // of the suite
+  Device device;  // the suite's
 };
 
 Stream read_stream(const std::string& folder, const Device& device) {
@@ -90,8 +90,8 @@ SampledPath path_through(const Stream& stream, const ToolModel& tool, double sec
 // Results of one pass over the stream.
 struct Pass {
   std::vector<double> profile;               // volume fraction, every kProfileEvery steps
-  std::vector<double> query_us, prepare_ms;  // of each frame
-  std::vector<double> latencies;             // s, of each step
+  std::vector<double> query_us, prepare_ms;  // one per frame
+  std::vector<double> latencies;             // s, one per step
   double seconds = 0;
   FrameCounts frames;
 };

@@ -2,11 +2,11 @@
 // the truth.
 //
 // A place is known to be free if a camera sees it, and known to be inside if a camera's ray enters
+// A place is known to be free if a camera sees it, and known to be inside if a camera's ray enters
 // the obstacle before it and does not leave it again. All else is unknown: free space that no
-// camera sees (behind a thin plate, in the shadow of a block), parts of an obstacle hidden by free
-// space (a wall behind a block), places whose pixel is a hole, and places between the two depths of
-// a jump within a pixel of it. Volumes with and without the unknown part bound what a measure may
-// say.
+// camera sees (behind a thin plate or a block), parts of an obstacle hidden by free space (a wall
+// behind a block), places whose pixel is a hole, and places between the two depths of a jump within
+// a pixel of it. Volumes with and without the unknown part bound what a measure may say.
 #pragma once
 
 #include <span>
@@ -64,11 +64,10 @@ class Sight {
 Unseen unseen_parts(std::span<const Vec3> places, const Pose& pose,
                     const synthetic::Surface& surface, const std::vector<Sight>& cameras);
 
-// Fractions of the places. The count takes the shadow of an object as solid, as
-// OccludedSpace::solid does.
+// Fractions of the places. The count takes occluded space as solid, as OccludedSpace::solid does.
 struct ProjectiveCount {
   double behind = 0;    // behind the depth of the nearest pixel
-  double occluded = 0;  // the part of `behind` that is further behind it than the tool's reach
+  double occluded = 0;  // the part of `behind` that is further behind it than the tool's radius
 };
 
 // Counts `places`, which are spread evenly over the tool. A place in front of a pixel without

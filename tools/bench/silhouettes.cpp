@@ -68,7 +68,7 @@ Path over_patches(Vec3 from, Vec3 to) {
 }
 
 // Returns paths past a block of 0.2 m width, with its front at z = 1, its back at 1.2 and a wall at
-// 1.5. Tools reach about 0.1 m.
+// 1.5. Tools have a radius of about 0.1 m.
 std::vector<Path> make_paths() {
   std::vector<Path> paths;
   paths.push_back(across_block("along the block's front", {-0.3, 0.01, 0.95}, {0.3, 0.01, 0.95}));

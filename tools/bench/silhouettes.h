@@ -17,7 +17,7 @@ struct SilhouetteResult {
   // worst step between neighbouring poses beyond the count's step; 0 for images with missing
   // pixels.
   double solid_worst = 0, solid_jump_worst = 0;
-  int counted_in_free_space = 0;  // spheres of refined with both kinds of shadows, over all poses
+  int counted_in_free_space = 0;  // in `refined` with both kinds of occluded space, over all poses
 };
 
 // Counts the spheres that are inside although their cell lies wholly in front of every pixel in its
@@ -27,7 +27,7 @@ int counted_in_free_space(const ToolModel& tool, const Level& level, const Pose&
                           std::span<const SphereState> states);
 
 // Moves the tool across the edges of a block in front of a wall, and over a wall whose image lacks
-// pixels: single ones at random, and round patches.
+// pixels: single ones at random, and round holes.
 std::vector<SilhouetteResult> run_silhouettes(const PackedSolid& tool, std::uint32_t level,
                                               int poses, const Device& device);
 

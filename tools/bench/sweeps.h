@@ -65,7 +65,7 @@ class Sweeps {
 
   ToolOf tool_;
   std::uint64_t noise_seed_;
-  OccludedSpace occluded_;  // of the refined measure
+  OccludedSpace occluded_;  // for the refined measure
   Device device_;
   Report& report_;
   std::map<std::array<std::string, 3>, View> views_;

@@ -25,7 +25,7 @@
 namespace vpm::bench {
 namespace {
 
-// Numbers of runs for a median: many of fast stages, few of slow ones.
+// Numbers of runs for a median: many for fast stages, few for slow ones.
 struct Runs {
   int slow, fast;
 };
@@ -171,7 +171,7 @@ class Timing {
     const PreparedCloud cloud(cloud_), measured(cloud_, Denoising::off), points(points_);
     const Pose pose =
         make_path(synthetic::TrueSolid(solid_), {}, *scene_.surface, kPoses)[kPoses / 2];
-    // Places most of the tool further behind the surface than its reach.
+    // Places most of the tool further behind the surface than the tool's radius.
     const Pose deep{pose.rotation,
                     pose.translation - model.reach * scene_.surface->gradient(pose.translation)};
     const auto time_query = [&](const char* stage, const PreparedCloud& seen, const Pose& at,
@@ -214,7 +214,7 @@ class Timing {
   static constexpr std::size_t kPosesInRoom = 32;
   static constexpr std::uint64_t kMostTries = 10000;
   static constexpr std::uint32_t kScoutSpheres = 250;
-  static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // of the tool, in rooms
+  static constexpr double kLeastInside = 0.005, kMostInside = 0.3;  // parts of the tool, in rooms
 
   struct Recorded {
     PreparedCloud seen, measured;

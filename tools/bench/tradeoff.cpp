@@ -26,8 +26,8 @@
 namespace vpm::bench {
 namespace {
 
-constexpr std::size_t kPlaces = 4096;   // of a tool, to count what the camera cannot know
-constexpr int kRuns = 3;                // of each query; the fastest counts, since load only slows
+constexpr std::size_t kPlaces = 4096;  // places of a tool that count what the camera cannot know
+constexpr int kRuns = 3;  // runs of each query; the fastest counts, since load only slows
 constexpr std::uint32_t kUsual = 1000;  // spheres while something else is varied
 
 struct Case {

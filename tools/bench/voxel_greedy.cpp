@@ -13,7 +13,7 @@ namespace vpm::bench {
 namespace {
 
 constexpr double kMargin = 1 - 1e-12;  // shrinks radii, so that rounding makes no overlap
-constexpr double kFirstStep = 0.5;     // of a compass search, in voxels
+constexpr double kFirstStep = 0.5;     // first step of a compass search, in voxels
 constexpr double kLastStep = 1e-6;     // in voxels
 constexpr double kWalk = 2;            // longest way of a compass search, in voxels
 

@@ -1,6 +1,5 @@
-// The second step of the refined measure where a camera has seen the surface: what is behind it, no
-// further than the tool's reach, is inside. Beyond, the plane of the nearest cut share decides, or
-// the memory of poses before.
+// Decides which cells are inside where a camera has seen the surface: those behind it within the
+// tool's radius. Further behind, the nearest cut cell's plane or the pose memory decides.
 #pragma once
 
 #include <algorithm>
@@ -32,8 +31,8 @@ class CameraVisibility {
                    });
   }
 
-  // Where the surface passes through no share: those stay inside that were, or were cut, as long as
-  // they are behind the same surface.
+  // Keeps cells inside that were inside or cut at the last pose, as long as they are behind the
+  // same surface. For a pose at which the surface cuts no cell.
   void run_from(PoseMemory& memory, const Pose& to_world) {
     memory_ = &memory;
     memory.for_cells([&](std::uint32_t i) {
@@ -48,19 +47,18 @@ class CameraVisibility {
     return {cut_, row, reach_.length, has_stayed(row), last_cut};
   }
 
-  // What to remember of shares that count: not those of which all that is known is that something
-  // hides them. What hides them must not be further than the tool's reach in front of the mean
-  // plane of all that was cut last; where nothing is cut, some must stay, and the share be near.
+  // Sets up which cells the next pose remembers. Cells that count only because something hides them
+  // are left out: what hides them must be within the tool's radius before the mean plane of the
+  // last cut cells, and where nothing is cut, near them, and some cell must have stayed.
   void begin_to_remember(const Pose& to_world, PoseMemory& memory) {
     to_world_ = to_world;
     if (!cut_.are_none()) memory.touch(mean_plane_of_cut());
     plane_ = memory.touched();
   }
-  // Whether to remember every share of which another one of its cluster is remembered; or else,
-  // whether this one.
+  // True if one remembered cell makes its whole cluster remembered; else follows() decides.
   bool all_follow() const { return !cut_.are_none(); }
   bool follows(std::uint32_t row) const { return has_stayed(row); }
-  // Whether to remember any, behind the surface's place `foot` of the world.
+  // True if a cell behind the surface's place `foot`, world frame, may be remembered.
   bool is_sure(std::uint32_t row, Vec3 foot) const {
     if (has_stayed(row)) return true;
     if (plane_.distance(foot) > reach_.length) return false;
@@ -96,9 +94,9 @@ class CameraVisibility {
   const Pose& to_surface_;
   const CutCells& cut_;
   CellStates& states_;
-  Pose to_world_;                       // from the surface's axes
-  TangentPlane plane_;                  // world, of what was cut last
-  const PoseMemory* memory_ = nullptr;  // of a tool that nothing cuts
+  Pose to_world_;                       // maps the surface's frame to the world's
+  TangentPlane plane_;                  // mean plane of the last cut cells, world frame
+  const PoseMemory* memory_ = nullptr;  // set where nothing is cut
   bool any_stays_ = false;
 };
 

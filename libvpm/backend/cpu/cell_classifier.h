@@ -1,6 +1,5 @@
-// The first step of the refined measure: how the surface meets each share. Groups of clusters are
-// looked at before clusters, clusters before shares: what holds for a ball holds for the balls in
-// it.
+// Classifies every cell by how the surface meets it: groups of clusters first, then clusters, then
+// cells, since the class of a ball holds for all balls in it.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +15,7 @@ namespace vpm {
 template <class Surface>
 class CellClassifier {
  public:
-  // `points`: those of the cloud, to be counted in the spheres that the surface may pass; null
-  // where nobody asks for their number.
+  // Counts the cloud's points in ambiguous spheres with `points`; null where nobody asks for them.
   CellClassifier(const ToolModel& tool, ToolReach reach, const SpatialLevel& level,
                  const Surface& surface, const Pose& to_surface, const PointsOfSphere* points,
                  CellStates& states)
@@ -29,7 +27,7 @@ class CellClassifier {
         points_(points),
         states_(states) {}
 
-  // Returns the number of points in spheres.
+  // Classifies all cells and returns the number of points in spheres.
   std::uint32_t run(ParallelRegion& region) {
     std::atomic<std::uint32_t> found{0};
     region.loop(level_.groups().size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -87,7 +85,7 @@ class CellClassifier {
     return 0;
   }
 
-  // Classifies the shares of a cluster that the surface crosses otherwise than as one plane.
+  // Classifies the cells of a cluster that the surface cuts otherwise than as one plane.
   std::uint32_t classify_nodes(std::uint32_t root) {
     SamplesOnHost<Surface> samples;
     const std::vector<CellTreeNode>& nodes = level_.nodes();
@@ -131,10 +129,10 @@ class CellClassifier {
     return 0;
   }
 
-  // Of a patch through which the surface passes as one plane. Where that is further from a node
-  // than it reaches, it is so from each share in it.
+  // Classifies the cells of a cluster that is cut by one plane. A node wholly on one side of the
+  // plane decides for all its cells.
   std::uint32_t classify_clipped(std::uint32_t root, const BallClass& in_ball) {
-    constexpr double kRounding = 1e-9;  // of the tool's reach: far above that of a distance
+    constexpr double kRounding = 1e-9;  // in tool radii: far above rounding
     const ClipPlane& plane = states_.planes[root];
     const std::vector<CellTreeNode>& nodes = level_.nodes();
     const std::uint32_t first = level_.roots()[root], last = nodes[first].next;
@@ -160,7 +158,6 @@ class CellClassifier {
     return count_points(level_.cluster(root), in_ball);
   }
 
-  // What a share's own pixels show to be free is free, whatever the mean of all says.
   void classify_clipped(std::uint32_t i, const ClipPlane& plane, const BallClass& in_ball) {
     const CellView view = level_.cell(i);
     const Vec3 center = to_surface_ * view.center;
@@ -183,7 +180,7 @@ class CellClassifier {
     }
   }
 
-  // `passage`: where the share is not cut.
+  // Sets the class of a measured cell; an uncut one that is partly inside gets `flood_state`.
   void take_result(std::uint32_t i, FloodState flood_state) {
     const CellResult& result = states_.results[i];
     if (result.plane.count > 0)
@@ -194,7 +191,7 @@ class CellClassifier {
       states_.set(i, CellClass::free, FloodState::closed);
   }
 
-  // Points in the spheres of a patch that was looked at.
+  // Counts points in the spheres of a cluster that was classified.
   std::uint32_t count_points(const CellCluster& cluster, const BallClass& in_ball) const {
     if (points_ == nullptr) return 0;
     std::uint32_t found = 0;

@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// A row in each lane.
+// Holds four rows of partial sums, one in each lane.
 struct FourRows {
   Double4 weight{};
   Vec3x4 moment{Double4{}, Double4{}, Double4{}};
@@ -17,7 +17,7 @@ struct FourRows {
 [[gnu::always_inline]] inline FourRows operator+(const FourRows& a, const FourRows& b) {
   return {a.weight + b.weight, a.moment + b.moment};
 }
-// By halves.
+// Adds lanes by halves, as clipped_in_turn() does.
 [[gnu::always_inline]] inline double sum(const Double4& rows) {
   return (rows[0] + rows[2]) + (rows[1] + rows[3]);
 }

@@ -1,4 +1,4 @@
-// The samples of a cell's blocks, many at once: what SamplesInTurn adds, by vectors. On the host.
+// Adds many samples of a cell's blocks by vectors, with the bits of SamplesInTurn. Host only.
 #pragma once
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 
 namespace vpm {
 
-// SamplesInTurn::crossed.
+// Returns the bits of clipped_in_turn().
 ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples);
 
-// A surface that vectors read at several places.
+// True for a surface that vectors sample at several places at once.
 template <class Surface>
 concept ReadsTogether = requires(const Surface& surface, const Vec3 (&places)[4],
                                  SurfaceSample (&on_surface_at)[4]) {
@@ -35,7 +35,7 @@ struct SampleTogether : SampleInTurn {
   }
 };
 
-// Adds samples whose surface is searched for one place after another.
+// Adds samples one by one, for surfaces that vectors cannot sample.
 struct SamplesOneByOne : SamplesInTurn {
   static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
                                 std::uint32_t count) {
@@ -43,7 +43,7 @@ struct SamplesOneByOne : SamplesInTurn {
   }
 };
 
-// Adds the samples of one cell that a camera sees, four at a time.
+// Adds the samples of one cell before a camera, by vectors.
 class SamplesTogether {
  public:
   static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
@@ -53,7 +53,7 @@ class SamplesTogether {
   template <class Measure>
   void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
            const DepthSurface& surface, CellResult& result) {
-    neighbors_ = kNone;  // of another block
+    neighbors_ = kNone;  // a new block begins
     for (std::uint32_t first = 0; first < count; first += kAtOnce) {
       const std::uint32_t some = count - first < kAtOnce ? count - first : kAtOnce;
       const std::uint32_t found =
@@ -62,7 +62,7 @@ class SamplesTogether {
         add_one(measure, samples, first + on_surface_at_[k].sample, on_surface_at_[k].at, result);
     }
   }
-  // Adds those whose directions were put off, to be found together.
+  // Finds the directions that were put off, together, and adds their samples.
   template <class Measure>
   void flush(const Measure& measure, CellResult& result) {
     if (direction_count_ == 0) return;
@@ -99,14 +99,14 @@ class SamplesTogether {
   static constexpr std::uint32_t kNone = UINT32_MAX;
   struct Pushed {
     const CellSample* sample;
-    std::uint32_t direction;  // which of those that are searched for
+    std::uint32_t direction;  // index into searched_
   };
 
   SurfaceOfSample on_surface_at_[kAtOnce];
   PlaceSample searched_[kAtOnce];
   Pushed pushed_[kAtOnce * kNeighborSamples];
   std::uint32_t direction_count_ = 0, pushed_count_ = 0;
-  std::uint32_t neighbors_ = kNone;  // for which the last direction is searched
+  std::uint32_t neighbors_ = kNone;  // run of samples that the last direction is for
 };
 
 template <class Surface>

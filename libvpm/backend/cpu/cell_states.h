@@ -1,5 +1,4 @@
-// What a query finds of each share of a level: how the surface meets it, and whether the flood may
-// pass it.
+// Holds the state of each cell of a level during a query: its class and its flood state.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace vpm {
 
 inline constexpr std::uint32_t kNoRow = UINT32_MAX;
 
-// The first row from `begin` on that is not free, or `end`.
+// Returns the first row from `begin` on that is not free, or `end`.
 inline std::uint32_t next_busy(const std::vector<CellClass>& cells, std::uint32_t begin,
                                std::uint32_t end) {
   static_assert(static_cast<int>(CellClass::free) == 0);
@@ -26,7 +25,7 @@ inline std::uint32_t next_busy(const std::vector<CellClass>& cells, std::uint32_
   return begin;
 }
 
-// Where one thread floods: the rows from `begin` to `end`.
+// Rows [begin, end), which one thread floods.
 struct FloodPart {
   struct Step {
     std::uint32_t from, to;
@@ -35,23 +34,23 @@ struct FloodPart {
   bool owns(std::uint32_t row) const { return row - begin < end - begin; }
 
   std::uint32_t begin = 0, end = 0;
-  std::vector<std::uint32_t> front;  // taken, but not yet left
-  std::vector<Step> leaving, left;   // to rows of other parts, in this round and in the last
-  std::uint32_t last_cut = kNoRow;   // nearest to the row that was asked for last, of this run
+  std::vector<std::uint32_t> front;  // taken, neighbours not yet visited
+  std::vector<Step> leaving, left;   // steps to other parts' rows, this round and last
+  std::uint32_t last_cut = kNoRow;   // last result of CutCells::nearest_to() in this run
 };
 
-// A cluster with shares that the surface cuts, which lie side by side in CellStates::cut.
+// Describes a cluster with cut cells, which are a range of CellStates::cut.
 struct CutCluster {
   Vec3 center;  // about the tool's centre of mass
   double reach;
   std::uint32_t begin, end;
 };
 
-// Calls visit(row) for the rows from `begin` to `end` in this state, ascending.
+// Calls visit(row) for the rows in [begin, end) with this state, ascending.
 template <class State, class Visit>
 void for_rows_in(State state, const std::vector<State>& states, std::size_t begin, std::size_t end,
                  const Visit& visit) {
-  static_assert(sizeof(State) == 1);  // memchr looks at many at once
+  static_assert(sizeof(State) == 1);  // for memchr
   while (begin < end) {
     const void* at = std::memchr(states.data() + begin, static_cast<int>(state), end - begin);
     if (at == nullptr) return;
@@ -77,7 +76,6 @@ struct CellStates {
     cells[row] = cell;
     flood_states[row] = flood_state;
   }
-  // Of all rows of a cluster.
   void set(const CellCluster& cluster, CellClass cell, FloodState flood_state) {
     std::fill(cells.begin() + cluster.begin, cells.begin() + cluster.end, cell);
     std::fill(flood_states.begin() + cluster.begin, flood_states.begin() + cluster.end,
@@ -100,23 +98,23 @@ struct CellStates {
     }
   }
 
-  // Whether a row counts, when it is decided what is taken.
+  // True if a row counts. Valid once it is decided what is taken.
   bool counts(std::uint32_t row) const {
     return cells[row] == CellClass::cut ||
            (flood_states[row] == FloodState::reached && cells[row] != CellClass::free);
   }
 
-  // Rows of the SpatialLevel.
+  // Holds one entry per row of the SpatialLevel in each vector, unless said otherwise.
   std::vector<CellClass> cells;
   std::vector<FloodState> flood_states;
-  std::vector<CellResult> results;   // of what is cut or partial
-  std::vector<double> squared_gaps;  // of the centre from the surface, where asked; m^2
-  // Of each root that is a patch; of one behind the surface, the normal only.
+  std::vector<CellResult> results;   // valid for cut and partial cells
+  std::vector<double> squared_gaps;  // gap of the centre, valid where asked, m^2
+  // Holds the planes of clusters by root: of cut ones, and only the normals of uniform ones.
   std::vector<ClipPlane> planes;
-  std::vector<std::uint32_t> cut;  // shares that the surface cuts, ascending
+  std::vector<std::uint32_t> cut;  // rows of cut cells, ascending
   std::vector<CutCluster> cut_clusters;
-  std::vector<std::uint32_t> work;  // of the flood, estimated, in chunks of rows
-  // As many as ever flooded side by side; those from `part_count` on are not in use.
+  std::vector<std::uint32_t> work;  // the flood's estimated work, per kRowsOfChunk rows
+  // Keeps as many parts as were ever used; the first `part_count` are in use.
   std::vector<FloodPart> parts;
   std::size_t part_count = 1;
 };

@@ -1,4 +1,4 @@
-// The shares that the surface cuts, and what their planes say of places far behind it.
+// Lists the cells that the surface cuts and finds the nearest one, whose plane supports far places.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ class CutCells {
         states_(states),
         rounding_(kUlps * std::numeric_limits<double>::epsilon() * norm(tool.center_of_mass)) {}
 
-  // When the surface has met all shares.
+  // Lists the cut cells. All cells must be classified.
   void list() {
     states_.cut.clear();
     for_rows_in(CellClass::cut, states_.cells, 0, level_.size(),
@@ -42,9 +42,9 @@ class CutCells {
   CutCell at(std::uint32_t cut) const {
     return {states_.results[cut].plane, to_surface_ * level_.cell(cut).center, level_.reach(cut)};
   }
-  // The nearest one, by the spheres' centres; equal distances go to the sphere with the smaller
-  // index. There must be some. `last`: the row of the one that was nearest to another share, kNoRow
-  // where none was asked for; one close by makes it quick, and none changes the result.
+  // Returns the cut cell whose sphere's centre is nearest; ties go to the smaller sphere index.
+  // Requires one. `last` becomes the result's row, and is a hint before: the last result, or
+  // kNoRow.
   CutCell nearest_to(std::uint32_t row, std::uint32_t& last) const {
     const Vec3 from = level_.cell(row).center;
     Nearest nearest(tool_.spheres[level_.sphere(row)].center);
@@ -80,16 +80,15 @@ class CutCells {
   const SpatialLevel& level_;
   const Pose& to_surface_;
   CellStates& states_;
-  // Spheres lie about the tool's origin, clusters about its centre of mass, which may be far.
+  // Bounds rounding: spheres lie about the tool's origin, clusters about its centre of mass.
   static constexpr double kUlps = 4;
   double rounding_;  // m
 };
 
-// What says whether places of one share are inside, though far behind the surface: the plane of the
-// nearest cut share, or, where the surface cuts none, what is known of the share.
+// Decides whether far places of one cell are inside: by the plane of the nearest cut cell or, where
+// nothing is cut, by `where_nothing_is_cut`.
 class PlaneSupport {
  public:
-  // `last_cut`: as CutCells::nearest_to().
   PlaneSupport(const CutCells& cut, std::uint32_t row, double reach, bool where_nothing_is_cut,
                std::uint32_t& last_cut)
       : cut_(cut),
@@ -98,7 +97,7 @@ class PlaneSupport {
         where_nothing_is_cut_(where_nothing_is_cut),
         last_cut_(last_cut) {}
 
-  // Of a place at x, behind the surface's place `foot`.
+  // True if a place x behind the surface's place `foot` is inside; surface frame.
   bool operator()(Vec3 x, Vec3 foot) {
     if (cut_.are_none()) return where_nothing_is_cut_;
     if (!nearest_) nearest_ = cut_.nearest_to(row_, last_cut_);
@@ -111,7 +110,7 @@ class PlaneSupport {
   double reach_;
   bool where_nothing_is_cut_;
   std::uint32_t& last_cut_;
-  std::optional<CutCell> nearest_;  // when first asked for
+  std::optional<CutCell> nearest_;  // found when first needed
 };
 
 }  // namespace vpm

@@ -11,7 +11,7 @@ using FourSamples = SurfaceSampleOf<Double4>;
 [[gnu::always_inline]] inline FourSamples read_at(const DepthSurface& surface, const Vec3x4& x) {
   return surface.sample_and(x, [](const Int4&, const Int4&) {});
 }
-// Puts together readings that are known.
+// Joins four known samples into lanes.
 [[gnu::always_inline]] inline FourSamples joined(const SurfaceSample& a, const SurfaceSample& b,
                                                  const SurfaceSample& c, const SurfaceSample& d) {
   FourSamples four;

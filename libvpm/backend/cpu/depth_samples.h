@@ -1,6 +1,5 @@
-// Readings of a camera's surface at many places together. They have the bits of
-// DepthSurface::read and DepthSurface::closest_normal, which read one, and come sooner: by vectors,
-// for whatever vectors the CPU has. On the host.
+// Samples a camera's surface at many places at once by vectors. Results have the bits of
+// DepthSurface::sample and DepthSurface::closest_normal. Host only.
 #pragma once
 
 #include <span>
@@ -10,7 +9,7 @@
 
 namespace vpm {
 
-// A place and what was read there.
+// Holds a place and its surface sample, surface frame.
 struct PlaceSample {
   Vec3 x;
   SurfaceSample on_surface;
@@ -24,12 +23,12 @@ struct SurfaceOfSample {
 void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
                  SurfaceSample (&on_surface_at)[4]);
 
-// Readings of those samples that the surface reaches: whose distance is less than their radius. In
-// their order; returns how many. `readings` has room for all.
+// Samples the surface for those tool samples that it reaches: whose distance is less than their
+// radius. Writes them in order to `on_surface_at` and returns their number.
 std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
                              std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
 
-// DepthSurface::closest_normal of each; their readings are known.
+// Writes DepthSurface::closest_normal of each sampled place.
 void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
                      Vec3* normals);
 

@@ -1,7 +1,5 @@
-// The second step of the refined measure where nobody knows from where points were seen: which
-// shares behind the surface are inside. The surface enters the tool through cut shares; from there
-// every share behind it that the graph reaches is. Which ones does not depend on the order of the
-// traversal.
+// Decides which cells are inside where points were seen from unknown places: those behind the
+// surface that the graph reaches from cut cells. The order of traversal does not matter.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +24,8 @@ class InsideFlood {
         cut_(cut),
         states_(states) {}
 
-  // By all threads of the region, each in its part of the tool: what leads from one part to another
-  // is taken up in the next round.
+  // Floods with all threads of the region, each in its part of the tool. Steps to other parts wait
+  // a round.
   void run(ParallelRegion& region) {
     split(region.threads());
     region.loop(states_.part_count, 1,
@@ -38,8 +36,8 @@ class InsideFlood {
     }
   }
 
-  // Where the surface passes through no share: those stay inside that were, or were cut, as long as
-  // they are behind the same surface; so does what the graph reaches from them near it.
+  // Keeps cells inside that were inside or cut at the last pose, as long as they are behind the
+  // same surface, and floods from them. For a pose at which the surface cuts no cell.
   void run_from(const PoseMemory& memory, const Pose& to_world) {
     FloodPart& part = states_.parts.front();
     const auto take_open = [&](std::uint32_t i) {
@@ -62,11 +60,11 @@ class InsideFlood {
     }
   }
 
-  // Of a share that the flood has taken.
+  // Returns the support for a cell that the flood has taken.
   PlaneSupport support(std::uint32_t row, std::uint32_t& last_cut) const {
     return {cut_, row, reach_.length, true, last_cut};
   }
-  // What to remember: all that counts (as CameraVisibility).
+  // Remembers all cells that count (see CameraVisibility).
   static void begin_to_remember(const Pose&, const PoseMemory&) {}
   static bool follows(std::uint32_t) { return true; }
   static bool all_follow() { return true; }
@@ -77,9 +75,9 @@ class InsideFlood {
 
   Vec3 center(std::uint32_t row) const { return to_surface_ * level_.cell(row).center; }
 
-  // What the flood may do is shared out evenly.
+  // Splits the rows among threads by estimated work.
   void split(int threads) {
-    constexpr std::size_t kFewCut = 128;  // take less time than two rounds
+    constexpr std::size_t kFewCut = 128;  // fewer take less time than two rounds
     const std::size_t count = std::clamp<std::size_t>(states_.cut.size() / kFewCut, 1, threads);
     states_.parts.resize(std::max(count, states_.parts.size()));
     states_.part_count = count;
@@ -100,8 +98,8 @@ class InsideFlood {
     }
   }
 
-  // Of each chunk of rows and of all: a step to each share that is not free, and more from the cut
-  // ones, whose planes are asked.
+  // Fills states_.work and returns its sum: a step for each cell that is not free, and more for a
+  // cut one, whose plane is asked.
   std::uint64_t estimate_work() {
     constexpr std::uint32_t kStepsFromCut = 2;
     const std::vector<CellClass>& cells = states_.cells;
@@ -127,7 +125,7 @@ class InsideFlood {
                                : level_.size();
   }
 
-  // From the cut shares.
+  // Floods a part from its cut cells.
   void enter(FloodPart& part) {
     const auto first = std::lower_bound(states_.cut.begin(), states_.cut.end(), part.begin);
     const auto last = std::lower_bound(first, states_.cut.end(), part.end);
@@ -137,7 +135,7 @@ class InsideFlood {
     spread(part);
   }
 
-  // From the shares of other parts.
+  // Floods a part from the steps that other parts left to it.
   void take_up(FloodPart& part) {
     for (const FloodPart& other : parts()) {
       for (const FloodPart::Step& s : other.left) {
@@ -168,7 +166,7 @@ class InsideFlood {
     }
   }
 
-  // False where no part has left anything for another.
+  // Hands over the steps between parts. Returns false if there are none.
   bool change_round() {
     bool goes_on = false;
     for (FloodPart& part : parts()) {
@@ -197,7 +195,7 @@ class InsideFlood {
     return flood_state != FloodState::closed;
   }
 
-  // Of an open patch, which one part owns.
+  // Decides a cluster without surface by its middle. Only the part that owns it may call this.
   void decide_cluster(std::uint32_t root) {
     const CellCluster& cluster = level_.cluster(root);
     const Vec3 at = to_surface_ * cluster.center;

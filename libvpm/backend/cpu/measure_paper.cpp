@@ -27,7 +27,7 @@ Result PaperMeasure::run(const PreparedCloud& cloud, const Pose& pose,
   return result;
 }
 
-// Steps 1 and 2: the points strictly inside each sphere, and their caps.
+// Adds the points strictly inside each sphere, and their caps (steps 1 and 2).
 std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose) {
   const Rotation to_tool = transpose(pose.rotation);
   const auto add = [&](std::uint32_t i, std::uint32_t point, Vec3 x) {
@@ -38,7 +38,7 @@ std::uint32_t PaperMeasure::gather(const PreparedCloud& cloud, const Pose& pose)
   return for_points_inside(cloud, tool_, level_, pose, ranges_, add);
 }
 
-// Step 3: a sphere with a point in it is boundary; its normal is the mean of its points'.
+// Marks spheres with a point in them as boundary, with the mean normal of their points (step 3).
 void PaperMeasure::find_boundary(std::vector<SphereState>& states) {
   for (std::uint32_t i = 0; i < level_.sphere_count; ++i) {
     if (contacts_[i].points == 0) continue;
@@ -47,8 +47,8 @@ void PaperMeasure::find_boundary(std::vector<SphereState>& states) {
   }
 }
 
-// Step 4: n_i . (c_j - c_i) <= -r_j. An entry sphere's normal is the mean over the boundary spheres
-// that let it in.
+// Enters neighbours with n_i . (c_j - c_i) <= -r_j (step 4). An entered sphere's normal is the mean
+// over the boundary spheres that let it in.
 void PaperMeasure::enter(std::vector<SphereState>& states) {
   const SphereGraph& graph = level_.graph;
   front_.clear();
@@ -71,8 +71,8 @@ void PaperMeasure::enter(std::vector<SphereState>& states) {
   for (const std::uint32_t j : front_) states[j] = SphereState::inside;
 }
 
-// Step 5, front by front, so that the normals do not depend on the order of the traversal: a
-// sphere's normal is the mean over its neighbours in the front before.
+// Floods front by front (step 5): a sphere's normal is the mean over its neighbours in the front
+// before, so it does not depend on the order of traversal.
 void PaperMeasure::flood(std::vector<SphereState>& states) {
   const SphereGraph& graph = level_.graph;
   for (std::uint32_t depth = 2; !front_.empty(); ++depth) {
@@ -98,7 +98,7 @@ void PaperMeasure::flood(std::vector<SphereState>& states) {
   }
 }
 
-// Step 6.
+// Sums the spheres (step 6).
 Result PaperMeasure::total(const Pose& pose, const std::vector<SphereState>& states) const {
   const ToolMeasures measures = measures_of(tool_);
   ToolSum sum;

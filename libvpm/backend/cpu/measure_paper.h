@@ -1,6 +1,6 @@
-// The measure as printed: Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure for 6-DOF
-// Haptic Rendering of Streaming Point Clouds" (2017). README.md lists the two misprints that are
-// read as they must be meant.
+// Computes the measure as printed: Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure
+// for 6-DOF Haptic Rendering of Streaming Point Clouds" (2017), less two misprints
+// (measure/README.md).
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ class PaperMeasure {
  public:
   PaperMeasure(const ToolModel& tool, const Level& level);
 
-  // `states` receives one entry per sphere. Allocates nothing after the first call.
+  // Fills `states`, which has one entry per sphere. Allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose, std::vector<SphereState>& states);
 
  private:
@@ -27,7 +27,7 @@ class PaperMeasure {
   void enter(std::vector<SphereState>& states);
   Result total(const Pose& pose, const std::vector<SphereState>& states) const;
 
-  // What the sums of a contact can count.
+  // The sums of a contact can count all points.
   static_assert(PreparedCloud::kMaxPoints <= std::size_t{1} << PaperContact::kPointBits);
 
   const ToolModel& tool_;

@@ -18,7 +18,7 @@ Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
   const PointsOfSphere* const points = counts_points_ ? &of_cloud : nullptr;
   if (cloud.is_organised())
     return run_on(cloud.depth_surface(), cloud.camera_to_world(), pose, points);
-  constexpr double kPlaces = 1.25;  // of the tool's radius: where most places lie that are read
+  constexpr double kPlaces = 1.25;  // in tool radii: holds most sampled places
   DiskSurface disks = cloud.disk_surface();
   disks.feet.enter_near(pose * tool_.center_of_mass - cloud.origin(), kPlaces * tool_.reach);
   return run_on(disks, Pose{{}, cloud.origin()}, pose, points);

@@ -1,5 +1,5 @@
-// The refined measure: shares instead of spheres, the surface instead of points. README.md derives
-// it.
+// Computes the refined measure: cells instead of spheres, the surface instead of points
+// (measure/README.md).
 #pragma once
 
 #include <optional>
@@ -17,34 +17,33 @@ namespace vpm {
 
 class RefinedMeasure {
  public:
-  // Of the options, those that speak of coherent poses, of points and of shadows.
+  // Uses the options about coherent poses, points and occluded space.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
   // With one thread, allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
-  // Returns the answer for one body of the scene. `to_world` maps its frame to the world's;
-  // `points` counts the points in spheres, null where nobody asks. Defined in
-  // measure_refined_run.h.
+  // Returns the answer for one body. `to_world` maps its frame to the world's; `points` counts the
+  // points in spheres, or is null. Defined in measure_refined_run.h.
   template <MeasuredBody Surface>
   Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
                 const PointsOfSphere* points);
 
-  // Of the last run, one per sphere.
+  // Reads the states of the spheres at the last run, one per sphere.
   void read_states(std::vector<SphereState>& states) const;
 
-  // Of a coherent sequence: the next pose is seen alone.
+  // Measures the next pose of a coherent sequence alone.
   void forget() {
     if (memory_) memory_->forget();
   }
 
  private:
-  // Cut shares, and those that `inside` has taken; returns how many of these count. Those that do
-  // not become free: they were hidden, not inside.
+  // Adds cut cells and those that `inside` has taken; returns how many of the latter count. The
+  // others become free: they were hidden, not inside.
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
                        ParallelRegion& region, ToolSum& sum);
-  // Adds those of rows [begin, end).
+  // Adds those in rows [begin, end).
   template <class Surface, class Inside>
   std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
                        std::uint32_t begin, std::uint32_t end, ToolSum& sum);

@@ -1,5 +1,4 @@
-// The steps of the refined measure, for any body of the scene. For measure_refined.cpp, and for
-// tests with bodies of their own.
+// Defines the steps of the refined measure for any body, for measure_refined.cpp and for tests.
 #pragma once
 
 #include <atomic>
@@ -103,7 +102,7 @@ ToolSum RefinedMeasure::sum_of(const Surface& surface, const Pose& to_surface, c
   return sum;
 }
 
-// Remembers what is cut and inside now, for the pose that follows.
+// Remembers the cells that are cut and inside for the next pose.
 template <class Surface, class Inside>
 void RefinedMeasure::remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
                               Inside& inside) {

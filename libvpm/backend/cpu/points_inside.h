@@ -1,5 +1,4 @@
-// Walks the cloud's points that lie strictly inside spheres of a tool: cost follows the tool's
-// reach, not the cloud.
+// Walks the cloud's points strictly inside spheres of a tool. Cost follows the tool, not the cloud.
 #pragma once
 
 #include <atomic>
@@ -50,7 +49,7 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
   return total;
 }
 
-// The same points of one sphere at a time, for those who know which spheres have any.
+// Counts those points sphere by sphere, for callers that know which spheres have any.
 class PointsOfSphere {
  public:
   PointsOfSphere(const PreparedCloud& cloud, const Pose& pose)
@@ -58,7 +57,7 @@ class PointsOfSphere {
         to_tool_(relative_to(pose, {{}, cloud.origin()})),
         to_cloud_(relative_to({{}, cloud.origin()}, pose)) {}
 
-  // `look`: what the cloud's surface says of the sphere.
+  // Returns the number of points in a sphere whose ball was classified.
   std::uint32_t count(const Sphere& sphere, const DepthSurface::BallClass& in_ball) const {
     const Near near = near_to(sphere);
     std::uint32_t found = 0;
@@ -78,7 +77,7 @@ class PointsOfSphere {
   }
 
  private:
-  // A ball about the cloud's origin that holds the sphere, whatever is rounded.
+  // Describes a ball about the cloud's origin that holds the sphere despite rounding.
   struct Near {
     const Sphere& sphere;
     Vec3 center;
@@ -90,7 +89,7 @@ class PointsOfSphere {
     const double rounded = sphere.radius + norm(sphere.center) + norm(center);
     return {sphere, center, sphere.radius + kRounding * rounded};
   }
-  // Few points are near enough for the exact test.
+  // Tests points against the ball first; few need the exact test.
   std::uint32_t count(const Near& near, std::uint32_t begin, std::uint32_t end) const {
     std::uint32_t found = 0;
     const double squared = near.radius * near.radius;

@@ -3,11 +3,11 @@
 namespace vpm {
 namespace {
 
-constexpr std::uint32_t kFewCells = 8;  // are looked at one by one
+constexpr std::uint32_t kFewCells = 8;  // a node of no more has no children
 constexpr std::size_t kGroupClusters = 8;
-constexpr double kGroupReach = 2.5 * kPlanarReach;  // of the tool's
-// A group's ball holds the shares of its clusters, though not the clusters' own balls, however
-// their projections are rounded.
+constexpr double kGroupReach = 2.5 * kPlanarReach;  // in tool radii
+// Keeps a group's ball about the cells of its clusters, though not about the clusters' own balls,
+// however their projections are rounded.
 constexpr double kGroupRounding = 1 + 1e-9;
 
 }  // namespace
@@ -43,7 +43,7 @@ void SpatialLevel::add_nodes(const ToolModel& tool, const Level& level, std::uin
   nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
 }
 
-// As many clusters that follow each other as are no wider than a group may be.
+// Groups consecutive clusters as long as their ball is within kGroupReach.
 void SpatialLevel::add_groups(const ToolModel& tool, const Level& level) {
   const auto first_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.begin; };
   const auto end_row = [&](std::uint32_t root) { return nodes_[roots_[root]].cluster.end; };

@@ -1,4 +1,4 @@
-// A level as the CPU walks it: what lies side by side in the tool lies side by side in memory.
+// Stores a level as the CPU walks it: neighbours in the tool are neighbours in memory.
 #pragma once
 
 #include <span>
@@ -9,19 +9,19 @@
 
 namespace vpm {
 
-// Clusters in clusters, down to few shares; those of a cluster follow it.
+// Describes a node of a tree of clusters; the nodes below it follow it.
 struct CellTreeNode {
   CellCluster cluster;     // rows of SpatialLevel
-  std::uint32_t next = 0;  // the node after this one and all within
+  std::uint32_t next = 0;  // the first node after all nodes below this one
 };
 
-// Clusters side by side: roots [begin, end) of the level.
+// Groups clusters side by side: roots [begin, end), and the ball of their cells.
 struct CellGroup {
   CellCluster ball;
   std::uint32_t begin = 0, end = 0;
 };
 
-// Shares in rows, ordered by place. Immutable.
+// Holds a level's cells in rows, ordered by place. Immutable.
 class SpatialLevel {
  public:
   SpatialLevel(const ToolModel& tool, const Level& level);
@@ -40,15 +40,15 @@ class SpatialLevel {
     return {neighbors_.data() + neighbor_begin_[row], neighbors_.data() + neighbor_begin_[row + 1]};
   }
   const std::vector<CellTreeNode>& nodes() const { return nodes_; }
-  const std::vector<std::uint32_t>& roots() const { return roots_; }         // nodes in no other
+  const std::vector<std::uint32_t>& roots() const { return roots_; }         // top nodes
   std::uint32_t root(std::uint32_t row) const { return root_of_row_[row]; }  // index into roots()
   const CellCluster& cluster(std::uint32_t root) const { return nodes_[roots_[root]].cluster; }
   const std::vector<CellGroup>& groups() const { return groups_; }
 
  private:
   struct Cell {
-    Vec3 center;                       // of the sphere, about the tool's centre of mass
-    double reach = 0, radius = 0;      // of the share, of the sphere
+    Vec3 center;                       // the sphere's centre, about the tool's centre of mass, m
+    double reach = 0, radius = 0;      // bounding radius of the cell, radius of the sphere, m
     std::uint32_t begin = 0, end = 0;  // blocks
   };
 

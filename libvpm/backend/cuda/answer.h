@@ -1,4 +1,4 @@
-// From the threads of a query to the program that waits for it.
+// Passes results from the threads of a query to the host program that waits.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace vpm::cuda {
 
-// Where the host looks for a result, in its own memory: the words of a RawResult.
+// Holds the words of a RawResult in host memory.
 struct Answer {
   static constexpr unsigned kWords = 18;
   static_assert(sizeof(RawResult) == kWords * sizeof(std::uint32_t));
@@ -17,7 +17,7 @@ struct Answer {
   NumberedWord words[kWords] = {};
 };
 
-// Nanoseconds of the device's clock, which all blocks share.
+// Returns the device's clock, ns, which all blocks share.
 __device__ inline std::uint64_t now() {
 #ifdef __CUDACC__
   std::uint64_t time;
@@ -28,13 +28,14 @@ __device__ inline std::uint64_t now() {
 #endif
 }
 
-// This thread's word of a result; of the first ones of a block.
+// Returns this thread's word of a result; 0 beyond the first Answer::kWords threads of a block.
 __device__ inline std::uint32_t word_of(const RawResult& result) {
   const unsigned k = threadIdx.x;
   return k < Answer::kWords ? reinterpret_cast<const std::uint32_t*>(&result)[k] : 0;
 }
 
-// By the threads of a block, with their words. `flood_ns` goes with the result.
+// Sends a result, given as each thread's word, with `flood_ns` put in. All threads of a block call
+// it.
 __device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* answer,
                             unsigned sequence) {
   constexpr unsigned kFlood = offsetof(RawResult, flood_ns) / sizeof(std::uint32_t);
@@ -48,12 +49,12 @@ __device__ inline void send(std::uint32_t word, std::uint64_t flood_ns, Answer* 
 struct Totals {
   RawResult result;
   unsigned done = 0;     // blocks that have added their part
-  unsigned arrived = 0;  // of GridTeam
+  unsigned arrived = 0;  // counter of GridTeam
 };
 
-// Adds up eight values over a warp. Each lane has the sum of value lane / 4.
+// Adds up eight values over a warp. Lane l returns the sum of value l / 4.
 __device__ inline std::int64_t add_up_over_warp(std::int64_t (&values)[8]) {
-  // Half of the values go to one half of the lanes, and so on.
+  // Halves the values and the lanes that hold them in each step.
 #pragma unroll
   for (unsigned half = 16, kept = 4; kept > 0; half /= 2, kept /= 2) {
     const bool is_upper = (threadIdx.x & half) != 0;
@@ -68,7 +69,7 @@ __device__ inline std::int64_t add_up_over_warp(std::int64_t (&values)[8]) {
   return sum + __shfl_xor_sync(~0U, sum, 1);
 }
 
-// Adds up a block's parts into `total`, which may lie in shared memory.
+// Adds a block's parts to `total`, which may lie in shared memory.
 __device__ inline void add_block(const RawResult& part, RawResult& total) {
   constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
   __shared__ std::int64_t values[kMostWarps][kTerms + 1];
@@ -81,7 +82,7 @@ __device__ inline void add_block(const RawResult& part, RawResult& total) {
   const std::int64_t sum_of_warp = add_up_over_warp(mine);
   __syncthreads();
   if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
-  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom asked for
+  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom
     const auto points = static_cast<unsigned>(Subwarp(32).sum(part.points));
     if (lane == 0) atomicAdd(&total.points, points);
   }

@@ -1,6 +1,5 @@
-// The second step of a query where a camera has seen the surface. What is behind it, no further
-// than the tool's reach, was added up when it was found; what is further waits for the planes of
-// cut shares.
+// Finishes a query where a camera has seen the surface. The first step has added what is behind it
+// by no more than the tool's radius; pieces further behind need the support of cut cells' planes.
 #pragma once
 
 #include "libvpm/backend/cuda/cut_cells.h"
@@ -23,11 +22,11 @@ class CameraVisibility {
         cut_(level, to_surface, space, notes_, counters, team),
         counts_points_(counts_points) {}
 
-  // Whether the first step has left anything: `far` pieces, or points.
+  // True if the first step has left `far` pieces, or points are to be counted.
   __device__ static bool has_more(unsigned far, bool counts_points) {
     return counts_points || far > 0;
   }
-  // This thread's part of the result, beyond that of the first step. All threads of the team.
+  // Returns what this thread adds to the first step's result. Call from all threads of the team.
   __device__ RawResult run() {
     RawResult result;
     const unsigned far = read_for_block(counters_).far;

@@ -1,5 +1,5 @@
-// What the threads of a block note for each other while they classify and measure shares: units of
-// clusters to be looked at, and pieces to be measured, as tasks for warps.
+// Defines the shared lists of a block's threads that classify and measure cells: block tasks to be
+// classified, and pieces to be measured.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_notes.h"
@@ -7,18 +7,18 @@
 
 namespace vpm::cuda {
 
-// Pieces of a share to be measured together.
+// Lists pieces of a cell to be measured together.
 struct Task {
   enum Form : std::uint32_t { samples, block, whole_block, whole_cell };
 
   std::uint32_t cell;
   Form form;
-  std::uint32_t begin, count;  // samples; otherwise `begin` is the block or share
+  std::uint32_t begin, count;  // samples; otherwise `begin` is the block or cell
 
   __device__ bool is_whole() const { return form == whole_block || form == whole_cell; }
 };
 
-// Lists of tasks by what warps do with them. Wide tasks have more than kNarrow samples.
+// Lists of tasks by how warps measure them. Wide tasks have more than kNarrow samples.
 struct TaskLists {
   enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
   static constexpr unsigned kTasks = 352;                               // room in a list
@@ -39,7 +39,8 @@ struct TaskLists {
   }
 };
 
-// A unit of such a cluster: the chunk by the slot of those who have looked at it.
+// Packs a block task to be classified: its index in a task group, the slot of the threads that
+// classified that, and the cluster's class.
 struct SeenTask {
   std::uint16_t bits;
 
@@ -58,14 +59,14 @@ struct SeenTask {
 inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;
 static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGroup::kTasks <= 8);
 
-// Memory that the threads of a block share.
+// Lays out a block's shared memory.
 struct MeasureShared {
   static constexpr unsigned kSeen = kMeasureThreads * TaskGroup::kTasks;
-  SeenTask seen[kSeen];  // in no patch from the front, in crossed patches from the end
+  SeenTask seen[kSeen];  // not planar from the front, of cut clusters from the end
   unsigned seen_count, clipped_count;
-  std::uint32_t pushed[kMeasureThreads];  // chunks
+  std::uint32_t pushed[kMeasureThreads];  // task groups of uniform clusters
   unsigned pushed_count;
-  std::uint32_t first_units[kMeasureThreads];  // of the chunk at which a slot's threads have looked
+  std::uint32_t first_units[kMeasureThreads];  // first block task of each slot's group
   TaskLists lists;
 };
 

@@ -1,4 +1,4 @@
-// The shares that the surface cuts, and what their planes say of pieces far behind it.
+// Lists the cells that the surface cuts, whose planes support pieces far behind it.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_notes.h"
@@ -17,7 +17,7 @@ class CutCells {
         counters_(counters),
         team_(team) {}
 
-  // The team meets before others of these are called.
+  // Lists the cut cells. Synchronise the team before calling other members.
   __device__ __noinline__ void list() {
     for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
       if ((notes_.words[i] & cell_bit::cut) != 0) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
@@ -26,11 +26,12 @@ class CutCells {
   __device__ CutCell at(std::uint32_t cut) const {
     return {notes_.planes[cut], to_surface_ * level_.centers[cut], level_.reach[cut]};
   }
-  // By all threads of a tile. Ties go to the smaller index; level.count where nothing is cut.
+  // Returns the nearest cut cell, or level.count if there is none; ties go to the smaller index.
+  // Call from all lanes of a subwarp.
   __device__ std::uint32_t nearest_to(const Subwarp& subwarp, std::uint32_t i) const;
 
-  // Adds the far pieces that count. `may_count(share)`: of one that is not cut; `add(share,
-  // sum)`: by one thread.
+  // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
+  // add(cell, sum).
   template <class MayCount, class Add>
   __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
                                        const Add& add) const {

@@ -16,7 +16,7 @@ std::vector<Edge> edges_of(const SphereGraph& graph) {
   return edges;
 }
 
-// Of each sphere, where the edges begin of which it has the larger index.
+// Returns for each sphere the begin of its edges to smaller indices; count + 1 entries.
 std::vector<std::uint32_t> edge_begins(const SphereGraph& graph) {
   std::vector<std::uint32_t> begins{0};
   for (std::uint32_t i = 0; i + 1 < graph.begin.size(); ++i) {

@@ -1,4 +1,4 @@
-// A tool's level in the memory of a device.
+// Holds a tool's level in the memory of a device.
 #pragma once
 
 #include "libvpm/backend/cuda/views.h"
@@ -6,7 +6,7 @@
 
 namespace vpm::cuda {
 
-// No point of a level's spheres is further from the centre of mass.
+// Returns a bounding radius of a level's spheres about the centre of mass, m.
 double reach_of_spheres(const ToolModel& tool, const Level& level);
 
 class DeviceLevel {

@@ -1,10 +1,9 @@
-// The first step of a query: what each share is to the surface, and its sums.
+// Runs the first step of a query: classifies cells and lists what is to be measured.
 //
-// What a cluster of shares is to the surface is decided first, by one to four threads for each
-// chunk of its units, more where chunks are few: they read the surface at four places of a patch. A
-// unit (block of a share) of a patch is classified by one to four threads, which read its pixels,
-// others by four, which look at the balls of its share, the block and the sphere. What is to be
-// measured is listed as tasks in shared memory (task_measure.h).
+// One to four threads classify each task group's cluster, more where groups are few, and sample the
+// surface at four places of a planar one. A block task of a cut cluster is classified by one to
+// four threads, which read its pixels; others by four, which classify the balls of its cell, block
+// and sphere. Work is listed as tasks in shared memory (task_measure.h).
 #pragma once
 
 #include <climits>
@@ -13,7 +12,7 @@
 
 namespace vpm::cuda {
 
-// Reads a surface at four places by the lanes of a tile, up to four.
+// Samples a surface at four places by the lanes of a subwarp, four at most.
 struct SampleByLanes : SampleInTurn {
   static constexpr unsigned kPlaces = 4;
   Subwarp lanes;
@@ -46,13 +45,14 @@ class GroupMeasure {
   __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared)
       : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
 
-  // By all threads of the block, for its part of the chunks. Returns what this thread has added up.
+  // Classifies the task groups of the block's part. Returns this thread's sums. Call from all
+  // threads.
   __device__ RawResult run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
     const Subwarp lanes(lanes_of_chunk());
-    // Neighbours go to different warps: they often differ in what takes long.
+    // Deals neighbours to different warps, since they often take long together.
     const unsigned of_warp = 32 / lanes.width, slots = blockDim.x / lanes.width;
     const unsigned slot = threadIdx.x % 32 / lanes.width * (slots / of_warp) + threadIdx.x / 32;
     for (unsigned first = work_.part.part; first < work_.level.task_group_count;
@@ -73,17 +73,15 @@ class GroupMeasure {
  private:
   using Measure = CellMeasure<Surface>;
   static constexpr bool kFloods = !Surface::kTellsInside;
-  static constexpr unsigned kLanes = 4;  // of a unit in no patch
-  static constexpr unsigned kSamplesOfBall =
-      4;  // of the surface take as long as the rest of a look
-  // What a round adds to a list is at most a task of each thread: one of each unit in a patch, two
-  // of each other.
+  static constexpr unsigned kLanes = 4;          // lanes of a block task outside planar clusters
+  static constexpr unsigned kSamplesOfBall = 4;  // take as long as the rest of a classification
+  // Adds at most a task per thread and round to a list: one per task of a cut cluster, else two.
   static_assert(kLanes >= 2 && kMeasureThreads <= TaskLists::kTasks);
 
   __device__ void clear_seen() {
     if (threadIdx.x == 0) shared_.seen_count = shared_.clipped_count = shared_.pushed_count = 0;
   }
-  // More lanes have looked at a chunk sooner, fewer leave room for more chunks in a round.
+  // Returns the lanes per task group. More finish a group sooner, fewer take more groups at once.
   __device__ unsigned lanes_of_chunk() const {
     unsigned best = 1, least = UINT_MAX;
     for (unsigned lanes = SampleByLanes::kPlaces; lanes > 0; lanes /= 2) {
@@ -94,7 +92,7 @@ class GroupMeasure {
     }
     return best;
   }
-  // By all threads of a slot; one notes what they have seen.
+  // Classifies one cluster with all threads of a slot. Its first thread notes the result.
   __device__ void look_at(std::uint32_t c, unsigned slot, const Subwarp& lanes) {
     const TaskGroup& chunk = work_.level.chunks[c];
     const Vec3 at = work_.to_surface * chunk.ball.center;
@@ -110,7 +108,7 @@ class GroupMeasure {
     shared_.first_units[slot] = chunk.begin;
     const unsigned count = chunk.end - chunk.begin;
     const bool clipped = seen == ClusterClass::cut;
-    if (clipped) {  // one by one: nvcc copies a whole that ends in padding byte by byte
+    if (clipped) {  // member by member: nvcc copies a padded struct byte by byte
       PlanarCluster& planar = planar_cluster_of(slot);
       planar.plane = plane;
       planar.least_inverse_depth = least_inverse_depth<Surface>(in_ball);
@@ -138,8 +136,8 @@ class GroupMeasure {
     plane = {tangent, work_.to_surface};
     return ClusterClass::cut;
   }
-  // A thread for each unit; those of a patch find its normal together. It takes long, so the last
-  // warps begin with it while the first ones deal with crossed patches.
+  // Notes the cells of uniform clusters, a thread for each block task. Finding the normals takes
+  // long, so the last warps do it while the first ones handle cut clusters.
   __device__ void note_pushed() {
     const unsigned thread = blockDim.x - 1 - threadIdx.x, u = thread % TaskGroup::kTasks;
     for (unsigned k = thread / TaskGroup::kTasks; k < shared_.pushed_count;
@@ -153,8 +151,8 @@ class GroupMeasure {
       if ((task.flags & BlockTask::is_head) != 0) note_pushed(task, normal);
     }
   }
-  // By rounds, before each of which the lists have room for its tasks: units of crossed patches by
-  // the first warps, others by the rest. Neighbours go to different warps.
+  // Classifies the listed block tasks in rounds, before each of which the lists get room: those of
+  // cut clusters by the first warps, others by the rest. Neighbours go to different warps.
   __device__ void classify_seen() {
     const unsigned clipped_count = shared_.clipped_count, count = shared_.seen_count;
     const unsigned warps = idle_warps(), lanes = lanes_of_clipped(warps);
@@ -180,19 +178,20 @@ class GroupMeasure {
   __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
     return (units * lanes + 31) / 32;
   }
-  // But for those that still deal with pushed patches.
+  // Returns the number of warps that do not handle uniform clusters.
   __device__ unsigned idle_warps() const {
     const unsigned warps = blockDim.x / 32;
     return warps - min(warps_of(shared_.pushed_count, TaskGroup::kTasks), warps / 2);
   }
-  // Of each unit in a crossed patch: as many as one round has.
+  // Returns the lanes per task of a cut cluster, as many as fit into one round.
   __device__ unsigned lanes_of_clipped(unsigned warps) const {
     const unsigned others = warps_of(shared_.seen_count, kLanes);
     unsigned lanes = kLanes;
     while (lanes > 1 && warps_of(shared_.clipped_count, lanes) + others > warps) lanes /= 2;
     return lanes;
   }
-  // Where these and other units are left, each has a warp at least, and half of those to spare.
+  // Returns the warps for tasks of cut clusters. If there are other tasks too, each kind gets at
+  // least one warp and half of the spare ones.
   __device__ static unsigned warps_for_clipped(unsigned warps, unsigned clipped, unsigned others) {
     if (clipped == 0 || others == 0) return clipped == 0 ? 0 : warps;
     const unsigned spare = warps - min(warps, clipped + warps_of(others, kLanes));
@@ -218,7 +217,7 @@ class GroupMeasure {
   TaskMeasure<Surface> tasks_;
 };
 
-// By the lanes of each unit, all threads of a warp together; `active`: it is to be noted.
+// Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
 template <class Surface>
 __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
   const Subwarp lanes(kLanes);
@@ -230,7 +229,7 @@ __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
   decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
   Side own = in_ball.side;
   if (seen.side() == Side::ambiguous) {
-    if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres hold points
+    if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres matter for points only
       in_ball = work_.surface.classify_ball(at, ball.radius);
     own = in_ball.side;
     if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
@@ -285,7 +284,7 @@ __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
   }
 }
 
-// True for the share's lane if its ball, whose pixels all lanes read, was seen to be free.
+// True in the cell's lane if its ball, whose pixels all lanes read, was seen to be free.
 template <class Surface>
 template <class BallClass>
 __device__ bool GroupMeasure<Surface>::is_cell_seen_past(const Subwarp& lanes,
@@ -313,7 +312,7 @@ __device__ void GroupMeasure<Surface>::note_cell(const BlockTask& task, std::uin
   work_.space.parents[i + 1] = i + 1;
 }
 
-// Whether a ball is, its pixels read by all lanes.
+// True if a ball was seen to be free; all lanes read its pixels.
 template <class Surface>
 __device__ bool GroupMeasure<Surface>::is_free(const Subwarp& lanes, Vec3 center,
                                                double radius) const {
@@ -326,7 +325,7 @@ __device__ bool GroupMeasure<Surface>::is_free(const Subwarp& lanes, Vec3 center
   return in_ball.side == Side::free;
 }
 
-// One unit of a patch that a plane crosses, by all lanes of a tile.
+// Classifies one block task of a cut cluster by all lanes of a subwarp.
 template <class Surface>
 __device__ void GroupMeasure<Surface>::classify_clipped(SeenTask seen, const Subwarp& lanes) {
   const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
@@ -359,7 +358,7 @@ __device__ void GroupMeasure<Surface>::classify_clipped(SeenTask seen, const Sub
     tasks_.add_clipped(task, plane);
 }
 
-// A share of a patch behind the surface.
+// Notes a cell of a uniform cluster.
 template <class Surface>
 __device__ void GroupMeasure<Surface>::note_pushed(const BlockTask& task, Vec3 normal) {
   tasks_.note_behind(task, normal);
@@ -368,7 +367,7 @@ __device__ void GroupMeasure<Surface>::note_pushed(const BlockTask& task, Vec3 n
   note_cell(task, cell_bit::whole, squared_gap(work_.surface.sample(at)));
 }
 
-// Lists a block of a mixed share.
+// Lists a block of an ambiguous cell.
 template <class Surface>
 __device__ void GroupMeasure<Surface>::list_block(const BlockTask& task, BlockClass found) {
   if (found == BlockClass::free) return;
@@ -381,7 +380,7 @@ __device__ void GroupMeasure<Surface>::list_block(const BlockTask& task, BlockCl
     tasks_.add(TaskLists::samples_narrow, {task.cell, Task::samples, begin, count});
     return;
   }
-  // Neighbours stay together.
+  // Halves at a whole number of neighbours.
   constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
   const std::uint32_t half =
       count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;

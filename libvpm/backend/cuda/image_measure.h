@@ -1,13 +1,12 @@
-// The first step of a query where a camera has seen the surface, of a level that has no more chunks
-// than a launch has warps: each takes one (units, blocks of the shares of one cluster), and waits
-// for no other.
+// Runs the first step of a query where a camera has seen the surface, for a level with no more task
+// groups than a launch has warps: each warp takes one group and waits for no other.
 #pragma once
 
 #include "libvpm/backend/cuda/image_task_group.h"
 
 namespace vpm::cuda {
 
-// All of a small level, by all warps of a launch, a chunk each.
+// Measures a small level by all warps of a launch, one task group each.
 class ImageMeasure {
  public:
   static constexpr unsigned kMostWarps = kMostThreads / 32;
@@ -21,20 +20,20 @@ class ImageMeasure {
         shared_(*reinterpret_cast<ImageShared*>(shared.warps[threadIdx.x / 32])),
         sums_(work.notes) {}
 
-  // Whether there are enough.
+  // True if the launch has enough warps for the level.
   __device__ static bool is_for(const LevelView& level, BlockRange part) {
     return level.of_warps.count > 0 && level.of_warps.count <= part.parts * (blockDim.x / 32);
   }
-  // Returns what this thread has added up.
+  // Returns the sums of this thread.
   __device__ RawResult run() {
     measure_chunk<TaskSums>();
     return sums_.found();
   }
-  // Notes the planes of cut shares, which run() leaves out. Seldom needed.
+  // Notes the planes of cut cells, which run() leaves out since few queries need them.
   __device__ void note_planes() { measure_chunk<ContactPlane>(); }
 
  private:
-  // Neighbours go to different blocks: they often take long together.
+  // Deals neighbours to different blocks, since they often take long together.
   template <class Found>
   __device__ void measure_chunk() {
     const WarpTaskGroups& all = work_.level.of_warps;

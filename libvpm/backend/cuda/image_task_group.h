@@ -1,10 +1,10 @@
-// A chunk of an image's query, by a warp: what each share is to the surface that a camera has seen,
-// and the sums of what is behind it, no further than the tool's reach. For image_measure.h.
+// Measures a task group of an image's query with one warp, for image_measure.h: classifies its
+// cells against the surface that a camera has seen, and sums what is behind it by no more than the
+// tool's radius.
 //
-// Some lanes work for each unit. All warps of a launch wait for the slowest one's way, so what may
-// be needed is looked at side by side, before it is known whether it is; and what a device reads
-// first of all is its instructions: each step stands here once, and all lanes go through it
-// together.
+// Some lanes work for each block task. A launch takes as long as its slowest warp, so what may be
+// needed is computed side by side before it is known to be. Loading instructions comes first, so
+// each step stands here once, and all lanes go through it together.
 #pragma once
 
 #include <type_traits>
@@ -15,22 +15,22 @@
 
 namespace vpm::cuda {
 
-// What the lanes of a warp tell each other of the chunk at which they work.
+// Lays out a warp's shared memory for the task group at hand.
 struct alignas(16) ImageShared {
   struct OfTask {
     Side cell = Side::free;
     BlockClass block = BlockClass::free;
-    bool asks_pixels = false;  // whether the share is free
+    bool asks_pixels = false;  // its pixels may show the cell to be free
     bool may_be_free = false;
-    ClipPlane plane;        // of a block that is cut
-    PixelRectangle pixels;  // of the share
+    ClipPlane plane;        // set for a cut block
+    PixelRectangle pixels;  // the cell's
     double farthest = 0;
   };
-  // Of the cluster.
+  // Describes the cluster from here on.
   DepthSurface::BallClass in_ball;
   Vec3 middle;
   SurfaceSample on_surface, around[DepthSurface::PlacesAround::kCount];
-  Vec3 normal;  // along which all of it is pushed
+  Vec3 normal;  // along which a uniform cluster is pushed
   OfTask units[TaskGroup::kTasks];
 };
 
@@ -59,12 +59,12 @@ struct SampleByWarp {
   }
 };
 
-// One chunk, by all lanes of a warp. `Found`, of each unit: TaskSums; or ContactPlane, in another
-// turn, since few queries need planes.
+// Measures one task group by all lanes of a warp. `Found` is what is computed per block task:
+// TaskSums or, in a second pass that few queries need, ContactPlane.
 template <class Found>
 class ImageTaskGroup {
  public:
-  // `lanes` of each unit.
+  // Takes the number of `lanes` per block task.
   __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, bool counts_points,
                             const TaskBall& cluster, const WarpTask* units, unsigned lanes,
                             ImageShared& shared, ImageSums& sums)
@@ -96,18 +96,18 @@ class ImageTaskGroup {
   using Measure = CellMeasure<DepthSurface>;
   using PieceSample = Measure::PieceSample;
 
-  // The lanes of a unit that look at its balls, and that of the warp which looks at the cluster's.
+  // Names the lanes of a task that classify its balls, and the warp's lane for the cluster's ball.
   static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
                             kOfSphere = BlockTask::of_sphere, kOfCluster = BlockTask::kBalls;
 
-  // How a unit counts.
+  // Tells how a block task counts.
   enum class Counts {
     not_at_all,
-    pushed,      // its share is behind the surface of its patch
-    by_plane,    // its block is crossed
-    whole_cell,  // behind the surface
+    pushed,      // its cell is behind the surface of a planar cluster
+    by_plane,    // a plane cuts its block
+    whole_cell,  // its cell is behind the surface
     whole_block,
-    by_samples,  // of its block
+    by_samples,  // sample by sample
   };
 
   __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
@@ -116,7 +116,7 @@ class ImageTaskGroup {
     const TaskBall& cell = unit_.balls[kOfCell];
     return work_.measure_of({.center = cell.center, .reach = cell.radius});
   }
-  // Whether something is so of any lane of the unit.
+  // True for all lanes of a task if `value` is true for any of them.
   __device__ bool any(bool value) const {
     const unsigned mask = (1U << lanes_) - 1;
     return (__ballot_sync(~0U, value) >> (threadIdx.x % 32 - lane_) & mask) != 0;
@@ -125,11 +125,11 @@ class ImageTaskGroup {
   __device__ static double from(double value, unsigned lane) {
     return __shfl_sync(~0U, value, static_cast<int>(lane));
   }
-  // From the lane so many on, of the same unit.
+  // Returns the value of the lane `lanes` further on, within the task.
   __device__ static double from_next(double value, unsigned lanes) {
     return __shfl_down_sync(~0U, value, lanes);
   }
-  // Over the lanes of the unit, for each.
+  // Adds up over the lanes of a task; all of them receive the sum.
   template <class Sum>
   __device__ void add_up(Sum& sum) const {
     std::int64_t* const terms = terms_of(sum);
@@ -162,19 +162,19 @@ class ImageTaskGroup {
   const TaskBall& cluster_;
   unsigned lanes_, lane_;
   const WarpTask& unit_;
-  std::uint32_t flags_, begin_, end_;  // of the unit: read together with its balls
+  std::uint32_t flags_, begin_, end_;  // loaded together with the task's balls
   ImageShared& shared_;
   ImageShared::OfTask& seen_;
   ImageSums& sums_;
 
-  Vec3 middle_;  // of the ball at which this lane has looked
+  Vec3 middle_;  // the ball that this lane classified
   double radius_ = 0;
   DepthSurface::BallClass look_;
-  SurfaceSample on_surface_;  // in the middle of the block
-  ClipPlane plane_;           // of a unit that is crossed or pushed
+  SurfaceSample on_surface_;  // sample at the block's middle
+  ClipPlane plane_;           // set for a task that is cut by a plane or pushed
 };
 
-// At all balls.
+// Classifies all balls.
 template <class Found>
 __device__ void ImageTaskGroup<Found>::see_ball() {
   const bool is_of_unit = lane_ < (counts_points_ ? kOfSphere : kOfBlock) + 1;
@@ -182,7 +182,7 @@ __device__ void ImageTaskGroup<Found>::see_ball() {
   radius_ = ball.radius;
   middle_ = work_.to_surface * ball.center;
   look_ = work_.surface.classify_ball(middle_, radius_);
-  __syncwarp();  // who has read of another chunk is done
+  __syncwarp();  // all lanes are done with the last group
   if (is_of_cluster()) {
     shared_.in_ball = look_;
     shared_.middle = middle_;
@@ -209,8 +209,8 @@ __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classif
   }
 }
 
-// True if the surface passes through the cluster as one plane, plane_. It is sampled in the middles
-// of the cluster and of the blocks together, and then at four places about that of the cluster.
+// True if the surface passes through the cluster as one plane, plane_. Samples it in the middles of
+// the cluster and of the blocks together, then at four places about the cluster's middle.
 template <class Found>
 __device__ bool ImageTaskGroup<Found>::sees_plane() {
   const double tool_radius = work_.level.tool_reach.length;
@@ -227,7 +227,7 @@ __device__ bool ImageTaskGroup<Found>::sees_plane() {
   return true;
 }
 
-// Of a patch that is crossed by plane_.
+// Classifies a task of a cluster that is cut by plane_.
 template <class Found>
 __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classify_clipped() {
   const TaskBall& cell = unit_.balls[kOfCell];
@@ -245,8 +245,7 @@ __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classif
   return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
 }
 
-// Of a share that may be, by all lanes: whether its own pixels show it to be free, whatever the
-// plane says.
+// True if the cell's own pixels show it free though it is behind the plane. Call from all lanes.
 template <class Found>
 __device__ bool ImageTaskGroup<Found>::is_free_in_cluster(bool may_be_free) {
   if (lane_ == kOfCell)
@@ -257,7 +256,7 @@ __device__ bool ImageTaskGroup<Found>::is_free_in_cluster(bool may_be_free) {
   return side_of_cell(seen_.may_be_free) == Side::free && seen_.may_be_free;
 }
 
-// Of a cluster that is no patch.
+// Classifies a task of a cluster that is not planar.
 template <class Found>
 __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classify_alone(Side side) {
   if (side == Side::ambiguous) {
@@ -289,7 +288,7 @@ __device__ typename ImageTaskGroup<Found>::Counts ImageTaskGroup<Found>::classif
   return is(BlockTask::has_block) ? Counts::whole_block : Counts::not_at_all;
 }
 
-// Its pixels, if they are asked, may show that the share is free.
+// Returns the side of the cell; if `asks`, its pixels may show it to be free.
 template <class Found>
 __device__ Side ImageTaskGroup<Found>::side_of_cell(bool asks) {
   asks = asks && seen_.asks_pixels;
@@ -300,7 +299,7 @@ __device__ Side ImageTaskGroup<Found>::side_of_cell(bool asks) {
   return asks && !is_near ? Side::free : seen_.cell;
 }
 
-// By its lane, whether the surface passes through the block as one plane.
+// Classifies the block in its lane: the surface may pass through it as one plane.
 template <class Found>
 __device__ void ImageTaskGroup<Found>::see_block() {
   TangentPlane tangent;
@@ -310,8 +309,8 @@ __device__ void ImageTaskGroup<Found>::see_block() {
   if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
 }
 
-// The piece that this lane measures in this turn, if there is one, and where it lies: a sample, or
-// what is taken whole.
+// Returns false if this lane has no piece in this turn. Otherwise gives a sample, or a block or
+// cell taken whole, and its place x in the surface's frame.
 template <class Found>
 __device__ bool ImageTaskGroup<Found>::take_piece(Counts counts, unsigned turn, ToolPiece& piece,
                                                   Vec3& x) const {
@@ -329,7 +328,7 @@ __device__ bool ImageTaskGroup<Found>::take_piece(Counts counts, unsigned turn, 
   return true;
 }
 
-// Pieces that are measured one by one, and the way out of the middle of a cluster that is pushed.
+// Measures pieces one by one, and finds the way out of the middle of a uniform cluster.
 template <class Found>
 __device__ void ImageTaskGroup<Found>::measure_pieces(Counts counts, Found& found) {
   const bool finds_way =
@@ -357,8 +356,8 @@ __device__ void ImageTaskGroup<Found>::measure_pieces(Counts counts, Found& foun
   }
 }
 
-// By all lanes, those that have none too: one of no weight adds nothing. Neighbours among samples
-// are pushed in one direction. Returns the way out of one that is wholly inside.
+// Measures a piece; lanes without one take part with weight 0. Neighbouring samples are pushed in
+// one direction. Returns the way out of a piece that is wholly inside.
 template <class Found>
 __device__ Vec3 ImageTaskGroup<Found>::measure_piece(const ToolPiece& piece, Vec3 x, bool exists,
                                                      bool is_sample, Found& found) {
@@ -400,7 +399,7 @@ __device__ Vec3 ImageTaskGroup<Found>::measure_piece(const ToolPiece& piece, Vec
   return normal;
 }
 
-// One that is inside.
+// Adds a piece that is inside.
 template <class Found>
 __device__ void ImageTaskGroup<Found>::add_piece(const Measure& measure, const ToolPiece& piece,
                                                  const PieceSample& sampled, Vec3 normal,
@@ -414,7 +413,7 @@ __device__ void ImageTaskGroup<Found>::add_piece(const Measure& measure, const T
   }
 }
 
-// What a plane says of the unit, by its first lane.
+// Adds the part of a task behind a plane, in its first lane.
 template <class Found>
 __device__ void ImageTaskGroup<Found>::measure_by_plane(Counts counts, Found& found) {
   const TaskBall& block = unit_.balls[kOfBlock];
@@ -435,9 +434,9 @@ __device__ void ImageTaskGroup<Found>::measure_by_plane(Counts counts, Found& fo
   }
 }
 
-// Of the first samples of the block behind its plane, for the first lane: the rows of
-// clipped_in_turn, one for each lane, and these by halves. (Where there are fewer lanes than rows,
-// no lane has more than two samples, and 0 in the rows that are left out.)
+// Returns, in the first lane, the clipped moments of the block's first `count` samples, with the
+// bits of clipped_in_turn(): a row per lane, added by halves. (With fewer lanes than rows, no lane
+// has more than two samples, and the rows left out are 0.)
 template <class Found>
 __device__ ClippedMoments ImageTaskGroup<Found>::clipped_moments(std::uint32_t count) const {
   static_assert(WarpTaskGroups::kNarrow == 2 * (32 / TaskGroup::kTasks) &&

@@ -5,7 +5,7 @@
 namespace vpm::cuda {
 namespace {
 
-// Some units of a cluster, so many to a chunk.
+// Adds block tasks of a cluster in groups of `at_once`.
 template <class SomeTask>
 void add_chunks(const CellCluster& cluster, std::span<const WarpTask> some, std::size_t at_once,
                 GroupedTasks<SomeTask>& out) {
@@ -17,7 +17,7 @@ void add_chunks(const CellCluster& cluster, std::span<const WarpTask> some, std:
         {{cluster.center, cluster.reach}, begin, begin + static_cast<std::uint32_t>(these.size())});
   }
 }
-// The same, with room for whole chunks.
+// Adds groups filled up with tasks without flags.
 void add_whole_chunks(const CellCluster& cluster, std::span<const WarpTask> some,
                       std::size_t at_once, GroupedTasks<WarpTask>& out) {
   if (some.empty()) return;

@@ -1,4 +1,4 @@
-// The units of a level, and chunks of them, as a device classifies them.
+// Makes the block tasks of a level and their groups for a device.
 #pragma once
 
 #include <span>
@@ -19,9 +19,9 @@ class LevelTasks {
   LevelTasks(const ToolModel& tool, const Level& level, const CellClusters& clusters);
 
   const std::vector<BlockMass>& block_masses() const { return block_masses_; }
-  // Cluster by cluster.
+  // Returns the tasks cluster by cluster.
   GroupedTasks<BlockTask> chunked() const;
-  // For WarpTaskGroups. `wide_count`: how many chunks of wide units.
+  // Returns the tasks for WarpTaskGroups, and in `wide_count` the number of groups of wide tasks.
   GroupedTasks<WarpTask> chunked_for_warps(std::uint32_t& wide_count) const;
 
  private:

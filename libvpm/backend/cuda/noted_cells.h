@@ -1,11 +1,11 @@
-// The shares of a level that the first step has noted anything of: of a large level, few.
+// Visits the cells that the first step has noted, which are few in a large level.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_notes.h"
 
 namespace vpm::cuda {
 
-// Memory that the threads of a block share.
+// Lays out a block's shared memory.
 struct NotedList {
   static constexpr unsigned kRoom = 4096;
 
@@ -20,12 +20,11 @@ class NotedCells {
                         NotedList& list)
       : level_(level), notes_(notes), team_(team), list_(list) {}
 
-  // Calls visit(i, word) for the shares that have a word, dealt out to the threads of the team.
-  // Blocks take shares side by side in turns, and list those that have a word. Where one list holds
-  // all, it serves again.
+  // Calls visit(i, word) for the cells with a word, spread over the threads of the team. Blocks
+  // list such cells in turns of neighbouring ones. A list that holds all serves again.
   template <class Visit>
   __device__ void for_each(const Visit& visit) {
-    constexpr unsigned kTogether = 8;  // words whose reads wait together
+    constexpr unsigned kTogether = 8;  // loads in flight
     const BlockRange part = team_.block();
     const unsigned step = part.parts * blockDim.x, begin = part.part * blockDim.x;
     const Subwarp warp(32);
@@ -76,7 +75,7 @@ class NotedCells {
   const CellNotes& notes_;
   const Team& team_;
   NotedList& list_;
-  bool lists_all_ = false;  // list_ has all shares of this block that have a word
+  bool lists_all_ = false;  // list_ holds all noted cells of this block
 };
 
 }  // namespace vpm::cuda

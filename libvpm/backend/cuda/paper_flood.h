@@ -1,5 +1,5 @@
-// The steps of the measure as printed, numbered as in libvpm/measure/README.md, by many threads:
-// the bits of PaperMeasure, whatever their order.
+// Runs the measure as printed with many threads, with the bits of PaperMeasure in any order of
+// threads. libvpm/measure/README.md numbers its steps.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_notes.h"
@@ -8,42 +8,43 @@
 
 namespace vpm::cuda {
 
-// One level of a tool, as this measure sees it.
+// Describes one level of a tool as this measure takes it.
 struct PaperLevel {
-  // What a few threads go through together; large spheres have thousands of neighbours.
+  // Limits the neighbours of a sphere that a subwarp visits; large spheres have thousands.
   static constexpr std::uint32_t kMostNeighbors = 64;
 
   std::uint32_t count = 0;
   const Sphere* spheres = nullptr;
   const std::uint32_t* graph_begin = nullptr;
   const std::uint32_t* neighbors = nullptr;
-  const std::uint32_t* hubs = nullptr;  // spheres of more than kMostNeighbors
+  const std::uint32_t* hubs = nullptr;  // spheres with more than kMostNeighbors
   std::uint32_t hub_count = 0;
   GridView grid;
   ToolMeasures tool;
-  double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
+  double spheres_reach = 0;  // bounding radius of all spheres about the centre of mass, m
 };
 
-// Memory of one query. Words and contacts are 0 at the start; the lists say which are not.
+// Points to the memory of one query. Words and contacts that the lists do not name are 0.
 struct PaperSpace {
-  // In `words`: 0 outside, the front that reached an inside sphere (1 is the entry), or this.
+  // Marks a boundary sphere. Other words are 0 outside, or the front that reached a sphere.
   static constexpr std::uint32_t kBoundary = 0xffffffffU;
 
   std::uint32_t* words = nullptr;
   PaperContact* contacts = nullptr;
-  Vec3* normals = nullptr;            // of boundary and inside spheres
+  Vec3* normals = nullptr;            // valid for boundary and inside spheres
   std::uint32_t* boundary = nullptr;  // a list, in any order
   std::uint32_t* inside = nullptr;    // front after front, each in any order
 };
 
-// Counters of a query; 0 at the start.
+// Counts a query's finds; 0 at the start.
 struct PaperCounters {
   unsigned points = 0, boundary = 0;
-  unsigned fronts[3] = {};  // sizes of a front, the next one, and the one after, by turns
-  unsigned inside = 0;      // written by the flood when it is done
+  unsigned fronts[3] = {};  // sizes of a front, the next one, and the one after, in rotation
+  unsigned inside = 0;      // written when the flood is done
 };
 
-// By a part of the threads: makes `space` as it was before the query that `counters` are of.
+// Resets `space` after the query that `counters` are of. A thread takes entries first, first +
+// step, ...
 __device__ inline void clear(const PaperSpace& space, const PaperCounters& counters,
                              std::uint32_t first, std::uint32_t step) {
   for (std::uint32_t k = first; k < counters.boundary; k += step) {
@@ -54,7 +55,7 @@ __device__ inline void clear(const PaperSpace& space, const PaperCounters& count
   for (std::uint32_t k = first; k < counters.inside; k += step) space.words[space.inside[k]] = 0;
 }
 
-// Steps 1 and 2 for a part of the points, by all threads of a block.
+// Gathers the points of spheres (steps 1 and 2) in a block's range, by all its threads.
 __device__ inline void gather(const PaperLevel& level, const PointsView& points,
                               const PoseFrame& frame, BlockRange part, const PaperSpace& space,
                               PaperCounters& counters) {
@@ -76,7 +77,7 @@ __device__ inline void gather(const PaperLevel& level, const PointsView& points,
       });
 }
 
-// Memory that the threads of a block share while they pass a hub.
+// Lays out a block's shared memory while it passes a hub.
 struct HubShared {
   static constexpr unsigned kAtOnce = 32 * 32;  // neighbours: each lane of a warp counts 32
   static constexpr unsigned kOfThread = kAtOnce / kPaperThreads;
@@ -88,7 +89,7 @@ struct HubShared {
   double sums[3];
 };
 
-// Steps 3 to 6, after all points are gathered and the team has met.
+// Runs steps 3 to 6. All points must be gathered and the team synchronised.
 template <class Team>
 class PaperFlood {
  public:
@@ -96,11 +97,10 @@ class PaperFlood {
                         Team& team, HubShared& shared)
       : level_(level), space_(space), counters_(counters), team_(team), shared_(shared) {}
 
-  // This thread's part of the result. All threads of the team.
+  // Returns this thread's part of the result. Call from all threads of the team.
   __device__ RawResult run() {
     enter();
-    // A front reads the words and normals of the one before and claims the next: the team meets
-    // between.
+    // Synchronises the team between fronts: each reads the one before and claims the next.
     for (front_ = 1;; ++front_) {
       team_.sync();
       const unsigned size = read(counters_.fronts[front_ % 3]);
@@ -114,12 +114,12 @@ class PaperFlood {
   }
 
  private:
-  static constexpr unsigned kWidth = 8;  // threads that go through a sphere's neighbours together
+  static constexpr unsigned kWidth = 8;  // threads that visit a sphere's neighbours together
 
   __device__ std::uint32_t degree(std::uint32_t i) const {
     return level_.graph_begin[i + 1] - level_.graph_begin[i];
   }
-  // Of the threads of a tile, those for which `value` holds: the first thread is bit 0.
+  // Returns the subwarp's threads with a true `value`, the first thread as bit 0.
   __device__ static unsigned ballot(const Subwarp& subwarp, bool value) {
     return (__ballot_sync(subwarp.mask, value) & subwarp.mask) >> (threadIdx.x % 32 - subwarp.lane);
   }
@@ -143,12 +143,12 @@ class PaperFlood {
   PaperCounters& counters_;
   Team& team_;
   HubShared& shared_;
-  // Of the front: its number, and in the list where its spheres begin and the next front's.
+  // Holds the front's number, and where its spheres and the next front's begin in the list.
   std::uint32_t front_ = 0, begin_ = 0, next_ = 0;
   RawResult result_;
 };
 
-// By a tile: those of its spheres that nobody has claimed yet are in the next front.
+// Adds to the next front those spheres of a subwarp that nobody has claimed yet.
 template <class Team>
 __device__ void PaperFlood<Team>::claim(const Subwarp& subwarp, bool wants, std::uint32_t i) {
   const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
@@ -160,7 +160,7 @@ __device__ void PaperFlood<Team>::claim(const Subwarp& subwarp, bool wants, std:
   if (claimed) space_.inside[next_ + slot] = i;
 }
 
-// Steps 3 and 4: a tile for each boundary sphere, a block for each that is a hub.
+// Runs steps 3 and 4 with a subwarp for each boundary sphere, or a block if it is a hub.
 template <class Team>
 __device__ void PaperFlood<Team>::enter() {
   const Subwarp subwarp(kWidth);
@@ -185,7 +185,7 @@ __device__ void PaperFlood<Team>::enter() {
   for_hubs(PaperSpace::kBoundary, [&](std::uint32_t i) { enter_from_hub(i); });
 }
 
-// Step 5 for one front: a tile for each of its spheres, a block for each that is a hub.
+// Runs step 5 for one front with a subwarp for each sphere, or a block if it is a hub.
 template <class Team>
 __device__ void PaperFlood<Team>::pass_front(unsigned size) {
   if (team_.thread() == 0) counters_.fronts[(front_ + 2) % 3] = 0;
@@ -200,8 +200,7 @@ __device__ void PaperFlood<Team>::pass_front(unsigned size) {
   for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
 }
 
-// Claims what the sphere leads to and returns its normal: normals are added in the order of the
-// neighbours.
+// Claims the sphere's neighbours and returns its normal, summed in the order of neighbours.
 template <class Team>
 __device__ Vec3 PaperFlood<Team>::pass(const Subwarp& subwarp, std::uint32_t j) {
   const std::uint32_t end = level_.graph_begin[j + 1];
@@ -222,8 +221,8 @@ __device__ Vec3 PaperFlood<Team>::pass(const Subwarp& subwarp, std::uint32_t j) 
   return normalized_or_zero(normal);
 }
 
-// An entered sphere takes the normals of the boundary spheres that let it in, a later one those of
-// the front before.
+// True if sphere i gives its normal to sphere j: a boundary sphere to those that it lets in, a
+// sphere of the front before to later ones.
 template <class Team>
 __device__ bool PaperFlood<Team>::gives_normal(std::uint32_t word, std::uint32_t i,
                                                std::uint32_t j) const {
@@ -232,7 +231,7 @@ __device__ bool PaperFlood<Team>::gives_normal(std::uint32_t word, std::uint32_t
          lets_in(level_.spheres[i], space_.normals[i], level_.spheres[j]);
 }
 
-// Calls pass(hub) for the hubs that have this word, each by all threads of one block.
+// Calls pass(hub) for the hubs with this word, each from all threads of one block.
 template <class Team>
 template <class Pass>
 __device__ void PaperFlood<Team>::for_hubs(std::uint32_t word, const Pass& pass) {
@@ -265,12 +264,12 @@ __device__ void PaperFlood<Team>::enter_from_hub(std::uint32_t i) {
   }
 }
 
-// As pass(): many neighbours at once, of which those that give their normals are put side by side
-// in their order, and added by a thread for each axis.
+// Does what pass() does for many neighbours at once. Normals to be added are put side by side in
+// order, and a thread for each axis adds them.
 template <class Team>
 __device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
   const Subwarp warp(32);
-  const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // of 32 neighbours
+  const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // in groups of 32 neighbours
   const std::uint32_t end = level_.graph_begin[j + 1];
   double sum = 0;
   for (std::uint32_t first = level_.graph_begin[j]; first < end; first += HubShared::kAtOnce) {
@@ -319,7 +318,7 @@ __device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
     space_.normals[j] = normalized_or_zero({shared_.sums[0], shared_.sums[1], shared_.sums[2]});
 }
 
-// Step 6: boundary spheres have added their part when they were entered from.
+// Runs step 6 for inside spheres; boundary spheres were added in enter().
 template <class Team>
 __device__ void PaperFlood<Team>::add_up() {
   for (unsigned k = team_.thread(); k < begin_; k += team_.threads()) {

@@ -11,7 +11,7 @@ namespace {
 struct PaperLaunch {
   PaperLevel level;
   PointsView points;
-  PaperSpace space;  // of the first team; that of team t begins t * count spheres later
+  PaperSpace space;  // memory of the first team; team t's begins t * count spheres later
 };
 
 __device__ PaperSpace space_of(const PaperSpace& first, std::size_t spheres) {
@@ -19,9 +19,8 @@ __device__ PaperSpace space_of(const PaperSpace& first, std::size_t spheres) {
           first.boundary + spheres, first.inside + spheres};
 }
 
-// One query by all blocks of a cooperative launch. Two spaces take turns: while points are
-// gathered in one, the other is cleared of the query before, whose states could be asked for until
-// now.
+// Answers one query by all blocks of a cooperative launch. Two spaces alternate: while one gathers
+// points, the other is cleared of the last query, whose states could be read until now.
 __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
     one_pose(const __grid_constant__ PaperLaunch launch, const __grid_constant__ PoseFrame frame,
              Totals* totals, PaperCounters* counters, Answer* answer, unsigned sequence) {
@@ -49,7 +48,7 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   send(word_of(total), now() - met, answer, sequence);
 }
 
-// Each block a query of its own, one after another.
+// Answers one query after another in each block.
 __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
     many_poses(const __grid_constant__ PaperLaunch launch, const __grid_constant__ CloudFrame cloud,
                const Pose* poses, unsigned count, RawResult* results) {
@@ -81,7 +80,7 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   }
 }
 
-// Memory of a number of teams.
+// Holds the device memory of a number of teams.
 class PaperMemory {
  public:
   PaperMemory(std::size_t spheres, std::size_t teams)
@@ -137,7 +136,7 @@ class PaperOnDevice : public MeasureOnDevice {
   }
 
  private:
-  // Teams that share the work of a batch.
+  // Holds the teams that deal with a batch.
   struct Teams {
     Teams(unsigned teams, std::size_t spheres) : count(teams), memory(spheres, count) {}
     unsigned count;
@@ -149,7 +148,7 @@ class PaperOnDevice : public MeasureOnDevice {
     launch_kernel(one_pose, {blocks_, kPaperThreads}, LaunchKind::cooperative, stream(), arguments,
                   frame, totals_.get(), counters_.get(), answer, sequence);
   }
-  // A launch for each tool.
+  // Launches once for each tool.
   void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
     unsigned begin = 0;
     for (const ToolPart& part : tools) {
@@ -169,7 +168,7 @@ class PaperOnDevice : public MeasureOnDevice {
       begin = part.end;
     }
   }
-  // As on the CPU: of an image, the same pixels are looked at.
+  // Returns the CPU's radius, so that the same pixels of an image are tested.
   double reach() const override { return level_.tool.reach; }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().words + sequence % 2 * level_.count;
@@ -180,7 +179,7 @@ class PaperOnDevice : public MeasureOnDevice {
                                            : SphereState::inside;
   }
 
-  unsigned blocks_;  // that answer one pose
+  unsigned blocks_;  // blocks that answer one pose
   DeviceArray<Sphere> spheres_;
   DeviceArray<std::uint32_t> graph_begin_, neighbors_, hubs_, grid_begin_, grid_spheres_;
   PaperLevel level_;

@@ -1,5 +1,4 @@
-// The cloud's points that a pose can reach, and how many of them lie strictly inside each sphere of
-// a tool.
+// Visits the cloud's points that a pose can reach, and counts those strictly inside spheres.
 #pragma once
 
 #include <math_constants.h>
@@ -9,8 +8,8 @@
 
 namespace vpm::cuda {
 
-// Adds one to the count of each sphere that holds the point. All threads of a warp together;
-// `active`: this thread has a point.
+// Adds one to the count of each sphere that holds the point. Call from all threads of a warp;
+// `active` ones have a point.
 __device__ inline void count_point(const LevelView& level, const Pose& to_tool, Vec3 point,
                                    bool active, std::uint32_t* counts) {
   constexpr std::uint32_t kNone = 0xffffffffU;
@@ -21,7 +20,7 @@ __device__ inline void count_point(const LevelView& level, const Pose& to_tool, 
       found = sphere;
     });
   }
-  // Neighbouring pixels lie in few spheres: one addition for each.
+  // Adds once per sphere and warp, since neighbouring pixels lie in few spheres.
   for (unsigned rest = __ballot_sync(~0U, found != kNone); rest != 0;) {
     const int leader = __ffs(static_cast<int>(rest)) - 1;
     const unsigned same = __ballot_sync(~0U, found == __shfl_sync(~0U, found, leader));
@@ -30,9 +29,8 @@ __device__ inline void count_point(const LevelView& level, const Pose& to_tool, 
   }
 }
 
-// Calls visit(index, point, active) for a part of the pixels that the pose can reach, with all
-// threads of a warp at once; warps take pieces of rows. `active`: the thread has a point, and it
-// lies within `reach` of the centre of mass.
+// Calls visit(index, point, active) for a part of the pixels that the pose can reach, from all
+// threads of a warp; warps take pieces of rows. `active` means within `reach`, m, of the centre.
 template <class Visit>
 __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, double reach,
                            std::uint32_t warp, std::uint32_t warps, const Visit& visit) {
@@ -56,12 +54,12 @@ __device__ void for_pixels(const PointsView& points, const PoseFrame& frame, dou
   Vec3f next = position(warp);
   for (std::uint32_t k = warp; k < count; k += warps) {
     const Vec3 point = widen(next);
-    next = position(k + warps);  // read while this one is looked for
+    next = position(k + warps);  // loaded while this point is visited
     visit(index(k), point, squared_norm(point - frame.center) <= reach_squared);
   }
 }
 
-// The same for points of any cloud, by all threads of a block.
+// Calls visit(index, point, active) for the points of any cloud, by all threads of a block.
 template <class Visit>
 __device__ void for_points(const PointsView& points, const PoseFrame& frame, double reach,
                            BlockRange part, const Visit& visit) {
@@ -80,7 +78,7 @@ __device__ void for_points(const PointsView& points, const PoseFrame& frame, dou
   }
 }
 
-// For a part of the points that the pose can reach, by all threads of a block.
+// Counts a part of the points that the pose can reach. Call from all threads of a block.
 __device__ inline void count_points(const LevelView& level, const PointsView& points,
                                     const PoseFrame& frame, BlockRange part,
                                     std::uint32_t* counts) {

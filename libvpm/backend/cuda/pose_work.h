@@ -1,5 +1,4 @@
-// What the threads that measure shares know of the pose that they work at, and what each kind of
-// cloud has them do with a piece that is inside.
+// Bundles what the threads that measure cells know of their pose.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_notes.h"
@@ -12,7 +11,7 @@ struct PoseWork {
   const Surface& surface;
   const Pose& to_surface;
   const RefinedSpace& space;
-  const CellNotes& notes;  // of the pose, in that space
+  const CellNotes& notes;  // the pose's notes in `space`
   RefinedCounters& counters;
   BlockRange part;
 
@@ -31,8 +30,7 @@ struct PoseWork {
     return {surface, to_surface, level.tool_reach, view};
   }
 
-  // Adds a piece of a share that is inside, or cut. `normal`: the way out of one that is not cut.
-  // Far ones are listed.
+  // Adds a piece that is inside or cut; lists a far one. `normal` is the way out of an uncut one.
   __device__ void add_inside(const CellMeasure<Surface>& measure, const ToolPiece& piece,
                              const typename CellMeasure<Surface>::PieceSample& sampled, Vec3 normal,
                              std::uint32_t cell, ToolSum& total) const {
@@ -42,7 +40,7 @@ struct PoseWork {
       total.add(sum);
       return;
     }
-    // Member by member: the whole would be stored byte by byte.
+    // Assigns member by member, since nvcc would store the whole byte by byte.
     FarPiece& far = space.far[atomicAdd(&counters.far, 1U)];
     far.at = sampled.x;
     far.foot = sampled.on_surface.foot;

@@ -1,5 +1,5 @@
-// The kernels of the refined measure: one pose by all blocks, and many poses by a block each. For
-// refined_measure.cu.
+// Defines the kernels of the refined measure, for refined_measure.cu: one pose by all blocks, and
+// many poses by a block each.
 #pragma once
 
 #include <type_traits>
@@ -14,8 +14,8 @@
 namespace vpm::cuda {
 namespace {
 
-// Blocks of one multiprocessor. Two spill no registers where an image is read, and are sooner done
-// with a pose of up to some 50 000 spheres; three are, with more spheres, or among points.
+// Sets the blocks per multiprocessor. Two spill no registers for an image and finish a pose of up
+// to kSpheresOfFewBlocks spheres sooner; three do with more spheres, or for points.
 constexpr unsigned kFewBlocks = 2, kManyBlocks = 3, kBatchBlocks = 2;
 constexpr std::uint32_t kSpheresOfFewBlocks = 50'000;
 
@@ -26,28 +26,28 @@ struct RefinedLaunch {
   PointsView points;
   RefinedSpace space;
   bool counts_points = false;
-  // The blocks that deal with spheres, the others do with points; and what these add up.
+  // Counts the blocks that measure spheres; the others count points.
   unsigned sphere_blocks = 0;
   Totals* totals = nullptr;
   RefinedCounters* counters = nullptr;
   Answer* answer = nullptr;
 };
 
-// Many poses of several tools.
+// Holds the arguments of a launch for many poses of several tools.
 template <class Surface>
 struct BatchLaunch {
   static constexpr unsigned kTools = 16;
 
   LevelView levels[kTools];
-  unsigned ends[kTools];  // of the poses of each, which follow those of the tool before
+  unsigned ends[kTools];  // end of each tool's poses, which follow those of the tool before
   Surface surface;
   PointsView points;
-  RefinedSpace space;  // of the first team
-  TeamRoom room;       // of each: that of team t begins t * room.shares shares later
+  RefinedSpace space;  // memory of the first team
+  TeamRoom room;       // size of one team's memory
   bool counts_points = false;
 };
 
-// The memory of one of several teams, each of one block.
+// Returns the memory of one of several teams of one block each.
 __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room,
                                  std::size_t team) {
   const std::size_t cells = team * room.cells;
@@ -66,11 +66,11 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
   return space;
 }
 
-// What decides which shares behind a surface are inside.
+// Decides which cells behind a surface are inside.
 template <class Surface, class Team>
 using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
 
-// Memory of a block; the steps of a query follow each other.
+// Lays out a block's shared memory, which the steps of a query use one after another.
 template <class Surface>
 union BlockShared {
   MeasureShared measure;
@@ -78,7 +78,7 @@ union BlockShared {
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
-// The first step of one query by all blocks of a launch. Returns what this thread has added up.
+// Runs the first step of one query by all blocks of a launch. Returns the sums of this thread.
 template <class Surface>
 __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                                    unsigned turn, BlockShared<Surface>& shared) {
@@ -99,7 +99,7 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
   return GroupMeasure<Surface>(work, launch.counts_points, shared.measure).run();
 }
 
-// The planes of cut shares, where the first step has not noted them: few queries need them.
+// Notes the planes of cut cells if the first step has not; few queries need them.
 __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& launch,
                                          const PoseFrame& frame, unsigned turn,
                                          BlockShared<DepthSurface>& shared) {
@@ -110,13 +110,13 @@ __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& laun
   ImageMeasure(work, launch.counts_points, shared.image).note_planes();
 }
 
-// What the next query begins with, when nobody waits for this one any more.
+// Clears the notes for the next query, while nobody waits.
 template <class Surface>
 __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) {
   launch.space.notes[(turn + 1) % 2].clear(launch.level, {blockIdx.x, gridDim.x});
 }
 
-// One query; the last block to come floods alone. For levels of few shares.
+// Answers one query; the last block floods alone. For levels of few cells.
 __global__ void __launch_bounds__(kThreads, kManyBlocks)
     one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
                    const __grid_constant__ PoseFrame frame, unsigned sequence) {
@@ -143,8 +143,8 @@ __global__ void __launch_bounds__(kThreads, kManyBlocks)
   clear_next(launch, sequence);
 }
 
-// One query by all blocks of a cooperative launch. Where the first step has found all (no far
-// pieces, and nobody asks for points), the last block to come sends the answer.
+// Answers one query by all blocks of a cooperative launch. If the first step has found all (no far
+// pieces, no points asked), the last block to arrive sends the answer.
 template <class Surface>
 __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFrame& frame,
                             unsigned sequence, GridTeam& team, BlockShared<Surface>& shared) {
@@ -157,11 +157,11 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
   unsigned far = 0;
   const auto has_more = [&] { return Rest::has_more(far, launch.counts_points); };
   if (is_last) {
-    const std::uint32_t word = word_of(totals->result);  // read while it is seen that this is all
+    const std::uint32_t word = word_of(totals->result);  // loaded while `far` is
     far = read(launch.counters->far);
     if (!has_more()) send(word, now() - met, launch.answer, sequence);
   }
-  clear_next(launch, sequence);  // while the others come
+  clear_next(launch, sequence);  // while others arrive
   if (!is_last) {
     team.wait();
     met = now();
@@ -170,7 +170,7 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const PoseFram
   if (has_more()) {
     if constexpr (Surface::kTellsInside)
       if (far > 0) note_planes(launch, frame, sequence, shared);
-    GridTeam meeting = team;  // one of its own: what functions are given lies in memory
+    GridTeam meeting = team;  // a copy, since a function's argument lies in memory
     Rest rest(launch.level, frame.to_surface, launch.space, sequence, *launch.counters, meeting,
               shared.inside, launch.counts_points);
     add_block(rest.run(), totals->result);
@@ -193,7 +193,7 @@ __global__ void __launch_bounds__(kThreads, kBlocks)
   answer_pose(launch, frame, sequence, team, shared);
 }
 
-// Each block a query of its own, one after another.
+// Answers one query after another in each block.
 template <class Surface>
 __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     many_poses(const __grid_constant__ BatchLaunch<Surface> launch,
@@ -237,7 +237,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     if (threadIdx.x == 0) results[p] = total;
   }
-  clear_notes(launch.levels[tool]);  // the next launch begins with turn 0 again
+  clear_notes(launch.levels[tool]);  // the next launch begins with turn 0
 }
 
 }  // namespace

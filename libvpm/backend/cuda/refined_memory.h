@@ -6,7 +6,7 @@
 
 namespace vpm::cuda {
 
-// Memory of a number of teams, of one or more blocks each.
+// Holds the device memory of a number of teams, of one or more blocks each.
 class RefinedMemory {
  public:
   RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)
@@ -38,7 +38,7 @@ class RefinedMemory {
             planar_clusters_.get()};
   }
 
-  // Of a team of one block.
+  // Returns the size of the memory of a team of one block, in bytes.
   static std::size_t bytes_of_team(const TeamRoom& room) {
     constexpr std::size_t kOfCell =
         2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +

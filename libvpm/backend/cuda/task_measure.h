@@ -1,6 +1,6 @@
-// What is listed while shares are classified, measured by the warps of a block: a lane for each
-// sample, for a row of samples that a plane crosses, or for each piece that is taken whole. Where
-// no flood decides what is inside, each thread adds up what it finds.
+// Measures the tasks listed during classification by the warps of a block: a lane for each sample,
+// each row of clipped samples, or each piece taken whole. Without a flood, each thread sums what it
+// finds.
 #pragma once
 
 #include "libvpm/backend/cuda/cell_tasks.h"
@@ -16,13 +16,13 @@ class TaskMeasure {
   __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists)
       : work_(work), lists_(lists) {}
 
-  // By all threads of the block.
+  // Empties the lists. Call from all threads of the block.
   __device__ void clear() {
     if (threadIdx.x < TaskLists::kLists) lists_.counts[threadIdx.x] = 0;
     if (threadIdx.x == TaskLists::kLists) lists_.next_bundle = 0;
     __syncthreads();
   }
-  // By all threads of the block: for so many tasks in each list.
+  // Makes room for this many tasks in each list. Call from all threads of the block.
   __device__ void make_room(unsigned tasks) {
     __syncthreads();
     bool room = true;
@@ -33,9 +33,9 @@ class TaskMeasure {
     __syncthreads();
     clear();
   }
-  // By all threads of the block.
+  // Measures all listed tasks. Call from all threads of the block.
   __device__ void measure();
-  // What this thread has added up.
+  // Returns the sums of this thread.
   __device__ RawResult found() {
     count_cell(words_before_, bits_added_, found_);
     return found_;
@@ -50,7 +50,7 @@ class TaskMeasure {
 
  private:
   static constexpr bool kFloods = !Surface::kTellsInside;
-  // Neighbours are measured by lanes of one tile.
+  // Lanes of one subwarp measure neighbours.
   static_assert(TaskLists::kNarrow % kNeighborSamples == 0 &&
                 TaskLists::kWide % kNeighborSamples == 0);
 
@@ -81,10 +81,10 @@ class TaskMeasure {
   const PoseWork<Surface>& work_;
   TaskLists& lists_;
   RawResult found_;
-  std::uint32_t words_before_ = 0, bits_added_ = 0;  // of the share that was noted last
+  std::uint32_t words_before_ = 0, bits_added_ = 0;  // word of the cell noted last
 };
 
-// Lists a block where the surface is one plane, if the plane crosses it.
+// Adds a block in a cluster that is cut by one plane. Lists it if the plane cuts the block too.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::add_clipped(const BlockTask& block_task,
                                                   const ClipPlane& plane) {
@@ -95,7 +95,7 @@ __device__ void TaskMeasure<Surface>::add_clipped(const BlockTask& block_task,
   if (side == PlaneSide::cut) {
     const unsigned list =
         task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    // Member by member: the whole would be stored byte by byte.
+    // Assigns member by member, since nvcc would store the whole byte by byte.
     FlatBlock& block = flat(list, lists_.add(list, task));
     block.plane = plane;
     block.center = ball.center;
@@ -108,7 +108,7 @@ __device__ void TaskMeasure<Surface>::add_clipped(const BlockTask& block_task,
   note_task(task, result);
 }
 
-// A share wholly behind the surface of its patch.
+// Adds a cell wholly behind its cluster's surface, pushed along `normal`.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::note_behind(const BlockTask& block_task, Vec3 normal) {
   ToolSum sum;
@@ -121,8 +121,8 @@ __device__ void TaskMeasure<Surface>::note_behind(const BlockTask& block_task, V
   }
 }
 
-// Warps take bundles of tasks of one list, as many as have room in a warp; those that take longest
-// first.
+// Measures all tasks: warps take bundles of tasks of one list, as many as fit into a warp; the
+// slowest lists come first.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::measure() {
   for (;;) {
@@ -152,7 +152,7 @@ __device__ void TaskMeasure<Surface>::measure(const Subwarp& subwarp, unsigned l
   if (subwarp.leads()) note_task(task, result);
 }
 
-// The result is there for all threads of the tile.
+// Measures the pieces of a task. Returns the result to all lanes of the subwarp.
 template <class Surface>
 __device__ CellResult TaskMeasure<Surface>::measure_pieces(const Subwarp& subwarp,
                                                            const Task& task) {
@@ -170,8 +170,8 @@ __device__ CellResult TaskMeasure<Surface>::measure_pieces(const Subwarp& subwar
   return result;
 }
 
-// What piece `k` of a task, if there is one, adds to CellMeasure::run() or, where its share is
-// whole, to whole(). Far pieces are listed. By all threads of a tile.
+// Adds piece `k` of a task, if it exists, as CellMeasure::run() does, or whole() for a whole cell.
+// Lists far pieces. Call from all lanes of the subwarp.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::add_piece(const Subwarp& subwarp, const Measure& measure,
                                                 const Task& task, std::uint32_t k,
@@ -192,15 +192,15 @@ __device__ void TaskMeasure<Surface>::add_piece(const Subwarp& subwarp, const Me
   work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
 }
 
-// The first lane of those that share a direction with this one; itself where it has its own.
+// Returns the first lane that shares a direction with this one; itself if it shares none.
 template <class Surface>
 __device__ unsigned TaskMeasure<Surface>::first_neighbor(const Subwarp& subwarp, bool cells_it) {
   const unsigned sharing = subwarp.which(cells_it);
   return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
 }
 
-// A row of samples by each thread; what the block needs is read before the first wait, a sample
-// before the one before it is added. The result is there for the first thread of the tile.
+// Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before
+// the last one is added. Returns the result to the first lane.
 template <class Surface>
 __device__ CellResult TaskMeasure<Surface>::measure_flat(const Subwarp& subwarp,
                                                          const FlatBlock& flat, const Task& task) {
@@ -228,7 +228,7 @@ __device__ CellResult TaskMeasure<Surface>::measure_flat(const Subwarp& subwarp,
   return result;
 }
 
-// By one thread, what all threads of its tile have found.
+// Notes the result of a task, which one thread calls for its subwarp.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResult& result) {
   const std::uint32_t i = task.cell;
@@ -247,8 +247,8 @@ __device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResu
   if (cut) add_atomically(result.plane, work_.notes.planes[i]);
 }
 
-// Notes that a share counts; others may do so too. What its word was is needed only when the next
-// one comes, so that nobody waits for it.
+// Notes that a cell counts; other threads may do so too. The cell's last word is used only in the
+// next call, so that nobody waits for it.
 template <class Surface>
 __device__ void TaskMeasure<Surface>::count(std::uint32_t cell, std::uint32_t bits) {
   count_cell(words_before_, bits_added_, found_);

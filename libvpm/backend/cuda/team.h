@@ -1,4 +1,4 @@
-// The threads that answer one query: all blocks of a launch together, or one block alone.
+// Groups the threads that answer one query: all blocks of a launch, or one block alone.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -10,37 +10,35 @@
 
 namespace vpm::cuda {
 
-// Threads of a block that deal with one pose together with others, and alone with one after
-// another. Registers are what limits the refined measure: fewer threads are sooner done with one
-// pose, more of them get through more poses.
+// Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
+// limit the refined measure: fewer finish a pose sooner, more get through more poses.
 inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
 
-// What this thread has done or seen is seen by whoever sees what it does next, and the other way
-// round. For all of a block, between two of its barriers.
+// Acquire-release fence for all threads of a block, between two of its barriers.
 __device__ inline void fence() {
   ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
 }
 
-// Counts a block, by all its threads: whether it is the last of so many. What the others did before
-// is seen then.
+// Counts a block, called by all its threads. True for the last of `all` blocks, which then sees all
+// writes that the others made before.
 __device__ inline bool is_last_of(unsigned& come, unsigned all) {
   using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
   __shared__ bool is_last;
   __syncthreads();
-  // Not fence(): that takes as long as the addition, and would be needed on both sides of it.
+  // Uses no fence(), which costs as much as the addition and would be needed on both sides of it.
   if (threadIdx.x == 0) is_last = Count(come).fetch_add(1, ::cuda::memory_order_acq_rel) == all - 1;
   __syncthreads();
   return is_last;
 }
 
-// Work dealt out to blocks: row k to part k % parts.
+// Rows dealt out to blocks: row k goes to part k % parts.
 struct BlockRange {
   unsigned part = 0, parts = 1;
 };
 
-// A block alone.
+// Makes one block the team.
 class BlockTeam {
  public:
   static constexpr bool kIsBlock = true;
@@ -50,7 +48,7 @@ class BlockTeam {
   __device__ void sync() { __syncthreads(); }
 };
 
-// All blocks of a cooperative launch.
+// Makes all blocks of a cooperative launch the team.
 class GridTeam {
  public:
   static constexpr bool kIsBlock = false;
@@ -62,13 +60,13 @@ class GridTeam {
     arrive();
     wait();
   }
-  // The two halves of sync(). Whether this block is the last to arrive.
+  // Begins sync(). True for the last block to arrive.
   __device__ bool arrive() {
     target_ += gridDim.x;
     return is_last_of(*arrived_, target_);
   }
-  // Each look that acquires has the multiprocessor forget what it keeps near, which other blocks
-  // may still need: only the last one does.
+  // Ends sync(). Spins with relaxed loads, since each acquire drops the multiprocessor's L1 cache,
+  // which other blocks may still need.
   __device__ void wait() {
     if (threadIdx.x == 0) {
       while (count().load(::cuda::memory_order_relaxed) < target_) {
@@ -86,7 +84,7 @@ class GridTeam {
   unsigned target_ = 0;
 };
 
-// Threads of a warp that work together; `width` is a power of two.
+// Groups lanes of a warp that work together; `width` is a power of two.
 struct Subwarp {
   unsigned width, lane, mask;
 
@@ -96,7 +94,7 @@ struct Subwarp {
     mask = (width == 32 ? ~0U : (1U << width) - 1) << first;
   }
   __device__ bool leads() const { return lane == 0; }
-  // By shuffles: votes of a warp's tiles would come one after another.
+  // Uses shuffles: ballots with a mask for each subwarp would serialise.
   __device__ bool any(bool value) const {
     unsigned found = value ? 1 : 0;
 #pragma unroll 1
@@ -104,7 +102,7 @@ struct Subwarp {
       found |= __shfl_xor_sync(mask, found, static_cast<int>(other), static_cast<int>(width));
     return found != 0;
   }
-  // A bit for each lane.
+  // Returns a bit for each lane.
   __device__ unsigned which(bool value) const {
     return __ballot_sync(mask, value) >> (threadIdx.x % 32 - lane);
   }
@@ -118,7 +116,7 @@ struct Subwarp {
   __device__ PixelRectangle from(const PixelRectangle& r, unsigned source) const {
     return {from(r.u0, source), from(r.v0, source), from(r.u1, source), from(r.v1, source)};
   }
-  // From the thread so many lanes on.
+  // Returns the value of the lane `lanes` further on.
   __device__ double from_next(double value, unsigned lanes) const {
     return __shfl_down_sync(mask, value, lanes, static_cast<int>(width));
   }
@@ -129,14 +127,14 @@ struct Subwarp {
   }
 };
 
-// Returns the first of the neighbouring samples that share a direction with this lane's, of which
-// `sharing` has a bit for each lane.
+// Returns the first of the neighbouring samples that share a direction with this lane's; `sharing`
+// has a bit for each lane.
 __device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
   const unsigned begin = neighbors_of(lane) * kNeighborSamples;
   return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
 }
 
-// The terms of a ToolSum or ContactPlane as they lie in memory.
+// Counts the 64-bit terms of a ToolSum or ContactPlane.
 inline constexpr int kTerms = 7;
 template <class Sum>
 __device__ std::int64_t* terms_of(Sum& sum) {
@@ -144,11 +142,11 @@ __device__ std::int64_t* terms_of(Sum& sum) {
   return reinterpret_cast<std::int64_t*>(&sum);
 }
 
-// Adds up over a tile, for all its threads.
+// Adds up over a subwarp; all its lanes receive the sum.
 template <class Sum>
 __device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   std::int64_t* const terms = terms_of(sum);
-  // Terms at once, so that they wait together.
+  // Shuffles all terms in each step, so that they overlap.
 #pragma unroll 1
   for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
 #pragma unroll
@@ -158,7 +156,7 @@ __device__ void add_up(const Subwarp& subwarp, Sum& sum) {
   }
 }
 
-// Adds up the rows of a tile's threads, those that they do not have being 0. For its first thread.
+// Adds up the rows of a subwarp's lanes for its first lane. Missing rows count as 0.
 __device__ inline void add_up(const Subwarp& subwarp, ClippedMoments& row) {
 #pragma unroll 1
   for (unsigned half = subwarp.width / 2; half > 0; half /= 2) {
@@ -169,7 +167,7 @@ __device__ inline void add_up(const Subwarp& subwarp, ClippedMoments& row) {
   row.is_cut = subwarp.any(row.is_cut);
 }
 
-// Many threads may add to a sum at once.
+// Adds a term to a sum, atomically.
 __device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
   atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
 }

@@ -1,6 +1,6 @@
-// Connected components by many threads at once: a forest in which every root is the smallest member
-// of its tree. Roots are hooked below smaller ones with compare-and-swap, so the components do not
-// depend on the order of the threads.
+// Finds connected components with many threads at once, as a forest in which every root is the
+// smallest member of its tree. Roots are hooked below smaller ones with compare-and-swap, so the
+// components do not depend on the order of threads.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ class UnionFind {
     return at;
   }
 
-  // Joins a[k] with b[k] for all k; pairs that are equal need nothing. All walk to their roots at
-  // once, since each step waits for memory.
+  // Joins a[k] with b[k] for all k; equal pairs are allowed. All walk to their roots at once, since
+  // each step waits for memory.
   template <unsigned kPairs>
   __device__ void join(const std::uint32_t (&a)[kPairs], const std::uint32_t (&b)[kPairs]) const {
     Walk walks[kPairs][2];
@@ -65,11 +65,11 @@ class UnionFind {
   };
   __device__ void go(Walk& walk, std::uint32_t parent) const {
     if (parent == walk.at) return;
-    if (walk.last != walk.at) store(walk.last, parent);  // as root() does
+    if (walk.last != walk.at) store(walk.last, parent);  // as in root()
     walk = {walk.at, parent};
   }
 
-  // Other threads write meanwhile.
+  // Uses atomics, since other threads write meanwhile.
   using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
   __device__ std::uint32_t load(std::uint32_t node) const {
     return Parent(parents_[node]).load(::cuda::memory_order_relaxed);

@@ -1,4 +1,4 @@
-// What kernels see of a tool and a pose: plain pointers and numbers.
+// Defines a tool and a pose as kernels take them: plain pointers and numbers.
 #pragma once
 
 #include <cstdint>
@@ -14,42 +14,42 @@
 namespace vpm::cuda {
 
 struct alignas(32) TaskBall {
-  Vec3 center;  // about the centre of mass
+  Vec3 center;  // about the tool's centre of mass, m
   double radius = 0;
 };
 
-// One block of a share, or a share that has none: what is classified by itself. All that this needs
-// lies together, since it is read once, by lanes that wait for it.
+// Describes one block of a cell, or a cell without blocks, to be classified. Its data lie together,
+// since waiting lanes read them once.
 struct alignas(32) BlockTask {
   enum Ball { of_cell, of_block, of_sphere, kBalls };
   enum Flag : std::uint32_t {
-    is_head = 1,     // the first of its share
-    is_compact = 2,  // its share is (cell_clusters.h)
+    is_head = 1,     // the first of its cell
+    is_compact = 2,  // is_compact() is true of its cell
     has_block = 4,
   };
   TaskBall balls[kBalls];
-  std::uint32_t cell = 0, block = 0, begin = 0, end = 0;  // samples of the block
+  std::uint32_t cell = 0, block = 0, begin = 0, end = 0;  // begin, end: samples of the block
   std::uint32_t flags = 0;
 };
 
-// Units of one cluster that are classified together.
+// Groups block tasks of one cluster that are classified together.
 struct TaskGroup {
   static constexpr unsigned kTasks = 8;
-  TaskBall ball;  // of the cluster
+  TaskBall ball;  // the cluster's, about the tool's centre of mass
   std::uint32_t begin = 0, end = 0;
 };
 
-// A unit, and what of it may be taken whole.
+// Adds the masses of its block and cell to a block task.
 struct WarpTask : BlockTask {
   BlockMass block_mass, cell_mass;
 };
 
-// Levels of more spheres have more chunks than any device has warps at once.
+// Limits the spheres of levels with a task group for each warp; more have more groups than any
+// device has warps at once.
 inline constexpr std::uint32_t kSpheresOfWarps = 8192;
 
-// The units of a small level, for warps that take one chunk each: of few units that are wide, of
-// more samples than kNarrow, or of more others. Where there are fewer, room is left behind them for
-// such as are nothing.
+// Lists the block tasks of a small level for warps that take one group each: kWideTasks tasks with
+// more than kNarrow samples, or TaskGroup::kTasks others. Tasks without flags fill groups up.
 struct WarpTaskGroups {
   static constexpr unsigned kWideTasks = 2;
   static constexpr std::uint32_t kNarrow = 8;
@@ -57,21 +57,21 @@ struct WarpTaskGroups {
   const WarpTask* units = nullptr;
   const TaskGroup* chunks = nullptr;
   std::uint32_t count = 0,
-                wide_count = 0;  // wide ones come first; none of a level that is not small
+                wide_count = 0;  // groups of wide tasks, which come first; 0 for a large level
 };
 
-// An edge of the graph; the spheres' indices.
+// Joins two spheres of the graph, by their indices.
 struct Edge {
   std::uint32_t larger, smaller;
 };
 
-// One level of a tool.
+// Points to one level of a tool.
 struct LevelView {
-  std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // `count` of spheres
-  std::uint32_t piece_count = 0;  // samples, blocks and shares: no query finds more
+  std::uint32_t count = 0, task_group_count = 0, edge_count = 0;  // count: spheres
+  std::uint32_t piece_count = 0;  // samples, blocks and cells: bounds what a query finds
   const Sphere* spheres = nullptr;
-  const Vec3* centers = nullptr;  // of the spheres, about the centre of mass
-  const double* reach = nullptr;  // of the shares
+  const Vec3* centers = nullptr;  // the spheres' centres, about the tool's centre of mass, m
+  const double* reach = nullptr;  // bounding radii of the cells, m
   const std::uint32_t* block_begin = nullptr;
   const CellBlock* blocks = nullptr;
   const BlockMass* block_masses = nullptr;
@@ -80,12 +80,12 @@ struct LevelView {
   const BlockTask* units = nullptr;
   const TaskGroup* chunks = nullptr;
   WarpTaskGroups of_warps;
-  const Edge* edges = nullptr;                // by their larger index
-  const std::uint32_t* edge_begin = nullptr;  // count + 1
+  const Edge* edges = nullptr;                // ordered by their larger index
+  const std::uint32_t* edge_begin = nullptr;  // edges by larger index; count + 1 entries
   GridView grid;
   Vec3 center_of_mass;
   ToolReach tool_reach;
-  double spheres_reach = 0;  // no point of a sphere is further from the centre of mass
+  double spheres_reach = 0;  // bounding radius of all spheres about the centre of mass, m
 
   VPM_HD CellView cell(std::uint32_t i) const {
     return {blocks,     block_masses, samples, block_begin[i], block_begin[i + 1],
@@ -93,12 +93,12 @@ struct LevelView {
   }
 };
 
-// A pose, as the parts of a query need it.
+// Holds a pose as the steps of a query need it.
 struct PoseFrame {
-  Pose to_surface;        // from coordinates about the centre of mass
-  Pose to_tool;           // from coordinates about the cloud's origin
-  Vec3 center;            // of mass, about the cloud's origin
-  PixelRectangle pixels;  // that the tool can reach; of organised clouds
+  Pose to_surface;        // maps coordinates about the tool's centre of mass
+  Pose to_tool;           // maps coordinates about the cloud's origin
+  Vec3 center;            // the tool's centre of mass, about the cloud's origin
+  PixelRectangle pixels;  // pixels that the tool can reach, in organised clouds
 };
 
 VPM_HD inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud, Vec3 center_of_mass,
@@ -117,11 +117,11 @@ VPM_HD inline PoseFrame frame_of(const Pose& pose, const CloudFrame& cloud, Vec3
   return frame;
 }
 
-// The answer of a kernel, before it is turned into world axes.
+// Holds the result of a kernel, in the tool's axes.
 struct RawResult {
   ToolSum sum;
   std::uint32_t boundary = 0, inside = 0, points = 0;
-  std::uint32_t flood_ns = 0;  // of one pose: what came after the boundary was known
+  std::uint32_t flood_ns = 0;  // time of one pose after the boundary was known, ns
 };
 
 inline Result result_of(const RawResult& raw, const ToolModel& tool,

@@ -1,5 +1,5 @@
-// Normals of a tile of a depth image: the sums of libvpm/cloud/normal_rows_*.cpp and
-// normal_window.cpp in the same order, by a thread for each column and then for each pixel.
+// Estimates the normals of a tile of a depth image, with the sums of libvpm/cloud/normal_rows_*.cpp
+// and normal_window.cpp in the same order: a thread for each column, then for each pixel.
 #pragma once
 
 #include "libvpm/scene/cuda/cloud_tile.h"
@@ -7,12 +7,12 @@
 
 namespace vpm::cuda {
 
-// What a block knows of its tile when normals are estimated.
+// Describes a block's tile while normals are estimated.
 template <class Frame>
 struct TileImage {
   Frame frame;
-  const float *inverse, *depth;  // with the margin (tile_around.h); depth only where it is needed
-  const double *ray_x, *ray_y;   // of the tile's columns and rows
+  const float *inverse, *depth;  // with the margin (tile_around.h); depth only if kNeedsDepth
+  const double *ray_x, *ray_y;   // per column and per row of the tile
 
   __device__ TileAround inverse_around(int x, int y) const {
     return {inverse + frame.index(x, y), frame.pitch()};
@@ -20,7 +20,7 @@ struct TileImage {
   __device__ TileAround depth_around(int x, int y) const {
     return {depth + frame.index(x, y), frame.pitch()};
   }
-  // What the image has of the windows about a column, and a row: all, or it may cut them.
+  // Return the part of the windows about a column, and about a row, that lies in the image.
   template <bool kMayBeCut>
   __device__ auto across(int x) const {
     return span<kMayBeCut>(frame.u0 + x, frame.width);
@@ -29,8 +29,8 @@ struct TileImage {
   __device__ auto down(int y) const {
     return span<kMayBeCut>(frame.v0 + y, frame.height);
   }
-  // Whether a pixel's window tells a plane, should it be smooth. `shape`: that of a whole one, then
-  // its own.
+  // True if a pixel's window determines a plane, should it be smooth. `shape` is that of a whole
+  // window and becomes that of this one.
   template <bool kMayBeCut>
   __device__ __forceinline__ bool tells_plane(int x, int y, WindowShape& shape) const {
     if constexpr (kMayBeCut) {
@@ -51,7 +51,7 @@ struct TileImage {
   }
 };
 
-// Of inverse depth down a column about its middle; of a window about its middle column.
+// Return the extent of inverse depth in a column, and in a window, about the middle.
 __device__ __forceinline__ Extent extent_of_column(const TileAround& inverse, int radius) {
   Extent extent(inverse.at(0, 0));
 #pragma unroll
@@ -67,14 +67,14 @@ __device__ __forceinline__ Extent extent_of_window(const Column* column, int rad
   return extent;
 }
 
-// How a tile's normals are estimated. Each has: what is kept of a column, the sums down a column,
-// the normal of a smooth window from them, and that of a gated one.
+// Estimates normals from inverse depth. Like PcaNormals it provides what is kept of a column, the
+// sums down a column, and the normals of smooth windows and of gated ones.
 template <class Tile>
 class InverseDepthNormals {
  public:
   using Frame = Tile;
   static constexpr bool kNeedsDepth = false;
-  static constexpr int kMostBlocks = 5;  // of a multiprocessor
+  static constexpr int kMostBlocks = 5;  // per multiprocessor
   struct alignas(16) Column {
     PlaneColumn<float> sums;
     Extent extent;
@@ -84,7 +84,7 @@ class InverseDepthNormals {
                                                  const TileImage<Frame>& image)
       : recipe_(recipe), image_(image) {}
 
-  // Down the column x (from -radius on) around the row y.
+  // Sums down column x (from -radius on) about row y.
   template <bool kMayBeCut>
   __device__ __forceinline__ Column sum_column(int x, int y) const {
     const TileAround inverse = image_.inverse_around(x, y);
@@ -93,7 +93,8 @@ class InverseDepthNormals {
             extent_of_column(inverse, radius())};
   }
 
-  // `column`: that of the pixel; false where its window is not smooth.
+  // Computes the normal of a pixel from its `column` and those beside it. False if its window is
+  // not smooth.
   template <bool kMayBeCut>
   __device__ __forceinline__ bool smooth_normal(const Column* column, int x, int y,
                                                 Vec3f& normal) const {

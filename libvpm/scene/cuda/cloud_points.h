@@ -1,4 +1,4 @@
-// Points with normals, of a tile of an image by a block: for cloud_prepare.cu.
+// Makes points with normals of a tile of an image by a block, for cloud_prepare.cu.
 #pragma once
 
 #include <math_constants.h>
@@ -7,12 +7,12 @@
 
 namespace vpm::cuda {
 
-// Arrays of a block.
+// Lays out a block's arrays in shared memory.
 template <class Normals>
 struct TileArrays {
   using Frame = typename Normals::Frame;
   using Column = typename Normals::Column;
-  Column* columns;  // of the windows; then the positions
+  Column* columns;  // columns of the windows, later the positions
   double *ray_x, *ray_y;
   float *inverse, *depth;  // with the margin
   float* closed;           // after the first pass, with a margin of 1
@@ -50,7 +50,7 @@ struct TileArrays {
   }
 };
 
-// One tile of an image, by a block.
+// Works on one tile of an image with one block.
 template <class Normals>
 class TileWork {
  public:
@@ -61,7 +61,7 @@ class TileWork {
         arrays_(tile_, SharedArrays(shared)),
         normals_(recipe, {tile_, arrays_.inverse, arrays_.depth, arrays_.ray_x, arrays_.ray_y}) {}
 
-  // Does not need the image.
+  // Computes the tile's rays, which do not need the image.
   __device__ __forceinline__ void find_rays() const {
     const Intrinsics& k = recipe_.camera.intrinsics;
     const int i = thread();
@@ -69,11 +69,11 @@ class TileWork {
     if (i < CloudTile::kHeight) arrays_.ray_y[i] = (tile_.v0 + i - k.cy) / k.fy;
   }
 
-  // Whether pixels of the image in the tile or its margin are unknown.
+  // Loads the image. Returns true if pixels of the tile or its margin are unknown.
   __device__ __forceinline__ bool load() const {
     const float *const inverses = recipe_.inverse, *const depths = recipe_.depth;
     const int count = tile_.rows() * tile_.pitch();
-    constexpr int kAtOnce = 4;  // reads that wait together, before what they bring is stored
+    constexpr int kAtOnce = 4;  // loads in flight before any is stored
     bool unknown = false;
     for (int begin = thread(); begin < count; begin += kAtOnce * CloudTile::kPointThreads) {
       float inverse[kAtOnce], depth[kAtOnce];
@@ -104,7 +104,7 @@ class TileWork {
       sum_columns<false>();
   }
 
-  // The first pass of closing holes, of the tile and the pixels beside it.
+  // Closes holes in a first pass, in the tile and the pixels beside it.
   __device__ __forceinline__ void close_once() const {
     const auto image = [&](int u, int v) {
       return arrays_.inverse[tile_.index(u - tile_.u0, v - tile_.v0)];
@@ -121,7 +121,7 @@ class TileWork {
     }
   }
 
-  // Normals of smooth windows; the others are listed. The surface without holes.
+  // Computes normals of smooth windows, lists the other windows, and closes holes.
   __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
     if (tile_.may_be_cut())
       find_normals<true>(has_holes, gated);
@@ -137,8 +137,8 @@ class TileWork {
     }
   }
 
-  // Writes what the surface is made of, and puts the points into shared memory. Counts them, and
-  // those whose normals are no unit vectors.
+  // Writes the image for denoising and puts the points into shared memory. Counts the points, and
+  // those whose normals are not of unit length.
   __device__ __forceinline__ void place_points(unsigned& points, unsigned& doubtful) const {
     const Rotation to_world = recipe_.camera.to_world.rotation, to_camera = recipe_.to_camera;
     float4* const seen = recipe_.seen;
@@ -220,13 +220,13 @@ class TileWork {
                : between_neighbors(image, tile_.width, tile_.height, u, v);
   }
 
-  // Normals are at most this far off unit length (squared), or a PreparedCloud might refuse them.
+  // True if a normal is so far off unit length that a PreparedCloud might refuse it.
   __device__ __forceinline__ static bool is_doubtful(Vec3f n) {
     constexpr float kSquaredTolerance = 1e-3F;
     return !(std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1) <= kSquaredTolerance);
   }
 
-  // By whole warps.
+  // Counts for whole warps at once.
   __device__ __forceinline__ static void add_up(bool is_one, unsigned& count) {
     const unsigned ones = __ballot_sync(~0U, is_one);
     if (ones != 0 && threadIdx.x % 32 == 0) atomicAdd(&count, static_cast<unsigned>(__popc(ones)));
@@ -242,7 +242,7 @@ class TileWork {
   Normals normals_;
 };
 
-// By all threads of a block; its normals are seen then. `gated`: 0.
+// Computes all normals of a tile by all threads of a block, and synchronises. `gated` must be 0.
 template <class Normals>
 __device__ __forceinline__ void find_normals(const TileWork<Normals>& work, unsigned& gated) {
   const bool has_holes = __syncthreads_or(work.load()) != 0;

@@ -4,12 +4,12 @@
 
 namespace vpm::cuda {
 
-// Memory for what is made of an image, by pixel.
+// Points to the device memory for the cloud of an image, by pixel.
 struct CloudRoom {
-  Vec3f* positions = nullptr;      // about the camera, world axes; NaN where there is no point
+  Vec3f* positions = nullptr;      // about the camera, world axes; NaN without a point
   Vec3f* normals = nullptr;        // world axes
   Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
-  float* measured = nullptr;       // inverse depth without holes that are to be closed
+  float* measured = nullptr;       // inverse depth, 1/m, holes closed
   InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
   std::int32_t levels = 0;
 };

@@ -5,7 +5,7 @@
 namespace vpm::cuda {
 namespace {
 
-// As validate() and PreparedCloud ask of a camera.
+// True if validate() and PreparedCloud accept this pose of a camera.
 bool is_sound_pose(const Pose& pose) {
   return is_rotation(pose.rotation, kRotationExact) && is_in_range(pose.translation);
 }
@@ -54,7 +54,7 @@ void CloudSlot::set_camera() {
 void CloudSlot::begin() {
   is_plain_ = preparation_.fits && is_usual(camera()) && is_sound_pose(camera().to_world);
   if (!is_plain_) {
-    cloud();  // refuses what is to be refused
+    cloud();  // throws what is to be refused
     return;
   }
   cloud_.stand_at(camera().to_world);
@@ -63,7 +63,7 @@ void CloudSlot::begin() {
   launch();
 }
 
-// What is launched has an end, even if the rest fails.
+// Launches the preparation, and marks its end even if a launch fails.
 void CloudSlot::launch() {
   const auto mark_end = [&] {
     is_there_ = false;
@@ -101,7 +101,7 @@ void CloudSlot::take(cudaStream_t stream) {
 void CloudSlot::make(cudaStream_t stream) {
   prepare_on_device(recipe_, options().normals.method, preparation_, counters_.get(),
                     answer_.device(), sequence_ + 1, stream);
-  ++sequence_;  // now that it will be answered
+  ++sequence_;  // after the launch, which will answer it
   denoise_on_device(recipe_, preparation_.overlaps, stream);
 }
 
@@ -116,7 +116,6 @@ void CloudSlot::wait_for_answer() const {
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
 }
 
-// Then the image is not read any more.
 void CloudSlot::wait() const {
   wait_for_answer();
 }

@@ -1,4 +1,4 @@
-// A depth frame whose cloud lies on a device.
+// Holds a depth frame whose cloud is made on a device.
 #pragma once
 
 #include <mutex>
@@ -19,18 +19,18 @@ class CloudSlot : public FrameSlot {
   void wait() const override;
   std::size_t points() const override;
 
-  // Lets what is launched on the stream next read the frame. Returns true if it is there already,
-  // so that nothing waits for it. From any thread.
+  // Makes work that is launched on the stream next wait for the frame. Returns true if it is
+  // complete already. Thread-safe.
   bool require(cudaStream_t stream) const;
 
   // True if the device makes the cloud. Otherwise the CPU does, since it might refuse something.
   bool is_on_device() const { return is_plain_; }
-  // True if the CPU would refuse none of its points. Waits until they are known.
+  // True if the CPU would refuse no point. Waits until all are known.
   bool is_sound() const;
 
   const DeviceCloud& device_cloud() const { return cloud_; }
 
-  // The two steps in which the frame is made, for those who time them.
+  // Launch the two steps of preparation one by one, for benchmarks.
   void take(cudaStream_t stream);
   void make(cudaStream_t stream);
 
@@ -50,13 +50,13 @@ class CloudSlot : public FrameSlot {
   DeviceCloud cloud_;
   DeviceArray<CloudCounters> counters_;
   MappedArray<CloudAnswer> answer_;
-  CloudRecipe recipe_;  // seen from the camera of the image
+  CloudRecipe recipe_;  // for the camera of the image
   Preparation preparation_;
   bool is_plain_ = false;
-  Event end_{cudaEventDisableTiming};  // of the making
-  unsigned sequence_ = 0;              // of the last making
-  mutable std::mutex mutex_;           // of is_there_
-  mutable bool is_there_ = true;       // what was launched in this memory has ended
+  Event end_{cudaEventDisableTiming};  // of the last preparation
+  unsigned sequence_ = 0;              // number of the last preparation
+  mutable std::mutex mutex_;           // guards is_there_
+  mutable bool is_there_ = true;       // the last preparation has ended
 };
 
 }  // namespace vpm::cuda

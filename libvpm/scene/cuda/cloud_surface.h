@@ -1,4 +1,4 @@
-// The surface of a tile of an image, by a block: for cloud_denoise.cu.
+// Denoises a tile of an image by a block, for cloud_denoise.cu.
 #pragma once
 
 #include <math_constants.h>
@@ -8,12 +8,12 @@
 
 namespace vpm::cuda {
 
-// What is settled of a pixel depends on those so far around it: normals that are asked, and their
-// windows.
+// Sets the margins, in pixels, within which neighbours decide a pixel: those whose normals are
+// averaged, and their windows.
 inline constexpr int kMarginOfMarks = kDenoisedReach,
                      kDenoiseMargin = kMarginOfMarks + kDenoisedRadius;
 
-// Sizes of what a block keeps of a tile.
+// Sets the sizes of a block's arrays.
 struct DenoiseSizes {
   using Frame = TileFrame<kDenoiseMargin>;
   static constexpr int kThreads = CloudTile::kSurfaceThreads;
@@ -31,20 +31,20 @@ struct DenoiseSizes {
 
 struct SeenTile {
   float4 pixels[DenoiseSizes::kWidth *
-                DenoiseSizes::kHeight];  // with the margin: normals and inverse depth
-  WindowOfDepths<float> columns[DenoiseSizes::kColumns * CloudTile::kHeight];  // of the windows
+                DenoiseSizes::kHeight];  // normals and inverse depth, with the margin
+  WindowOfDepths<float> columns[DenoiseSizes::kColumns * CloudTile::kHeight];
 };
 struct DenoisedTile {
   float surface[CloudTile::kPixels];
   InverseDepthRange ranges[DenoiseSizes::kRanges];
 };
-// What is settled takes the place of what was seen.
+// Lays out a block's shared memory: denoised pixels replace the measured ones.
 union DenoiseShared {
   SeenTile seen;
   DenoisedTile denoised;
 };
 
-// One tile of an image, by a block.
+// Works on one tile of an image with one block.
 class DenoiseWork {
   using Window = WindowOfDepths<float>;
   static constexpr int kThreads = DenoiseSizes::kThreads, kWidth = DenoiseSizes::kWidth,
@@ -54,12 +54,12 @@ class DenoiseWork {
   __device__ DenoiseWork(const CloudRecipe& recipe, int number, DenoiseShared& shared)
       : recipe_(recipe), tile_(recipe, number), shared_(shared) {}
 
-  // Zeros outside of the image. (In this file few loops are unrolled: a block goes through its code
-  // once or twice, and what counts is how much that is.)
+  // Loads the tile, with zeros outside the image. (Few loops in this file are unrolled: a block
+  // runs its code once or twice, so code size decides.)
   __device__ void load() const {
     const float4* const image = recipe_.seen;
     constexpr int kPixels = kWidth * kHeight;
-    constexpr int kAtOnce = 12;  // reads that wait together, before what they bring is stored
+    constexpr int kAtOnce = 12;  // loads in flight before any is stored
 #pragma unroll 1
     for (int begin = thread(); begin < kPixels; begin += kAtOnce * kThreads) {
       float4 seen[kAtOnce];
@@ -88,7 +88,7 @@ class DenoiseWork {
     }
   }
 
-  // Meets before others see the marks.
+  // Marks the pixels; synchronises before marks become visible.
   __device__ void mark() const {
     unsigned clear = 0;
     for_marked([&](int i, int x, int y) {
@@ -117,7 +117,7 @@ class DenoiseWork {
     const SeenPixel<float> pixel = seen_at(x, y);
     return {pixel.inverse, {pixel.x, pixel.y, pixel.z}};
   }
-  // Meets before the pixels take the place of what was seen.
+  // Makes the pixels by make(x, y); synchronises before they replace the measured ones.
   template <class Make>
   __device__ void make_pixels(const Make& make) const {
     constexpr int kPixels = DenoiseSizes::kPixelsOfThread;
@@ -139,7 +139,8 @@ class DenoiseWork {
       shared_.denoised.surface[thread() + i * kThreads] = surface[i];
   }
 
-  // Levels 1 to CloudTile::kLevels, and this tile's part of what lies above. Meets after each.
+  // Writes levels 1 to CloudTile::kLevels and adds this tile to higher levels. Synchronises per
+  // level.
   __device__ void write_tiles() const {
     InverseDepthRange* fine = nullptr;
     InverseDepthRange* coarse = shared_.denoised.ranges;
@@ -151,7 +152,7 @@ class DenoiseWork {
       coarse += count;
       __syncthreads();
     }
-    // Inverse depths are not negative, so they are in the order of their bits.
+    // Inverse depths are not negative, so integer order is their order.
     const int level = CloudTile::kLevels + 1 + thread();
     if (level >= recipe_.room.levels) return;
     InverseDepthRange range = fine[0];
@@ -162,7 +163,7 @@ class DenoiseWork {
   }
 
  private:
-  // Calls visit(i, x, y) for the thread's share of the pixels to be marked.
+  // Calls visit(i, x, y) for this thread's pixels among those to be marked.
   template <class Visit>
   __device__ static void for_marked(const Visit& visit) {
 #pragma unroll 2
@@ -187,13 +188,13 @@ class DenoiseWork {
     return window_of_depths<float>([&](int du) { return column_at(x + du, y); });
   }
 
-  // The tile of a level of the whole image that holds a pixel.
+  // Returns the pyramid's tile at a level that holds a pixel of the image.
   __device__ InverseDepthRange* tile_at(int level, int u, int v) const {
     const int per_row = ((tile_.width - 1) >> level) + 1;
     return recipe_.room.tiles[level] + static_cast<std::size_t>(v >> level) * per_row +
            (u >> level);
   }
-  // What lies outside of the image adds nothing.
+  // Writes and returns one tile of a level. Pixels outside the image add nothing.
   __device__ InverseDepthRange write_tile(int level, const InverseDepthRange* fine) const {
     const int per_row = CloudTile::kWidth >> level, x = thread() % per_row, y = thread() / per_row;
     InverseDepthRange range{CUDART_INF_F, 0};
@@ -219,7 +220,7 @@ class DenoiseWork {
   DenoiseShared& shared_;
 };
 
-// Is called by all threads of a block.
+// Denoises the tile; call it from all threads of a block.
 __device__ inline void denoise_tile(const DenoiseWork& work, Denoising points) {
   work.load();
   __syncthreads();

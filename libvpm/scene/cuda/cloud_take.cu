@@ -7,7 +7,7 @@ namespace {
 
 constexpr unsigned kThreads = 256;
 
-// Returns four depths in metres, from pixel `first` on.
+// Returns four depths, m, from pixel `first` on.
 __device__ float4 four_depths(const DepthSource& source, std::size_t first) {
   if (source.counts == nullptr) return *reinterpret_cast<const float4*>(source.metres + first);
   const uint2 words = *reinterpret_cast<const uint2*>(source.counts + first);
@@ -25,7 +25,7 @@ __device__ void put(float4 d, const CloudRecipe& recipe, std::size_t first) {
       inverse_of_usable(d.w)};
 }
 
-// The coarse tiles, those of several blocks' pixels, begin with what adds nothing.
+// Sets the coarse tiles, which several blocks' pixels share, to the neutral range.
 __device__ void clear_coarse_tiles(const CloudRoom& room, const Camera& camera, unsigned thread,
                                    unsigned threads) {
   for (int level = CloudTile::kLevels + 1; level < room.levels; ++level) {
@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(kThreads)
   const unsigned thread = blockIdx.x * kThreads + threadIdx.x;
   if (thread < groups) {
     const std::size_t first = std::size_t{thread} * kPixelsAtOnce;
-    float4 depth[kPixelsAtOnce / 4];  // reads that wait together, before what they bring is stored
+    float4 depth[kPixelsAtOnce / 4];  // loads in flight before any is stored
 #pragma unroll
     for (unsigned k = 0; k < kPixelsAtOnce / 4; ++k) depth[k] = four_depths(source, first + 4 * k);
 #pragma unroll

@@ -1,4 +1,4 @@
-// What is known of an image that becomes a cloud, and of the tile of it that a block works on.
+// Describes an image that becomes a cloud, and the tile of it that a block works on.
 #pragma once
 
 #include "libvpm/cloud/covariance_fit.h"
@@ -12,8 +12,8 @@
 
 namespace vpm::cuda {
 
-// The tile of a block, the levels of coarser ones that lie whole in it, and the threads that make
-// its points, then its surface.
+// Sets the size of a block's tile in pixels, the number of pyramid levels whose tiles lie whole in
+// it, and the threads that make its points, then its surface.
 struct CloudTile {
   static constexpr int kWidth = 32, kHeight = 16, kPixels = kWidth * kHeight, kLevels = 4;
   static constexpr int kPointThreads = 256, kSurfaceThreads = kPixels;
@@ -28,7 +28,7 @@ struct CloudTile {
   }
 };
 
-// Blocks of a multiprocessor: so many, if it has threads for them.
+// Returns the number of blocks on a multiprocessor: `wanted`, if it has threads for them.
 VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
 #if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || __CUDA_ARCH__ == 900 || __CUDA_ARCH__ == 1000
   const int most = 2048 / threads;
@@ -40,34 +40,33 @@ VPM_HD constexpr int blocks_at_once(int wanted, int threads) {
   return wanted < most ? wanted : most;
 }
 
-// Of the default window: kernels know it beforehand.
+// Is the radius of the default window, which kernels know at compile time.
 inline constexpr int kUsualRadius = NormalOptions{}.window / 2;
 
-// An image and how its cloud is made.
+// Holds inputs, parameters and outputs of the preparation of one image.
 struct CloudRecipe {
-  float* depth = nullptr;    // by pixel; 0 where normals and queries have no use for it
-  float* inverse = nullptr;  // of that
+  float* depth = nullptr;    // m, by pixel; 0 if not usable
+  float* inverse = nullptr;  // 1/m, by pixel
   Camera camera;
-  Rotation to_camera;                // from the cloud's axes
-  PixelScale<float> scale{};         // of whole windows
-  PixelScale<double> exact_scale{};  // of gated ones
+  Rotation to_camera;                // maps the cloud's axes to the camera's
+  PixelScale<float> scale{};         // for whole windows
+  PixelScale<double> exact_scale{};  // for gated windows
   int window = 0;
   EdgeGate edges;
-  WindowShape whole;       // windows that the image's border does not cut
-  float4* seen = nullptr;  // of the pixels: normals in camera axes, turned back from the world's,
-                           // and inverse depth without holes
+  WindowShape whole;       // window that the image's border does not cut
+  float4* seen = nullptr;  // normals in camera axes, rounded through world axes; inverse
+                           // depth without holes
   Denoising points = Denoising::on;
   CloudRoom room;
 };
 
-// Where one of an image's tiles lies, and its pixels with a margin. `Radius`: of the windows; 0 if
-// it is known at run time only.
+// Places one of an image's tiles with a margin. `Radius` is the windows', or 0 if not constant.
 template <int Radius>
 class TileFrame {
  public:
   static constexpr int kRadius = Radius;
 
-  int u0, v0, width, height;  // width, height: of the image
+  int u0, v0, width, height;  // u0, v0: the tile's first pixel; width, height: the image's
 
   __device__ TileFrame(const CloudRecipe& recipe, int number)
       : u0(number % CloudTile::tiles_per_row(recipe.camera) * CloudTile::kWidth),
@@ -82,9 +81,9 @@ class TileFrame {
   __device__ int margin() const { return margin_of(radius()); }
   __device__ int pitch() const { return CloudTile::kWidth + 2 * margin(); }
   __device__ int rows() const { return CloudTile::kHeight + 2 * margin(); }
-  // Columns of windows: the tile's, and those beside it.
+  // Returns the number of window columns: the tile's and those beside it.
   __device__ int columns() const { return CloudTile::kWidth + 2 * radius(); }
-  // Of the tile's own pixel (x, y), from -margin on.
+  // Returns the index of the tile's pixel (x, y), from -margin on, in an array with the margin.
   __device__ int index(int x, int y) const { return (y + margin()) * pitch() + x + margin(); }
   __device__ std::size_t pixel(int x, int y) const {
     return static_cast<std::size_t>(v0 + y) * static_cast<std::size_t>(width) +
@@ -96,12 +95,12 @@ class TileFrame {
   __device__ bool is_in_image(int x, int y) const {
     return u0 + x >= 0 && v0 + y >= 0 && u0 + x < width && v0 + y < height;
   }
-  // Whether the image's border cuts windows.
+  // True if the image's border cuts windows.
   __device__ bool may_be_cut() const {
     return cuts_windows(u0, CloudTile::kWidth, width, radius()) ||
            cuts_windows(v0, CloudTile::kHeight, height, radius());
   }
-  // Where the image ends, from the tile's first column and row.
+  // Return the image's end, counted from the tile's first column and row.
   __device__ int end_x() const { return width - u0; }
   __device__ int end_y() const { return height - v0; }
 
@@ -109,8 +108,7 @@ class TileFrame {
   int radius_;
 };
 
-// The rows of a block's tile to their places in the image, word by word, so that a warp's words lie
-// together.
+// Copies the rows of a block's tile to the image, word by word for coalesced stores.
 template <class Frame>
 __device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from, Vec3f* to) {
   const auto* const words = reinterpret_cast<const float*>(from);
@@ -126,7 +124,7 @@ __device__ __forceinline__ void write_rows(const Frame& tile, const Vec3f* from,
   }
 }
 
-// A block's shared memory, cut into arrays.
+// Cuts a block's shared memory into arrays.
 class SharedArrays {
  public:
   __device__ explicit SharedArrays(void* memory) : next_(static_cast<unsigned char*>(memory)) {}
@@ -141,16 +139,15 @@ class SharedArrays {
   unsigned char* next_;
 };
 
-// Of a kernel that was launched before what comes before it in the stream is done: until all of
-// that is.
+// Waits, in a kernel launched with LaunchKind::overlapping, for all work before it in the stream.
 __device__ __forceinline__ void wait_for_last() {
 #if __CUDA_ARCH__ >= 900
   cudaGridDependencySynchronize();
 #endif
 }
 
-// Whether a kernel waits in this way, so that it may be launched before what comes before it is
-// done. Machine code made from older PTX does not.
+// True if wait_for_last() works in a kernel, so that it may be launched to overlap. False for
+// machine code made from older PTX.
 template <class... Parameters>
 bool waits_for_last(void (*kernel)(Parameters...)) {
   cudaFuncAttributes attributes;
@@ -158,7 +155,7 @@ bool waits_for_last(void (*kernel)(Parameters...)) {
   return attributes.ptxVersion >= 90 && attributes.binaryVersion >= 90;
 }
 
-// Whether the current device has so much for a block of the kernel, which may take it then.
+// Lets a kernel use this much shared memory per block. False if the device has less.
 template <class... Parameters>
 bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   constexpr std::size_t kWithoutAsking = 48 * 1024;
@@ -172,8 +169,7 @@ bool has_shared_memory(void (*kernel)(Parameters...), std::size_t bytes) {
   return true;
 }
 
-// Launches a block for each of the image's tiles. `overlaps`: the kernel waits for the last one
-// itself.
+// Launches a block for each of the image's tiles. With `overlaps` it must wait_for_last().
 template <class... Parameters, class... Arguments>
 void launch_over_tiles(const Camera& camera, void (*kernel)(Parameters...), unsigned threads,
                        std::size_t shared, bool overlaps, cudaStream_t stream,

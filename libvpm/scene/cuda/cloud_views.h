@@ -1,4 +1,4 @@
-// What kernels see of a cloud: plain pointers and numbers.
+// Defines a cloud as kernels take it: plain pointers and numbers.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace vpm::cuda {
 
-// The points of a cloud, about its origin: those of an image by pixel (NaN where there is none),
-// others in the order of the leaves of their hierarchy.
+// Points to the points of a cloud, about its origin: for an image by pixel (NaN where there is
+// none), else in the order of the leaves of their tree.
 struct PointsView {
   const Vec3f* positions = nullptr;
   const Vec3f* normals = nullptr;
   std::uint32_t count = 0;
-  std::int32_t width = 0;  // > 0: of the image
-  PointTree tree;          // otherwise
+  std::int32_t width = 0;  // the image's, or 0
+  PointTree tree;          // only without an image
 };
 
-// Everything of a cloud that poses are combined with.
+// Holds the parts of a cloud that poses are combined with.
 struct CloudFrame {
   bool is_organised = false;
   Vec3 origin;

@@ -1,4 +1,4 @@
-// A cloud in the memory of a device.
+// Holds a cloud in the memory of a device.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,17 @@ namespace vpm::cuda {
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
-  // Makes room for the cloud of an image, which kernels fill (cloud_prepare.h, cloud_denoise.h).
+  // Allocates a cloud for an image, which kernels fill (cloud_prepare.h, cloud_denoise.h).
   explicit DeviceCloud(const Camera& camera);
   void stand_at(const Pose& camera_to_world);
   CloudRoom room() const;
 
-  // Different for any two of a process, and not 0. What kernels see of the surface stays the same.
+  // Returns a number unique in the process, not 0. The views of the surface stay the same for it.
   std::uint64_t serial() const { return serial_; }
   const CloudFrame& frame() const { return frame_; }
   const PointsView& points() const { return points_; }
-  const DepthSurface& depth_surface() const { return depth_; }  // of organised clouds
-  const DiskSurface& disk_surface() const { return disks_; }    // of the others
+  const DepthSurface& depth_surface() const { return depth_; }  // requires an organised cloud
+  const DiskSurface& disk_surface() const { return disks_; }    // requires an unorganised cloud
 
  private:
   void make_room(const DepthSurface& image);
@@ -50,7 +50,7 @@ class DeviceCloud {
   DiskSurface disks_;
 };
 
-// The copy of a cloud on the current device, shared by all queries that hold it.
+// Returns the copy of a cloud on the current device, shared by all queries that hold it.
 std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud);
 
 }  // namespace vpm::cuda

@@ -1,13 +1,13 @@
-// The plane of those pixels of a window that belong to the surface of its centre, with the sums of
-// GatedWindows (libvpm/cloud/normal_window.h) in the same order.
+// Fits the plane of those pixels of a window that belong to the surface of its centre, with the
+// sums of GatedWindows (libvpm/cloud/normal_window.h) in the same order.
 #pragma once
 
 #include "libvpm/scene/cuda/tile_around.h"
 
 namespace vpm::cuda {
 
-// What a window keeps of a column: how many pixels, the sums of dv and dv^2 over them, and of the
-// difference and dv times it. Counts are integers, exact in any order: they share a word.
+// Sums over the kept pixels of a column: their number, dv, dv^2, the difference, and dv times it.
+// The integers are exact in any order and share a word.
 class KeptColumn {
  public:
   __device__ __forceinline__ void add(float difference, int dv) {
@@ -21,7 +21,7 @@ class KeptColumn {
   __device__ float ye() const { return ye_; }
 
  private:
-  // Where the sums of dv^2 and of dv begin: that one has a sign, and is the last.
+  // Gives the first bits of the sums of dv^2 and of dv; the latter is signed and comes last.
   static constexpr int kSecond = 8, kFirst = 20, kMostAway = kMaxWindow / 2;
   static_assert(kMaxWindow < 1 << kSecond);
   static_assert(kMostAway * (kMostAway + 1) * (2 * kMostAway + 1) / 3 < 1 << (kFirst - kSecond));
@@ -31,8 +31,8 @@ class KeptColumn {
   float e_ = 0, ye_ = 0;
 };
 
-// Sums over the pixels that are kept: of the difference; of what is an integer, and how many
-// columns have an edge, which may be added up in any order.
+// Sums over the kept pixels of a window: float sums of the difference in a fixed order, and integer
+// sums, with the number of columns that have an edge, in any order.
 struct KeptDifferences {
   float e = 0, ue = 0, ve = 0;
   __device__ KeptDifferences operator+(const KeptDifferences& b) const {
@@ -46,23 +46,23 @@ struct KeptCounts {
   }
 };
 
-// Which pixels a window's last choice has kept: those no further from a plane than the gate.
+// Holds the rule by which a window last kept pixels: those no further from a plane than the gate.
 struct LastChoice {
   WindowPlane near;
   float gate = HUGE_VALF;
 };
 
-// Adds up eight of a window's columns, column(0) to column(7), in the order of fold() of
+// Adds eight of a window's columns, column(0) to column(7), in the order of fold() in
 // libvpm/cloud/plane_fit.h.
 template <class Column>
 __device__ __forceinline__ auto fold(const Column& column) {
-  // Every second of the columns.
+  // Adds every second column.
   const auto half = [&](int first) {
     const auto one = column(first) + column(first + 4);
     return one + (column(first + 2) + column(first + 6));
   };
   decltype(half(0)) both;
-#pragma unroll 1  // half as much code to read, where few windows share it
+#pragma unroll 1  // half the code for few windows
   for (int k = 0; k < 2; ++k) {
     const auto one = half(k);
     both = k == 0 ? one : both + one;
@@ -70,7 +70,7 @@ __device__ __forceinline__ auto fold(const Column& column) {
   return both;
 }
 
-// `Radius`: 0 if it is known at run time only.
+// Works on windows of this `Radius`, 0 if it is known at run time only.
 template <int Radius>
 class GatedWindow {
  public:
@@ -81,8 +81,8 @@ class GatedWindow {
         middle_(image.at(0, 0)),
         unit_(reciprocal(middle_)) {}
 
-  // Returns the plane of the window's surface: of what the steepest surface could reach, then, if
-  // something is beyond the edge gate of the centre, of what lies near that plane.
+  // Returns the plane of the window's surface: fits the pixels that the steepest surface could
+  // reach, and if some are beyond the edge gate of the centre, fits again those near that plane.
   __device__ __forceinline__ WindowPlane fit(LastChoice& last) const {
     bool has_edge, unused;
     const WindowPlane first = choose<true>({}, has_edge);
@@ -92,7 +92,7 @@ class GatedWindow {
     return choose<false>(first, unused);
   }
 
-  // Of the depths about the same centre.
+  // Returns the moments of the kept pixels' depths. `depths` must have the same centre.
   __device__ __forceinline__ Moments moments(const LastChoice& last,
                                              const TileAround& depths) const {
     Moments m;
@@ -119,7 +119,7 @@ class GatedWindow {
                              exact(counts.uv), exact(counts.vv), sums.e, sums.ue, sums.ve});
   }
 
-  // Columns that the window does not have are 0.
+  // Sums a column; a column beyond the window adds 0.
   template <bool kFirst>
   __device__ __forceinline__ KeptDifferences sum_column(int du, const WindowPlane& near,
                                                         KeptCounts& counts) const {
@@ -133,7 +133,7 @@ class GatedWindow {
       const float difference = difference_at(du, dv), y = static_cast<float>(dv);
       if constexpr (kFirst) {
         has_edge |= std::fabs(difference) > gate;
-        // That of the greater distance: rounding keeps the order.
+        // Uses the greater distance: rounding keeps the order.
         const float allowed = fmaxf(along, gate + edges_.slope * std::fabs(y));
         if (std::fabs(difference) <= allowed) kept.add(difference, dv);
       } else {
@@ -166,7 +166,7 @@ class GatedWindow {
         near.c + near.a * static_cast<float>(du) + near.b * static_cast<float>(dv);
     return std::fabs(difference_at(du, dv) - expected) <= last.gate;
   }
-  // Not a number where nothing is measured.
+  // Returns NaN where nothing is measured.
   __device__ __forceinline__ float difference_at(int du, int dv) const {
     return (image_.at(du, dv) - middle_) * unit_;
   }

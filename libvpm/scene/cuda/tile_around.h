@@ -1,12 +1,12 @@
-// A tile's inverse depths in a block's shared memory, about one of its pixels.
+// Accesses a tile in a block's shared memory about one of its pixels.
 #pragma once
 
 #include "libvpm/cloud/normal_window.h"
 
 namespace vpm::cuda {
 
-// What stands there for a pixel that is not measured: not a number, so that it is in no gate and
-// beyond none, whose bits are the greatest integer. Beyond the image stands what does on the host
+// Return the stored inverse depth of a pixel that is not measured, a NaN with the greatest integer
+// as bits, so that it lies within no gate; and of a pixel beyond the image, as on the host
 // (kBeyondImage).
 __device__ __forceinline__ float unmeasured() {
   return __int_as_float(0x7fffffff);
@@ -14,14 +14,14 @@ __device__ __forceinline__ float unmeasured() {
 __device__ __forceinline__ float beyond_image() {
   return __int_as_float(-1);
 }
-// `inverse`: 0 where nothing is measured.
+// Returns `inverse`, or unmeasured() for 0.
 __device__ __forceinline__ float measured_or_none(float inverse) {
   return inverse == 0 ? unmeasured() : inverse;
 }
 
-// Least and greatest inverse depth of some pixels, as integers, whose order is that of floats that
-// are not negative. If one of them is not measured, the greatest is no number; those beyond the
-// image are neither.
+// Holds least and greatest inverse depth of some pixels as integers, which order like floats that
+// are not negative. `high` is a NaN if a pixel is not measured; pixels beyond the image change
+// nothing.
 struct Extent {
   unsigned low;
   int high;
@@ -33,12 +33,12 @@ struct Extent {
   __device__ __forceinline__ void take(Extent a, Extent b) {
     low = __vimin3_u32(low, a.low, b.low), high = __vimax3_s32(high, a.high, b.high);
   }
-  // Whether a window is measured everywhere and without an edge.
+  // True if a window is measured everywhere and has no edge.
   __device__ __forceinline__ bool is_smooth(float centre, const EdgeGate& edges) const {
     return __uint_as_float(low) >= edges.lowest * centre &&
            __int_as_float(high) <= edges.highest * centre;
   }
-  // And whether floats can hold its squares.
+  // True if floats can hold the squares of the window's depths.
   __device__ __forceinline__ bool is_in_floats(const EdgeGate& edges) const {
     return __uint_as_float(low) >= edges.least && __int_as_float(high) <= edges.greatest;
   }

@@ -9,14 +9,14 @@
 namespace vpm {
 namespace {
 
-// The windows of some pixels of a row, as sums down each of their columns.
+// Sums down each column of the windows of some pixels of a row.
 class ColumnSums {
  public:
-  // So many that what is written of the first ones has left the CPU's queue when it is read again:
-  // across lanes, which CPUs do not take from there.
+  // Takes enough pixels that what is stored for the first ones has left the CPU's store queue when
+  // it is loaded across lanes, which CPUs do not forward.
   static constexpr int kPixels = 8 * kTile;
 
-  // From pixel `first` of row v on, to the row's last tile.
+  // Sums from pixel `first` of row v to the row's last tile.
   [[gnu::always_inline]] ColumnSums(const PaddedImage& inverse, int first, int v) {
     const auto stride = static_cast<std::ptrdiff_t>(inverse.stride);
     const int columns = std::min(kColumns, inverse.width - first + kTile);
@@ -27,7 +27,7 @@ class ColumnSums {
           }));
     }
   }
-  // About pixels first + i, first + i + 1, ...
+  // Returns the windows of pixels first + i, first + i + 1, ...
   [[gnu::always_inline]] WindowOfDepths<Floats> windows_at(int i) const {
     return window_of_depths<Floats>([&](int du) __attribute__((always_inline)) {
       return at(i + kDenoisedRadius + du);
@@ -36,7 +36,7 @@ class ColumnSums {
 
  private:
   static constexpr int kNumbers = 6;
-  static constexpr int kColumns = kPixels + kLanes;  // to whole lanes
+  static constexpr int kColumns = kPixels + kLanes;  // whole lanes
   static_assert(2 * kDenoisedRadius <= kLanes);
 
   [[gnu::always_inline]] void set(int i, const WindowOfDepths<Floats>& column) {
@@ -60,10 +60,10 @@ class ColumnSums {
 
 struct Tile {
   float inverse[kTile];
-  VectorTile normals;  // before they are made of unit length
+  VectorTile normals;  // not of unit length
 };
 
-// Of an image of normals and one of inverse depths, the pixels from (u, v) on.
+// Reads the pixels of normals and inverse depths from (u, v) on.
 class SeenFrom {
  public:
   [[gnu::always_inline]] SeenFrom(const SeenImage& seen, const PaddedImage& inverse, int u, int v)
@@ -73,7 +73,7 @@ class SeenFrom {
         y_(seen.y.at(u, v)),
         z_(seen.z.at(u, v)) {}
 
-  // So far aside.
+  // Returns the pixels at this offset.
   [[gnu::always_inline]] SeenPixel<Floats> operator()(int du, int dv) const {
     const std::ptrdiff_t at = dv * stride_ + du;
     return {load<Floats>(inverse_ + at), load<Floats>(x_ + at), load<Floats>(y_ + at),
@@ -85,7 +85,7 @@ class SeenFrom {
   const float *inverse_, *x_, *y_, *z_;
 };
 
-// Pixel u of row v and those to its right; `columns` has them from column i on.
+// Denoises pixel u of row v and those to its right; `columns` holds their windows from column i on.
 [[gnu::always_inline]] inline void denoise_tile(const SeenImage& seen, int u, int v,
                                                 const ColumnSums& columns, int i, Tile& tile) {
   for (int k = 0; k < kTile; k += kLanes) {

@@ -1,10 +1,8 @@
-// A camera's surface as queries read it: freed of most of its noise. Once per frame.
+// Denoises a camera's surface, once per frame.
 //
 // A pixel's normal becomes the mean of its own and those of sixteen pixels around it that show the
-// same smooth surface, and no crease beside it; where its own window is one surface, its inverse
-// depth becomes that of a paraboloid fitted to the window, among those of the pixels beside it.
-// Beside creases and steps depths stay as they were measured. README.md has the reasons and what
-// they gain.
+// same smooth surface. Its inverse depth becomes that of a paraboloid fitted to its window, unless
+// that holds a crease or a step. README.md has the reasons.
 #pragma once
 
 #include <vector>
@@ -17,32 +15,32 @@
 
 namespace vpm {
 
-// What was seen at each pixel.
+// Holds the measured image, and its marks.
 struct SeenImage {
-  // Rows above and below its own by which a pixel is marked.
+  // Rows above and below a pixel that decide its mark.
   static constexpr int kReachOfMarks = kDenoisedRadius;
 
-  PaddedImage inverse;  // depths, without holes that are to be closed
-  PaddedImage x, y, z;  // normal in camera axes, zero where there is none
-  PaddedImage marked;   // the first one, negative where the pixel is not clear (denoised_pixel.h)
+  PaddedImage inverse;  // inverse depth, 1/m, holes closed
+  PaddedImage x, y, z;  // normals in camera axes, zero where there is none
+  PaddedImage marked;   // `inverse`, negative where the pixel is not clear (denoised_pixel.h)
 
   void resize(std::uint32_t width, std::uint32_t height);
   void set_normal(int u, int v, Vec3f normal);
-  // Of rows [begin, end); threads may mark different ones.
+  // Marks rows [begin, end); threads may mark different ones.
   void mark_rows(int begin, int end);
 };
 
 class DenoisedImage {
  public:
-  // Rows above and below its own that decide what a pixel is settled to, by their marks too.
+  // Rows above and below a pixel that its denoised value depends on, through marks too.
   static constexpr int kReach = kDenoisedReach + SeenImage::kReachOfMarks;
 
-  // For images of this size; no new memory where it has it.
+  // Prepares for images of this size, without new memory where it has it.
   void resize(std::uint32_t width, std::uint32_t height);
-  // Reads rows [begin, end), whose neighbours are marked where they are to be settled; threads may
-  // read different ones.
+  // Denoises rows [begin, end), whose neighbours must be marked, or copies them as measured.
+  // Threads may take different rows.
   void read_rows(const SeenImage& seen, Denoising points, int begin, int end);
-  // After all rows.
+  // Builds the pyramid. All rows must be read.
   void finish() { tiles_.unite(); }
 
   DepthSurface surface(const Intrinsics& k) const;

@@ -1,6 +1,6 @@
-// What a pixel of a camera's surface is settled to: the arithmetic of denoised_image.h. IEEE
-// operations and square roots only, in a written order, so that host and devices have the same
-// bits. Real: float, or a vector of such (core/lanes.h).
+// Computes a pixel's denoised normal and inverse depth (denoised_image.h). IEEE operations and
+// square roots only, in a fixed order, so that host and devices give the same bits. Real is float,
+// or a vector of floats (core/lanes.h).
 #pragma once
 
 #include <type_traits>
@@ -9,13 +9,12 @@
 
 namespace vpm {
 
-// A pixel's window, to either side; and where its neighbours are asked: in two rings of eight
-// pixels, in rows and columns this far apart.
+// Sets the half width of a pixel's window, and the spacing of its two rings, in pixels.
 inline constexpr int kDenoisedRadius = 3, kDenoisedAcross = DepthSurface::kAcross;
 inline constexpr int kDenoisedReach = 2 * kDenoisedAcross;
 
-// What is seen at a pixel: inverse depth, and the normal in camera axes. In marked images inverse
-// depths are negative where the pixel is not clear (is_clear).
+// Holds inverse depth, 1/m, and normal in camera axes of a pixel. Marked images have negative
+// inverse depths where a pixel is not clear (is_clear).
 template <class Real>
 struct SeenPixel {
   Real inverse, x, y, z;
@@ -25,8 +24,8 @@ struct SeenPixel {
   }
 };
 
-// Whether a neighbour shows the pixel's own smooth surface. Nothing is like a pixel without normal,
-// nor is one that is marked like any.
+// True if a neighbour shows the pixel's own smooth surface. Never true for a pixel without normal,
+// nor for one that is marked not clear.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline auto is_alike(const SeenPixel<Real>& own,
                                                    const SeenPixel<Real>& other) {
@@ -37,8 +36,8 @@ template <class Real>
          (off >= -allowed);
 }
 
-// Whether a pixel's window of normals holds one smooth surface, as far as the pixels at the ends of
-// its row and column tell. Of the pixel seen(0, 0), not marked, and those around it, seen(du, dv).
+// True if a pixel's window of normals holds one smooth surface, by the pixels at the ends of its
+// row and column. seen(du, dv) is the pixel at this offset, not marked.
 template <class Real, class Seen>
 [[gnu::always_inline]] VPM_HD inline decltype(Real() < Real()) is_clear(const Seen& seen) {
   constexpr int kEnd = kDenoisedRadius;
@@ -47,13 +46,13 @@ template <class Real, class Seen>
          is_alike(own, seen(0, -kEnd)) & is_alike(own, seen(0, kEnd));
 }
 
-// An inverse depth as marked images have it; 0 stays 0.
+// Returns the inverse depth as marked images hold it; 0 stays 0.
 template <class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real marked(const Real& inverse, const Mask& clear) {
   return clear ? inverse : 0.0F - inverse;
 }
 
-// Least and greatest of some inverse depths.
+// Holds the least and the greatest of a set of inverse depths.
 template <class Real>
 struct ExtentOfDepths {
   Real low, high;
@@ -68,8 +67,9 @@ struct ExtentOfDepths {
   }
 };
 
-// Of a column of a window, then of the window: sums of inverse depths, and of those times the
-// squared distance from the middle; their extent, and that of the pixels beside the middle.
+// Holds the moments of a column of a window, or of the window: sums of inverse depths, and of those
+// times the squared distance from the middle; ranges of all pixels, and of those next to the
+// middle.
 template <class Real>
 struct WindowOfDepths {
   Real sum, squares;
@@ -79,7 +79,7 @@ struct WindowOfDepths {
   [[gnu::always_inline]] VPM_HD explicit WindowOfDepths(const Real& middle)
       : sum(middle), squares{}, all{middle, middle}, beside{middle, middle} {}
 
-  // The pixels at this distance below and above the middle of a column, nearer ones first.
+  // Adds the pixels at this distance below and above the middle of a column, nearest first.
   [[gnu::always_inline]] VPM_HD void add_rows(const Real& below, const Real& above, int distance) {
     const auto squared = static_cast<float>(distance * distance);
     const Real both = below + above;
@@ -89,7 +89,7 @@ struct WindowOfDepths {
     all.take({above, above});
     if (distance == 1) beside = all;
   }
-  // The columns at this distance from the middle one.
+  // Adds the columns at this distance from the middle one, nearest first.
   [[gnu::always_inline]] VPM_HD void add_columns(const WindowOfDepths& right,
                                                  const WindowOfDepths& left, int distance) {
     const auto squared = static_cast<float>(distance * distance);
@@ -104,26 +104,27 @@ struct WindowOfDepths {
     }
   }
 
-  // Whether all its pixels are known and belong to one surface.
+  // True if all pixels are known and belong to one surface.
   [[gnu::always_inline]] VPM_HD auto is_one_surface() const {
     return (all.low > 0.0F) &
            (all.high - all.low <= static_cast<float>(DepthSurface::kJump) * all.high);
   }
-  // At its middle, of the least-squares paraboloid of inverse depth: exact for planes, and where
-  // curvature is even. It has .27 of the noise of a pixel. It never leaves the extent of the nine
-  // pixels in the middle, so that what these show to be free stays so.
+  // Returns the least-squares paraboloid of inverse depth at the middle: exact for planes and even
+  // curvature, with .27 of a pixel's noise. Clamped to the range of the nine middle pixels, so that
+  // what these show to be free stays so.
   [[gnu::always_inline]] VPM_HD Real paraboloid() const {
     constexpr float kWidth = 2 * kDenoisedRadius + 1, kSide = kWidth * kWidth;
-    constexpr float kCount = kSide;                      // sums over the window of 1,
-    constexpr float kSquare = kSide * (kSide - 1) / 12;  // of u^2, and of u^2 (u^2 + v^2)
+    // Sums of 1, u^2 and u^2 (u^2 + v^2) over the window.
+    constexpr float kCount = kSide;
+    constexpr float kSquare = kSide * (kSide - 1) / 12;
     constexpr float kFourth = kSquare * ((3 * kSide - 7) / 20 + (kSide - 1) / 12);
     constexpr float kRatio = kFourth / kSquare;
     return beside.nearest_to((kRatio * sum - squares) / (kRatio * kCount - 2 * kSquare));
   }
 };
 
-// Of the column whose pixels are depth(dv), from its middle; of the window whose columns are
-// column(du).
+// Return the moments of a column with pixels depth(dv), and of a window with columns column(du),
+// counted from the middle.
 template <class Real, class Depth>
 [[gnu::always_inline]] VPM_HD inline WindowOfDepths<Real> column_of_depths(const Depth& depth) {
   WindowOfDepths<Real> column(depth(0));
@@ -137,7 +138,7 @@ template <class Real, class Column>
   return window;
 }
 
-// A sum of normals, not of unit length.
+// Sum of normals, not of unit length.
 template <class Real>
 struct NormalSum {
   using Mask = decltype(Real() < Real());
@@ -153,7 +154,7 @@ struct NormalSum {
   }
 };
 
-// Visits the pixels, in an order that is always the same, whose normals make that of one.
+// Visits the pixels whose normals make that of one, in a fixed order.
 template <class Visit>
 [[gnu::always_inline]] VPM_HD inline void visit_ring(int across, const Visit& visit) {
   visit(-across, -across), visit(0, -across), visit(across, -across);
@@ -164,7 +165,7 @@ template <class Visit>
 [[gnu::always_inline]] VPM_HD inline void visit_denoised(const Visit& visit) {
   visit(0, 0);
 #ifdef __CUDA_ARCH__
-#pragma unroll 1  // a block goes through this code once or twice: what counts is how much it is
+#pragma unroll 1
 #endif
   for (int across = kDenoisedAcross; across <= kDenoisedReach; across += kDenoisedAcross)
     visit_ring(across, visit);
@@ -180,8 +181,8 @@ template <class Mask>
   return one != 0;
 }
 
-// Of a pixel of a marked image, seen(0, 0), and those around it, seen(du, dv): the sum of the
-// normals that show its surface. Of those at clear pixels; where there are none, of all.
+// Returns the sum of the normals that show the surface of a pixel of a marked image, seen(0, 0),
+// among seen(du, dv): those of clear pixels or, where there are none, of all.
 template <class Real, class Seen>
 [[gnu::always_inline]] VPM_HD inline NormalSum<Real> denoised_normal(const Seen& seen) {
   using Mask = typename NormalSum<Real>::Mask;
@@ -201,7 +202,8 @@ template <class Real, class Seen>
   return sum;
 }
 
-// Of a pixel of a marked image, and its window. Beside a crease a paraboloid would round it off.
+// Returns a pixel's denoised inverse depth. Pixels that are not clear stay as measured, since a
+// paraboloid would round off a crease.
 template <class Real>
 [[gnu::always_inline]] VPM_HD inline Real denoised_inverse_depth(
     const SeenPixel<Real>& pixel, const WindowOfDepths<Real>& window) {
@@ -211,8 +213,8 @@ template <class Real>
              : pixel.measured().inverse;
 }
 
-// That makes a sum of normals one of unit length; any number where the sum is zero. (A choice
-// between two square roots would keep compilers from vectors.)
+// Returns the factor that makes a sum of normals a unit vector; any number for a zero sum. Written
+// with one square root, so that compilers use vectors.
 [[gnu::always_inline]] VPM_HD inline float per_length(float x, float y, float z) {
   const float squared = x * x + y * y + z * z;
   return 1.0F / std::sqrt(squared + (squared > 0 ? 0.0F : 1.0F));

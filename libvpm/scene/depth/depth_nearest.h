@@ -1,16 +1,14 @@
-// The nearest place of a camera's surface, and which side of a crease it lies on. One text for one
-// place and for four.
+// Finds the nearest place of a camera's surface. The same code searches for one place and for four.
 #pragma once
 
 #include "libvpm/scene/depth/depth_sampler.h"
 
 namespace vpm {
 
-// Searches for the nearest place, reading by reading. Starts from the point on x's ray, steps to
-// the foot on its tangent plane and, where that overshoots a crease, back by halves; where it is
-// the bottom of a groove that it overshoots, its walls tell the direction. A step that leads away
-// without a crease has met noise: there the normals tell the direction, not single pixels. Beside a
-// crease, where windows of normals hold both sides, those of one side lead.
+// Searches for the nearest place of the surface. Starts from the point on x's ray, steps to the
+// foot on its tangent plane, and steps back by halves if that overshoots a crease. Below a groove
+// both walls tell the direction. A step that leads away without a crease has met noise: there the
+// normals tell the direction. Beside a crease normals of one side replace those that mix both.
 template <class Real>
 class FootSearch {
  public:
@@ -19,9 +17,9 @@ class FootSearch {
   using Place = PlaceOf<Real>;
   using Stored = StoredOf<Real>;
 
-  // The pixels kAcross to either side of one.
+  // Holds the pixels kAcross to either side of one, in its row and its column.
   struct Neighbors {
-    Int across{}, down{};  // in its row, in its column: kAcross, or 0 where one is missing
+    Int across{}, down{};              // kAcross, or 0 where one is missing
     Stored left, right, above, below;  // normals
   };
   [[gnu::always_inline]] static VPM_HD Neighbors neighbors_of(const DepthSampler& image,
@@ -42,7 +40,7 @@ class FootSearch {
   }
 
   FootSearch() = default;
-  // `first` is what was read at x; it is known.
+  // Begins at `first`, the surface sample at x, which must be known.
   [[gnu::always_inline]] VPM_HD FootSearch(const DepthSampler& image, const Place& x,
                                            SurfaceSampleOf<Real> first, const Neighbors& beside)
       : x_(x) {
@@ -55,7 +53,7 @@ class FootSearch {
     searches_ = negated(Mask{});
   }
 
-  // True where another reading is wanted, at target(). To be asked before each is taken.
+  // True where a sample at target() is needed. Call it before each take().
   [[gnu::always_inline]] VPM_HD Mask goes_on() {
     if (steps_ == kSteps) searches_ = Mask{};
     const Real near = kNearPixels * pixel_;
@@ -76,8 +74,8 @@ class FootSearch {
     if (any(is_not)) turn_back(next, is_not);
   }
 
-  // Returns the direction to what was found. Where the foot is not below x on its own tangent
-  // plane, it lies on a crease: there the gradient fans out.
+  // Returns the direction to the foot that was found. A foot that is not below x on its own tangent
+  // plane lies on a crease, where the gradient fans out.
   [[gnu::always_inline]] VPM_HD Place normal() const {
     const Place towards = choose(has_met_noise_, normal_, foot_ - x_);
     const Real above = dot(normal_, towards), aside = squared_norm(towards - above * normal_);
@@ -91,10 +89,10 @@ class FootSearch {
  private:
   static constexpr std::int32_t kAcross = DepthSampler::kAcross;
   static constexpr double kSmoothCosine = DepthSampler::kSmoothCosine;
-  static constexpr double kSameCosine = 0.99;  // 8 degrees: normals of one side of a crease
-  static constexpr int kSteps = 5;             // of the search, at most
-  static constexpr double kNearPixels = 0.5;   // a step shorter than this ends the search
-  static constexpr double kCreasePixels = 2;   // a foot further aside than this lies on a crease
+  static constexpr double kSameCosine = 0.99;  // cos 8 degrees: normals of one side of a crease
+  static constexpr int kSteps = 5;             // limit of the search
+  static constexpr double kNearPixels = 0.5;   // a shorter step ends the search
+  static constexpr double kCreasePixels = 2;   // a foot further aside lies on a crease
 
   [[gnu::always_inline]] VPM_HD void step_to(const SurfaceSampleOf<Real>& next, const Real& squared,
                                              const Mask& which) {
@@ -103,8 +101,8 @@ class FootSearch {
     squared_ = which ? squared : squared_;
     target_ = choose(which, x_ - dot(normal_, x_ - foot_) * normal_, target_);
   }
-  // Keeps in normal_ the sum of the normals where noise was met, and the direction where a groove
-  // was: there the search has ended.
+  // Ends the search: sums normals in normal_ where noise was met, stores the direction where a
+  // groove was. Steps back toward a crease otherwise.
   [[gnu::always_inline]] VPM_HD void turn_back(const SurfaceSampleOf<Real>& next,
                                                const Mask& which) {
     const Mask is_noise = which & (dot(normal_, next.normal) > kSmoothCosine);
@@ -121,16 +119,15 @@ class FootSearch {
     }
     searches_ &= negated(has_met_noise_ | has_met_groove_);
   }
-  // True if two walls, each seen at its plane's foot, enclose a groove above x, which is behind
-  // both.
+  // True if two walls, each with a sampled foot, enclose a groove above x, which is behind both.
   [[gnu::always_inline]] VPM_HD Mask meet_above(const TangentPlaneOf<Real>& one,
                                                 const TangentPlaneOf<Real>& other) const {
     return (one.distance(other.foot) > 0) & (other.distance(one.foot) > 0) &
            (one.distance(x_) < 0) & (other.distance(x_) < 0);
   }
 
-  // Gives a reading the normal of one side of a crease, where its pixel lies beside one: of that
-  // side on whose tangent plane the foot lies. Its distance is then that of x.
+  // Replaces the normal of a sample beside a crease by that of the side on whose tangent plane the
+  // foot lies, and its distance by that of x from the plane.
   [[gnu::always_inline]] VPM_HD void take_one_side(const DepthSampler& image,
                                                    const Neighbors& beside,
                                                    SurfaceSampleOf<Real>& on_surface) const {
@@ -158,7 +155,7 @@ class FootSearch {
     on_surface.distance =
         least < HUGE_VAL ? dot(on_surface.normal, x_ - on_surface.foot) : on_surface.distance;
   }
-  // True if a crease passes between two neighbours of a pixel, and its normal is of neither.
+  // True if a crease passes between two neighbours of a pixel and its normal belongs to neither.
   [[gnu::always_inline]] static VPM_HD Mask holds_crease(const Stored& one, const Stored& other,
                                                          const Place& normal) {
     const Place before = widen(one), after = widen(other);
@@ -166,7 +163,7 @@ class FootSearch {
     if (!any(differ)) return differ;
     return differ & (dot(before, normal) < kSameCosine) & (dot(after, normal) < kSameCosine);
   }
-  // Returns how far a place lies off the tangent plane of a pixel, m; HUGE_VAL where the pixel
+  // Returns the distance of a place from the tangent plane of a pixel, m; HUGE_VAL where the pixel
   // shows another surface, or nothing.
   [[gnu::always_inline]] static VPM_HD Real off_plane(const DepthSampler& image, const Place& place,
                                                       const Int& u, const Int& v,
@@ -182,13 +179,13 @@ class FootSearch {
   }
 
   Place x_, foot_, normal_, target_;
-  Real squared_{}, pixel_{};  // of the foot's distance, m^2; a pixel's width at the first foot, m
+  Real squared_{}, pixel_{};  // squared distance to the foot, m^2; pixel width at the first foot, m
   int steps_ = 0;
   Mask searches_{}, has_met_noise_{}, has_met_groove_{};
 };
 
-// Returns the gradient of the distance to the surface at a place x behind it: towards the nearest
-// surface point. `reading` is that of x, and known.
+// Returns the gradient of the distance to the surface at a place x behind it, which points towards
+// the nearest surface point. `on_surface` is the sample at x and must be known.
 template <class Place>
 [[gnu::always_inline]] VPM_HD inline Place search_normal(
     const DepthSampler& image, const Place& x, const SurfaceSampleOf<RealOf<Place>>& on_surface) {

@@ -1,10 +1,8 @@
-// The image of a camera, read at any place: one inverse depth per pixel of a pinhole camera.
+// Samples the image of a camera at any place, in camera coordinates.
 //
-// Inverse depth is affine in the pixel on a plane, so bilinear interpolation is exact there. Which
-// side a place lies on is read off its own pixel, without normals; the normal only scales the
-// distance. Camera coordinates.
-//
-// One text reads one place (Vec3; host and device) or four at a time (Vec3x4; host).
+// Inverse depth is affine in the pixel on a plane, so bilinear interpolation is exact there. A
+// place's own pixel tells its side without normals; the normal only scales the distance. The same
+// code samples one place (Vec3; host and device) or four at a time (Vec3x4; host).
 #pragma once
 
 #include "libvpm/cloud/camera.h"
@@ -14,9 +12,9 @@
 
 namespace vpm {
 
-// Least and greatest inverse depth of a tile of pixels; low = 0 where any pixel is unknown, both 0
-// where all are.
-struct alignas(8) InverseDepthRange {  // read at once
+// Holds the least and the greatest inverse depth, 1/m, of a tile of pixels; low = 0 where a pixel
+// is unknown, both 0 where all are.
+struct alignas(8) InverseDepthRange {  // one load
   float low = 0, high = 0;
 };
 VPM_HD inline InverseDepthRange united(InverseDepthRange a, InverseDepthRange b) {
@@ -27,28 +25,28 @@ VPM_HD inline InverseDepthRange united(InverseDepthRange a, InverseDepthRange b)
 #endif
 }
 
-// A view: plain pointers, for host or device.
+// Holds plain pointers to a frame's data, for host or device.
 struct DepthSampler {
   static constexpr int kMaxLevels = 16;
-  // The widest and highest image: of the coarsest tiles, a look takes three by three.
+  // Limits width and height of an image, so that its coarsest tiles cover any ball three by three.
   static constexpr std::uint32_t kMostPixelsASide = 1U << kMaxLevels;
-  // Pixels whose inverse depths differ by more than this fraction belong to two surfaces. A plane
-  // at 1 m seen by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
+  // Bounds the relative difference of inverse depths of pixels on one surface. A plane at 1 m seen
+  // by f = 525 stays below it up to a tilt of 86 degrees; a depth step of 3 % does not.
   static constexpr double kJump = 0.03;
-  // Normals that differ by less than this cosine (25 degrees) belong to one smooth surface, noisy
-  // or curved; those of a crease differ by more.
+  // Bounds the cosine (25 degrees) between normals of one smooth surface, noisy or curved; those of
+  // a crease differ by more.
   static constexpr double kSmoothCosine = 0.9;
-  // Windows of normals that lie this many pixels to either side see one side of a crease each: they
+  // Sets the pixels to either side at which windows of normals see one side of a crease each: they
   // are up to twice as wide (7 pixels by default).
   static constexpr std::int32_t kAcross = 4;
 
   Intrinsics k;
   std::int32_t width = 0, height = 0;
   std::int32_t levels = 0;
-  const Vec3f* normals = nullptr;  // of each pixel, camera axes; zero where none is known
-  // tiles[l] are of 2^l by 2^l pixels; tiles[0].high is the pixel's own inverse depth.
+  const Vec3f* normals = nullptr;  // one per pixel, camera axes; zero where unknown
+  // Holds ranges over 2^l by 2^l pixels in tiles[l]; tiles[0].high is a pixel's inverse depth.
   const InverseDepthRange* tiles[kMaxLevels] = {};
-  // Inverse depth before noise was taken out (denoised_image.h): what was seen to be free stays so.
+  // Holds inverse depth, 1/m, before denoising: what was seen to be free stays so.
   const float* measured = nullptr;
 
   VPM_HD std::int32_t tiles_per_row(int level) const { return ((width - 1) >> level) + 1; }
@@ -62,8 +60,9 @@ struct DepthSampler {
     return gather(v * width + u, [pixels](std::int32_t i) { return pixels[i].high; });
   }
 
-  // Reads the surface on the ray of x. Calls also(u, v), which may load more at the nearest pixel:
-  // a device waits for all loads together. Where nothing is known, the rest has no meaning.
+  // Samples the surface on the ray of x. Calls also(u, v), which may load more at the nearest
+  // pixel, so that a device waits for all loads together. Fields other than `known` are undefined
+  // where it is false.
   template <class Place, class Also>
   [[gnu::always_inline]] VPM_HD SurfaceSampleOf<RealOf<Place>> sample_and(const Place& x,
                                                                           const Also& also) const {
@@ -80,7 +79,7 @@ struct DepthSampler {
     const MaskOf<Real> is_trusted =
         (along < 0) & (along * along >= (kGrazing * kGrazing) * squared_length);
     on_surface.distance = along * (1 - to_foot);
-    // No normal, or one that cannot be right: the surface is taken to face the ray.
+    // Takes the surface to face the ray where there is no normal, or none that can be right.
     if (any(pixel.known & negated(is_trusted))) {
       const Real length = square_root(squared_length);
       on_surface.normal = choose(is_trusted, on_surface.normal, quotient(-1, length) * x);
@@ -90,16 +89,16 @@ struct DepthSampler {
   }
 
  private:
-  // Below this cosine between normal and ray the normal is not trusted to scale a distance.
+  // Bounds the cosine between ray and normal below which the normal does not scale a distance.
   static constexpr double kGrazing = 0.05;
 
-  // The surface in the direction of a place.
+  // Describes the image in the direction of a place.
   template <class Real>
   struct Pixel {
     MaskOf<Real> known{};
     Real inverse_depth{};
     IntOf<Real> nearest{};    // index of the nearest pixel
-    StoredOf<Real> normal{};  // of that
+    StoredOf<Real> normal{};  // stored there
   };
   template <class Place, class Also>
   [[gnu::always_inline]] VPM_HD Pixel<RealOf<Place>> look_up(const Place& x,
@@ -109,13 +108,12 @@ struct DepthSampler {
     const Real zero{}, per_depth = quotient(1, x.z);
     const Real any_u = k.fx * (x.x * per_depth) + k.cx, any_v = k.fy * (x.y * per_depth) + k.cy;
     const double u_end = width, v_end = height;
-    // Squares of depths below kSmallestLength would vanish.
+    // Squares of depths below kSmallestLength would underflow.
     const MaskOf<Real> is_seen = (x.z >= kSmallestLength) & (any_u >= -0.5) & (any_v >= -0.5) &
                                  (any_u + 0.5 < u_end) & (any_v + 0.5 < v_end);
     if (!any(is_seen)) return {};
     const Real u = is_seen ? any_u : zero, v = is_seen ? any_v : zero;
     const Real from_u = u < 0 ? zero : u, from_v = v < 0 ? zero : v;
-    // Not negative: what is cut off rounds to the nearest.
     const Int un = truncated(u + 0.5), vn = truncated(v + 0.5);
     const Int u0 = truncated(from_u), v0 = truncated(from_v);
     const Int u1 = u0 + 1 < width ? u0 + 1 : u0, v1 = v0 + 1 < height ? v0 + 1 : v0;
@@ -142,7 +140,7 @@ struct DepthSampler {
                high = high_ab > high_cd ? high_ab : high_cd;
     return (low > 0) & (high - low <= kJump * high);
   }
-  // Interpolates between four pixels, at these fractions of the way from a to b, and from a to c.
+  // Interpolates between four pixels, at these fractions of the way from a to b and from a to c.
   template <class Real>
   [[gnu::always_inline]] static VPM_HD Real bilinear(const Real& a, const Real& b, const Real& c,
                                                      const Real& d, const Real& along_u,

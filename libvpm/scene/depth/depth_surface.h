@@ -1,4 +1,4 @@
-// A surface as an organised cloud holds it: the image of a camera. Camera coordinates.
+// Defines the surface of an organised cloud: a camera's image, in camera coordinates.
 #pragma once
 
 #include <bit>
@@ -10,43 +10,43 @@
 
 namespace vpm {
 
-// A view: plain pointers, for host or device.
+// Holds plain pointers to a frame's data, for host or device.
 struct DepthSurface : DepthSampler {
-  static constexpr bool kSearchesFoot = true;  // for the nearest surface point
-  // A ray that has passed the surface is inside, as far as anybody knows: what is behind it, no
-  // further than the tool's reach, counts, and no flood needs to come.
+  static constexpr bool kSearchesFoot = true;
+  // A ray that has passed the surface is inside as far as anybody knows, so places behind it count
+  // up to the tool's radius without a flood.
   static constexpr bool kTellsInside = true;
-  // Readings about the middle of a ball lie at this part of its radius: a paraboloid is as high
-  // there as in the mean over a box in the ball.
+  // Samples about the middle of a ball lie at this part of its radius, where a paraboloid is as
+  // high as its mean over a box in the ball.
   static constexpr double kRim = 0.5;
 
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t = kNoPoint) const {
     return sample_and(x, [](std::int32_t, std::int32_t) {});
   }
-  // Returns the surface for places in a ball: this one, since projection needs no search.
+  // Returns the sampler for places in a ball: this one, since projection needs no search.
   VPM_HD const DepthSurface& around_ball(Vec3, double, std::uint32_t) const { return *this; }
 
-  // Returns the gradient of the distance to the surface at a place x behind it: towards the nearest
-  // surface point. `reading` is that of x, and known.
+  // Returns the unit direction from a place x behind the surface to the nearest surface point.
+  // `on_surface` is the sample at x and must be known.
   VPM_HD Vec3 closest_normal(Vec3 x, const SurfaceSample& on_surface) const {
     return search_normal(*this, x, on_surface);
   }
 
-  // The pixels of a ball: its side, and the range of inverse depth over the tiles that cover them.
+  // Holds the class of a ball, and the range of inverse depth over the tiles that cover its pixels.
   struct BallClass {
     Side side = Side::free;
-    std::uint32_t point = kNoPoint;  // projection needs no place to begin
+    std::uint32_t point = kNoPoint;  // always: projection needs no start
     bool leaves_image = true;
-    PixelRectangle pixels, tiles;  // that a place in the ball may touch; those of the tiles
+    PixelRectangle pixels, tiles;  // pixels that a place in the ball may touch; pixels of the tiles
     InverseDepthRange range;
-    float middle = 0;  // as measured, of the pixel in the middle
+    float middle = 0;  // measured inverse depth of the pixel in the middle
   };
 
   VPM_HD Side side_of_ball(Vec3 center, double radius) const {
     return side_of(classify_ball(center, radius), center, radius);
   }
-  // Returns the side of a ball that was looked at. Tiles hold pixels beside the ball too: where
-  // they do not decide, its own pixels tell if it is free.
+  // Returns the side of a classified ball. Its tiles hold other pixels too: where they do not
+  // decide, its own pixels tell if it is free.
   VPM_HD Side side_of(const BallClass& in_ball, Vec3 center, double radius) const {
     const double farthest = center.z + radius;
     return may_be_seen_past(in_ball, farthest) && is_seen_past(in_ball.pixels, farthest, 0, 1)
@@ -55,7 +55,7 @@ struct DepthSurface : DepthSampler {
   }
   static VPM_HD PixelRectangle pixels_of(const BallClass& in_ball) { return in_ball.pixels; }
   // True if the pixels of a ball may all have measured no surface nearer than `depth`, m. The
-  // pixel in the middle mostly says no.
+  // middle pixel rules most balls out.
   VPM_HD bool may_be_seen_past(const BallClass& in_ball, double depth) const {
     const PixelRectangle& p = in_ball.pixels;
     return in_ball.side == Side::ambiguous &&
@@ -67,7 +67,7 @@ struct DepthSurface : DepthSampler {
                            std::uint32_t step) const {
     for (std::int32_t v = p.v0 + static_cast<std::int32_t>(first); v <= p.v1;
          v += static_cast<std::int32_t>(step)) {
-      bool past = true;  // a row at a time: loads that do not wait for each other
+      bool past = true;  // a row at a time: independent loads
       for (std::int32_t u = p.u0; u <= p.u1; ++u) past &= depth * measured_at(u, v) < 1;
       if (!past) return false;
     }
@@ -88,14 +88,14 @@ struct DepthSurface : DepthSampler {
     const double v = k.fy * y + k.cy, spread_v = k.fy * (per_nearest * (1 + std::fabs(y)));
     const double u_low = u - spread_u, u_high = u + spread_u;
     const double v_low = v - spread_v, v_high = v + spread_v;
-    // Written so that numbers that overflowed are free too.
+    // True for numbers that overflowed too.
     if (!(u_high >= -0.5 && v_high >= -0.5 && u_low < width - 0.5 && v_low < height - 0.5)) {
       in_ball.side = Side::free;
       return in_ball;
     }
     in_ball.leaves_image =
         u_low < -0.5 || v_low < -0.5 || u_high >= width - 0.5 || v_high >= height - 0.5;
-    // Every pixel that look_up may touch for a place in the ball.
+    // Covers all pixels that look_up may touch for a place in the ball.
     in_ball.pixels = {u_low < 0 ? 0 : static_cast<std::int32_t>(u_low),
                       v_low < 0 ? 0 : static_cast<std::int32_t>(v_low),
                       u_high + 1 >= width ? width - 1 : static_cast<std::int32_t>(u_high + 1),
@@ -109,25 +109,24 @@ struct DepthSurface : DepthSampler {
     return in_ball;
   }
 
-  // True if a look at a ball tells of the balls in it: their pixels are among its own, unless it is
-  // so near that the bound of its projection is loose.
+  // True if the class of a ball tells about the balls in it: their pixels are among its own, unless
+  // the ball is so near that the bound of its projection is loose.
   VPM_HD bool tells_of_parts(Vec3 center, double radius) const { return center.z > 2 * radius; }
-  // True if such a look shows that a ball in the one that was looked at is free.
+  // True if the class of a ball shows a ball in it to be free.
   VPM_HD bool is_free_part(const BallClass& in_ball, Vec3 center, double radius) const {
     return (center.z + radius) * in_ball.range.high < 1;
   }
 
-  // True if the surface in a ball that was looked at may touch a ball in it, as far as the look
-  // tells.
+  // True if the surface in a classified ball may touch a ball in it.
   VPM_HD bool may_touch(const BallClass& in_ball, Vec3 center, double radius) const {
     return !(is_free_part(in_ball, center, radius) || (center.z - radius) * in_ball.range.low > 1);
   }
 
-  // Returns the least inverse depth in a ball that was looked at, 1/m.
+  // Returns the least inverse depth in a classified ball, 1/m.
   static VPM_HD float least_inverse_depth(const BallClass& in_ball) { return in_ball.range.low; }
-  // True if a ball in one that was looked at may be free though the plane of all pixels there says
-  // no: the measured pixel at its centre lies beyond it, and not all of the surface there is nearer
-  // than its far side. `least` is the least_inverse_depth() of that surface.
+  // True if a ball in a classified one may be free although it lies behind the mean plane of all
+  // pixels: the measured pixel at its centre lies beyond it. `least`, the least_inverse_depth() of
+  // the outer ball, rules most balls out.
   VPM_HD bool may_be_free(float least, Vec3 center, double radius) const {
     if (!((center.z + radius) * least < 1)) return false;
     if (!(center.z - radius >= kSmallestLength)) return true;
@@ -140,26 +139,24 @@ struct DepthSurface : DepthSampler {
            1;
   }
 
-  // False only if may_be_free is false for every ball in this one, which lies in one that was
-  // looked at.
+  // False only if may_be_free() is false for every ball in this part of a classified ball.
   VPM_HD bool may_hold_free(const BallClass& in_ball, Vec3 center, double radius) const {
     constexpr double kRounding = 1 - 1e-9;
     return (center.z - radius) * in_ball.range.low * kRounding < 1;
   }
 
-  // True if the surface in a ball that was looked at may be one plane.
+  // True if the surface in a classified ball may be one plane.
   VPM_HD bool may_be_flat(const BallClass& in_ball) const {
     return !in_ball.leaves_image && in_ball.range.low > 0;
   }
-  // True if the surface in such a ball is one plane, as far as the range of its pixels tells: the
-  // plane at the ball's centre, where read() samples the surface, predicts their least and greatest
-  // depth to `tolerance`, m.
+  // True if the surface in a ball that may_be_flat() is one plane: the plane at the ball's centre,
+  // which read() samples, predicts the least and greatest depth of its pixels to `tolerance`, m.
   template <class Read>
   VPM_HD bool is_flat(const BallClass& in_ball, const Read& read, double tolerance,
                       TangentPlane& plane) const {
     const SurfaceSample on_surface = read();
     if (!on_surface.known) return false;
-    const CornerNormals corners = corner_normals(in_ball);  // soon, though they may not be needed
+    const CornerNormals corners = corner_normals(in_ball);  // loaded early
     plane = {on_surface.normal, on_surface.foot};
     if (!shows(in_ball, plane, tolerance)) return false;
     plane.normal = mean_normal(in_ball, corners, on_surface.normal);
@@ -182,9 +179,9 @@ struct DepthSurface : DepthSampler {
            std::fabs(middle + spread - in_ball.range.high) <= allowed;
   }
 
-  // Finds the mean plane of the surface across a ball that was looked at, from readings at its
-  // middle and at four places around it. Returns false if they do not belong to one smooth surface,
-  // or the range of the ball's pixels does not agree with the plane.
+  // Finds the mean plane of the surface across a classified ball, from samples at its middle and at
+  // four places around it. Returns false if they do not belong to one smooth surface, or the plane
+  // does not predict the range of the ball's pixels.
   template <class ReadAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
                          const ReadAll& sample_all, TangentPlane& plane) const {
@@ -201,7 +198,7 @@ struct DepthSurface : DepthSampler {
     plane = mean.plane();
     return shows(in_ball, plane, tolerance);
   }
-  // The four places around the middle; `middle` was read at the ball's centre, and is known.
+  // Holds the four places around the middle. `middle` is the known sample at the centre.
   struct PlacesAround {
     static constexpr int kCount = 4;
     Vec3 below, side, other;
@@ -218,25 +215,24 @@ struct DepthSurface : DepthSampler {
       return place % 2 == 0 ? below + aside : below - aside;
     }
   };
-  // The mean of the five readings, if they belong to one smooth surface.
+  // Computes the mean of five samples of one smooth surface.
   struct PlaneMean {
     Vec3 middle_normal, direction, feet;
 
     VPM_HD explicit PlaneMean(const SurfaceSample& middle)
         : middle_normal(middle.normal), direction(middle.normal), feet(middle.foot) {}
-    // Adds a reading; false if it does not belong to that surface.
+    // Adds a sample. Returns false if it does not belong to that surface.
     VPM_HD bool take(const SurfaceSample& on_surface) {
       if (!on_surface.known || dot(on_surface.normal, middle_normal) < kSmoothCosine) return false;
       direction += on_surface.normal;
       feet += on_surface.foot;
       return true;
     }
-    // Returns the plane of five readings.
+    // Returns the plane of the five samples.
     VPM_HD TangentPlane plane() const { return {normalized_or_zero(direction), 0.2 * feet}; }
   };
 
-  // Returns a bound of the distance, m, from any place in a ball that was looked at to the foot of
-  // its reading.
+  // Bounds the distance, m, from any place in a classified ball to the foot of its sample.
   VPM_HD double largest_gap(const BallClass& in_ball, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;
     if (!(nearest >= kSmallestLength && in_ball.range.high > 0)) return HUGE_VAL;
@@ -248,9 +244,9 @@ struct DepthSurface : DepthSampler {
   }
 
  private:
-  // Over so few pixels only a jump is told from noise.
+  // Over so few pixels only a jump can be told from noise.
   static constexpr std::int32_t kFewPixels = 4;
-  // A ball of more pixels is not asked pixel by pixel: its parts are, soon.
+  // Balls of more pixels are not tested pixel by pixel, since their parts soon are.
   static constexpr std::int64_t kMostPixels = 1024;
 
   static VPM_HD bool spans_few_pixels(const BallClass& in_ball) {
@@ -258,7 +254,7 @@ struct DepthSurface : DepthSampler {
     return p.u1 - p.u0 <= kFewPixels && p.v1 - p.v0 <= kFewPixels;
   }
 
-  // Normals between the middle of a ball and the corners of its pixels.
+  // Holds the normals halfway between the middle of a ball and the corners of its pixels.
   struct CornerNormals {
     Vec3f at[4];
   };
@@ -269,8 +265,8 @@ struct DepthSurface : DepthSampler {
     return {{normals[above + p.u0 + u], normals[above + p.u1 - u], normals[below + p.u0 + u],
              normals[below + p.u1 - u]}};
   }
-  // Returns the mean of these and of the normal at the middle, of those that belong to one smooth
-  // surface: noise is averaged, and curvature cancels.
+  // Returns the mean of the normal in the middle and those corner normals that belong to its
+  // surface, which averages noise and cancels curvature.
   VPM_HD Vec3 mean_normal(const BallClass& in_ball, const CornerNormals& corners,
                           Vec3 middle) const {
     if (spans_few_pixels(in_ball)) return middle;
@@ -291,7 +287,7 @@ struct DepthSurface : DepthSampler {
 #endif
   }
 
-  // Takes the range of the look's pixels from at most 3 by 3 tiles.
+  // Sets the range of the ball's pixels from at most 3 by 3 tiles.
   VPM_HD void cover(BallClass& in_ball) const {
     const PixelRectangle& p = in_ball.pixels;
     const std::int32_t wide = p.u1 - p.u0, high = p.v1 - p.v0;
@@ -309,7 +305,7 @@ struct DepthSurface : DepthSampler {
       const InverseDepthRange tile = tiles[level][v * row + u];
       all = united(all, tile);
     };
-    // Takes nine always, some of them twice: loads that do not wait for each other, no branch.
+    // Takes nine always, some twice: independent loads without branches.
     for (std::int32_t i = 0; i < 9; ++i)
       take(u0 + i % 3 < u1 ? u0 + i % 3 : u1, v0 + i / 3 < v1 ? v0 + i / 3 : v1);
     in_ball.range = all;

@@ -14,8 +14,8 @@ struct ClosedPixel {
   float value;
 };
 
-// Whether a pixel of the tile is not measured; one that has a measured opposite pair beside it is
-// marked. `at`: the first pixel.
+// Marks pixels of a tile that are not measured but have a measured opposite pair beside them. `at`
+// is the first pixel. Returns false if all pixels are measured.
 VPM_VECTOR_CLONES
 bool mark_candidates(const float* at, std::ptrdiff_t stride, std::uint8_t (&candidate)[kTile]) {
   int holes = 0;

@@ -1,5 +1,4 @@
-// Pixels without measurement between ones that see one surface are closed, up to two pixels from
-// the rim of a hole.
+// Closes holes between pixels that see one surface, up to two pixels from the rim.
 #pragma once
 
 #include "libvpm/cloud/padded_image.h"
@@ -7,12 +6,12 @@
 
 namespace vpm {
 
-// Each closes what lies beside the pixels before it, so holes up to twice as wide; pairs reach no
-// further.
+// Sets the passes, each of which closes pixels next to the last, so holes of twice that width
+// close.
 inline constexpr int kFillPasses = 2;
 
-// The inverse depth of a pixel between opposite neighbours that see one surface, 0 where there are
-// none: their mean is exact on a plane. `image(u, v)` are inverse depths, 0 where nothing is known.
+// Returns the mean inverse depth of opposite neighbours that see one surface, which is exact on a
+// plane; 0 where there are none. `image(u, v)` is the inverse depth, 0 where unknown.
 template <class Image>
 VPM_HD float between_neighbors(const Image& image, int width, int height, int u, int v) {
   double sum = 0;
@@ -32,7 +31,7 @@ VPM_HD float between_neighbors(const Image& image, int width, int height, int u,
   return pairs > 0 ? static_cast<float>(sum / (2 * pairs)) : 0.0F;
 }
 
-// Closes them in a whole image of inverse depth with a margin.
+// Closes the holes of a whole image of inverse depth with a margin.
 void close_holes(PaddedImage& inverse);
 
 }  // namespace vpm

@@ -8,7 +8,7 @@
 namespace vpm {
 namespace {
 
-// A row of tiles from two of the level below; the last tile of an odd width has one column.
+// Unites two rows of tiles to one of the next level; the last tile of an odd width has one column.
 VPM_VECTOR_CLONES
 void unite_rows(const InverseDepthRange* __restrict above,
                 const InverseDepthRange* __restrict below, std::size_t width,

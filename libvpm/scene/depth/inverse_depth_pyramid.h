@@ -1,4 +1,4 @@
-// Ranges of inverse depth over tiles of 1, 2, 4, ... pixels a side: what a DepthSurface reads.
+// Stores ranges of inverse depth over tiles of 1, 2, 4, ... pixels a side, for DepthSurface.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@ namespace vpm {
 
 class InverseDepthPyramid {
  public:
-  // For an image of this size; no new memory where it has it.
+  // Prepares for an image of this size, without new memory where it has it.
   void resize(std::uint32_t width, std::uint32_t height);
-  // A row of pixels, to be filled: inverse depth as both ends, 0 where nothing is known.
+  // Returns a row of pixels to be filled: inverse depth as both ends, 0 where unknown.
   InverseDepthRange* row(int v) { return levels_[0].data() + static_cast<std::size_t>(v) * width_; }
-  // Makes the tiles of the pixels.
+  // Unites the pixels to tiles.
   void unite();
 
   int levels() const { return static_cast<int>(levels_.size()); }

@@ -8,13 +8,13 @@
 namespace vpm {
 namespace {
 
-constexpr double kOnePlane = 2;      // radii: disks of one plane are no further from it
+constexpr double kOnePlane = 2;      // radii: largest distance of a plane's disks from it
 constexpr double kApart = 2;         // radii: from either side's plane to the other's middle
-constexpr double kFurther = 2;       // wide windows, where one shows no smooth disk
-constexpr double kExplained = 0.85;  // share of the points about a crease that lie on it
+constexpr double kFurther = 2;       // widens windows that hold no smooth disk
+constexpr double kExplained = 0.85;  // part of the points about a crease that must lie on it
 
-// At a crease the normal was estimated across both its sides, and is that of neither. What is on no
-// plane of two that smooth disks show is left as it is: it may be small, and no crease.
+// Denoises disks whose normals were estimated across a crease. Disks on no pair of planes that
+// smooth disks show stay as they are, since they may be small and no crease.
 class CreaseSettling {
  public:
   CreaseSettling(const DiskWindows& windows, const std::vector<DiskKind>& kinds,
@@ -25,7 +25,7 @@ class CreaseSettling {
     nodes_with_smooth_ = largest_in_nodes(smooth_);
   }
 
-  // Reads what became of smooth disks, and writes only others.
+  // Reads denoised smooth disks, and writes only others.
   void run() {
     for_leaves(windows_, result_, [&](const DiskLeaf& leaf, LeafWork& work) {
       std::vector<SmoothDisk> disks;
@@ -46,11 +46,11 @@ class CreaseSettling {
   }
 
  private:
-  // A smooth disk near a place.
+  // Describes a smooth disk near a place.
   struct SmoothDisk {
     std::uint32_t index;
     Disk disk;
-    double height;  // of the place above it
+    double height;  // height of the place above the disk's plane, m
   };
 
   void denoise_at_crease(std::uint32_t i, const std::vector<SmoothDisk>& disks, LeafWork& work) {
@@ -72,22 +72,22 @@ class CreaseSettling {
     result_.normals[i] = narrow(plane.normal);
   }
 
-  // An outlier becomes another of the smooth disk that is nearest: on a plane that is seen
-  // elsewhere it would continue a wall where there is none.
+  // Makes an outlier a copy of the nearest smooth disk. Its own plane would continue a wall into
+  // nothing.
   void join(std::uint32_t nearest, std::uint32_t i) {
     result_.feet[i] = result_.feet[nearest];
     result_.normals[i] = result_.normals[nearest];
     result_.second_of[i] = result_.second_of[nearest];
     result_.radii[i] = result_.radii[nearest];
   }
-  // Not further away than that disk's own windows reach: what is may be small, seen by few points.
+  // True if a disk lies within the nearest smooth disk's windows; others may be something small.
   bool is_near(std::uint32_t nearest, std::uint32_t i) const {
     const double reach = kFurther * kWide * windows_.radius(nearest);
     const Vec3 away = widen(result_.feet[nearest]) - windows_.disk(i).place;
     return squared_norm(away) <= reach * reach;
   }
 
-  // Returns false if there are too many disks.
+  // Gathers the smooth disks in a ball. Returns false if they are more than `most`.
   bool gather_smooth(Vec3 center, double reach, std::uint32_t most,
                      std::vector<SmoothDisk>& disks) const {
     disks.clear();
@@ -98,7 +98,7 @@ class CreaseSettling {
     });
   }
 
-  // Whether gather_smooth_about() may find any: it goes through all that is near.
+  // False if gather_smooth_about() surely finds none, so that its search can be skipped.
   bool is_within_reach(std::uint32_t nearest, std::uint32_t i) const {
     const double reach = kFurther * windows_.wide_window(i);
     return squared_norm(windows_.disk(nearest).place - windows_.disk(i).place) <= reach * reach;
@@ -111,7 +111,8 @@ class CreaseSettling {
     if (disks.empty()) gather_smooth(place, kFurther * reach, 4 * kMostInWide, disks);
   }
 
-  // The one on whose plane the place lies best; if `other` is given, of those that face elsewhere.
+  // Returns the disk on whose plane the place lies best; with `other`, among those that face
+  // elsewhere.
   static const SmoothDisk* best_of(const std::vector<SmoothDisk>& disks, const SmoothDisk* other) {
     const SmoothDisk* best = nullptr;
     for (const SmoothDisk& d : disks) {
@@ -126,7 +127,7 @@ class CreaseSettling {
     }
     return best;
   }
-  // The mean of the disks that lie on the same plane as one of them.
+  // Returns the mean of the disks on the same plane as one of them.
   static MeanPlane mean_about(const Disk& one, const std::vector<SmoothDisk>& disks, Vec3 place,
                               double tolerance) {
     PlaneSum sum;
@@ -138,7 +139,7 @@ class CreaseSettling {
     return {sum, place};
   }
 
-  // Whether most points about a disk lie on what two planes enclose.
+  // True if most points about a disk lie on the surface that two planes enclose.
   bool explains(const MeanPlane& first, const SecondPlane& second, std::uint32_t i) const {
     const Vec3 normal = widen(second.normal), foot = widen(second.foot);
     const double near = kOnePlane * windows_.radius(i);
@@ -158,7 +159,7 @@ class CreaseSettling {
   const DiskWindows& windows_;
   const std::vector<DiskKind>& kinds_;
   DenoisedDisks& result_;
-  std::vector<float> smooth_, nodes_with_smooth_;  // PointNumbers: 1 or 0
+  std::vector<float> smooth_, nodes_with_smooth_;  // PointNumbers: 1 for smooth disks, 0 for others
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The disks of a cloud without a camera, as queries read them: freed of most of their noise, each
-// knowing of a second plane close by. Once per cloud. README.md has the reasons and what they gain.
+// Denoises the disks of a cloud without a camera, once per cloud, and finds second planes close to
+// them. README.md has the reasons.
 #pragma once
 
 #include <span>
@@ -10,17 +10,17 @@
 namespace vpm {
 
 struct DenoisedDisks {
-  std::vector<Vec3f> feet, normals;      // of each disk
-  std::vector<std::uint32_t> second_of;  // of each disk: index into seconds, or kNoPoint
-  std::vector<float> radii;              // of each disk: of sampling
+  std::vector<Vec3f> feet, normals;      // one per disk
+  std::vector<std::uint32_t> second_of;  // per disk: index into seconds, or kNoPoint
+  std::vector<float> radii;              // sampling radius per disk, m
   std::vector<SecondPlane> seconds;
 };
 
-// `measured`: the points as they are, with boxes about them; `radii`: their sampling radii. The
-// same for any number of threads.
+// Returns the denoised disks of `measured`, the points as they are with boxes about them, which
+// have these sampling radii, m. The result does not depend on the number of threads.
 DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii);
 
-// The points themselves, in the same form.
+// Returns the measured points themselves as disks.
 DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii);
 
 }  // namespace vpm

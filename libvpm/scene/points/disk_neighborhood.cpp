@@ -36,7 +36,8 @@ void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
     const Mask4 is_near = squared_norm(away) <= squared_reach;
     if (!any(is_near)) continue;
     const Double4 cosine = dot(normal, other_normal);
-    // Where it meets the circle, or line, that is normal to both.
+    // Computes the height at which the other disk's circle, or line, that is normal to both disks,
+    // meets this one's axis.
     const Double4 its_height = dot(normal + other_normal, away) / (1 + cosine);
     const Mask4 is_back = is_near & (cosine <= kOpposite),
                 faces_alike = is_near & (cosine >= kAlike),

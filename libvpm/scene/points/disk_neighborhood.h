@@ -1,4 +1,4 @@
-// What the disks about another one say of the surface there.
+// Sums up the disks about another one.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,14 @@ struct Disk {
   Vec3 place, normal;
 };
 
-// By the angle between their normals, two disks
-inline constexpr double kAlike = 0.9;  // are of one surface: its cosine; 25 degrees, as in an image
-inline constexpr double kOpposite = -0.8;  // bound a plate or a slot; 143 degrees
+// Sorts pairs of disks by the cosine between their normals.
+inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
+inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
 
-// What one disk gives for the height of the surface at another one is of the same surface up to
-// this part of their ball's radius.
+// Bounds the height, as a part of the ball's radius, at which another disk shows the same surface.
 inline constexpr double kOneSurface = 0.7;
 
-// Planes to be averaged: each tells how high a place lies above it.
+// Sum of planes to be averaged, with the heights of a place above them.
 struct PlaneSum {
   Vec3 normal, place;
   double height = 0;
@@ -34,10 +33,10 @@ struct PlaneSum {
   }
 };
 
-// Sums over the disks in a ball about one of them.
+// Sums over the disks in a ball about one disk.
 struct Neighborhood {
-  Vec3 normals;       // of those alike, on the same surface
-  double height = 0;  // of the surface at the disk, along its normal, as each of them has it
+  Vec3 normals;       // sum over alike disks on the same surface
+  double height = 0;  // sum of the heights along the disk's normal at which these show it, m
   std::uint32_t alike = 0, unlike = 0;
   PlaneSum opposite;
 
@@ -46,10 +45,11 @@ struct Neighborhood {
 
 struct DiskInBall {
   Disk disk;
-  double reach = 0;  // radius of the ball
+  double reach = 0;  // radius of the ball, m
 };
 
-// Of four disks side by side, by vectors: `near` holds all that lie in their balls, and others.
+// Sums up the disks about four disks at once by vectors. `near` holds all in their balls, and
+// others.
 void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
                  Neighborhood (&found)[4]);
 

@@ -1,8 +1,6 @@
-// A surface as an unorganised cloud holds it: disks (point, normal, sampling radius) in a bounding
-// volume hierarchy.
-//
-// The nearest disk decides on which side a place lies. Places are in the cloud's frame about its
-// origin.
+// Defines the surface of an unorganised cloud: disks (point, normal, sampling radius) in a bounding
+// volume hierarchy. The nearest disk decides on which side a place lies. Places are in the cloud's
+// frame, about its origin.
 #pragma once
 
 #include "libvpm/scene/ball_fraction.h"
@@ -13,8 +11,8 @@
 
 namespace vpm {
 
-// A second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or behind
-// either of them (a concave one, a slot).
+// Describes a second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or
+// behind either of them (a concave edge, a slot).
 struct SecondPlane {
   Vec3f normal, foot;
   bool is_convex = false;
@@ -22,19 +20,19 @@ struct SecondPlane {
   VPM_HD TangentPlane plane() const { return {widen(normal), widen(foot)}; }
 };
 
-// A view: plain pointers, for host or device.
+// Holds plain pointers to a cloud's data, for host or device.
 struct DiskSurface {
-  static constexpr bool kTellsInside = false;   // nobody knows from where disks were seen
-  static constexpr bool kSearchesFoot = false;  // the disk of a reading is the nearest
+  static constexpr bool kTellsInside = false;   // disks may be seen from anywhere
+  static constexpr bool kSearchesFoot = false;  // the sampled disk is the nearest
 
   PointTree feet;  // in canonical order
   const Vec3f* normals = nullptr;
-  const std::uint32_t* second_of = nullptr;  // of each disk: index into seconds, or kNoPoint
+  const std::uint32_t* second_of = nullptr;  // per disk: index into seconds, or kNoPoint
   const SecondPlane* seconds = nullptr;
   PointNumbers radii{};
   NormalCones cones{};
 
-  // The disk of the nearest point, taken for the surface around x. Unknown only in an empty cloud.
+  // Samples the nearest disk, which stands for the surface. Unknown only in an empty cloud.
   VPM_HD SurfaceSample sample(Vec3 x, std::uint32_t near = kNoPoint) const {
     return read_point(x, feet.nearest(x, HUGE_VAL, near));
   }
@@ -52,7 +50,7 @@ struct DiskSurface {
     return {true, distance, own.normal, own.foot, i};
   }
 
-  // The part of a ball about x that is behind the surface that was read there.
+  // Returns the part of a ball about x that is behind the surface sampled there.
   VPM_HD double fraction_inside(const SurfaceSample& on_surface, Vec3 x, double radius) const {
     if (!knows_second(on_surface.point)) return ball_fraction_inside(on_surface.distance / radius);
     const SecondPlane& second = second_at(on_surface.point);
@@ -64,14 +62,14 @@ struct DiskSurface {
                             : 1 - fraction_of_both(1 - first_inside, 1 - second_inside, cosine);
   }
 
-  // The surface for places in a ball: the points that may be nearest to one of them, if they are
-  // few. `near`: a point that is near the centre.
+  // Returns a sampler for places in a ball, which lists the points that may be nearest to one of
+  // them if they are few. `near` is a point near the centre.
   class AroundBall;
   VPM_HD AroundBall around_ball(Vec3 center, double radius, std::uint32_t near) const;
 
-  // Gradient of the distance to the nearest disk at a place x behind it: the normal above the disk,
-  // towards the rim beside it (at a crease, where the gradient fans out). Where the disk knows both
-  // sides of a groove, towards these, or their crease.
+  // Returns the gradient of the distance to the nearest disk at a place x behind it: the disk's
+  // normal above the disk, toward its rim beside it (at a crease, where the gradient fans out). A
+  // disk that knows both sides of a groove gives the direction to these, or to their crease.
   VPM_HD Vec3 closest_normal(Vec3 x, const SurfaceSample& on_surface) const {
     if (knows_second(on_surface.point) && !second_at(on_surface.point).is_convex) {
       const TangentPlane own = plane_of(on_surface.point),
@@ -95,7 +93,7 @@ struct DiskSurface {
     visit(widen(normals[i]));
     if (knows_second(i)) visit(widen(second_at(i).normal));
   }
-  // Whether all that disks in a ball know faces the way of n: the cosine is above `least`.
+  // True if all planes known to disks in a ball face the way of n, with a cosine above `least`.
   VPM_HD bool face_one_way(Vec3 center, double radius, Vec3 n, double least) const {
 #ifdef __CUDA_ARCH__
     return face_one_way_by<PointTree::OneByOne>(center, radius, n, least);
@@ -104,17 +102,17 @@ struct DiskSurface {
 #endif
   }
 
-  // A body of this radius about x is nearest to `own`, by a point of it. Looks for another wall at
-  // four places that are further behind, on each side: of those that face elsewhere (cosine less
-  // than `unlike`) that which takes the most of the body. Only where a disk may be nearest to one
-  // of the places and faces elsewhere: what is beyond the last point of a cloud is no wall.
+  // Finds another wall for a body of this radius about x, which is nearest to `own`, by a point of
+  // that. Searches at four places further behind, on each side, and keeps the wall that takes the
+  // most of the body, among those with a cosine below `unlike` to `own`. Only where a disk may be
+  // nearest to such a place and faces elsewhere: beyond the last point of a cloud there is no wall.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const;
 
-  // What a ball is to the disks. No bound of the gap is known.
+  // Holds the class of a ball. Disks bound no gap.
   struct BallClass {
     Side side = Side::free;
-    std::uint32_t point = kNoPoint;  // the nearest to the centre, where the ball may touch it
+    std::uint32_t point = kNoPoint;  // nearest to the centre, if any disk touches the ball
     Vec3 center;
     double radius = 0;
   };
@@ -135,9 +133,9 @@ struct DiskSurface {
                          TangentPlane& plane) const {
     return mean_plane(in_ball, tolerance, plane);
   }
-  // The mean plane of the disks below a ball that was looked at; false where they do not show one
-  // smooth surface: one is of another wall or lies off it by more than a part of `tolerance`, or
-  // those to one side of the middle are too few or face elsewhere.
+  // Finds the mean plane of the disks below a classified ball. Returns false where they do not show
+  // one smooth surface: one is of another wall or lies off the plane by more than kOffPlane of
+  // `tolerance`, or those on one side of the middle are too few or face elsewhere.
   VPM_HD bool mean_plane(const BallClass& in_ball, double tolerance, TangentPlane& plane) const {
     if (in_ball.point == kNoPoint) return false;
     const SurfaceSample nearest = read_point(in_ball.center, in_ball.point);
@@ -157,24 +155,23 @@ struct DiskSurface {
   }
 
  private:
-  static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more would take longer than shares
-  static constexpr std::uint32_t kFewestAside = 3;     // points of a patch to one side
+  static constexpr std::uint32_t kMostOfPatch = 1024;  // points; more take longer than cells
+  static constexpr std::uint32_t kFewestAside = 3;     // points of a cluster on each side
   static constexpr double kSmoothCosine = 0.9;         // as in an image
-  // Disks that face elsewhere by more than 60 degrees are of another wall. (90 would leave it to
-  // noise which disks of a wall at right angles are.)
+  // Disks that face elsewhere by more than 60 degrees are of another wall. At 90 noise would decide
+  // which disks of a perpendicular wall are.
   static constexpr double kOtherWall = 0.5;
   // A paraboloid is as high in the mean over this part of a ball's disk as over a cube in it.
   static constexpr double kMiddle = 0.65;
-  static constexpr double kOffPlane = 0.5;  // of the tolerance
-  // Other walls are looked for so many radii aside, and as many further behind: at a body's end.
+  static constexpr double kOffPlane = 0.5;  // part of the tolerance
+  // Sets how many radii aside, and as many further behind, other walls are searched.
   static constexpr double kFurther = 0.85;
   static constexpr double kFarthestPlace = 1.21;  // radii from the middle; above sqrt(2) kFurther
-  // What is nearest beyond a border is looked for again so many radii from it.
+  // The wall beyond a border is searched again this many radii from it.
   static constexpr double kBeyondBorder = 0.2;
-  // The rim of a disk is so many sampling radii from its middle: no gaps are left between disks
-  // that noise has moved.
+  // Sets the rim of disks, in sampling radii, so that noise leaves no gaps between them.
   static constexpr double kRim = 3;
-  static constexpr double kSlot = -0.8;  // cosine between the sides of a slot, at most
+  static constexpr double kSlot = -0.8;  // largest cosine between the sides of a slot
 
   template <class Distances>
   VPM_HD bool face_one_way_by(Vec3 center, double radius, Vec3 n, double least) const {
@@ -199,8 +196,8 @@ struct DiskSurface {
   VPM_HD double rim_of(std::uint32_t i) const {
     return kRim * radii.of_points[i];
   }
-  // Not by a pointer that may be null: code that nvcc 13.0 makes of that for sm_90 has been seen to
-  // read through one behind its check.
+  // Uses an index: code by nvcc 13.0 for sm_90 was seen to read through a null pointer behind its
+  // check.
   VPM_HD bool knows_second(std::uint32_t i) const {
     return second_of[i] != kNoPoint;
   }
@@ -208,15 +205,14 @@ struct DiskSurface {
     return seconds[second_of[i]];
   }
 
-  // Whether another wall than `own` may be the nearest to one of the places about a body at which
-  // it is looked for.
+  // False if no other wall than `own` can be nearest to places where one is searched.
   VPM_HD bool may_meet_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point,
                                   double radius, double unlike) const {
     const double away = kFurther * radius, depth = away - own.distance(x);
     return depth > 0 &&
            !face_one_way(x - away * own.normal, depth + away + rim_of(point), own.normal, unlike);
   }
-  // `near`: the surface, as far as it concerns these places.
+  // Chooses another wall for find_other_wall(); `near` samples the surface about its places.
   template <class Near>
   VPM_HD bool choose_other_wall(const Near& near, Vec3 x, const TangentPlane& own,
                                 std::uint32_t point, double radius, double unlike,
@@ -234,14 +230,14 @@ struct DiskSurface {
       other = wall;
     }
     if (!(least < radius)) return false;
-    // A wall that ends at a crease is nearest to a place behind that in another direction.
+    // Searches beyond the border: there a wall may end at a crease.
     const Vec3 beyond = other.border.foot - kBeyondBorder * radius * other.border.normal;
     if (!find_border(near, beyond, x, own, point, unlike, wall, least)) return true;
     other = wall;
     return least < radius;
   }
-  // Where it ends that `own` is nearer than the wall at a place, if this faces elsewhere: so far
-  // from x. Else changes nothing.
+  // Finds the border between `own` and the wall nearest to a place, and its distance `away` from x,
+  // m. Returns false and changes nothing if that wall does not face elsewhere.
   template <class Near>
   VPM_HD bool find_border(const Near& near, Vec3 place, Vec3 x, const TangentPlane& own,
                           std::uint32_t point, double unlike, OtherWall& other,
@@ -258,12 +254,12 @@ struct DiskSurface {
     return true;
   }
 
-  // A coordinate axis that is far from a direction.
+  // Returns a coordinate axis far from a direction.
   static VPM_HD Vec3 axis_aside(Vec3 n) {
     return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   }
 
-  // Whether the points in a ball show this plane, on all sides of a place of it.
+  // True if the points in a ball show this plane on all sides of a place of it.
   VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
                     double tolerance) const {
     const Vec3 n = plane.normal;
@@ -287,8 +283,8 @@ struct DiskSurface {
   }
 };
 
-// The points that may be nearest to places in a ball are quicker to search as a list than in the
-// tree. Answers have the same bits.
+// Searches the points that may be nearest to places in a ball as a list, which is faster than the
+// tree. Results have the same bits.
 class DiskSurface::AroundBall {
  public:
   VPM_HD AroundBall(const DiskSurface& surface, Vec3 center, double radius, std::uint32_t near)
@@ -307,7 +303,6 @@ class DiskSurface::AroundBall {
       return surface_.sample(x, near);
     return surface_.read_point(x, points_.nearest(x));
   }
-  // DiskSurface::find_other_wall.
   VPM_HD bool find_other_wall(Vec3 x, const TangentPlane& own, std::uint32_t point, double radius,
                               double unlike, OtherWall& other) const {
     if (!covers(x, kFarthestPlace * radius))
@@ -323,8 +318,8 @@ class DiskSurface::AroundBall {
     return !points_.is_empty() && norm(x - center_) + radius <= radius_;
   }
 
-  // Those that may be nearest lie in a disk of the surface about the centre's foot; its squared
-  // radius is 4 `quarter`. The leaf of a near point tells how densely.
+  // True if the disk of the surface about the centre's foot, of squared radius 4 `quarter`,
+  // probably holds too many points, by the density in the leaf of a near point.
   VPM_HD bool are_many(std::uint32_t near, double quarter) const {
     const PointBox leaf = surface_.feet.leaf_of(near);
     const double squared_diagonal = squared_norm(widen(leaf.high) - widen(leaf.low));
@@ -332,7 +327,7 @@ class DiskSurface::AroundBall {
     return area * PointTree::kLeafSize > 2 * PointList::kMost * area_of_leaf;
   }
 
-  // The points that may be nearest; none if they are more than PointList::kMost.
+  // Gathers the points that may be nearest; none if they are more than PointList::kMost.
   VPM_HD void gather(double squared_reach) {
     const bool few = surface_.feet.for_points_in_ball(center_, squared_reach, [&](std::uint32_t i) {
       return points_.add(i, surface_.feet.points[i]);

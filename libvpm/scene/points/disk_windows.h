@@ -1,4 +1,4 @@
-// Which disks of a cloud lie about one of them, as far as its sampling radius says.
+// Finds the disks of a cloud about one of them, within windows that follow its sampling radius.
 #pragma once
 
 #include <algorithm>
@@ -11,25 +11,25 @@
 
 namespace vpm {
 
-// Radii of balls, in sampling radii: a little wider than the window of 7 x 7 pixels by which
-// normals are estimated; and beyond such windows, where these hold both sides of a crease.
+// Sets the radii of windows in sampling radii: a little wider than the 7 x 7 pixels by which
+// normals are estimated, and wide enough to reach beyond windows that hold both sides of a crease.
 inline constexpr double kWindow = 6.3, kWide = 14;
 
-// Disks may be much wider than their spacing (seen at a grazing angle by one of several cameras).
-// So no ball is wider than so many leaves of eight disks, and it is halved until it holds no more
-// disks than this.
+// Limits of windows, since disks may be much wider than their spacing (seen at a grazing angle by
+// one of several cameras): diagonals of leaves of eight disks, and numbers of disks, to which
+// windows are halved.
 inline constexpr double kLeavesInWindow = 2.5, kLeavesInWide = 5;
 inline constexpr std::uint32_t kMostInWindow = 512, kMostInWide = 2048;
 inline constexpr int kHalvings = 10;
 
-// A leaf of the tree of disks: eight that are neighbours.
+// Describes a leaf of the tree of disks: eight neighbours.
 struct DiskLeaf {
   std::uint32_t begin = 0, end = 0;
   Vec3 center;
   double diagonal = 0;
 };
 
-// A view. Thread-safe.
+// Refers to the measured disks. Thread-safe.
 class DiskWindows {
  public:
   DiskWindows(const DiskSurface& measured, std::span<const float> radii)
@@ -53,7 +53,7 @@ class DiskWindows {
   double wide_window(std::uint32_t i) const {
     return std::min(kWide * radii_[i], kLeavesInWide * leaf_of(i).diagonal);
   }
-  // Of the ball about a leaf's centre that holds the windows of all its disks.
+  // Returns the radius about a leaf's centre that holds the windows of all its disks, m.
   double reach(const DiskLeaf& leaf) const {
     double widest = 0;
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
@@ -61,7 +61,7 @@ class DiskWindows {
     return 0.5 * leaf.diagonal + widest;
   }
 
-  // Calls visit(j) for the disks in a ball, until they are more than `most`: false then.
+  // Calls visit(j) for the disks in a ball. Stops and returns false after more than `most`.
   template <class Visit>
   bool for_disks_near(Vec3 center, double reach, std::uint32_t most, const Visit& visit) const {
     std::uint32_t count = 0;
@@ -70,8 +70,7 @@ class DiskWindows {
       return ++count <= most;
     });
   }
-  // Calls visit(begin) for the leaves that a ball touches, by their first disk, until it says
-  // false.
+  // Calls visit(first disk) for each leaf that a ball touches, until it returns false.
   template <class Visit>
   bool for_leaves_near(Vec3 center, double reach, const Visit& visit) const {
     return measured_.feet.for_leaves_in_ball(
@@ -84,7 +83,7 @@ class DiskWindows {
     disks.clear();
     return for_disks_near(center, reach, most, [&](std::uint32_t j) { disks.push_back(disk(j)); });
   }
-  // Calls gathers(reach) for a ball that is halved until it says that its disks are not too many.
+  // Calls gathers(reach) for a ball that is halved until it returns true, kHalvings times at most.
   template <class Gathers>
   static bool halve_until(double& reach, const Gathers& gathers) {
     bool all = gathers(reach);

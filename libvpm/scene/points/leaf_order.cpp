@@ -9,13 +9,13 @@
 namespace vpm {
 namespace {
 
-// A point and its place in the order given.
+// Holds a point and its rank in the given order.
 struct Ranked {
   float at[3];
   std::uint32_t rank;
 };
 
-// The first `count` then lie before the others along an axis.
+// Partitions points along the longest side of their box, the `count` lower ones first.
 void part(std::span<Ranked> points, std::size_t count) {
   Box box;
   for (const Ranked& p : points) box.add({p.at[0], p.at[1], p.at[2]});

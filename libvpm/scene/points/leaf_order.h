@@ -1,4 +1,4 @@
-// The order of points in which the leaves of a tree of boxes are compact.
+// Orders points so that the leaves of a tree of boxes are compact.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace vpm {
 
-// `order`: indices of points, in a total order. Rearranges them for the leaves of a PointTree: the
-// points of each node are parted across the longest side of their box, so that the first half is
-// full. Of equal coordinates, and in a leaf, the order is that given.
+// Rearranges `order`, indices of points in a total order, for the leaves of a PointTree: each node
+// is split across the longest side of its box so that its first half is full. Equal coordinates,
+// and points in a leaf, keep the given order.
 void order_by_leaves(std::span<const Vec3f> points, std::vector<std::uint32_t>& order);
 
 }  // namespace vpm

@@ -10,7 +10,7 @@
 namespace vpm {
 namespace {
 
-// The cone of the disks from `begin` to `end`.
+// Sets cone k of a quad to that of the disks [begin, end).
 void set_cone(const DiskSurface& disks, std::uint32_t begin, std::uint32_t end, ConeQuad& quad,
               std::uint32_t k) {
   Vec3 sum;

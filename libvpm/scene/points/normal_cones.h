@@ -1,5 +1,4 @@
-// Which ways disks face, by cones about the normals in each node of their PointTree. For host and
-// device.
+// Bounds the normals of disks in each node of their PointTree by cones, for host and device.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@ namespace vpm {
 
 struct DiskSurface;
 
-// Cones of four nodes: the cosine between the axis and any normal of the node is `cosine` at least.
+// Holds the cones of four nodes: a normal's cosine with the axis is at least `cosine`.
 struct alignas(16) ConeQuad {
   float axis[3][4] = {};
   float cosine[4] = {};
@@ -22,26 +21,25 @@ struct alignas(16) ConeQuad {
   }
 };
 
-// A view: plain pointers.
+// Holds plain pointers to the cones of a tree.
 struct NormalCones {
-  const ConeQuad* quads = nullptr;  // of node k: k % 4 of quad k / 4
+  const ConeQuad* quads = nullptr;  // node k is entry k % 4 of quad k / 4
 
-  // False unless the cosine between n, a unit vector, and each normal of a node is surely above
-  // `least`.
+  // True only if each normal of a node surely has a cosine above `least` with the unit vector n.
   VPM_HD bool are_within(std::uint32_t node, Vec3 n, double least) const {
-    constexpr double kSlack = 1e-3;  // far more than axes of floats turn
+    constexpr double kSlack = 1e-3;  // far above the rounding of float axes
     const ConeQuad& quad = quads[node / 4];
     const std::uint32_t k = node % 4;
     const double cosine = quad.cosine[k],
                  off = dot({quad.axis[0][k], quad.axis[1][k], quad.axis[2][k]}, n);
-    // cos(a + b) = cos a cos b - sin a sin b, of which the last is known by its square.
+    // Uses cos(a + b) = cos a cos b - sin a sin b; the last term is known by its square.
     const double above = off * cosine - (least + kSlack);
     return off > 0 && cosine > 0 && above > 0 &&
            above * above > (1 - off * off) * (1 - cosine * cosine);
   }
 };
 
-// Of all normals that the disks know. Only of nodes that searches step to.
+// Returns the cones of all normals that the disks know, for the nodes that searches step to.
 std::vector<ConeQuad> cones_of(const DiskSurface& disks);
 
 }  // namespace vpm

@@ -1,4 +1,4 @@
-// A few points side by side: quicker to search than a tree. For host and device.
+// Lists a few points, which are faster to search than a tree. For host and device.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ class PointList {
 
   VPM_HD bool is_empty() const { return size_ == 0; }
   VPM_HD void clear() { size_ = 0; }
-  // By ascending index. False if there is no room.
+  // Adds a point; indices must ascend. Returns false if there is no room.
   VPM_HD bool add(std::uint32_t index, Vec3f place) {
     if (size_ == kMost) return false;
     places_[0][size_] = place.x, places_[1][size_] = place.y, places_[2][size_] = place.z;
@@ -22,7 +22,7 @@ class PointList {
     return true;
   }
 
-  // The index of the point nearest to x, the smallest of several; of a list that is not empty.
+  // Returns the index of the point nearest to x; ties go to the smaller index. Requires a point.
   VPM_HD std::uint32_t nearest(Vec3 x) const {
 #ifdef __CUDA_ARCH__
     return indices_[nearest_in_turn(x)];

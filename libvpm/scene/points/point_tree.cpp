@@ -33,7 +33,7 @@ void PointTree::enter_near(Vec3 center, double reach) {
   constexpr double kSlack = 1 + 1e-9;  // more than distances are rounded by
   const double ball = kSlack * (reach + norm(widen(points[nearest_point]) - center));
   const double farthest = kSlack * (reach + ball);
-  // Four nodes at most, as far down as that goes.
+  // Descends as long as at most four nodes hold the ball.
   std::array<std::uint32_t, 4> held{1};
   std::size_t size = 1;
   if (!begins_at_root()) held = {2, 3}, size = 2;

@@ -1,5 +1,5 @@
-// Points in a bounding volume hierarchy of axis-aligned boxes: the nearest to a place, and those in
-// a ball. For host and device.
+// Stores points in a bounding volume hierarchy of axis-aligned boxes, which finds the nearest to a
+// place and those in a ball. For host and device.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace vpm {
 
-// Axis-aligned; an empty one (padding) has low > high.
+// Describes an axis-aligned box; an empty one (padding) has low > high.
 struct PointBox {
   Vec3f low, high;
 
@@ -27,8 +27,7 @@ struct PointBox {
   }
 };
 
-// Four boxes by their coordinates, as vectors read them. Empty ones are from infinity to -infinity,
-// and infinitely far.
+// Holds four boxes in vector layout. Empty ones span infinity to -infinity: infinitely far.
 struct alignas(16) BoxQuad {
   float low[3][4], high[3][4];
 
@@ -38,14 +37,14 @@ struct alignas(16) BoxQuad {
   void set(std::uint32_t k, const PointBox& box);
 };
 
-// Nodes that are left to search. Pushed without branches that depend on distances: nobody predicts
-// those.
+// Stacks nodes left to search. Pushes have no branches that depend on distances, which no CPU
+// predicts.
 class NodeStack {
  public:
-  // Of trees of up to 2^22 leaves: three of each quad on the way down, and one more.
+  // Has room for trees of up to 2^22 leaves: three of each quad on the way down, and one more.
   static constexpr int kRoom = 3 * 11 + 1;
 
-  // A node whose key is above this one holds no point that is as near.
+  // Returns the key above which a node holds no point nearer than, or as near as, `squared`, m^2.
   VPM_HD static std::uint64_t last_key(double squared) {
     return (squared < HUGE_VAL ? key_of(squared, 0) : key_of(HUGE_VAL, 0) - 1) | kWhich;
   }
@@ -57,7 +56,7 @@ class NodeStack {
     keys_[0] = 0;
     nodes_[size_++] = 1;
   }
-  // Those of four nodes that are near enough, the nearest last. `node_of`: of k from 0 to 3.
+  // Pushes those of four nodes that are near enough, the nearest last; node_of(k), k in 0 to 3.
   template <class NodeOf>
   VPM_HD void push(const NodeOf& node_of, const double (&squared)[4], std::uint64_t last) {
     std::uint64_t key[4];
@@ -75,8 +74,8 @@ class NodeStack {
  private:
   static constexpr std::uint64_t kWhich = 3;
 
-  // Squared distances as integers that order like them, rounded down; the last two bits say which
-  // of four.
+  // Returns a squared distance as an integer that orders like it, rounded down, with the index of
+  // the node in its last two bits.
   VPM_HD static std::uint64_t key_of(double squared, std::uint64_t which) {
     std::uint64_t bits;
     std::memcpy(&bits, &squared, sizeof bits);
@@ -94,44 +93,44 @@ class NodeStack {
   int size_ = 0;
 };
 
-// A number of each point, like the radius of a ball about it, and the largest in each node of their
-// tree. A view.
+// Points to a number per point, such as the radius of a ball about it, and the largest per node of
+// their tree.
 struct PointNumbers {
   const float* of_points = nullptr;
   const float* of_nodes = nullptr;
 };
 
-// Nodes of a tree that hold all points near a place: where searches begin, so that what is
-// elsewhere costs nothing. For the host.
+// Holds nodes of a tree that hold all points near a place, where searches begin to skip the rest.
+// Host only.
 struct TreeEntry {
   BoxQuad boxes;
-  std::uint32_t nodes[4] = {};  // ascending; those that are not used have empty boxes
+  std::uint32_t nodes[4] = {};  // ascending; unused ones have empty boxes
   Vec3 center;
-  double squared_reach = -1;  // places may be as far from the centre; less than 0: none
-  double ball = 0;            // about each of them all points in a ball of this radius are held
+  double squared_reach = -1;  // places may be this far from the centre, m^2; negative: none
+  double ball = 0;            // radius about each such place in which all points are held, m
 
   bool holds(Vec3 x, double radius) const {
     return squared_norm(x - center) <= squared_reach && radius <= ball;
   }
 };
 
-// A view: plain pointers, for host or device. The tree is complete: node k has the children 2k and
-// 2k+1, the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A
-// step goes down two levels, from the root or from its children, so that it ends at a leaf.
+// Holds plain pointers to a complete tree, for host or device: node k has the children 2k and 2k+1,
+// the root is node 1, and leaf i holds the points [i * kLeafSize, (i + 1) * kLeafSize). A step goes
+// down two levels, from the root or from its children, so that it ends at a leaf.
 struct PointTree {
   static constexpr std::uint32_t kLeafSize = 8;
   static constexpr std::uint32_t kMostLeaves = std::uint32_t{1} << 22;
 
   const Vec3f* points = nullptr;
-  const BoxQuad* boxes = nullptr;  // of node k: k % 4 of quad k / 4
+  const BoxQuad* boxes = nullptr;  // node k is box k % 4 of quad k / 4
   std::uint32_t count = 0;
   std::uint32_t leaves = 0;  // a power of two
   TreeEntry entry{};
 
-  // Lets searches about places that are no further than `reach` from a centre begin near there.
+  // Lets searches at places within `reach`, m, of a centre begin near it.
   void enter_near(Vec3 center, double reach);
 
-  // The best of those that were considered; kNoPoint where none was as near as the bound.
+  // Holds the best point so far; kNoPoint where none was within the bound.
   struct Nearest {
     double squared = HUGE_VAL;
     std::uint32_t point = kNoPoint;
@@ -143,7 +142,7 @@ struct PointTree {
     }
   };
 
-  // Squared distances of four boxes, and of the first of some points, up to four.
+  // Computes squared distances of four boxes, and of up to four points.
   struct OneByOne {
     VPM_HD static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
       for (std::uint32_t k = 0; k < 4; ++k) squared[k] = quad.box(k).squared_distance(x);
@@ -154,9 +153,9 @@ struct PointTree {
         squared[k] = squared_norm(widen(points[k]) - x);
     }
   };
-  struct ByVectors;  // the same on the host
+  struct ByVectors;  // vector version for the host
 
-  VPM_HD std::uint32_t nodes() const { return 4 * quads(); }  // those of which arrays tell
+  VPM_HD std::uint32_t nodes() const { return 4 * quads(); }  // size of arrays per node
   VPM_HD std::uint32_t quads() const { return leaves > 1 ? leaves / 2 : 1; }
   VPM_HD PointBox leaf_of(std::uint32_t point) const { return box_of(leaves + point / kLeafSize); }
   VPM_HD PointBox box_of(std::uint32_t node) const { return boxes[node / 4].box(node % 4); }
@@ -164,9 +163,8 @@ struct PointTree {
     return begin + kLeafSize < count ? begin + kLeafSize : count;
   }
 
-  // The point nearest to x among those closer than `bound`; equal distances go to the smaller
-  // index. kNoPoint if none. A point that is thought to be near makes the search short and does not
-  // change its result.
+  // Returns the point nearest to x among those closer than `bound`, m, or kNoPoint; ties go to the
+  // smaller index. A point `near` shortens the search and does not change its result.
   VPM_HD std::uint32_t nearest(Vec3 x, double bound, std::uint32_t near = kNoPoint) const {
     if (count == 0) return kNoPoint;
     Nearest best{bound * bound};
@@ -179,7 +177,7 @@ struct PointTree {
     return best.point;
   }
 
-  // The point nearest to x among those whose balls touch a ball about x; kNoPoint if none does.
+  // Returns the point nearest to x among those whose balls touch a ball about x, or kNoPoint.
   VPM_HD std::uint32_t nearest_touching(Vec3 x, double radius, const PointNumbers& radii) const {
     if (count == 0) return kNoPoint;
     Nearest best;
@@ -192,8 +190,7 @@ struct PointTree {
     return best.point;
   }
 
-  // The point nearest to x among those with a mark, a number above 0; kNoPoint where there is none.
-  // On the host.
+  // Returns the point nearest to x among those with a mark above 0, or kNoPoint. Host only.
   std::uint32_t nearest_marked(Vec3 x, const PointNumbers& marks) const {
     if (count == 0) return kNoPoint;
     Nearest best;
@@ -201,18 +198,18 @@ struct PointTree {
     return best.point;
   }
 
-  // Calls visit(begin, end) for the leaves that a ball touches, by their points, until it says
-  // false, and returns what it said last.
+  // Calls visit(begin, end) for the points of each leaf that a ball touches, until it returns
+  // false. Returns the last value.
   template <class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
     return for_leaves_in_ball<OneByOne>(center, squared_radius, EachNode{}, visit);
   }
-  // The same for leaves in nodes of which enters(node) says so, as far as it is asked. `Distances`:
-  // OneByOne, or ByVectors (point_tree_vectors.h).
+  // Calls visit(begin, end) likewise for leaves in nodes for which enters(node) is true.
+  // `Distances` is OneByOne or ByVectors (point_tree_vectors.h).
   template <class Distances, class Enters, class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
                                  const Visit& visit) const;
-  // The same for the points in a ball.
+  // Calls visit(i) for the points in a ball, until it returns false. Returns the last value.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
 #ifndef __CUDA_ARCH__
@@ -238,8 +235,8 @@ struct PointTree {
     VPM_HD bool operator()(std::uint32_t) const { return true; }
   };
 
-  // Which points a search considers: by node and by point, with squared distances. The best of them
-  // lies within this distance, or is the nearest of all.
+  // Filters a search, by node and by point with squared distances. within() bounds the distance of
+  // the best point, if that is not the nearest of all.
   struct EachPoint {
     static double within(const PointTree&) { return 0; }
     VPM_HD bool takes_node(std::uint32_t, double) const { return true; }
@@ -332,7 +329,7 @@ struct PointTree {
   void search_by_vectors(Vec3 x, Nearest& best) const;
   void search_by_vectors(Vec3 x, const TouchingBall& touching, Nearest& best) const;
 
-  // The points in a ball, in their order; returns how many, or more than kMostListed.
+  // Lists the points in a ball in order. Returns their number, or more than kMostListed.
   static constexpr std::uint32_t kMostListed = 512;
   std::uint32_t list_by_vectors(Vec3 center, double squared_radius,
                                 std::uint32_t (&listed)[kMostListed]) const;
@@ -381,13 +378,13 @@ VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, co
   return true;
 }
 
-// How many leaves a tree of so many points has; at most PointTree::kMostLeaves can be searched.
+// Returns the number of leaves for this many points; kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
-// The boxes of a tree of points in the order of order_by_leaves (leaf_order.h).
+// Returns the boxes of a tree of points in the order of order_by_leaves() (leaf_order.h).
 std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points);
 
-// PointNumbers::of_nodes.
+// Returns PointNumbers::of_nodes for these radii.
 std::vector<float> largest_in_nodes(std::span<const float> radii);
 
 }  // namespace vpm

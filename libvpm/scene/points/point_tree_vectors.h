@@ -1,5 +1,5 @@
-// Squared distances of four boxes, and of up to four points, by vectors. For files of the host that
-// are compiled for several of them (core/vector_clones.h).
+// Computes squared distances of four boxes, and of up to four points, by vectors. For host files
+// that are compiled for several vector widths (core/vector_clones.h).
 #pragma once
 
 #include <cstring>

@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::size_t kTerms = 6;  // 1, u, v, u^2, u v, v^2
 using Terms = std::array<double, kTerms>;
-// A pivot below this part of its diagonal is rounding: the points do not tell the term.
+// A pivot below this part of its diagonal is rounding: the points do not determine the term.
 constexpr double kSingular = 1e-10;
 
-// Solves the normal equations by Cholesky's method; `a` has the lower triangle.
+// Solves the normal equations by Cholesky's method; `a` holds the lower triangle.
 std::optional<Terms> solve(std::array<Terms, kTerms> a, Terms b) {
   for (std::size_t i = 0; i < kTerms; ++i) {
     const double diagonal = a[i][i];
@@ -34,7 +34,7 @@ std::optional<Terms> solve(std::array<Terms, kTerms> a, Terms b) {
   return b;
 }
 
-// Of the graph w = f u + g v + d u^2 + e u v + h v^2 at its middle.
+// Returns the larger principal curvature of w = f u + g v + d u^2 + e u v + h v^2 at its middle.
 double larger_curvature(const Terms& t) {
   const double f = t[1], g = t[2], lean = 1 + f * f + g * g;
   const double uu = 2 * t[3], uv = t[4], vv = 2 * t[5];

@@ -1,4 +1,4 @@
-// Least-squares paraboloid through scattered points: the local shape of a surface.
+// Fits a paraboloid to scattered points by least squares, for the local shape of a surface.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 namespace vpm {
 
 struct QuadricFit {
-  double residual = 0;   // root mean square, corrected for the six parameters
-  double curvature = 0;  // larger principal curvature at the place, absolute
+  double residual = 0;   // root mean square, corrected for the six parameters, m
+  double curvature = 0;  // larger principal curvature at the place, absolute, 1/m
 };
 
-// Of the height over the plane through `place` with the unit normal `normal`. None where the points
-// do not determine it.
+// Fits the height over the plane through `place` with the unit normal `normal`. Returns nothing
+// where the points do not determine it.
 std::optional<QuadricFit> fit_quadric(std::span<const Vec3> points, Vec3 place, Vec3 normal);
 
 }  // namespace vpm

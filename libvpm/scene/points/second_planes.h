@@ -1,4 +1,4 @@
-// What disks know of a second plane close by, found for the leaves of a cloud side by side.
+// Finds second planes close to disks, for the leaves of a cloud in parallel.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace vpm {
 
-// A plane through `foot`, the mean of several; `place` is in their middle.
+// Holds the mean of several planes, through `foot`; `place` is the mean of their disks.
 struct MeanPlane {
   Vec3 normal, foot, place;
 
@@ -22,11 +22,12 @@ struct MeanPlane {
         place(1.0 / sum.count * sum.place) {}
 };
 
-// Sides of a plate no thicker than this part of what they lie apart sideways lie on one another.
+// Bounds a sheet's thickness, as a part of the sideways distance between its sides' disks.
 inline constexpr double kNoThickness = 1e-6;
 
-// What two planes enclose, if each lies behind the other, or in front of it, by this much at least.
-// Two that lie on one another, back to back, are a sheet: both its sides were seen to be free.
+// Returns the second plane if each plane's disks lie behind the other, or in front of it, by at
+// least `apart`, m. Planes on one another, back to back, are a sheet with two free sides, which is
+// convex.
 inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlane& second,
                                                double apart) {
   const Vec3 across = second.place - first.place;
@@ -39,7 +40,7 @@ inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlan
   return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
 }
 
-// What a thread that goes over leaves keeps.
+// Holds scratch and results of a thread that goes over leaves.
 struct LeafWork {
   struct Found {
     std::uint32_t disk;
@@ -49,7 +50,7 @@ struct LeafWork {
   std::vector<Found> found;
 };
 
-// Calls pass(leaf, work) for all leaves. What they find is numbered in the disks' order.
+// Calls pass(leaf, work) for all leaves in parallel. Numbers what they find in the disks' order.
 template <class Pass>
 void for_leaves(const DiskWindows& windows, DenoisedDisks& result, const Pass& pass) {
   constexpr std::uint32_t kGrain = 128 * PointTree::kLeafSize;

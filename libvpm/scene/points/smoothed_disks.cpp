@@ -8,12 +8,13 @@ namespace vpm {
 namespace {
 
 constexpr std::uint32_t kFewOpposite = 5;
-constexpr double kStandsOff = 2;  // radii, from those about it
-// Fewer alike, twice as far too, make a stray, and an outlier where others are unlike it.
+constexpr double kStandsOff = 2;  // radii, from the disks about it
+// Fewer alike disks, also within twice the distance, make a stray; fewer than kFewAlike an outlier,
+// if others are unlike it.
 constexpr std::uint32_t kFewTogether = 4, kFewAlike = 10;
-// Of those alike.
+// Bounds the parts of unlike disks, relative to the alike ones.
 constexpr double kUnlikeOfSmooth = 0.1;
-constexpr double kUnlikeOfCalm = 0.02;  // so few are noise
+constexpr double kUnlikeOfCalm = 0.02;  // few enough to be noise
 
 bool is_among_its_like(const Neighborhood& around) {
   return around.unlike <= kUnlikeOfSmooth * around.alike;
@@ -35,7 +36,7 @@ class Smoothing {
         is_calm_(leaf_count()),
         is_beside_(leaf_count()) {}
 
-  // What a pass reads of other disks, none of its own writes.
+  // Runs the passes. A pass reads no other disk that it writes.
   std::vector<DiskKind> run() {
     pass([&](const DiskLeaf& leaf, LeafWork& work) { denoise_among_alike(leaf, work); });
     pass([&](const DiskLeaf& leaf, LeafWork& work) { find_clear(leaf, work); });
@@ -58,16 +59,16 @@ class Smoothing {
   Disk denoised(std::uint32_t i) const {
     return {widen(result_.feet[i]), widen(result_.normals[i])};
   }
-  // As it was measured, but facing as those about it do.
+  // Returns the measured disk with the mean normal of those about it.
   Disk turned(std::uint32_t i) const { return {windows_.disk(i).place, widen(result_.normals[i])}; }
-  // Moves a disk to the mean height of those about it, along its normal, and turns it as they face.
+  // Moves a disk along its normal to the mean height of those about it, and gives it their normal.
   void set(std::uint32_t i, const Disk& disk, const Neighborhood& around) {
     result_.feet[i] = narrow(disk.place + around.height / around.alike * disk.normal);
     result_.normals[i] = narrow(normalized_or_zero(around.normals));
   }
 
-  // Calls take(i, disk, neighborhood) for the disks of a leaf, each as disk_of(i) says, among those
-  // that are near. They have most neighbours in common.
+  // Calls take(i, disk, neighborhood) for the disks of a leaf, each given by disk_of(i). `near`
+  // holds the disks in all their windows.
   template <class DiskOf, class Take>
   void look_around_each(const DiskLeaf& leaf, std::span<const Disk> near, const DiskOf& disk_of,
                         const Take& take) const {
@@ -100,8 +101,8 @@ class Smoothing {
     is_calm_[leaf.begin / PointTree::kLeafSize] = is_calm;
   }
 
-  // Of a disk that has few neighbours, or many: nothing is known of one among too many. Nothing is
-  // about one that stands off from others, alone.
+  // Sums up the surroundings of a disk with few neighbours, or many. Returns nothing if there are
+  // too many however small the window, and an empty sum for a disk that stands off alone.
   std::optional<Neighborhood> look_further(std::uint32_t i, const DiskInBall& one) const {
     std::vector<Disk> near;
     double reach = one.reach;
@@ -123,16 +124,16 @@ class Smoothing {
     return found[0];
   }
 
-  // Whether hardly any were found about a leaf that face elsewhere.
+  // True if hardly any disks about a leaf face elsewhere.
   bool is_calm_about(const DiskLeaf& leaf) const {
     return windows_.for_leaves_near(leaf.center, windows_.reach(leaf), [&](std::uint32_t begin) {
       return is_calm_[begin / PointTree::kLeafSize] != 0;
     });
   }
 
-  // A disk's own normal does not tell whether it is away from creases: those that noise has turned
-  // towards what is beyond one find less about them that faces elsewhere, and their mean would lean
-  // that way. The mean about it tells.
+  // Marks clear disks by the mean normal about them. Their own normals would not do: disks that
+  // noise has turned toward the far side of a crease find fewer unlike ones, and their mean would
+  // lean that way.
   void find_clear(const DiskLeaf& leaf, LeafWork& work) {
     if (is_calm_about(leaf)) {
       for (std::uint32_t i = leaf.begin; i < leaf.end; ++i)
@@ -149,7 +150,7 @@ class Smoothing {
         });
   }
 
-  // The windows by which the others' normals were estimated may reach across a crease.
+  // Denoises disks beside creases by clear ones only, since other windows may cross the crease.
   void denoise_beside_creases(const DiskLeaf& leaf, LeafWork& work) {
     if (is_beside_[leaf.begin / PointTree::kLeafSize] == 0) return;
     work.near.clear();
@@ -165,9 +166,8 @@ class Smoothing {
         });
   }
 
-  // Means of means: what noise is left after the first ones makes the surface uneven on the scale
-  // of their windows, and the nearest of its disks are then those that it has moved most. What is
-  // opposite is told from where noise has been taken from both.
+  // Averages the means again, to even out noise on the scale of the windows, whose most displaced
+  // disks would be the nearest. Opposite sides are found here, where both are denoised.
   void denoise_among_denoised(const DiskLeaf& leaf, LeafWork& work) {
     work.near.clear();
     const auto take_smooth = [&](std::uint32_t j) {
@@ -190,7 +190,7 @@ class Smoothing {
   const DiskWindows& windows_;
   DenoisedDisks& result_;
   std::vector<DiskKind> kinds_;
-  std::vector<char> is_calm_, is_beside_;  // of leaves
+  std::vector<char> is_calm_, is_beside_;  // one per leaf
   std::vector<Disk> before_;
 };
 

@@ -1,5 +1,5 @@
-// The first part of settling a cloud's disks (denoised_disks.h): each takes the mean of those about
-// it that face its way, but not of those whose normals were estimated across a crease.
+// Takes the first step of denoising disks (denoised_disks.h): each becomes the mean of those about
+// it that face its way, except those whose normals were estimated across a crease.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 namespace vpm {
 
 enum class DiskKind : std::uint8_t {
-  stray,    // hardly any are like it: of no surface that the cloud shows
-  outlier,  // few are, and others about it face elsewhere
-  bent,     // others about it face elsewhere: at a crease, or on what is as small as the window
-  smooth,   // few of those about it do
-  clear,    // and few face elsewhere than the mean about it does, which knows less of noise
+  stray,    // hardly any disks about it are alike: on no surface of the cloud
+  outlier,  // few disks about it are alike, and others face elsewhere
+  bent,     // many disks about it face elsewhere: at a crease, or on something small
+  smooth,   // few disks about it face elsewhere
+  clear,    // few disks about it face elsewhere than their mean
 };
 inline bool is_smooth(DiskKind kind) {
   return kind >= DiskKind::smooth;
 }
 
-// Smooths the disks in `result`, which are as measured, and says of which kind each is. Those that
-// face each other from the sides of a plate or a slot learn of each other's planes.
+// Smooths the disks in `result`, which are as measured, and returns the kind of each. Disks on both
+// sides of a plate or slot receive each other's plane as second plane.
 std::vector<DiskKind> smooth(const DiskWindows& windows, DenoisedDisks& result);
 
 }  // namespace vpm

@@ -1,5 +1,5 @@
-// The part of CUDA that vpm uses, on the host: kernels run as the emulator runs them, the device's
-// memory is the host's. Takes the place of the toolkit's header of this name.
+// Replaces the toolkit's header of this name by the part of CUDA that vpm uses: kernels run in the
+// emulator, and the device's memory is the host's.
 #pragma once
 
 #include <algorithm>
@@ -160,7 +160,7 @@ inline unsigned __float_as_uint(float value) {
 inline float __uint_as_float(unsigned bits) {
   return std::bit_cast<float>(bits);
 }
-// Least and greatest of three.
+// Return the least and the greatest of three.
 inline int __vimax3_s32(int a, int b, int c) {
   return std::max({a, b, c});
 }
@@ -282,7 +282,7 @@ inline cudaError_t cudaFuncSetAttribute(const void*, cudaFuncAttribute, int) {
 inline void cudaGridDependencySynchronize() {}
 inline void cudaTriggerProgrammaticLaunchCompletion() {}
 
-// Begins a kernel in a stream; what it is given is copied now.
+// Begins a kernel in a stream; its arguments are copied now.
 template <class... Parameters, class... Arguments>
 cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t* config, void (*kernel)(Parameters...),
                                Arguments&&... arguments) {

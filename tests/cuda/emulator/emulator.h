@@ -46,7 +46,7 @@ unsigned meet_block(bool predicate);
 void yield();
 // Returns the time by a clock that all blocks share.
 std::uint64_t nanoseconds();
-// Memory of the block whose size the launch gives.
+// Returns the block's memory whose size the launch gives.
 void* dynamic_shared_memory();
 
 }  // namespace emulator

@@ -1,5 +1,5 @@
-// Memory, streams and events of the emulated device. A stream is a thread of the host that does
-// what is enqueued, in order.
+// Implements memory, streams and events of the emulated device. A stream is a thread of the host
+// that does its work in order.
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -20,7 +20,7 @@ class Stream {
     enqueue(nullptr);
     thread_.join();
   }
-  // Null: the stream ends when it comes there.
+  // Queues work; null ends the stream when it gets there.
   void enqueue(std::function<void()> work) {
     const std::lock_guard lock(mutex_);
     queue_.push_back(std::move(work));
@@ -88,7 +88,7 @@ void enqueue(Stream* stream, std::function<void()> work) {
     stream->enqueue(std::move(work));
 }
 
-// Memory begins with a pattern, so that a read of what nobody has written shows.
+// Allocates memory filled with a pattern, so that reads before any write show.
 cudaError_t allocate(void** place, std::size_t bytes) {
   *place = std::aligned_alloc(256, (bytes + 255) / 256 * 256);
   if (*place == nullptr) return cudaErrorMemoryAllocation;

@@ -1,5 +1,5 @@
-// Kernels of PaperBaseline, after Kaluschke, Weller, Zachmann 2017; steps as numbered in
-// libvpm/query/README.md.
+// Kernels of PaperBaseline, after Kaluschke, Weller, Zachmann 2017. libvpm/measure/README.md
+// numbers the steps.
 #pragma once
 
 #include <cstdint>
