@@ -1,4 +1,4 @@
-// What a handle of a body holds.
+// Defines what a handle of a body holds.
 #pragma once
 
 #include <variant>

@@ -1,4 +1,4 @@
-// What the library itself asks of devices, beside vpm/device.h.
+// Declares what the library itself asks of devices, beside vpm/device.h.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// The states of a Voronoi cell during a query, by one set of names: as values where one thread owns a
-// cell (CPU), as bits where many threads add to it (device).
+// The states of a Voronoi cell during a query, by one set of names: as values where one thread owns
+// a cell (CPU), as bits where many threads add to it (device).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ enum class CellClass : std::uint8_t {
   no_surface,  // no surface near; its centre decides when the flood comes
 };
 
-// Whether the flood has reached a cell, and before that, whether it may pass.
+// Says if the flood has reached a cell, and before that, if it may pass.
 enum class FloodState : std::uint8_t {
   closed,   // never passed; free and cut cells too
   reached,  // inside, or hidden
@@ -26,7 +26,7 @@ enum class FloodState : std::uint8_t {
   middle,   // unknown: the surface sample at the middle of its cluster decides
   open,     // passable, its squared gap is known
   planar,   // passable, its gap is that to the plane of its cluster
-  near,     // passable, no place of its cluster is further behind the surface than the tool's radius
+  near,  // passable, no place of its cluster is further behind the surface than the tool's radius
 };
 
 // The same of a cell on a device, as a word of bits that threads add in any order. Where a camera

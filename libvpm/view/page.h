@@ -85,7 +85,8 @@ class Page {
 
   void set_origin(Vec3 origin) { origin_ = origin; }  // before the first layer
   void set_up(Vec3 up);
-  // What stands under the title beside program and version, e.g. "refined, 1000 of 1000 spheres".
+  // Sets what stands under the title beside program and version, e.g. "refined, 1000 of 1000
+  // spheres".
   void set_summary(std::string summary) { summary_ = std::move(summary); }
   void add_fact(const std::string& name, const std::string& value);
   void add_note(const std::string& text);

@@ -1,4 +1,5 @@
-// What a query notes of the shares: one word each, sums, and what later steps need.
+// Defines what a query notes of cells on a device: a word of bits each, sums, and what later steps
+// need.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +11,14 @@
 
 namespace vpm::cuda {
 
-// Of each share. All are 0 at the start of a query: many threads add to them.
+// Holds one entry per cell. All are 0 at the start of a query: many threads add to them.
 struct CellNotes {
   std::uint32_t* words = nullptr;
-  std::uint32_t* points = nullptr;  // of the cloud, in the sphere
+  std::uint32_t* points = nullptr;  // number of the cloud's points in the sphere
   ToolSum* sums = nullptr;
-  ContactPlane* planes = nullptr;  // of cut shares
+  ContactPlane* planes = nullptr;  // of cut cells
 
-  // By a part of the threads.
+  // Clears the part of the entries that a block range owns. Call from all its threads.
   __device__ void clear(const LevelView& level, BlockRange part) const {
     constexpr unsigned kTogether = 4;  // words whose reads wait together
     const std::uint32_t step = part.parts * blockDim.x;
@@ -41,21 +42,21 @@ struct CellNotes {
   }
 };
 
-// The plane that crosses a flat block.
+// Holds the plane that cuts a flat block.
 struct FlatBlock {
   ClipPlane plane;
   Vec3 center;
 };
 
-// A piece further behind the surface than the tool's reach, and what it adds where the plane of a
-// cut share vouches for it.
+// Holds a piece further behind the surface than the tool's radius, and what it adds if the plane of
+// a cut cell supports it.
 struct FarPiece {
-  Vec3 at, foot;  // that the surface showed there
+  Vec3 at, foot;  // the piece and the foot of its surface sample, surface frame, m
   ToolSum sum;
   std::uint32_t cell = 0;
 };
 
-// What the memory of one query has room for: the largest level that it is used with.
+// Holds the sizes of one query's memory: those of the largest level that it is used with.
 struct TeamRoom {
   std::size_t cells = 0, pieces = 0;
 
@@ -70,31 +71,31 @@ struct TeamRoom {
   }
 };
 
-// A patch that the surface crosses as one plane.
+// Holds a planar cluster that the surface cuts.
 struct PlanarCluster {
   ClipPlane plane;
-  float least_inverse_depth;  // of the surface there
+  float least_inverse_depth;  // of the surface in the cluster, 1/m
 };
 
-// Memory of one query.
+// Points into the memory of one query.
 struct RefinedSpace {
-  CellNotes notes[2];                // of this query and, cleared by it, of the next: by turns
-  double* gaps = nullptr;            // squared_gap of shares that may be inside
-  std::uint32_t* parents = nullptr;  // count + 1: the entry, then shares
-  std::uint32_t* cut = nullptr;      // the cut shares, where they are needed
+  CellNotes notes[2];                // this query's and, cleared by it, the next one's, alternating
+  double* gaps = nullptr;            // squared_gap() of cells that may be inside, m^2
+  std::uint32_t* parents = nullptr;  // count + 1: the entry, then cells
+  std::uint32_t* cut = nullptr;      // rows of the cut cells, where they are needed
   FarPiece* far = nullptr;
-  FlatBlock* flats = nullptr;                // of each thread block's lists of flat tasks
-  PlanarCluster* planar_clusters = nullptr;  // those at which a thread block looks
+  FlatBlock* flats = nullptr;                // planes of each thread block's lists of flat tasks
+  PlanarCluster* planar_clusters = nullptr;  // those that a thread block classifies
 };
 
-// Counters of a query; 0 at the start.
+// Counts what a query lists; all 0 at its start.
 struct RefinedCounters {
-  unsigned hidden = 0;  // shares
+  unsigned hidden = 0;  // cells
   unsigned far = 0;     // pieces
-  unsigned cut = 0;     // shares, as far as they are listed
+  unsigned cut = 0;     // cells, as far as they are listed
 };
 
-// Counts a share to whose word bits were added that say so.
+// Counts a cell as boundary or inside if the bits just added to its word say so.
 __device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawResult& result) {
   const auto is_inside = [](std::uint32_t word) {
     return (word & cell_bit::counted) != 0 && (word & cell_bit::cut) == 0 ? 1U : 0U;
@@ -106,7 +107,8 @@ __device__ inline void count_cell(std::uint32_t before, std::uint32_t bits, RawR
 __device__ inline unsigned read(const unsigned& counter) {
   return *const_cast<const volatile unsigned*>(&counter);
 }
-// By one thread for all of its block: so many at one place would wait for each other.
+// Reads the counters by one thread for all of its block: many readers of one place would wait for
+// each other.
 __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters) {
   __shared__ RefinedCounters found;
   __syncthreads();

@@ -1,10 +1,10 @@
-// The second step of a query where nobody knows from where points were seen: the flood, and the sum
-// of what it reaches.
+// Defines the second step of a query among points without a camera: the flood, and the sum of what
+// it reaches.
 //
-// In a block's own memory the flood goes from share to share until nothing changes. Otherwise,
-// shares that the flood may pass are joined where the graph has an edge, and with the entry where a
-// cut share lets the flood in. What is joined with the entry is inside. The team meets between
-// joining and adding up; where another surface may hide something, which is rare, more often.
+// In a block's own memory the flood goes from cell to cell until nothing changes. Otherwise cells
+// that the flood may pass are joined where the graph has an edge, and with the entry where a cut
+// cell lets the flood in. What is joined with the entry is inside. The team meets between joining
+// and adding up; where another surface may hide something, which is rare, more often.
 #pragma once
 
 #include "libvpm/backend/cuda/cut_cells.h"
@@ -13,19 +13,19 @@
 
 namespace vpm::cuda {
 
-// Shares of a level that one block floods in its own memory.
+// Bounds the cells of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodCells = 3072;
-inline constexpr std::uint32_t kFloodEdges = 4096;  // of such a level
+inline constexpr std::uint32_t kFloodEdges = 4096;  // bound of its edges
 __host__ __device__ inline bool is_small(const LevelView& level) {
   return level.count <= kFloodCells && level.edge_count <= kFloodEdges;
 }
 
 struct FloodShared {
   std::uint32_t words[kFloodCells];
-  Edge edges[kFloodEdges];         // from the front: between shares that the flood may pass
+  Edge edges[kFloodEdges];         // from the front: between cells that the flood may pass
   unsigned flood_states, entries;  // from the back: by which it may enter
 };
-// What a block needs for one way or the other.
+// Holds what a block needs: its own flood, or the list of noted cells.
 union FloodBlock {
   FloodShared shared;
   NotedList noted;
@@ -55,9 +55,9 @@ class Flood {
     if (in_shared_) bring_to_shared();
   }
 
-  // When the first step is done: whether it has left anything.
+  // True if the first step, when done, has left anything.
   __device__ static bool has_more(unsigned, bool) { return true; }
-  // This thread's part of the result. All threads of the team.
+  // Returns this thread's part of the result. Call from all threads of the team.
   __device__ RawResult run() {
     const RefinedCounters found = read_for_block(counters_);
     if (found.hidden > 0 || found.far > 0) {
@@ -83,7 +83,7 @@ class Flood {
   }
 
  private:
-  static constexpr unsigned kEdges = 4;  // of a thread at once: their reads wait together
+  static constexpr unsigned kEdges = 4;  // edges per thread at once: their reads wait together
 
   __device__ void bring_to_shared() {
     if (threadIdx.x == 0) shared_.flood_states = shared_.entries = 0;
@@ -99,13 +99,14 @@ class Flood {
 
   struct Edges {
     Edge edges[kEdges];
-    std::uint32_t words[kEdges][2];  // of larger and smaller; 0 where there is no edge
+    std::uint32_t words[kEdges]
+                       [2];  // words of the larger and the smaller cell; 0 where there is no edge
   };
-  // Calls visit(edges) for all of them.
+  // Calls visit(edges) for all edges of the level.
   template <class Visit>
   __device__ void for_edges(const Visit& visit) const;
-  // Calls join(k, i, j) for those between shares that the flood may pass, enter(k, cut, i) for
-  // those by which it may enter.
+  // Calls join(k, i, j) for edges between cells that the flood may pass, enter(k, cut, i) for edges
+  // by which it may enter.
   template <class Join, class Enter>
   __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter);
   __device__ void join_cells();
@@ -126,7 +127,7 @@ class Flood {
   bool counts_points_;
   bool in_shared_;
   std::uint32_t* words_;
-  UnionFind flood_;  // node 0 is the entry, node i + 1 share i
+  UnionFind flood_;  // node 0 is the entry, node i + 1 cell i
   NotedCells<Team> noted_;
   CutCells<Team> cut_;
 };
@@ -168,8 +169,8 @@ __device__ void Flood<Team>::look_at(const Edges& together, const Join& join, co
   }
 }
 
-// Of a large level, edges are looked at from the shares that have a word: each from its larger
-// index, of which a share has few.
+// Joins the cells of a large level. Visits edges from the cells that have a word, each edge from
+// its larger cell, which has few.
 template <class Team>
 __device__ void Flood<Team>::join_cells() {
   const auto join_ends = [&](const Edges& together) {
@@ -204,7 +205,7 @@ __device__ void Flood<Team>::join_cells() {
   });
 }
 
-// Edges that matter are listed first; in each round the flood passes all of them.
+// Floods in the block's memory: lists the edges that matter, then passes all of them in each round.
 template <class Team>
 __device__ void Flood<Team>::flood_in_shared() {
   for_edges([&](const Edges& together) {
@@ -227,7 +228,7 @@ __device__ void Flood<Team>::flood_in_shared() {
   while (__syncthreads_or(changes) != 0) {
     constexpr unsigned kMost = kFloodEdges / kThreads;
     static_assert(kMost <= 32);
-    unsigned clipped = 0;  // a bit for each edge of this thread
+    unsigned clipped = 0;  // one bit per edge of this thread
 #pragma unroll 4
     for (unsigned n = 0; n < kMost; ++n) {
       const unsigned k = threadIdx.x + n * blockDim.x;
@@ -257,8 +258,8 @@ __device__ bool Flood<Team>::lies_behind(std::uint32_t cut, std::uint32_t i) con
   return cut_.at(cut).is_behind(center(i));
 }
 
-// Of the shares that another surface may hide, those before the nearest cut share's plane are
-// closed to the flood.
+// Closes to the flood those cells that another surface may hide and that lie before the plane of
+// the nearest cut cell.
 template <class Team>
 __device__ void Flood<Team>::decide_hidden() {
   const Subwarp warp(32);
@@ -287,7 +288,8 @@ __device__ RawResult Flood<Team>::add_up_cells() {
   return result;
 }
 
-// A share counts if it is cut, or the flood reaches it; the flood also passes through the hidden.
+// Adds a cell that counts: a cut one, or one that the flood reaches. The flood also passes hidden
+// ones.
 template <class Team>
 __device__ void Flood<Team>::add_cell(std::uint32_t i, std::uint32_t word,
                                       RawResult& result) const {

@@ -1,4 +1,4 @@
-// Sizes of launches, and waiting for answers.
+// Sizes launches, and waits for their answers.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace vpm::cuda {
 
-// Of the current device.
+// Returns the number of multiprocessors of the current device.
 inline unsigned processor_count() {
   int count = 0;
   check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, current_device()));
   return static_cast<unsigned>(count);
 }
 
-// Of a kernel, how many blocks the current device holds at once, if so many are wanted of each
+// Returns how many blocks of a kernel the current device holds at once, at most `wanted` per
 // multiprocessor.
 template <class Kernel>
 unsigned blocks_that_fit(Kernel* kernel, unsigned threads, unsigned wanted) {
@@ -28,8 +28,8 @@ unsigned blocks_that_fit(Kernel* kernel, unsigned threads, unsigned wanted) {
   return std::clamp(static_cast<unsigned>(blocks), 1U, wanted) * processor_count();
 }
 
-// Blocks that fill the device, as far as their memory takes no more than a quarter of it, and half
-// of what is free.
+// Returns the number of blocks that fill the device, as far as their memory takes no more than a
+// quarter of it and half of what is free.
 inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_processor) {
   std::size_t free = 0, total = 0;
   check(cudaMemGetInfo(&free, &total));
@@ -38,8 +38,8 @@ inline unsigned teams_that_fit(std::size_t bytes_of_team, unsigned blocks_per_pr
   return static_cast<unsigned>(std::clamp<std::size_t>(fit, 1, wanted));
 }
 
-// Teams(count, arguments...), which takes memory for them: `most`, or half as many again and again
-// where other programs have taken meanwhile what was free.
+// Returns Teams(count, arguments...), which takes memory for `most` teams, or half as many again
+// and again where other programs have taken what was free.
 template <class Teams, class... Arguments>
 std::unique_ptr<Teams> make_teams(unsigned most, const Arguments&... arguments) {
   for (unsigned count = most;; count /= 2) {

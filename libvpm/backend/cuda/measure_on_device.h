@@ -1,4 +1,4 @@
-// What all measures on a device do alike: bring clouds and poses there, wait for the answers.
+// Does what all measures on a device share: brings clouds and poses there, waits for the answers.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@ namespace vpm::cuda {
 
 class MeasureOnDevice : public DeviceMeasure {
  public:
-  // The device must be the current one.
+  // Keeps the tool by reference. The device must be the current one.
   MeasureOnDevice(const ToolModel& tool, int device) : device_(device), tool_(tool) {}
 
   void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
@@ -20,18 +20,19 @@ class MeasureOnDevice : public DeviceMeasure {
   double flood_microseconds() const final { return flood_microseconds_; }
 
  protected:
-  // One query: the launch sends its result to `answer` as number `sequence`, which counts up.
+  // Launches one query, which sends its result to `answer` as number `sequence`, counting up.
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
-  // Of many poses, those of one tool; they follow those of the tool before.
+  // Names the poses of one tool among many: they follow those of the tool before.
   struct ToolPart {
-    MeasureOnDevice* measure = nullptr;  // of the same class
+    MeasureOnDevice* measure = nullptr;  // of the same class as all others
     unsigned end = 0;
   };
-  // Many, of poses and to results on the device, in this measure's stream and cloud.
+  // Launches many queries, from poses and to results on the device, in this measure's stream and
+  // cloud.
   virtual void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) = 0;
-  // No point further from the centre of mass matters.
+  // Returns the distance from the centre of mass beyond which no point matters, m.
   virtual double reach() const = 0;
-  // A word for each sphere, of query number `sequence`, and what it says.
+  // Returns a word per sphere of query number `sequence`; state_of() says what it means.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
 
@@ -41,7 +42,7 @@ class MeasureOnDevice : public DeviceMeasure {
   cudaStream_t stream() const { return stream_.get(); }
 
  private:
-  // The poses of one launch.
+  // Holds the poses of one launch.
   struct Batch {
     static constexpr std::size_t kPoses = 16384;
 
@@ -49,14 +50,14 @@ class MeasureOnDevice : public DeviceMeasure {
     DeviceArray<Pose> poses;
     DeviceArray<RawResult> results;
     std::vector<RawResult> answers;
-    // Of several tools: the poses ordered by them, and from where each comes.
+    // For several tools: the poses ordered by tool, and the place from which each comes.
     std::vector<ToolPart> tools;
     std::vector<Pose> ordered;
     std::vector<std::uint32_t> places;
   };
 
   void bring(const PreparedCloud& cloud);
-  // Null where the frame's cloud is not made on this device.
+  // Returns null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
   RawResult answer(const PoseFrame& frame);
@@ -65,7 +66,7 @@ class MeasureOnDevice : public DeviceMeasure {
   // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
   template <class AnswerPart>
   void in_launches(std::size_t poses, const AnswerPart& answer_part);
-  // The answers to poses of one launch.
+  // Returns the answers to the poses of one launch.
   std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
                                         std::span<const Pose> poses);
   void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs);
@@ -76,10 +77,10 @@ class MeasureOnDevice : public DeviceMeasure {
   MappedArray<Answer> answer_{1};
   unsigned sequence_ = 0;
   double flood_microseconds_ = 0;
-  std::shared_ptr<const DeviceCloud> copy_;  // of the last cloud that the host prepared
+  std::shared_ptr<const DeviceCloud> copy_;  // copy of the last cloud that the host prepared
   std::uint64_t serial_ = 0;
-  const CloudSlot* frame_ = nullptr;    // of the queries under way, if it is made on the device
-  const DeviceCloud* cloud_ = nullptr;  // of the queries under way
+  const CloudSlot* frame_ = nullptr;  // frame of the queries under way, if it is made on the device
+  const DeviceCloud* cloud_ = nullptr;  // cloud of the queries under way
   std::unique_ptr<Batch> batch_;
 };
 

@@ -27,13 +27,13 @@ class RefinedOnDevice : public MeasureOnDevice {
   }
 
  private:
-  // How one pose is answered.
+  // Names the kernel that answers one pose.
   template <class Surface>
   struct PoseKernel {
     using Function = void (*)(RefinedLaunch<Surface>, PoseFrame, unsigned);
     Function function = nullptr;
     unsigned blocks = 0;
-    bool meets = true;  // its blocks do, so all of them must be there at once
+    bool meets = true;  // its blocks meet, so all must be resident at once
   };
   template <class Surface>
   static PoseKernel<Surface> kernel_of(typename PoseKernel<Surface>::Function function,
@@ -45,14 +45,15 @@ class RefinedOnDevice : public MeasureOnDevice {
                ? kernel_of<DepthSurface>(one_pose<DepthSurface, kFewBlocks>, kFewBlocks)
                : kernel_of<DepthSurface>(one_pose<DepthSurface, kManyBlocks>, kManyBlocks);
   }
-  // Points alone are flooded, for which small levels have a kernel of their own.
+  // Returns the kernel for points without a camera: they are flooded, for which small levels have
+  // one of their own.
   static PoseKernel<DiskSurface> kernel_of_points(const LevelView& level) {
     return is_small(level)
                ? kernel_of<DiskSurface>(one_pose_small, kManyBlocks, false)
                : kernel_of<DiskSurface>(one_pose<DiskSurface, kManyBlocks>, kManyBlocks);
   }
 
-  // Teams that share the work of a batch.
+  // Holds the teams that share the work of a batch.
   struct Teams {
     Teams(unsigned teams, const TeamRoom& wanted)
         : count(teams), room(wanted), memory(room, count, count, kBatchThreads) {}
@@ -113,7 +114,7 @@ class RefinedOnDevice : public MeasureOnDevice {
     teams_ = make_teams<Teams>(teams_that_fit(RefinedMemory::bytes_of_team(wanted), kBatchBlocks),
                                wanted);
   }
-  // As many tools in a launch as it has room for.
+  // Launches batches of as many tools as a launch has room for.
   template <class Surface>
   void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* poses,
                  RawResult* results) {

@@ -31,7 +31,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-// Whether what cudaEventQuery and the like say is that the work is done.
+// True if the status of cudaEventQuery or the like says that the work is done. Throws on errors.
 inline bool is_done(cudaError_t status) {
   if (status == cudaErrorNotReady) return false;
   check(status);
@@ -41,7 +41,7 @@ inline bool has_happened(const Event& event) {
   return is_done(cudaEventQuery(event.get()));
 }
 
-// By the device's clock; of events that have happened.
+// Returns the time between two events that have happened, by the device's clock.
 inline double microseconds_between(const Event& begin, const Event& end) {
   float milliseconds = 0;
   check(cudaEventElapsedTime(&milliseconds, begin.get(), end.get()));

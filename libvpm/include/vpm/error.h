@@ -1,4 +1,4 @@
-// What every function of the library throws: what is wrong, where, and how to mend it.
+// Declares what every function of the library throws: what is wrong, where, and how to mend it.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What a query is asked for, and what it answers.
+// Declares what a query is asked, and what it answers.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,10 @@ namespace vpm {
 // noise is taken out. paper: the algorithm as printed in 2017.
 enum class Measure { refined, paper };
 
-// What counts of places that a depth image does not show, since something hides them: those up to
-// the tool's bounding radius behind what is seen, and those further behind for which the surface
-// that cuts the tool speaks; or all, as in a count of what is behind the image.
+// Says which places count that a depth image does not show, since something hides them.
+// within_reach: those up to the tool's bounding radius behind what is seen, and those further
+// behind that the plane of the surface that cuts the tool supports. solid: all, as in a count of
+// what is behind the image.
 enum class OccludedSpace { within_reach, solid };
 
 struct QueryOptions {

@@ -1,4 +1,4 @@
-// What a tool is measured against: bodies in one world frame.
+// Declares what a tool is measured against: bodies in one world frame.
 #pragma once
 
 #include <cstddef>

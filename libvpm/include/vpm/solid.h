@@ -22,7 +22,7 @@
 
 namespace vpm {
 
-// What is done to a mesh that is no solid.
+// Says what to do with a mesh that is no solid.
 enum class Repair {
   none,   // refuse what is not a solid
   holes,  // drop repeated triangles, fill planar and small holes
