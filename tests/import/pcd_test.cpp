@@ -1,8 +1,10 @@
+#include "libvpm/import/pcd.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "libvpm/import/point_files.h"
+#include "libvpm/import/lzf.h"
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 

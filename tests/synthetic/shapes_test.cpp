@@ -62,7 +62,7 @@ TEST(Shapes, AreClosedOutwardAndHaveTheirVolume) {
     EXPECT_TRUE(is_closed_and_oriented(shape.solid));
     const MassProperties mass = mass_properties(shape.solid);
     EXPECT_NEAR(mass.volume, shape.volume, shape.tolerance * shape.volume);
-    EXPECT_LT(norm(mass.center_of_mass), 2e-3 * reach(shape.solid, {}));
+    EXPECT_LT(norm(mass.center_of_mass), 2e-3 * bounding_radius(shape.solid, {}));
   }
 }
 
