@@ -47,8 +47,8 @@ TEST(MassProperties, ScaleByPowersOfTwoToTheBit) {
 }
 
 TEST(Reach, IsTheFarthestVertex) {
-  EXPECT_DOUBLE_EQ(reach(synthetic::make_cube(2), {0, 0, 0}), std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(reach(synthetic::make_cube(2), {1, 1, 1}), std::sqrt(12.0));
+  EXPECT_DOUBLE_EQ(bounding_radius(synthetic::make_cube(2), {0, 0, 0}), std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(bounding_radius(synthetic::make_cube(2), {1, 1, 1}), std::sqrt(12.0));
 }
 
 }  // namespace
