@@ -12,16 +12,19 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
+#include "libvpm/view/page.h"
+#include "libvpm/view/simplify.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/tool.h"
 #include "tools/graph/graph_report.h"
+#include "tools/graph/model_view.h"
 
 namespace vpm::tools {
 namespace {
 
 struct Arguments {
-  std::string packing, output, mesh, report;
+  std::string packing, output, mesh, report, view;
   GraphOptions options;
   bool calibrate = false;
 };
@@ -45,6 +48,9 @@ void declare(CLI::App& app, Arguments& a) {
                "Measure each level's error against the solid and keep it in the model, for "
                "vpm-query --max-error");
   app.add_option("--report", a.report, "Write facts about the model here (JSON)");
+  app.add_option("--view", a.view,
+                 "Write a page (.html) here that shows spheres, edges, bridges and cells of each "
+                 "level in a browser");
 }
 
 // Returns the options by which vpm-pack read the mesh, so that reading it again gives the same
@@ -84,10 +90,12 @@ void run(const Tool& tool, Arguments& a) {
     throw Error(ErrorKind::invalid_argument,
                 "only one of the packing and --mesh can be standard input");
   }
-  check_files(
-      {a.packing, a.mesh},
-      {{"--output", a.output, file::Kind::tool_model}, {"--report", a.report, std::nullopt}},
-      tool.common());
+  check_files({a.packing, a.mesh},
+              {{"--output", a.output, file::Kind::tool_model},
+               {"--report", a.report, std::nullopt},
+               {"--view", a.view, std::nullopt}},
+              tool.common());
+  if (!a.view.empty()) view::check_available();
   const Packing packing = read_packing(a.packing);
   if (!a.mesh.empty()) check_mesh(packing, a);
   const std::size_t spheres = packing.spheres.size();
@@ -106,7 +114,9 @@ void run(const Tool& tool, Arguments& a) {
                       {"version", VPM_VERSION},
                       {"parameters", tool.parameters()},
                       {"packing", packing.provenance}};
-  write_tool_model(a.output, model);
+  const Solid mesh = view::simplified(packing.solid, view::kMostTriangles);
+  write_tool_model(a.output, model, mesh);
+  if (!a.view.empty()) write_model_view(a.view, a.packing, model, mesh);
   if (!a.report.empty()) {
     file::write_all(a.report, graph_report(model, quality, seconds.count()).dump(2) + "\n");
   }
