@@ -20,7 +20,7 @@ for name, text in texts.items():
     for found in FOREIGN.findall(text):
         faults.append(f"{name}: {found} is of another library")
 
-together = re.sub(r"//[^\n]*", "", "\n".join(texts.values()))
+together = re.sub(r"//[^\n]*|#[^\n]*", "", "\n".join(texts.values()))
 classes = set(re.findall(r"(?:class|struct) VPM_API (\w+)", together))
 functions = set(re.findall(r"VPM_API [^;{()]*?\b(\w+)\(", together))
 all_exported = []

@@ -252,8 +252,7 @@ std::vector<RefusedFile> refused_files(const std::vector<std::byte>& packing,
   std::vector<RefusedFile> all;
   add_containers(all, packing);
   all.push_back({"cloud_as_packing.vpmc", Kind::packing,
-                 "this is a cloud (.vpmc); needed is a packing (.vpmp), which `pack` writes",
-                 cloud});
+                 "this is a cloud (.vpmc); needed is a packing (.vpmp)", cloud});
   add_packings(all, packing);
   add_models(all, model);
   add_calibrations(all, calibrated_model);
