@@ -19,7 +19,7 @@ class PageTest : public testing::Test {
   }
 };
 
-// What is between the page's own text, which is the same for all pages.
+// Returns what is between the page's own text, which is the same for all pages.
 std::string data_of(const Page& page) {
   const std::string html = page.html();
   return html.substr(kPageHead.size(), html.size() - kPageHead.size() - kPageTail.size());

@@ -258,9 +258,9 @@ class OtherTools(PageTest):
             self.assertEqual(shown["edges"] + shown.get("bridges", 0), facts["edges"])
             self.assertEqual(shown.get("bridges", 0), facts["bridges"])
             self.assertEqual(shown["spheres by radius"], facts["spheres"])
-        page.evaluate("vpm.showSphereCell(0)")
+        page.evaluate("vpm.showCell(0)")
         self.assertGreater(page.report()["cell"]["samples"], 0)
-        page.evaluate("vpm.showSphereCell(-1)")
+        page.evaluate("vpm.showCell(-1)")
         page.evaluate("vpm.setLayer('solid', false)")
         for x in range(500, 1200, 20):  # somewhere on the ring
             page.mouse("mousePressed", x, 330)
