@@ -15,7 +15,7 @@ import headless_page
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[1]
 LARGEST = 150_000  # bytes
-COLORS = 128       # enough for shaded surfaces, and small
+COLORS = 256
 
 
 def save(png, path):
@@ -23,7 +23,8 @@ def save(png, path):
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     colors = COLORS
     while True:
-        picture.quantize(colors, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+        few = picture.quantize(colors, method=Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+        few.save(path, optimize=True)
         if path.stat().st_size <= LARGEST or colors <= 16:
             break
         colors //= 2

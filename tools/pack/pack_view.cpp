@@ -36,6 +36,13 @@ void add_defects(view::Page& page, const MeshDefects& defects) {
                       .marks = true,
                       .above = true});
   };
+  // Adds these first: edges of the other defects may lie on them, and are drawn over them.
+  std::vector<Vec3> crossing;
+  for (std::size_t k = 0; k < std::min(defects.crossing.size(), kMostCrossing); ++k) {
+    const auto& [a, b, c] = defects.crossing[k];
+    crossing.insert(crossing.end(), {a, b, b, c, c, a});
+  }
+  add("triangles that cut others", kCrossingColor, std::move(crossing), defects.crossing.size());
   std::vector<Vec3> rims;
   for (const std::vector<Segment>& rim : defects.holes) {
     const std::vector<Vec3> ends = ends_of(rim);
@@ -50,12 +57,6 @@ void add_defects(view::Page& page, const MeshDefects& defects) {
   for (const Vec3& p : defects.pinched) touching.insert(touching.end(), {p, p});
   add("vertices where the surface touches itself", kNonManifoldColor, std::move(touching),
       defects.pinched.size());
-  std::vector<Vec3> crossing;
-  for (std::size_t k = 0; k < std::min(defects.crossing.size(), kMostCrossing); ++k) {
-    const auto& [a, b, c] = defects.crossing[k];
-    crossing.insert(crossing.end(), {a, b, b, c, c, a});
-  }
-  add("triangles that cut others", kCrossingColor, std::move(crossing), defects.crossing.size());
 }
 
 // Returns the k-th number of the van der Corput sequence: evenly spread over 0 .. 1.
