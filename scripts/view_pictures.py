@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the pictures of the pages: the tools show the bundled example, headless Chromium photographs it.
 
-usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and pictures
+usage: scripts/view_pictures.py [BIN [OUTPUT]]     by default build/release/bin and examples/pictures
 """
 import io
 import pathlib
@@ -14,8 +14,8 @@ from PIL import Image
 import headless_page
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[1]
-LARGEST = 200_000  # bytes
-COLORS = 128       # enough for shaded surfaces, and small
+LARGEST = 150_000  # bytes
+COLORS = 256
 
 
 def save(png, path):
@@ -23,7 +23,8 @@ def save(png, path):
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     colors = COLORS
     while True:
-        picture.quantize(colors, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+        few = picture.quantize(colors, method=Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
+        few.save(path, optimize=True)
         if path.stat().st_size <= LARGEST or colors <= 16:
             break
         colors //= 2
@@ -43,18 +44,18 @@ def make_pages(tools, folder):
         "--view", "query.html", "--quiet")
 
 
-# What is done with each page before its picture is taken.
+# Scripts that each page runs before its picture is taken.
 PICTURES = {
     "query": "vpm.setView('contact')",
     "pack": "vpm.setStep(150)",
-    "graph": "vpm.setStep(0); vpm.showSphereCell(3)",
+    "graph": "vpm.setStep(0); vpm.showCell(3)",
     "normals": "vpm.setView('overview')",
 }
 
 
 def main():
     tools = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else REPOSITORY / "build/release/bin").resolve()
-    output = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else REPOSITORY / "pictures")
+    output = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else REPOSITORY / "examples/pictures")
     if not headless_page.program():
         sys.exit("view_pictures.py: there is no Chromium; install it (Debian: chromium)")
     output.mkdir(parents=True, exist_ok=True)
@@ -63,6 +64,7 @@ def main():
         for name, action in PICTURES.items():
             page = browser.open(f"{folder}/{name}.html", 1120, 630)
             page.evaluate(action)
+            page.evaluate("vpm.setQuality(2)")  # smooth edges, which a processor leaves out
             save(page.screenshot(), output / f"{name}.png")
             if page.faults:
                 sys.exit(f"view_pictures.py: {name}: {page.faults}")

@@ -12,7 +12,7 @@ struct StateLook {
   std::array<std::uint8_t, 3> rgb;
 };
 
-// Gives name and colour of each SphereState, which is the index.
+// Indexed by SphereState.
 inline constexpr std::array<StateLook, 3> kStateLooks{
     {{"outside", {160, 160, 160}}, {"boundary", {255, 140, 0}}, {"inside", {200, 0, 0}}}};
 

@@ -1,5 +1,10 @@
 // How things look. Colours of the legend are those of the scene: shading only darkens them.
 
+// The window's width and height in CSS pixels, and the pixels drawn per CSS pixel; for all shaders.
+const PIXELS = {value: new THREE.Vector3(1, 1, 1)};
+
+function rgbOf(color) { return new THREE.Color(color).toArray().map(c => Math.round(255 * c)); }
+
 const LIGHT = `
 float lit(vec3 n, vec3 toEye) {
   float key = max(dot(n, normalize(vec3(0.35, 0.6, 0.75))), 0.0);
@@ -13,28 +18,28 @@ function surfaceMaterial(options) {
     transparent: true, side: THREE.DoubleSide,
     uniforms: {
       color: {value: new THREE.Color(options.color || '#8fa9c4')}, opacity: {value: 1},
-      hole: {value: new THREE.Vector4(0, 0, 0, 0)}, size: {value: 2},
-      byNormal: {value: options.byNormal ? 1 : 0}, axes: {value: new THREE.Matrix3()},
+      hole: {value: new THREE.Vector4(0, 0, 0, 0)}, pixels: PIXELS,
+      byNormal: {value: options.byNormal ? 1 : 0},
     },
     vertexShader: `
-      uniform float size; uniform vec4 hole;
+      uniform vec3 pixels; uniform vec4 hole;
       varying vec3 vNormal, vModel, vView, vHole;
       void main() {
         vec4 view = modelViewMatrix * vec4(position, 1.0);
         vNormal = normalMatrix * normal; vModel = normal; vView = view.xyz;
         vHole = (viewMatrix * vec4(hole.xyz, 1.0)).xyz;
         gl_Position = projectionMatrix * view;
-        gl_PointSize = size;
+        gl_PointSize = 2.0 * pixels.z;
       }`,
     fragmentShader: LIGHT + `
-      uniform vec3 color; uniform float opacity, byNormal; uniform vec4 hole; uniform mat3 axes;
+      uniform vec3 color; uniform float opacity, byNormal; uniform vec4 hole;
       varying vec3 vNormal, vModel, vView, vHole;
       void main() {
         vec3 toEye = normalize(-vView), n = vNormal;
         bool known = dot(n, n) > 0.1;
         n = known ? normalize(n) : toEye;
         if (dot(n, toEye) < 0.0) n = -n;
-        vec3 base = byNormal > 0.5 ? (known ? 0.5 + 0.5 * normalize(axes * vModel) * vec3(1.0, -1.0, -1.0) : vec3(0.25)) : color;
+        vec3 base = byNormal > 0.5 ? (known ? 0.5 + 0.5 * normalize(vModel) * vec3(1.0, -1.0, -1.0) : vec3(0.25)) : color;
         if (hole.w > 0.0) {
           float far = length(vHole), near = dot(vView, vHole) / far;
           float off = length(vView * (far / max(near, 1e-9)) - vHole) / hole.w;
@@ -133,6 +138,61 @@ function sheetMaterial() {
   });
 }
 
-function lineMaterial(color, opacity) {
-  return new THREE.LineBasicMaterial({color, transparent: true, opacity: opacity || 1});
+// Round dots of `size` CSS pixels. With `condition`, a GLSL expression of the attribute `until` and the uniform
+// `step`, only those that meet it.
+function dotMaterial(color, size, hides, condition) {
+  return new THREE.ShaderMaterial({
+    depthTest: hides,
+    uniforms: {color: {value: new THREE.Color(color)}, size: {value: size}, step: {value: 0}, pixels: PIXELS},
+    vertexShader: `
+      ${condition ? 'attribute float until;' : ''} uniform float step, size; uniform vec3 pixels;
+      void main() {
+        gl_PointSize = size * pixels.z;
+        gl_Position = ${condition || 'true'} ? projectionMatrix * modelViewMatrix * vec4(position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+      }`,
+    fragmentShader: `
+      uniform vec3 color;
+      void main() {
+        vec2 at = 2.0 * gl_PointCoord - 1.0;
+        if (dot(at, at) > 1.0) discard;
+        gl_FragColor = vec4(color, 1.0);
+      }`,
+  });
+}
+
+// Lines of `width` CSS pixels, as squares between their ends: lines of WebGL are one pixel wide.
+function lineMaterial(color, {width, opacity = 1, above = false}) {
+  return new THREE.ShaderMaterial({
+    transparent: true, depthTest: !above, side: THREE.DoubleSide,
+    uniforms: {color: {value: new THREE.Color(color)}, opacity: {value: opacity}, width: {value: width}, pixels: PIXELS},
+    vertexShader: `
+      attribute vec3 from, to; uniform vec3 pixels; uniform float width;
+      void main() {
+        vec4 a = projectionMatrix * modelViewMatrix * vec4(from, 1.0), b = projectionMatrix * modelViewMatrix * vec4(to, 1.0);
+        float least = 1e-4 * max(max(a.w, b.w), 1e-9);  // ends behind the eye move before it
+        if (a.w < least) a = mix(a, b, (least - a.w) / max(b.w - a.w, 1e-9));
+        if (b.w < least) b = mix(b, a, (least - b.w) / max(a.w - b.w, 1e-9));
+        vec2 along = (b.xy / b.w - a.xy / a.w) * pixels.xy;
+        along = dot(along, along) > 0.0 ? normalize(along) : vec2(1.0, 0.0);
+        vec4 end = position.x < 0.5 ? a : b;
+        end.xy += position.y * width * vec2(-along.y, along.x) / pixels.xy * end.w;
+        gl_Position = max(a.w, b.w) > 0.0 ? end : vec4(2.0, 2.0, 2.0, 1.0);
+      }`,
+    fragmentShader: 'uniform vec3 color; uniform float opacity; void main() { gl_FragColor = vec4(color, opacity); }',
+  });
+}
+
+// Gives a geometry lines between each two of the places.
+function setSegments(geometry, places) {
+  const ends = new THREE.InstancedInterleavedBuffer(places, 6);
+  geometry.setAttribute('from', new THREE.InterleavedBufferAttribute(ends, 3, 0));
+  geometry.setAttribute('to', new THREE.InterleavedBufferAttribute(ends, 3, 3));
+  geometry.maxInstancedCount = places.length / 6;
+}
+function lineSegments(places, material) {
+  const geometry = new THREE.InstancedBufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([0, -1, 0, 1, -1, 0, 0, 1, 0, 1, 1, 0]), 3));
+  geometry.setIndex([0, 1, 2, 2, 1, 3]);
+  setSegments(geometry, places);
+  return placed(new THREE.Mesh(geometry, material), 6);
 }

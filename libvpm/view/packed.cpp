@@ -63,8 +63,8 @@ Json packed_positions(std::span<const Vec3> positions) {
   for (const Vec3& p : positions) {
     for (int axis = 0; axis < 3; ++axis) {
       const double side = coordinate(size, axis);
-      const double cell = side > 0 ? coordinate(p - box.low, axis) / side : 0;
-      steps.push_back(static_cast<std::uint16_t>(std::lround(kSteps * cell)));
+      const double fraction = side > 0 ? coordinate(p - box.low, axis) / side : 0;
+      steps.push_back(static_cast<std::uint16_t>(std::lround(kSteps * fraction)));
     }
   }
   return {{"low", {box.low.x, box.low.y, box.low.z}},

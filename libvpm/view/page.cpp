@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -14,7 +15,7 @@
 namespace vpm::view {
 namespace {
 
-// Depths beyond this many times the 98 % quantile are strays; a page shows none.
+// Depths beyond this many times the 98 % quantile are strays, which a page leaves out.
 constexpr double kStray = 3;
 
 Json as_json(Vec3 v) {
@@ -57,9 +58,9 @@ DepthRange range_of(const DepthImage& image) {
   for (const float d : image.depth)
     if (is_measured(d)) depths.push_back(d);
   if (depths.empty()) return {0, 1, 1};
-  const auto quantile = [&](double cell) {
-    const auto at =
-        depths.begin() + static_cast<std::ptrdiff_t>(cell * static_cast<double>(depths.size() - 1));
+  const auto quantile = [&](double fraction) {
+    const auto at = depths.begin() +
+                    static_cast<std::ptrdiff_t>(fraction * static_cast<double>(depths.size() - 1));
     std::nth_element(depths.begin(), at, depths.end());
     return static_cast<double>(*at);
   };
@@ -74,7 +75,7 @@ DepthRange range_of(const DepthImage& image) {
   return range;
 }
 
-// The side of squares of pixels of which one is kept.
+// Returns the side of the squares of pixels of which one is kept.
 std::uint32_t stride_for(const DepthImage& image, std::size_t most) {
   std::uint32_t stride = 1;
   while ((image.width / stride) * std::size_t{image.height / stride} > most) ++stride;
@@ -88,6 +89,16 @@ void check_available() {
     throw Error(ErrorKind::unavailable,
                 "--view: this build draws no pages, because three.js was not found; install it "
                 "(Debian: libjs-three) and build again");
+}
+
+std::string shown_name(const std::string& path) {
+  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
+}
+
+std::string with_unit(double value, const char* unit) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4g %s", value, unit);
+  return text;
 }
 
 Page::Page(std::string program, std::string title)

@@ -34,6 +34,11 @@ inline constexpr std::size_t kMostPoints = 300'000;
 // The most triangles of a mesh; finer meshes are simplified by joining vertices.
 inline constexpr std::size_t kMostTriangles = 60'000;
 
+// Returns the name of a file as a page shows it: without folders; "-" is standard input.
+std::string shown_name(const std::string& path);
+// Returns the value with four digits, and its unit.
+std::string with_unit(double value, const char* unit);
+
 struct ImageView {
   const DepthImage* depth = nullptr;
   Camera camera;
@@ -71,7 +76,7 @@ struct LinesView {
   std::optional<std::size_t> step{};
 };
 
-// A number per step: `size` values each.
+// Holds `size` values for each step.
 struct Column {
   std::string name, unit;  // unit: m, m3, m4, N, Nm, %, or "" for counts
   std::size_t size = 1;
@@ -85,7 +90,7 @@ class Page {
 
   void set_origin(Vec3 origin) { origin_ = origin; }  // before the first layer
   void set_up(Vec3 up);
-  // Sets what stands under the title beside program and version, e.g. "refined, 1000 of 1000
+  // Sets the text under the title, beside program and version, e.g. "refined, 1000 of 1000
   // spheres".
   void set_summary(std::string summary) { summary_ = std::move(summary); }
   void add_fact(const std::string& name, const std::string& value);
@@ -106,7 +111,7 @@ class Page {
   void add_mesh(const MeshView& mesh);
   void add_spheres(const SpheresView& spheres);
   void add_lines(const LinesView& lines);
-  // Places that are shown up to, and without, step `until`.
+  // Adds places of which each is shown before its step `until`.
   void add_dust(const std::string& name, const std::string& color, std::span<const Vec3> places,
                 std::span<const std::uint32_t> until);
   void add_path(const std::string& name, const std::string& color, std::size_t body);

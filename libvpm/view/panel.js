@@ -19,7 +19,7 @@ function section(id, title) {
 }
 function swatch(look) {
   const made = element('span', {className: 'swatch ' + (look.shape || '')});
-  if (look.color && look.shape !== 'hatch') made.style.background = look.color;
+  if (look.color) made.style.background = look.color;
   return made;
 }
 
@@ -58,123 +58,85 @@ function showNumbers(doc, bodies, columns) {
 }
 function numberOf(column, value) { return column.unit === '' ? String(value) : digits(value); }
 
-// A switch for each layer, with what its colours mean.
+// Adds a switch for each layer, with what its colours mean. Layers of equal names that are shown at one step each
+// share a switch.
 function showLayers(layers, changed) {
-  const place = section('layers', 'Layers');
+  const place = section('layers', 'Layers'), rows = new Map();
   for (const layer of layers) {
-    const box = element('input', {type: 'checkbox', checked: layer.on});
-    box.addEventListener('change', () => { layer.on = box.checked; changed(); });
-    layer.box = box;
-    layer.countCell = element('span', {className: 'count'});
-    const row = element('label', {className: 'row'}, box, swatch(layer.swatch), element('span', {className: 'name', textContent: layer.name}), layer.countCell);
-    place.append(row);
-    for (const [name, color, form, state] of layer.legend || []) {
-      const cell = element('span', {className: 'count'}), line = element('label', {className: 'row indent'});
-      if (state !== undefined) {
-        const shown = element('input', {type: 'checkbox', checked: true, title: 'show spheres that are ' + name});
-        shown.addEventListener('change', () => { layer.shown.setComponent(state, shown.checked ? 1 : 0); changed(); });
-        line.append(shown);
-        (layer.stateCells = layer.stateCells || [])[state] = cell;
-      }
-      line.append(swatch({color, shape: form}), element('span', {className: 'name', textContent: name}), cell);
-      place.append(line);
-    }
-    if (layer.opacity) {
-      const range = element('input', {type: 'range', min: 0.1, max: 1, step: 0.05, value: layer.opacity.value, title: 'opacity'});
-      range.style.cssText = 'width: 60px; flex: none;';
-      range.addEventListener('input', () => { layer.opacity.value = Number(range.value); changed(); });
-      row.insertBefore(range, layer.countCell);
-    }
+    const row = layer.step !== undefined && rows.get(layer.name);
+    layer.row = row || addRow(place, layer, changed);
+    layer.row.layers.push(layer);
+    rows.set(layer.name, layer.row);
   }
 }
+function addRow(place, layer, changed) {
+  const box = element('input', {type: 'checkbox', checked: layer.on}), cell = element('span', {className: 'count'}), row = {box, cell, layers: []};
+  const line = element('label', {className: 'row'}, box, swatch(layer.swatch), element('span', {className: 'name', textContent: layer.name}));
+  box.addEventListener('change', () => {
+    for (const member of row.layers) member.on = box.checked;
+    changed();
+  });
+  if (layer.opacity) line.append(opacityRange(layer, changed));
+  line.append(cell);
+  place.append(line, ...(layer.legend || []).map(entry => legendLine(layer, entry, changed)));
+  return row;
+}
+function opacityRange(layer, changed) {
+  const range = element('input', {type: 'range', className: 'opacity', min: 0.1, max: 1, step: 0.05, value: layer.opacity.value, title: 'opacity of ' + layer.name});
+  range.addEventListener('input', () => { layer.opacity.value = Number(range.value); changed(); });
+  return range;
+}
+// Returns a line of a layer's legend; that of a state has a switch and the number of its spheres.
+function legendLine(layer, [name, color, form, state], changed) {
+  const line = element('label', {className: 'row indent'}), cell = element('span', {className: 'count'});
+  if (state !== undefined) {
+    const box = element('input', {type: 'checkbox', checked: true, title: 'show spheres that are ' + name});
+    box.addEventListener('change', () => { layer.shownStates.setComponent(state, box.checked ? 1 : 0); changed(); });
+    line.append(box);
+    (layer.stateCells = layer.stateCells || [])[state] = cell;
+  }
+  line.append(swatch({color, shape: form}), element('span', {className: 'name', textContent: name}), cell);
+  return line;
+}
 function refreshLayers(layers, step) {
+  for (const layer of layers) if (layer.row) layer.row.cell.textContent = layer.step === undefined ? '' : '0';
   for (const layer of layers) {
-    layer.object.visible = layer.on && (layer.step === undefined || layer.step === step);
-    layer.countCell.textContent = layer.count === undefined ? '' : layer.count.toLocaleString('en') + (layer.unit ? ' ' + layer.unit : '');
+    const isHere = layer.step === undefined || layer.step === step;
+    layer.object.visible = layer.on && isHere;
+    if (!layer.row || !isHere) continue;
+    layer.row.cell.textContent = layer.count === undefined ? '' : layer.count.toLocaleString('en') + (layer.unit ? ' ' + layer.unit : '');
     if (layer.stateCells) layer.stateCells.forEach((cell, k) => { cell.textContent = layer.counts[k].toLocaleString('en'); });
   }
 }
 
-const WIDTH = 308, HEIGHT = 150, LEFT = 46, BOTTOM = 26, TOP = 8, RIGHT = 8;
-function ticksOf(low, high) {
-  const raw = (high - low) / 4, power = Math.pow(10, Math.floor(Math.log10(raw || 1)));
-  const step = power * ([1, 2, 5, 10].find(m => m * power >= raw) || 10), ticks = [];
-  for (let t = Math.ceil(low / step - 1e-9) * step; t <= high + 1e-9 * step; t += step) ticks.push(Math.abs(t) < 1e-12 * step ? 0 : t);
-  return ticks;
-}
-// Returns {svg, x(value), y(value)} with axes and their names.
-function axes(x, y) {
-  const svg = shape('svg', {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: 'chart', role: 'img'});
-  const at = (low, high, from, to) => v => from + (to - from) * (high > low ? (v - low) / (high - low) : 0);
-  const px = at(x.low, x.high, LEFT, WIDTH - RIGHT), py = at(y.low, y.high, HEIGHT - BOTTOM, TOP + 12);
-  for (const t of ticksOf(y.low, y.high))
-    svg.append(shape('line', {x1: LEFT, x2: WIDTH - RIGHT, y1: py(t), y2: py(t), stroke: '#e3e8ee'}), shape('text', {x: LEFT - 5, y: py(t) + 4, 'text-anchor': 'end'}, Number(t.toPrecision(6))));
-  for (const t of ticksOf(x.low, x.high))
-    svg.append(shape('text', {x: px(t), y: HEIGHT - BOTTOM + 12, 'text-anchor': 'middle'}, Number(t.toPrecision(6))));
-  svg.append(shape('text', {x: LEFT, y: TOP + 3, 'text-anchor': 'start'}, y.name), shape('text', {x: WIDTH - RIGHT, y: HEIGHT - 2, 'text-anchor': 'end'}, x.name));
-  return {svg, px, py};
-}
-const CURVE_COLORS = ['#c80000', '#0072b2', '#009e73', '#cc79a7', '#e69f00', '#56b4e9'];
-
-// A curve over the steps with a cursor; a click goes to the step. Returns a function that moves the cursor.
-function showCurve(place, chart, columns, setStep) {
-  const series = chart.columns.map(k => columns[k]), [size, unit] = scaleFor(series[0].unit, series.flatMap(s => [...s.values]));
-  const values = series.map(s => s.values.map(v => v / size)), count = values[0].length, first = chart.first || 0, every = chart.every || 1, last = first + every * Math.max(count - 1, 1);
-  let low = 0, high = 0;
-  for (const curve of values) for (const v of curve) low = Math.min(low, v), high = Math.max(high, v);
-  const {svg, px, py} = axes({name: chart.x, low: first, high: last}, {name: chart.y + (unit ? ', ' + unit : ''), low, high: high > low ? high : low + 1});
-  values.forEach((curve, k) => svg.append(shape('polyline', {fill: 'none', stroke: CURVE_COLORS[k % CURVE_COLORS.length], 'stroke-width': 2,
-    points: Array.from(curve, (v, step) => px(first + every * step).toFixed(1) + ',' + py(v).toFixed(1)).join(' ')})));
-  const line = shape('line', {y1: TOP, y2: HEIGHT - BOTTOM, stroke: '#1d2733', 'stroke-dasharray': '3 3'});
-  const dots = values.map((_, k) => shape('circle', {r: 4, fill: CURVE_COLORS[k % CURVE_COLORS.length], stroke: '#fff'}));
-  svg.append(line, ...dots);
-  const go = event => {
-    const box = svg.getBoundingClientRect(), x = (event.clientX - box.left) * WIDTH / box.width;
-    setStep(Math.round((x - LEFT) / (WIDTH - RIGHT - LEFT) * Math.max(count - 1, 1)));
-  };
-  svg.addEventListener('pointerdown', event => { svg.setPointerCapture(event.pointerId); go(event); });
-  svg.addEventListener('pointermove', event => { if (event.buttons) go(event); });
-  place.append(element('h2', {textContent: chart.title}), svg);
-  if (series.length > 1) chart.names.forEach((name, k) =>
-    place.append(element('div', {className: 'row indent'}, swatch({color: CURVE_COLORS[k % CURVE_COLORS.length], shape: 'line'}), element('span', {textContent: name}))));
-  return step => {
-    const k = Math.min(step, count - 1);
-    line.setAttribute('x1', px(first + every * k)), line.setAttribute('x2', px(first + every * k));
-    dots.forEach((dot, s) => { dot.setAttribute('cx', px(first + every * k)), dot.setAttribute('cy', py(values[s][k])); });
-  };
+function valueText(value, unit) {
+  const [size, name] = scaleFor(unit, [value]);
+  return digits(value / size) + ' ' + name;
 }
 
-function showHistogram(place, chart) {
-  const counts = decode(chart.counts), high = Math.max(...counts, 1), [size, unit] = [1, chart.unit];
-  const {svg, px, py} = axes({name: chart.x + ', ' + unit, low: chart.low / size, high: chart.high / size}, {name: chart.y, low: 0, high});
-  const width = (chart.high - chart.low) / counts.length;
-  counts.forEach((n, k) => {
-    const x = px(chart.low + k * width), rgb = viridis(1 - (k + 0.5) / counts.length).map(Math.round);
-    svg.append(shape('rect', {x, width: Math.max(px(chart.low + (k + 1) * width) - x - 0.5, 0.5), y: py(n), height: py(0) - py(n), fill: `rgb(${rgb})`}));
-  });
-  place.append(element('h2', {textContent: chart.title}), svg);
+// Shows in the corner of the scene what its colours mean: radii, or directions of normals.
+function showKey(layer) {
+  const place = document.getElementById('key');
+  if (layer.key) place.append(...scaleKey(layer.key));
+  else if (layer.byNormal) place.append(...normalKey());
 }
-
-const REASON_COLORS = [null, '#1a1a1a', '#cc79a7', '#d55e00'];
-// The depth image, near yellow, far violet, with unset pixels in the colour of their reason.
-function showPicture(place, chart, image) {
-  const depth = decodeDepth(image), bits = decode(image.reasons), reasons = new Uint8Array(depth.length);
-  statesOfStep(bits, depth.length, 0, reasons);
-  const canvas = element('canvas', {className: 'picture', width: image.width, height: image.height});
-  const context = canvas.getContext('2d'), pixels = context.createImageData(image.width, image.height);
-  const rgb = REASON_COLORS.map(c => c && new THREE.Color(c).toArray().map(x => Math.round(255 * x)));
-  for (let k = 0; k < depth.length; ++k)
-    pixels.data.set([...(reasons[k] ? rgb[reasons[k]] : viridis(1 - (depth[k] - image.low) / (Math.min(image.high, 2.5 * image.median) - image.low || 1))), 255], 4 * k);
+function scaleKey({name, unit, low, high}) {
+  const canvas = element('canvas', {width: 160, height: 1}), context = canvas.getContext('2d');
+  for (let k = 0; k < 160; ++k) {
+    context.fillStyle = `rgb(${viridis(k / 159).map(Math.round)})`;
+    context.fillRect(k, 0, 1, 1);
+  }
+  const ends = [low, high].map(value => element('span', {textContent: valueText(value, unit)}));
+  return [element('span', {textContent: name}), canvas, element('div', {className: 'ends'}, ...ends)];
+}
+// A ball as the camera would see it, in the colours of its normals.
+function normalKey() {
+  const size = 64, canvas = element('canvas', {className: 'ball', width: size, height: size});
+  const context = canvas.getContext('2d'), pixels = context.createImageData(size, size);
+  for (let v = 0, k = 0; v < size; ++v) for (let u = 0; u < size; ++u, k += 4) {
+    const x = 2 * (u + 0.5) / size - 1, y = 2 * (v + 0.5) / size - 1, z2 = 1 - x * x - y * y;
+    if (z2 > 0) pixels.data.set([0.5 + 0.5 * x, 0.5 - 0.5 * y, 0.5 + 0.5 * Math.sqrt(z2), 1].map(c => 255 * c), k);
+  }
   context.putImageData(pixels, 0, 0);
-  place.append(element('h2', {textContent: chart.title}), canvas);
-  chart.reasons.forEach(([name, count], k) => place.append(element('div', {className: 'row indent'},
-    swatch({color: k ? REASON_COLORS[k] : '#21918c'}), element('span', {textContent: name}), element('span', {className: 'count', textContent: count.toLocaleString('en')}))));
-}
-
-// The colours of a quantity, in the corner of the scene.
-function showKey(key) {
-  const [size, unit] = scaleFor(key.unit, [key.high]), canvas = element('canvas', {width: 160, height: 1}), context = canvas.getContext('2d');
-  for (let k = 0; k < 160; ++k) context.fillStyle = `rgb(${viridis(k / 159).map(Math.round)})`, context.fillRect(k, 0, 1, 1);
-  document.getElementById('key').append(element('span', {textContent: key.name + ', ' + unit}), canvas,
-    element('div', {className: 'ends'}, element('span', {textContent: digits(key.low / size)}), element('span', {textContent: digits(key.high / size)})));
+  return [element('div', {textContent: 'normal'}), canvas, element('div', {className: 'faint', textContent: 'as a ball would show them'})];
 }

@@ -39,7 +39,7 @@ Solid simplified(const Solid& solid, std::size_t triangles) {
   if (solid.triangles.size() <= triangles) return solid;
   Box box;
   for (const Vec3& p : solid.vertices) box.add(p);
-  // A surface of n triangles crosses about n / 2 cells; each cell's side is one share of the
+  // A surface of n triangles crosses about n / 2 cells; each cell's side is a part of the
   // longest.
   double cells = std::sqrt(static_cast<double>(triangles));
   const double longest = coordinate(box.size(), box.longest_axis());

@@ -14,7 +14,7 @@ namespace vpm::view {
 // .csv, .ply (balls), .points.ply, .glb
 enum class SphereFormat { csv, ply, points, glb };
 
-// The format that the name's suffix asks for; none for other suffixes.
+// Returns the format that the name's suffix asks for; none for other suffixes.
 std::optional<SphereFormat> sphere_format(const std::string& path);
 
 // Returns the content of the file. With `states` (SphereState, one per sphere) colours tell the

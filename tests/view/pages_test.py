@@ -31,12 +31,20 @@ def run(tool, *arguments, code=0):
 
 
 def results(name):
-    return [json.loads(line) for line in (FOLDER / name).open()]
+    return [json.loads(line) for line in (FOLDER / name).read_text().splitlines()]
 
 
 def pixels(png):
     import matplotlib.image
     return matplotlib.image.imread(io.BytesIO(png))[:, :, :3].astype(float)
+
+
+def scene(page):
+    """Returns the picture without panel and bar."""
+    box = page.evaluate("(({x, y, width, height}) => [x, y, width, height])"
+                        "(document.getElementById('stage').getBoundingClientRect())")
+    x, y, width, height = map(round, box)
+    return pixels(page.screenshot())[y:y + height, x:x + width]
 
 
 def share(image, condition):
@@ -64,6 +72,17 @@ def write_depth(name, depth):
     header = struct.pack(">IIBBBBB", depth.shape[1], depth.shape[0], 16, 0, 0, 0, 0)
     (FOLDER / name).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) +
                                 chunk(b"IEND", b""))
+
+
+def write_points(name, count):
+    """Writes a wavy floor 1 m before the camera, as a PLY cloud with normals."""
+    side = int(count ** 0.5)
+    v, u = numpy.mgrid[0:side, 0:side] / side - 0.5
+    columns = [u, v, 1 + 0.01 * numpy.sin(40 * u), 0 * u, 0 * u, 0 * u - 1]
+    header = f"ply\nformat binary_little_endian 1.0\nelement vertex {side * side}\n" + "".join(
+        f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")) + "end_header\n"
+    body = numpy.stack([c.ravel() for c in columns], axis=1).astype("<f4").tobytes()
+    (FOLDER / name).write_bytes(header.encode() + body)
 
 
 def make_demo():
@@ -137,39 +156,39 @@ class Query(PageTest):
             self.assert_fits(page)
             for view in ("overview", "side", "contact"):
                 page.evaluate(f"vpm.setView('{view}')")
-                image = pixels(page.screenshot())
+                image = scene(page)
                 self.assertGreater(share(image, inside), 0.002, f"{view} {width}")
                 self.assertGreater(share(image, boundary), 0.0005, f"{view} {width}")
             page.evaluate("vpm.setView('camera')")
-            self.assertGreater(share(pixels(page.screenshot()), surface), 0.15)
+            self.assertGreater(share(scene(page), surface), 0.15)
 
     def test_mouse_and_touch_turn_the_scene(self):
         page = self.open("query.html")
-        before = pixels(page.screenshot())
+        before = scene(page)
         page.mouse("mousePressed", 800, 400)
         for x in (820, 860, 900):
             page.mouse("mouseMoved", x, 420, buttons=1)
         page.mouse("mouseReleased", 900, 420)
-        turned = pixels(page.screenshot())
+        turned = scene(page)
         self.assertGreater(numpy.abs(turned - before).mean(), 0.005)
         page.call("Input.dispatchMouseEvent", type="mouseWheel", x=800, y=400, deltaX=0, deltaY=-300)
-        self.assertGreater(numpy.abs(pixels(page.screenshot()) - turned).mean(), 0.005)
+        self.assertGreater(numpy.abs(scene(page) - turned).mean(), 0.005)
         phone = self.open("query.html", 390, 844, True)
-        before = pixels(phone.screenshot())
+        before = scene(phone)
         for kind, x in (("touchStart", 150), ("touchMove", 190), ("touchMove", 240), ("touchEnd", None)):
             points = [] if x is None else [{"x": x, "y": 250}]
             phone.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
-        self.assertGreater(numpy.abs(pixels(phone.screenshot()) - before).mean(), 0.005)
+        self.assertGreater(numpy.abs(scene(phone) - before).mean(), 0.005)
 
     def test_switches_hide_layers(self):
         page = self.open("query.html")
         page.evaluate("vpm.setView('side')")
-        self.assertGreater(share(pixels(page.screenshot()), inside), 0.002)
+        self.assertGreater(share(scene(page), inside), 0.002)
         page.evaluate("vpm.setLayer('spheres by state', false)")
-        self.assertLess(share(pixels(page.screenshot()), inside), 0.0005)
-        without = pixels(page.screenshot())
+        self.assertLess(share(scene(page), inside), 0.0005)
+        without = scene(page)
         page.evaluate("vpm.setLayer('not seen by the camera', true)")
-        self.assertGreater(numpy.mean(without - pixels(page.screenshot()) > 0.05), 0.01)  # it is darker
+        self.assertGreater(numpy.mean(without - scene(page) > 0.05), 0.01)  # it is darker
 
     def test_names_are_text(self):
         (FOLDER / "scripts").mkdir(exist_ok=True)
@@ -204,6 +223,19 @@ class Query(PageTest):
         self.assertEqual(len({line["frame"] for line in lines}), 3)
         self.assertGreater(lines[0]["volume"], lines[-1]["volume"])
 
+    def test_a_million_points_without_a_camera(self):
+        write_points("million.ply", 1_000_000)
+        run("vpm-normals", "million.ply", "-o", "floor.vpmc", "--quiet")
+        run("vpm-query", "--tool", "tool.vpmg", "--cloud", "floor.vpmc", "--poses", "poses.jsonl", "-o", "floor.jsonl",
+            "--view", "floor.html", "--quiet")
+        self.assertLess((FOLDER / "floor.html").stat().st_size, 6_000_000)
+        page = self.open("floor.html")
+        shown = self.layer(page, "measured points")["count"]
+        self.assertTrue(200_000 <= shown <= 300_000, shown)
+        self.assertIn("one point in 4", page.evaluate("document.getElementById('facts').textContent"))
+        page.evaluate("vpm.setView('all')")
+        self.assertGreater(share(scene(page), surface), 0.02)
+
     def test_a_tool_that_no_camera_sees_is_said(self):
         run("vpm-query", "--tool", "tool.vpmg", "--cloud", "scene.vpmc", "--pose", "0,0,-3,0,0,0,1", "-o",
             "behind.jsonl", "--view", "behind.html")
@@ -222,12 +254,12 @@ class OtherTools(PageTest):
         page, report = self.open("pack.html"), json.loads((FOLDER / "pack.json").read_text())
         self.assert_fits(page)
         self.assertAlmostEqual(self.numbers(page, -1)["covered"][0], 100 * report["coverage"], places=3)
-        full = page.screenshot()
+        full = scene(page)
         left = self.layer(page, "not covered")["count"]
         page.evaluate("vpm.setStep(0)")
         self.assertEqual(page.report()["where"], "1 of 300 spheres")
         self.assertGreater(self.layer(page, "not covered")["count"], 2 * left)
-        self.assertGreater(numpy.abs(pixels(page.screenshot()) - pixels(full)).mean(), 0.01)
+        self.assertGreater(numpy.abs(scene(page) - full).mean(), 0.01)
 
     def test_a_refused_mesh_shows_its_defects(self):
         (FOLDER / "open.off").write_text("OFF\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n"
@@ -238,7 +270,7 @@ class OtherTools(PageTest):
         self.assertEqual(self.layer(page, "holes")["count"], 1)
         self.assertIn("the mesh is open", page.evaluate("document.getElementById('notes').textContent"))
         orange = lambda r, g, b: (r > 0.7) & (g > 0.2) & (g < 0.55) & (b < 0.25)
-        self.assertGreater(share(pixels(page.screenshot()), orange), 0.0003)
+        self.assertGreater(share(scene(page), orange), 0.0003)
 
     def test_a_scan_tells_which_pixels_have_no_normal(self):
         page, report = self.open("normals.html"), json.loads((FOLDER / "normals.json").read_text())
@@ -247,7 +279,7 @@ class OtherTools(PageTest):
                           ("measured, no normal", "without_normal")):
             self.assertIn(f"{name}{report[key]}", facts)
         self.assertEqual(page.evaluate("document.querySelectorAll('.picture, .chart').length"), 2)
-        image = pixels(page.screenshot())[:, 340:]
+        image = scene(page)
         self.assertGreater(numpy.std(image), 0.05)
 
     def test_a_graph_has_its_edges_bridges_and_cells(self):
@@ -258,9 +290,9 @@ class OtherTools(PageTest):
             self.assertEqual(shown["edges"] + shown.get("bridges", 0), facts["edges"])
             self.assertEqual(shown.get("bridges", 0), facts["bridges"])
             self.assertEqual(shown["spheres by radius"], facts["spheres"])
-        page.evaluate("vpm.showSphereCell(0)")
+        page.evaluate("vpm.showCell(0)")
         self.assertGreater(page.report()["cell"]["samples"], 0)
-        page.evaluate("vpm.showSphereCell(-1)")
+        page.evaluate("vpm.showCell(-1)")
         page.evaluate("vpm.setLayer('solid', false)")
         for x in range(500, 1200, 20):  # somewhere on the ring
             page.mouse("mousePressed", x, 330)

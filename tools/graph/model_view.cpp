@@ -1,7 +1,5 @@
 #include "tools/graph/model_view.h"
 
-#include <filesystem>
-
 #include "libvpm/view/page.h"
 
 namespace vpm::tools {
@@ -9,10 +7,6 @@ namespace {
 
 constexpr const char *kSolidColor = "#b08d57", *kEdgeColor = "#33445c", *kBridgeColor = "#d55e00";
 constexpr std::size_t kMostSamples = 300'000;  // of all levels
-
-std::string base_name(const std::string& path) {
-  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
-}
 
 void add_graph(view::Page& page, const ToolModel& model, std::size_t k) {
   const Level& level = model.levels[k];
@@ -44,7 +38,7 @@ void add_graph(view::Page& page, const ToolModel& model, std::size_t k) {
                     .step = k});
 }
 
-// Every n-th sample of each cell, so that a page stays small.
+// Adds every n-th sample of each cell, so that a page stays small. Returns the number of the cells.
 std::size_t add_cells(view::Page& page, const ToolModel& model, const Level& level,
                       std::size_t every) {
   std::vector<std::uint32_t> begin{0};
@@ -83,7 +77,7 @@ void add_numbers(view::Page& page, const ToolModel& model) {
 
 void write_model_view(const std::string& path, const std::string& packing, const ToolModel& model,
                       const Solid& mesh) {
-  view::Page page("vpm-graph", "tool model of " + base_name(packing));
+  view::Page page("vpm-graph", "tool model of " + view::shown_name(packing));
   page.set_origin(model.center_of_mass);
   std::size_t samples = 0;
   for (const Level& level : model.levels) samples += level.samples.size();
@@ -97,13 +91,13 @@ void write_model_view(const std::string& path, const std::string& packing, const
                       .step = k,
                       .cells = cells});
     add_graph(page, model, k);
-    names.push_back("level of " + std::to_string(level.sphere_count));
+    names.push_back("level of " + std::to_string(level.sphere_count) + " spheres");
   }
   if (!mesh.triangles.empty())
     page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &mesh, .opacity = 0.15});
   add_numbers(page, model);
-  page.add_fact("packing", base_name(packing));
-  page.add_fact("volume", std::to_string(1e6 * model.volume) + " cm³");
+  page.add_fact("packing", view::shown_name(packing));
+  page.add_fact("volume", view::with_unit(1e6 * model.volume, "cm³"));
   page.add_fact("cells", "click a sphere: the samples of its Voronoi cell");
   if (every > 1) page.add_fact("samples shown", "one in " + std::to_string(every));
   page.steps() = {{"name", "level"},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
 
 #include "libvpm/view/page.h"
 
@@ -18,16 +17,6 @@ constexpr const char* kNoNormalColor = "#d55e00";
 constexpr std::size_t kBins = 64, kMostMarks = 30'000;
 // The share of depths, at either end, that the histogram leaves out.
 constexpr double kTail = 0.002;
-
-std::string base_name(const std::string& path) {
-  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
-}
-
-std::string text_of(double value, const char* unit) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4g %s", value, unit);
-  return text;
-}
 
 struct Pixels {
   std::vector<Vec3f> normals;  // camera axes
@@ -69,7 +58,7 @@ void add_depths(view::Page& page, const DepthImage& image) {
     const auto bin = static_cast<std::size_t>((d - low) / (high - low) * kBins);
     ++counts[std::min(bin, kBins - 1)];
   }
-  page.add_fact("median depth", text_of(depths[depths.size() / 2], "m"));
+  page.add_fact("median depth", view::with_unit(depths[depths.size() / 2], "m"));
   page.add_chart({{"type", "histogram"},
                   {"title", "Depths"},
                   {"x", "depth"},
@@ -123,7 +112,7 @@ void add_image(view::Page& page, const Cloud& cloud) {
 void write_scan_view(const std::string& path, const std::string& input,
                      const ImportedCloud& imported, const NormalOptions& options) {
   const Cloud& cloud = imported.cloud;
-  view::Page page("vpm-normals", base_name(input));
+  view::Page page("vpm-normals", view::shown_name(input));
   page.set_origin(cloud.origin);
   page.add_fact("points with normals", std::to_string(cloud.size()));
   page.add_fact("not measured", std::to_string(imported.invalid));

@@ -1,8 +1,6 @@
 #include "tools/pack/pack_view.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
 
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/mesh_defects.h"
@@ -21,10 +19,6 @@ constexpr std::size_t kMostCrossing = 20'000;
 // Places that are asked whether a sphere covers them, and the distances that this may take.
 constexpr std::size_t kMostPlaces = 40'000, kFewestPlaces = 4'000, kMostDistances = 200'000'000;
 
-std::string base_name(const std::string& path) {
-  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
-}
-
 std::vector<Vec3> ends_of(const std::vector<Segment>& segments) {
   std::vector<Vec3> ends;
   for (const Segment& s : segments) ends.insert(ends.end(), s.begin(), s.end());
@@ -42,6 +36,13 @@ void add_defects(view::Page& page, const MeshDefects& defects) {
                       .marks = true,
                       .above = true});
   };
+  // Adds these first: edges of the other defects may lie on them, and are drawn over them.
+  std::vector<Vec3> crossing;
+  for (std::size_t k = 0; k < std::min(defects.crossing.size(), kMostCrossing); ++k) {
+    const auto& [a, b, c] = defects.crossing[k];
+    crossing.insert(crossing.end(), {a, b, b, c, c, a});
+  }
+  add("triangles that cut others", kCrossingColor, std::move(crossing), defects.crossing.size());
   std::vector<Vec3> rims;
   for (const std::vector<Segment>& rim : defects.holes) {
     const std::vector<Vec3> ends = ends_of(rim);
@@ -56,15 +57,9 @@ void add_defects(view::Page& page, const MeshDefects& defects) {
   for (const Vec3& p : defects.pinched) touching.insert(touching.end(), {p, p});
   add("vertices where the surface touches itself", kNonManifoldColor, std::move(touching),
       defects.pinched.size());
-  std::vector<Vec3> crossing;
-  for (std::size_t k = 0; k < std::min(defects.crossing.size(), kMostCrossing); ++k) {
-    const auto& [a, b, c] = defects.crossing[k];
-    crossing.insert(crossing.end(), {a, b, b, c, c, a});
-  }
-  add("triangles that cut others", kCrossingColor, std::move(crossing), defects.crossing.size());
 }
 
-// The k-th number of the van der Corput sequence: evenly spread over 0 .. 1.
+// Returns the k-th number of the van der Corput sequence: evenly spread over 0 .. 1.
 double spread(std::size_t k, std::size_t base) {
   double value = 0, digit = 1;
   for (; k > 0; k /= base) {
@@ -128,19 +123,13 @@ void add_coverage(view::Page& page, const std::vector<Sphere>& spheres, double s
                     {"names", {"covered"}}});
 }
 
-std::string text_of(double value, const char* unit) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4g %s", value, unit);
-  return text;
-}
-
 }  // namespace
 
 void write_defects_view(const std::string& path, const RawMesh& mesh, const SolidOptions& options,
                         const std::string& why) {
   const Solid triangles = triangles_of(mesh, options);
   if (triangles.triangles.empty()) return;
-  view::Page page("vpm-pack", base_name(mesh.name) + ": refused");
+  view::Page page("vpm-pack", view::shown_name(mesh.name) + ": refused");
   page.set_origin(triangles.vertices.front());
   page.add_note(why);
   page.add_fact("vertices", std::to_string(triangles.vertices.size()));
@@ -154,15 +143,13 @@ void write_defects_view(const std::string& path, const RawMesh& mesh, const Soli
 void write_packing_view(const std::string& path, const std::string& mesh,
                         const CheckedSolid& checked, const PackResult& packed) {
   const std::vector<Sphere>& spheres = packed.spheres;
-  view::Page page("vpm-pack", std::to_string(spheres.size()) + " spheres in " + base_name(mesh));
+  view::Page page("vpm-pack",
+                  std::to_string(spheres.size()) + " spheres in " + view::shown_name(mesh));
   page.set_origin(0.5 * (checked.facts.low + checked.facts.high));
   for (const std::string& warning : checked.warnings) page.add_note(warning);
-  page.add_fact("mesh", base_name(mesh));
+  page.add_fact("mesh", view::shown_name(mesh));
   page.add_fact("triangles", std::to_string(checked.facts.triangles));
-  page.add_fact("volume", text_of(checked.facts.volume, "m³"));
-  page.add_fact("covered", text_of(100 * packed.coverage, "%"));
-  page.add_fact(
-      "radii", text_of(spheres.back().radius, "m") + " to " + text_of(spheres.front().radius, "m"));
+  page.add_fact("volume", view::with_unit(checked.facts.volume, "m³"));
   page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &checked.solid, .opacity = 0.25});
   page.add_spheres({.name = "spheres by radius", .spheres = spheres, .prefix = true});
   const Uncovered uncovered = find_uncovered(checked, spheres);

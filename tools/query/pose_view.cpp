@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <filesystem>
 #include <set>
 
 #include "libvpm/core/error.h"
@@ -22,10 +20,6 @@ constexpr std::uint8_t kUnused = 3;
 
 constexpr std::array<const char*, 4> kToolColors{"#b08d57", "#6b8e23", "#8968a8", "#4f8a8b"};
 constexpr const char *kForceColor = "#009e73", *kTorqueColor = "#aa4499", *kPathColor = "#0072b2";
-
-std::string base_name(const std::string& path) {
-  return path == "-" ? "standard input" : std::filesystem::path(path).filename().string();
-}
 
 std::string maker_of(const nlohmann::json& provenance) {
   if (!provenance.is_object()) return "";
@@ -62,7 +56,7 @@ PoseView::PoseView(std::string path, std::span<const ToolModel> models,
   view::check_available();
   for (std::string& name : names_) {
     meshes_.push_back(name == "-" ? Solid{} : read_display_mesh(name));
-    name = base_name(name);
+    name = view::shown_name(name);
   }
   std::size_t row = 0;
   for (const ToolModel& model : models_) row += model.spheres.size() / 4 + 1;
@@ -70,12 +64,12 @@ PoseView::PoseView(std::string path, std::span<const ToolModel> models,
 }
 
 void PoseView::add_cloud(const std::string& name, Cloud cloud) {
-  clouds_.emplace_back(base_name(name), std::move(cloud));
+  clouds_.emplace_back(view::shown_name(name), std::move(cloud));
 }
 
 void PoseView::set_frames(const std::string& name, const Recording& recording,
                           const ImportOptions& options) {
-  recording_name_ = base_name(name);
+  recording_name_ = view::shown_name(name);
   recording_ = &recording;
   import_ = options;
 }
@@ -146,16 +140,13 @@ void PoseView::add_facts(view::Page& page) const {
   if (recording_ != nullptr) page.add_fact("frames", recording_name_);
   page.add_fact("measure", options_.measure == Measure::paper ? "paper" : "refined");
   if (options_.occluded == OccludedSpace::solid) page.add_fact("shadows", "solid");
-  if (options_.stiffness != 1) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.6g N/m³", options_.stiffness);
-    page.add_fact("stiffness", text);
-  }
+  if (options_.stiffness != 1)
+    page.add_fact("stiffness", view::with_unit(options_.stiffness, "N/m³"));
   if (every_ > 1)
     page.add_fact("poses", "one in " + std::to_string(every_) + " of " + std::to_string(seen_));
 }
 
-void PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const {
+std::vector<Camera> PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const {
   for (const auto& [name, cloud] : clouds_) {
     const std::string of = clouds_.size() > 1 ? " of " + name : "";
     if (cloud.sensor) {
@@ -165,11 +156,11 @@ void PoseView::add_scene(view::Page& page, const std::vector<Step>& steps) const
       page.add_points("measured points" + of, cloud);
     }
   }
-  if (recording_ != nullptr) add_frames(page, steps);
+  return recording_ != nullptr ? add_frames(page, steps) : std::vector<Camera>();
 }
 
 // Reads the frames that the steps saw again, as many as a page holds, and adds them.
-void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) const {
+std::vector<Camera> PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) const {
   std::set<std::size_t> seen;
   for (const Step& step : steps)
     if (step.frame) seen.insert(*step.frame);
@@ -183,21 +174,23 @@ void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) cons
     if (frame.camera) options.to_world = frame.camera;
     ImportedScan scan = import_scan(file::read_all(frame.path), frame.path, options);
     if (!scan.image) {
-      page.add_points("measured points of " + base_name(frame.path), scan.points);
+      page.add_points("measured points of " + view::shown_name(frame.path), scan.points);
       page.add_note("The frames are clouds without a camera: the first one is shown.");
-      return;
+      return {};
     }
     shown.push_back(frames[k]);
     scans.push_back(std::move(scan));
   }
-  if (scans.empty()) return;
+  if (scans.empty()) return {};
   std::vector<view::ImageView> images;
   for (const ImportedScan& scan : scans) images.push_back({&scan.image->depth, scan.image->camera});
   std::vector<std::uint32_t> of_step;
+  std::vector<Camera> cameras;
   for (const Step& step : steps) {
     const auto after = std::ranges::upper_bound(shown, step.frame.value_or(0));
     of_step.push_back(
         static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(after - shown.begin() - 1, 0)));
+    cameras.push_back(images[of_step.back()].camera);
   }
   std::uint32_t stride = 1;
   const std::size_t pixels = scans.size() * scans[0].image->depth.depth.size();
@@ -206,12 +199,13 @@ void PoseView::add_frames(view::Page& page, const std::vector<Step>& steps) cons
   if (every > 1)
     page.add_fact("frames shown",
                   std::to_string(shown.size()) + " of " + std::to_string(frames.size()));
+  return cameras;
 }
 
 std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& steps,
                                   std::size_t tool, std::size_t body) const {
   const bool has_stiffness = options_.stiffness != 1;
-  view::Column volume{"volume", "m3", 1, {}, body}, cell{"of the tool", "%", 1, {}, body},
+  view::Column volume{"volume", "m3", 1, {}, body}, fraction{"of the tool", "%", 1, {}, body},
       force{has_stiffness ? "force" : "force / stiffness", has_stiffness ? "N" : "m3", 3, {}, body},
       torque{has_stiffness ? "torque" : "torque / stiffness",
              has_stiffness ? "Nm" : "m4",
@@ -226,7 +220,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   for (const Step& step : steps) {
     const Result& r = step.answers[tool].result;
     add(volume, {r.volume});
-    add(cell, {100 * r.volume_fraction});
+    add(fraction, {100 * r.volume_fraction});
     add(force, {r.wrench.force.x, r.wrench.force.y, r.wrench.force.z});
     add(torque, {r.wrench.torque.x, r.wrench.torque.y, r.wrench.torque.z});
     add(boundary, {1.0 * r.boundary});
@@ -234,7 +228,7 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
     if (r.points) add(points, {1.0 * *r.points});
   }
   const std::size_t volume_column = page.add_column(volume);
-  page.add_column(cell);
+  page.add_column(fraction);
   const std::size_t force_column = page.add_column(force);
   const std::size_t torque_column = page.add_column(torque);
   page.add_column(boundary);
@@ -275,20 +269,21 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
 }
 
 // Adds notes on a tool that no camera sees, and on poses at which nothing is touched.
-void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps) const {
-  const bool has_camera =
-      std::ranges::any_of(clouds_, [](const auto& c) { return c.second.sensor.has_value(); });
-  bool is_seen = !has_camera, touches = false;
-  for (const Step& step : steps) {
+void PoseView::say_what_is_odd(view::Page& page, const std::vector<Step>& steps,
+                               const std::vector<Camera>& frame_cameras) const {
+  bool has_camera = !frame_cameras.empty(), is_seen = false, touches = false;
+  for (const auto& [name, cloud] : clouds_) has_camera = has_camera || cloud.sensor;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
     for (std::size_t t = 0; t < models_.size(); ++t) {
-      const Answer& answer = step.answers[t];
+      const Answer& answer = steps[k].answers[t];
+      const Vec3 center = answer.pose * models_[t].center_of_mass;
       touches = touches || answer.result.volume > 0;
+      is_seen = is_seen || (!frame_cameras.empty() && sees(frame_cameras[k], center));
       for (const auto& [name, cloud] : clouds_)
-        is_seen = is_seen || (cloud.sensor &&
-                              sees(cloud.sensor->camera, answer.pose * models_[t].center_of_mass));
+        is_seen = is_seen || (cloud.sensor && sees(cloud.sensor->camera, center));
     }
   }
-  if (!is_seen)
+  if (has_camera && !is_seen)
     page.add_note(
         "No camera sees the tool's centre at any pose. Poses map the tool to the world (x right, "
         "y down, z forward from a camera without --camera-pose): is one of them inverted, or in "
@@ -315,8 +310,7 @@ void PoseView::write() const {
   add_facts(page);
   view::Json volumes = view::Json::array();
   for (std::size_t t = 0; t < models_.size(); ++t) volumes.push_back(add_tool(page, steps, t));
-  add_scene(page, steps);
-  say_what_is_odd(page, steps);
+  say_what_is_odd(page, steps, add_scene(page, steps));
 
   std::vector<std::uint32_t> numbers;
   std::size_t deepest = 0;
