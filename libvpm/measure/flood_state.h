@@ -40,7 +40,7 @@ inline constexpr std::uint32_t whole = 4;    // behind the surface
 inline constexpr std::uint32_t hidden = 8;
 inline constexpr std::uint32_t summed = 16;         // the sum of a cut cell is noted
 inline constexpr std::uint32_t counts_points = 32;  // the surface may pass the sphere
-inline constexpr std::uint32_t reached = 64;        // by the flood of a block alone
+inline constexpr std::uint32_t reached = 64;        // the flood of a block alone has come
 inline constexpr std::uint32_t counted = 128;       // in the result: cut as boundary, else inside
 }  // namespace cell_bit
 

@@ -63,13 +63,13 @@ struct SpheresView {
   std::span<const std::uint8_t> states{};
   bool prefix = false;                 // step k shows the first k + 1
   std::optional<std::size_t> step{};   // shown at this step only
-  std::optional<std::size_t> cells{};  // of add_cells: a click shows the cell
+  std::optional<std::size_t> cells{};  // index from add_cells: a click shows the cell
 };
 
 struct LinesView {
   std::string name, color;
   std::vector<Vec3> ends;  // two per line
-  std::size_t count = 0;   // what the panel says: lines, holes, pairs
+  std::size_t count = 0;   // number that the panel says: lines, holes, pairs
   bool marks = false;      // ends are shown as points too
   bool above = false;      // nothing hides them
   bool on = true;
@@ -102,8 +102,8 @@ class Page {
                        std::span<const Pose> poses);
   std::size_t add_column(const Column& column);
 
-  // `of_step` says which image each step shows; empty: the first. Pixels of the images, all of
-  // equal size, are taken one in `stride` each way, 0: as many as kMostPixels allows.
+  // Adds images. `of_step` says which one each step shows; empty: the first. Pixels of the images,
+  // all of equal size, are taken one in `stride` each way, 0: as many as kMostPixels allows.
   void add_image(const std::string& name, std::span<const ImageView> images,
                  std::span<const std::uint32_t> of_step, bool by_normal = false,
                  std::uint32_t stride = 0);
@@ -136,7 +136,7 @@ class Page {
 
   std::string program_, title_, summary_;
   Vec3 origin_, up_{0, 0, 1};
-  Box box_;  // of what is shown, about the origin
+  Box box_;  // bounds what is shown, about the origin
   Json facts_ = Json::array(), notes_ = Json::array(), bodies_ = Json::array(),
        columns_ = Json::array(), layers_ = Json::array(), charts_ = Json::array(),
        cells_ = Json::array();

@@ -188,9 +188,10 @@ nlohmann::json Tool::parameters() const {
   for (const CLI::Option* option : app_.get_options()) {
     if (option->get_positional()) all.erase(config_key(*option));
   }
-  for (const char* name : {"device", "threads", "quiet", "verbose", "force",  // change no result
-                           "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
-                           "mesh", "for-scene", "tool", "cloud", "poses"}) {             // inputs
+  for (const char* name :
+       {"device", "threads", "quiet", "verbose", "force",                     // change no result
+        "output", "report", "export", "stats", "spheres-out", "out", "view",  // outputs
+        "mesh", "for-scene", "tool", "cloud", "poses"}) {                     // inputs
     all.erase(name);
   }
   return all;

@@ -6,7 +6,7 @@ namespace vpm::tools {
 namespace {
 
 constexpr const char *kSolidColor = "#b08d57", *kEdgeColor = "#33445c", *kBridgeColor = "#d55e00";
-constexpr std::size_t kMostSamples = 300'000;  // of all levels
+constexpr std::size_t kMostSamples = 300'000;  // for all levels together
 
 void add_graph(view::Page& page, const ToolModel& model, std::size_t k) {
   const Level& level = model.levels[k];

@@ -13,7 +13,7 @@ struct CoupledStep {
   std::size_t step = 0;
   double time = 0;    // s since the first step
   Pose device, tool;  // in the world
-  Result contact;     // of the tool at its pose
+  Result contact;     // answer for the tool at its pose
   Wrench rendered;    // on the user, in N and N m
   CouplingEnergy energy;
 };

@@ -16,7 +16,7 @@ struct CellNotes {
   std::uint32_t* words = nullptr;
   std::uint32_t* points = nullptr;  // number of the cloud's points in the sphere
   ToolSum* sums = nullptr;
-  ContactPlane* planes = nullptr;  // of cut cells
+  ContactPlane* planes = nullptr;  // mean planes in cut cells
 
   // Clears the part of the entries that a block range owns. Call from all its threads.
   __device__ void clear(const LevelView& level, BlockRange part) const {
@@ -74,7 +74,7 @@ struct TeamRoom {
 // Holds a planar cluster that the surface cuts.
 struct PlanarCluster {
   ClipPlane plane;
-  float least_inverse_depth;  // of the surface in the cluster, 1/m
+  float least_inverse_depth;  // least in the cluster, 1/m
 };
 
 // Points into the memory of one query.

@@ -24,7 +24,7 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
   // Names the poses of one tool among many: they follow those of the tool before.
   struct ToolPart {
-    MeasureOnDevice* measure = nullptr;  // of the same class as all others
+    MeasureOnDevice* measure = nullptr;  // all are of one class
     unsigned end = 0;
   };
   // Launches many queries, from poses and to results on the device, in this measure's stream and

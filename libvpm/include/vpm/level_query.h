@@ -24,7 +24,7 @@ struct LevelRequest {
 
 // How finely a scene's points tell its surface, m; medians over the surface.
 struct SceneScale {
-  double spacing = 0;    // of neighbouring points
+  double spacing = 0;    // between neighbouring points
   double noise = 0;      // standard deviation of the points about a smooth surface
   double curvature = 0;  // 1/m; larger principal curvature that nine tenths of the surface keep
 

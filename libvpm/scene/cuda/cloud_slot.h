@@ -53,7 +53,7 @@ class CloudSlot : public FrameSlot {
   CloudRecipe recipe_;  // for the camera of the image
   Preparation preparation_;
   bool is_plain_ = false;
-  Event end_{cudaEventDisableTiming};  // of the last preparation
+  Event end_{cudaEventDisableTiming};  // end of the last preparation
   unsigned sequence_ = 0;              // number of the last preparation
   mutable std::mutex mutex_;           // guards is_there_
   mutable bool is_there_ = true;       // the last preparation has ended
