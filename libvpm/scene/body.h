@@ -23,9 +23,9 @@ namespace vpm {
 //   bool may_be_flat(in_ball)
 //       false if the surface in the ball is surely not one plane
 //   bool mean_plane(in_ball, center, radius, tolerance, sample_all, plane)
-//       finds the mean plane of the surface across the ball
+//       finds the mean plane of the surface across a ball that may_be_flat()
 //   bool is_flat(in_ball, read, tolerance, plane)
-//       finds the plane at the ball's middle, which read() samples
+//       finds the plane at the middle of such a ball, which read() samples
 //   double fraction_inside(sample, x, radius)
 //       returns the part of a ball about x behind the sampled surface
 //   around_ball(center, radius, point)

@@ -37,22 +37,21 @@ std::optional<double> RayCaster::depth(double u, double v) {
   return std::nullopt;
 }
 
-DepthImage render(const Surface& surface, const Camera& camera) {
+namespace {
+
+// Makes an image of depth_of(rays, u, v), m; 0 is unset. Rows are made in parallel.
+template <class DepthOf>
+DepthImage render_pixels(const Surface& surface, const Camera& camera, const DepthOf& depth_of) {
   DepthImage image{camera.width, camera.height, {}};
   image.depth.resize(std::size_t{camera.width} * camera.height);
   parallel_for(camera.height, 8, [&](std::size_t begin, std::size_t end) {
     RayCaster rays(surface, camera);
-    for (std::size_t v = begin; v < end; ++v) {
-      for (std::size_t u = 0; u < camera.width; ++u) {
-        image.depth[v * camera.width + u] = static_cast<float>(
-            rays.depth(static_cast<double>(u), static_cast<double>(v)).value_or(0));
-      }
-    }
+    for (std::size_t v = begin; v < end; ++v)
+      for (std::size_t u = 0; u < camera.width; ++u)
+        image.depth[v * camera.width + u] = depth_of(rays, u, v);
   });
   return image;
 }
-
-namespace {
 
 // SplitMix64 (Steele, Lea, Flood 2014): a bijection with uniform outputs for consecutive inputs.
 std::uint64_t mix(std::uint64_t x) {
@@ -124,21 +123,19 @@ double NormalNumbers::next() {
   }
 }
 
+DepthImage render(const Surface& surface, const Camera& camera) {
+  return render_pixels(surface, camera, [](RayCaster& rays, std::size_t u, std::size_t v) {
+    return static_cast<float>(
+        rays.depth(static_cast<double>(u), static_cast<double>(v)).value_or(0));
+  });
+}
+
 DepthImage render_with_kinect_noise(const Surface& surface, const Camera& camera,
                                     std::uint64_t seed) {
-  DepthImage image{camera.width, camera.height, {}};
-  image.depth.resize(std::size_t{camera.width} * camera.height);
-  parallel_for(camera.height, 8, [&](std::size_t begin, std::size_t end) {
-    RayCaster rays(surface, camera);
-    for (std::size_t v = begin; v < end; ++v) {
-      for (std::size_t u = 0; u < camera.width; ++u) {
-        const std::size_t pixel = v * camera.width + u;
-        image.depth[pixel] = noisy_depth(rays, surface, camera, static_cast<double>(u),
-                                         static_cast<double>(v), NormalNumbers(seed, pixel));
-      }
-    }
+  return render_pixels(surface, camera, [&](RayCaster& rays, std::size_t u, std::size_t v) {
+    return noisy_depth(rays, surface, camera, static_cast<double>(u), static_cast<double>(v),
+                       NormalNumbers(seed, v * camera.width + u));
   });
-  return image;
 }
 
 }  // namespace vpm::synthetic

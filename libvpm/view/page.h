@@ -125,7 +125,6 @@ class Page {
   void add_chart(Json chart) { charts_.push_back(std::move(chart)); }
   void set_views(std::vector<std::string> names) { views_ = std::move(names); }
 
-  std::size_t layer_count() const { return layers_.size(); }
   std::string html() const;
   // Atomic; "-" is standard output. Throws Error(cannot_write), and what check_available() throws.
   void write(const std::string& path) const;

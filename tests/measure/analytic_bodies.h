@@ -87,12 +87,13 @@ struct Both {
   }
   // May be one plane only where the other body's surface does not pass.
   VPM_HD bool may_be_flat(const BallClass& in_ball) const {
-    return in_ball.one.side != Side::ambiguous || in_ball.other.side != Side::ambiguous;
+    if (in_ball.one.side == Side::ambiguous && in_ball.other.side == Side::ambiguous) return false;
+    return in_ball.one.side == Side::ambiguous ? one.may_be_flat(in_ball.one)
+                                               : other.may_be_flat(in_ball.other);
   }
   template <class ReadAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
                          const ReadAll& sample_all, TangentPlane& plane) const {
-    if (!may_be_flat(in_ball)) return false;
     return in_ball.one.side == Side::ambiguous
                ? one.mean_plane(in_ball.one, center, radius, tolerance, sample_all, plane)
                : other.mean_plane(in_ball.other, center, radius, tolerance, sample_all, plane);

@@ -16,18 +16,13 @@ inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
 inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
 inline constexpr unsigned kMostThreads = 256;
 
-// Acquire-release fence for all threads of a block, between two of its barriers.
-__device__ inline void fence() {
-  ::cuda::atomic_thread_fence(::cuda::memory_order_acq_rel, ::cuda::thread_scope_device);
-}
-
 // Counts a block, called by all its threads. True for the last of `all` blocks, which then sees all
 // writes that the others made before.
 __device__ inline bool is_last_of(unsigned& come, unsigned all) {
   using Count = ::cuda::atomic_ref<unsigned, ::cuda::thread_scope_device>;
   __shared__ bool is_last;
   __syncthreads();
-  // Uses no fence(), which costs as much as the addition and would be needed on both sides of it.
+  // Uses no fence, which costs as much as the addition and would be needed on both sides of it.
   if (threadIdx.x == 0) is_last = Count(come).fetch_add(1, ::cuda::memory_order_acq_rel) == all - 1;
   __syncthreads();
   return is_last;

@@ -1,5 +1,5 @@
 // Words that host and device leave for each other in the host's memory: each has the number of its
-// query, order or image above it, so none must wait for another on its way over the bus.
+// query or image above it, so none must wait for another on its way over the bus.
 #pragma once
 
 #include <cstdint>

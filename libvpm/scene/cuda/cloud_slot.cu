@@ -79,11 +79,10 @@ void CloudSlot::launch() {
   check(mark_end());
 }
 
-bool CloudSlot::require(cudaStream_t stream) const {
+void CloudSlot::require(cudaStream_t stream) const {
   const std::lock_guard lock(mutex_);
   is_there_ = is_there_ || has_happened(end_);
   if (!is_there_) check(cudaStreamWaitEvent(stream, end_.get()));
-  return is_there_;
 }
 
 void CloudSlot::take(cudaStream_t stream) {

@@ -19,9 +19,8 @@ class CloudSlot : public FrameSlot {
   void wait() const override;
   std::size_t points() const override;
 
-  // Makes work that is launched on the stream next wait for the frame. Returns true if it is
-  // complete already. Thread-safe.
-  bool require(cudaStream_t stream) const;
+  // Makes work that is launched on the stream next wait for the frame. Thread-safe.
+  void require(cudaStream_t stream) const;
 
   // True if the device makes the cloud. Otherwise the CPU does, since it might refuse something.
   bool is_on_device() const { return is_plain_; }

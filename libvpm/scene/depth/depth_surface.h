@@ -179,13 +179,12 @@ struct DepthSurface : DepthSampler {
            std::fabs(middle + spread - in_ball.range.high) <= allowed;
   }
 
-  // Finds the mean plane of the surface across a classified ball, from samples at its middle and at
-  // four places around it. Returns false if they do not belong to one smooth surface, or the plane
-  // does not predict the range of the ball's pixels.
+  // Finds the mean plane of the surface across a ball that may_be_flat(), from samples at its
+  // middle and at four places around it. Returns false if they do not belong to one smooth surface,
+  // or the plane does not predict the range of the ball's pixels.
   template <class ReadAll>
   VPM_HD bool mean_plane(const BallClass& in_ball, Vec3 center, double radius, double tolerance,
                          const ReadAll& sample_all, TangentPlane& plane) const {
-    if (!may_be_flat(in_ball)) return false;
     const SurfaceSample middle = sample_all.middle(*this, center);
     if (!middle.known) return false;
     const PlacesAround around(middle, center, radius);

@@ -133,11 +133,10 @@ struct DiskSurface {
                          TangentPlane& plane) const {
     return mean_plane(in_ball, tolerance, plane);
   }
-  // Finds the mean plane of the disks below a classified ball. Returns false where they do not show
-  // one smooth surface: one is of another wall or lies off the plane by more than kOffPlane of
-  // `tolerance`, or those on one side of the middle are too few or face elsewhere.
+  // Finds the mean plane of the disks below a ball that may_be_flat(). Returns false where they do
+  // not show one smooth surface: one is of another wall or lies off the plane by more than
+  // kOffPlane of `tolerance`, or those on one side of the middle are too few or face elsewhere.
   VPM_HD bool mean_plane(const BallClass& in_ball, double tolerance, TangentPlane& plane) const {
-    if (in_ball.point == kNoPoint) return false;
     const SurfaceSample nearest = read_point(in_ball.center, in_ball.point);
     const double height = nearest.distance, near = kMiddle * in_ball.radius;
     const Vec3 middle = in_ball.center - height * nearest.normal;
