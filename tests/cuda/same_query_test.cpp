@@ -222,6 +222,19 @@ TEST(SmallQueryOnDevice, GivesTheSameAtAHub) {
   expect_same_at_hub(5);
 }
 
+// Gives up a query, its cloud and its tool right after each answer, while the kernel that sent it
+// may still clear its memory.
+TEST(SmallQueryOnDevice, MayBeGivenUpAtOnce) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
+  const Cloud seen = testing::see(synthetic::make_scene("wall"));
+  for (int k = 0; k < 60; ++k) {
+    const ToolModel tool = testing::lattice_cube(0.05, 2, 1);
+    ToolQuery query(tool, {.device = {Device::Kind::cuda, 0}});
+    const PreparedCloud cloud(seen);
+    EXPECT_GE(query.run(cloud, pose_of(k)).volume, 0);
+  }
+}
+
 // Takes every path through the kernels, small enough for compute-sanitizer: contact, occluded
 // places, one pose and several.
 TEST(SmallQueryOnDevice, GivesTheSame) {

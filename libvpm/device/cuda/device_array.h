@@ -15,7 +15,9 @@ inline void finish_transfers() {
   check(cudaStreamSynchronize(cudaStreamLegacy));
 }
 
-// Values on the device, there when a constructor, fill() or clear() returns. Owns them.
+// Values on the device, there when a constructor, fill() or clear() returns. Owns them. The
+// destructor waits for the work that the device has in hand, as cudaFree() does: a kernel may still
+// clear its memory after it has sent its answer.
 template <class T>
 class DeviceArray {
  public:
@@ -57,7 +59,8 @@ class DeviceArray {
   std::size_t count_ = 0;
 };
 
-// Values in the host's memory that the device reads and writes over the bus. Owns them.
+// Values in the host's memory that the device reads and writes over the bus. Owns them. The
+// destructor waits for the device's work, as cudaFreeHost() does.
 template <class T>
 class MappedArray {
  public:

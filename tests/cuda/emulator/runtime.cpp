@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -65,7 +66,9 @@ Streams& streams() {
   return all;
 }
 
-struct Event {
+// What a handle of an event stands for. A stream that still has to wait for it shares it, so that
+// the handle may be destroyed first.
+struct EventState {
   std::mutex mutex;
   std::condition_variable changed;
   unsigned recorded = 0, happened = 0;
@@ -79,6 +82,14 @@ struct Event {
     std::unique_lock lock(mutex);
     changed.wait(lock, [&] { return happened >= record; });
   }
+  unsigned last_record() {
+    const std::lock_guard lock(mutex);
+    return recorded;
+  }
+};
+
+struct Event {
+  const std::shared_ptr<EventState> state = std::make_shared<EventState>();
 };
 
 void enqueue(Stream* stream, std::function<void()> work) {
@@ -98,7 +109,9 @@ cudaError_t allocate(void** place, std::size_t bytes) {
 
 }  // namespace emulator
 
+// Waits for all that the streams have been given, as a device does before it takes memory back.
 cudaError_t cudaFree(void* memory) {
+  cudaDeviceSynchronize();
   std::free(memory);
   return cudaSuccess;
 }
@@ -149,8 +162,9 @@ cudaError_t cudaStreamQuery(cudaStream_t stream) {
   return cudaErrorNotReady;
 }
 cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event) {
-  const unsigned record = event->recorded;
-  emulator::enqueue(stream, [=] { event->wait_for(record); });
+  emulator::enqueue(stream, [state = event->state, record = event->state->last_record()] {
+    state->wait_for(record);
+  });
   return cudaSuccess;
 }
 cudaError_t cudaDeviceSynchronize() {
@@ -164,33 +178,33 @@ cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned) {
   return cudaSuccess;
 }
 cudaError_t cudaEventDestroy(cudaEvent_t event) {
-  event->wait_for(event->recorded);
   delete event;
   return cudaSuccess;
 }
 cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
   unsigned record = 0;
   {
-    const std::lock_guard lock(event->mutex);
-    record = ++event->recorded;
+    const std::lock_guard lock(event->state->mutex);
+    record = ++event->state->recorded;
   }
-  emulator::enqueue(stream, [=] {
-    const std::lock_guard lock(event->mutex);
-    event->happened = record;
-    event->time = std::chrono::steady_clock::now();
-    event->changed.notify_all();
+  emulator::enqueue(stream, [state = event->state, record] {
+    const std::lock_guard lock(state->mutex);
+    state->happened = record;
+    state->time = std::chrono::steady_clock::now();
+    state->changed.notify_all();
   });
   return cudaSuccess;
 }
 cudaError_t cudaEventQuery(cudaEvent_t event) {
-  return event->has_happened() ? cudaSuccess : cudaErrorNotReady;
+  return event->state->has_happened() ? cudaSuccess : cudaErrorNotReady;
 }
 cudaError_t cudaEventSynchronize(cudaEvent_t event) {
-  event->wait_for(event->recorded);
+  event->state->wait_for(event->state->last_record());
   return cudaSuccess;
 }
 cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t begin, cudaEvent_t end) {
-  *milliseconds = std::chrono::duration<float, std::milli>(end->time - begin->time).count();
+  const auto time = end->state->time - begin->state->time;
+  *milliseconds = std::chrono::duration<float, std::milli>(time).count();
   return cudaSuccess;
 }
 
