@@ -1,0 +1,67 @@
+#include "libvpm/file/foreign_content.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "libvpm/file/container_layout.h"
+#include "libvpm/file/text.h"
+
+namespace vpm::file {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+struct Start {
+  std::string_view bytes;  // in lower case if they are letters
+  const char* what;
+  const char* next;
+};
+
+constexpr Start kStarts[] = {
+    {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
+     "fetch it with: git lfs pull"},
+    {"<!doctype html"sv, "a web page", "download the file itself"},
+    {"<html"sv, "a web page", "download the file itself"},
+    {"<robot"sv, "a robot description (URDF)", "give one of the files that it names"},
+    {"\x1f\x8b"sv, "compressed by gzip", "unpack it first: gunzip"},
+    {"pk\x03\x04"sv, "an archive (zip, npz)", "unpack it first, or save one array as .npy"},
+    {"bzh"sv, "compressed by bzip2", "unpack it first: bunzip2"},
+    {"\xfd\x37zxz"sv, "compressed by xz", "unpack it first: unxz"},
+    {"\xff\xd8\xff"sv, "a JPEG picture, which holds no exact values",
+     "give the 16-bit or float image"},
+    {"gif8"sv, "a GIF picture", "give the 16-bit or float image"},
+    {"%pdf"sv, "a PDF document", "give the file that was meant"},
+    {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG"},
+    {"matlab 5.0"sv, "a MATLAB file", "save one of its arrays as 16-bit PNG"},
+    {"#rosbag"sv, "a ROS bag", "extract its images or clouds first"},
+    {"\x89mcap"sv, "an MCAP recording", "extract its images or clouds first"},
+    {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL"},
+    {"astm-e57"sv, "an E57 cloud", "convert it to PLY with normals, for example by PDAL"},
+    {"iso-10303-21"sv, "a STEP file of CAD", "export a mesh from it"},
+};
+
+std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
+  Preamble preamble;
+  if (bytes.size() < sizeof preamble) return std::nullopt;
+  std::memcpy(&preamble, bytes.data(), sizeof preamble);
+  if (std::memcmp(preamble.magic, kMagic, sizeof kMagic) != 0) return std::nullopt;
+  const bool is_cloud = preamble.kind == static_cast<std::uint32_t>(Kind::cloud);
+  return ForeignContent{names_of(static_cast<Kind>(preamble.kind)).what,
+                        is_cloud ? "it is ready for vpm-query" : "give the file that was meant"};
+}
+
+}  // namespace
+
+std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) {
+  constexpr std::size_t kMostBlanks = 64, kLongestStart = 32;
+  const std::string_view text =
+      as_text(bytes.first(std::min(bytes.size(), kMostBlanks + kLongestStart)));
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const std::string start = in_lower_case(text.substr(begin));
+  for (const Start& known : kStarts)
+    if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next};
+  return own_kind(bytes);
+}
+
+}  // namespace vpm::file

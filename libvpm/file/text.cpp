@@ -1,0 +1,96 @@
+#include "libvpm/file/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace vpm::file {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\n\v\f";
+
+template <class Number>
+std::optional<Number> parse(std::string_view word) {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  Number value{};
+  const auto [stop, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (fault != std::errc() || stop != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+bool ends_first_line_in_cr(std::string_view text) {
+  const std::size_t end = text.find_first_of("\r\n");
+  return end != text.npos && text[end] == '\r' && text.substr(end + 1, 1) != "\n";
+}
+
+}  // namespace
+
+std::vector<std::string_view> split_words(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(kBlank); at != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kBlank, end);
+  }
+  return words;
+}
+
+std::optional<double> to_number(std::string_view word) {
+  return parse<double>(word);
+}
+
+std::optional<std::uint64_t> to_count(std::string_view word) {
+  return parse<std::uint64_t>(word);
+}
+
+std::string in_lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+std::string shown(std::string_view text, std::size_t most) {
+  std::string said;
+  for (const char c : text.substr(0, most)) {
+    const bool is_printable = c >= ' ' && c <= '~';
+    char code[5] = {c, 0};
+    if (!is_printable) std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(c));
+    said += code;
+  }
+  return said + (text.size() > most ? "…" : "");
+}
+
+TextCursor::TextCursor(std::string_view text)
+    : text_(text), ends_in_cr_(ends_first_line_in_cr(text)) {}
+
+std::optional<std::string_view> TextCursor::line() {
+  if (at_ == text_.size()) return std::nullopt;
+  const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+  const std::string_view line = text_.substr(at_, end - at_);
+  const bool is_pair = !ends_in_cr_ && text_.substr(end, 2) == "\r\n";
+  at_ = std::min(end + (is_pair ? 2 : 1), text_.size());
+  return line;
+}
+
+std::vector<std::string_view> TextCursor::row() {
+  std::vector<std::string_view> words;
+  while (words.empty()) {
+    const std::optional<std::string_view> next = line();
+    if (!next) break;
+    words = split_words(*next);
+  }
+  return words;
+}
+
+std::string_view TextCursor::word() {
+  const std::size_t begin = std::min(text_.find_first_not_of(kBlank, at_), text_.size());
+  at_ = std::min(text_.find_first_of(kBlank, begin), text_.size());
+  return text_.substr(begin, at_ - begin);
+}
+
+void TextCursor::skip() {
+  at_ = std::min(at_ + 1, text_.size());
+}
+
+}  // namespace vpm::file

@@ -1,0 +1,58 @@
+// Reads lines, words and numbers of text, and of text headers before binary data, from a file in
+// memory.
+//
+// Lines end in LF, CRLF or CR, also mixed. In a file whose first line ends in CR alone, an LF after
+// a CR is not part of the line's end: it may be the first byte of binary data.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vpm::file {
+
+inline std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::vector<std::string_view> split_words(std::string_view line);
+
+// Returns the whole word as a number, also "+1", "nan" and "inf"; empty if it is none.
+std::optional<double> to_number(std::string_view word);
+std::optional<std::uint64_t> to_count(std::string_view word);
+
+// Returns the text in lower case, of ASCII letters only.
+std::string in_lower_case(std::string_view text);
+
+// Returns the text as a message may show it: bytes that are no printable ASCII become \xNN, and
+// what is beyond `most` characters is replaced by "…".
+std::string shown(std::string_view text, std::size_t most = 60);
+
+// Reads a file line by line or word by word.
+class TextCursor {
+ public:
+  explicit TextCursor(std::string_view text);
+
+  // Returns the next line without its end; empty at the end of the file.
+  std::optional<std::string_view> line();
+  // Returns the words of the next line that has any; none at the end of the file.
+  std::vector<std::string_view> row();
+  // Returns the next word across line ends; empty at the end of the file.
+  std::string_view word();
+  // Passes over one character, such as the blank between a header and binary data.
+  void skip();
+
+  std::size_t offset() const { return at_; }
+  std::size_t remaining() const { return text_.size() - at_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool ends_in_cr_ = false;  // the first line ends in CR alone
+};
+
+}  // namespace vpm::file
