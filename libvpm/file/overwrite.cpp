@@ -1,11 +1,15 @@
 #include "libvpm/file/overwrite.h"
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/container_layout.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
 
 namespace vpm::file {
 namespace {
@@ -30,9 +34,48 @@ Existing content_of(const std::string& path) {
   return {Content::container, preamble.kind};
 }
 
-[[noreturn]] void refuse_to_overwrite(const std::string& path, const std::string& what) {
-  throw Error(ErrorKind::invalid_argument, path + " exists and is " + what, {},
+// Returns the ending of the path's name in lower case, such as ".vpmp".
+std::string ending_of(const std::string& path) {
+  return in_lower_case(fs::path(path).extension().string());
+}
+
+bool is_one_of(const std::string& ending, std::initializer_list<const char*> endings) {
+  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+const char* ending_of(Kind kind) {
+  return kind == Kind::packing ? ".vpmp" : kind == Kind::tool_model ? ".vpmg" : ".vpmc";
+}
+
+void refuse_existing(const std::string& path) {
+  const Existing existing = content_of(path);
+  if (existing.content == Content::nothing) return;
+  const std::string what =
+      existing.content == Content::container
+          ? std::string(" and is ") + names_of(static_cast<Kind>(existing.kind)).what
+          : "";
+  throw Error(ErrorKind::invalid_argument, path + " exists" + what, {},
               "name another output, or give `force` to overwrite it");
+}
+
+// Throws if the name ends like that of another kind of file. Unknown endings, and none, pass.
+void refuse_other_ending(const std::string& path, std::optional<Kind> kind) {
+  const std::string ending = ending_of(path);
+  const bool is_container = is_one_of(ending, {".vpmp", ".vpmg", ".vpmc"});
+  if (!kind && is_container)
+    throw Error(
+        ErrorKind::invalid_argument,
+        path + ": this output is a text, and " + ending + " is the ending of another kind of file",
+        {}, "name it .json, .jsonl or .txt, or give `force`");
+  const bool is_other =
+      is_container ||
+      is_one_of(ending, {".stl", ".obj", ".off", ".ply", ".om", ".pcd", ".png", ".exr", ".tif",
+                         ".npy", ".json", ".jsonl", ".csv", ".html", ".urdf", ".yml", ".glb"});
+  if (kind && is_other && ending != ending_of(*kind))
+    throw Error(ErrorKind::invalid_argument,
+                path + ": this output is " + names_of(*kind).what + ", and " + ending +
+                    " is the ending of another kind of file",
+                {}, std::string("let its name end in ") + ending_of(*kind) + ", or give `force`");
 }
 
 }  // namespace
@@ -59,21 +102,13 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return !fault && first == fs::weakly_canonical(fs::absolute(b, fault), fault);
 }
 
-void check_container_output(const std::string& path, Kind kind) {
+void check_output(const std::string& path, std::optional<Kind> kind) {
   check_folder_of(path);
-  if (path.empty() || path == "-") return;
-  const Existing existing = content_of(path);
-  if (existing.content == Content::other) refuse_to_overwrite(path, "not a vpm file");
-  if (existing.content == Content::container && existing.kind != static_cast<std::uint32_t>(kind))
-    refuse_to_overwrite(path, names_of(static_cast<Kind>(existing.kind)).what);
-}
-
-void check_text_output(const std::string& path) {
-  check_folder_of(path);
-  if (path.empty() || path == "-") return;
-  const Existing existing = content_of(path);
-  if (existing.content == Content::container)
-    refuse_to_overwrite(path, names_of(static_cast<Kind>(existing.kind)).what);
+  if (path.empty() || descriptor_of(path)) return;
+  std::error_code fault;
+  if (fs::exists(path, fault) && !fs::is_regular_file(path, fault)) return;
+  refuse_existing(path);
+  refuse_other_ending(path, kind);
 }
 
 }  // namespace vpm::file

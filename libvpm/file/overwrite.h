@@ -1,18 +1,18 @@
 // Checks that an output may be written, before the work begins, so that nobody waits for a refusal.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "libvpm/file/container.h"
 
 namespace vpm::file {
 
-// Throws Error(invalid_argument) if writing to `path` would destroy something else. A container may
-// replace an empty file or a container of its own kind; text outputs (reports, tables, meshes) may
-// replace anything but a vpm container. "-", an empty path, pipes and devices always pass. Throws
-// Error(cannot_write) if the folder does not exist.
-void check_container_output(const std::string& path, Kind kind);
-void check_text_output(const std::string& path);
+// Throws Error(invalid_argument) if writing to `path` would destroy a file that is not empty, or if
+// its name ends like that of another kind of file: a container's name may not end like a mesh's,
+// nor a text's (no `kind`) like a container's. "-", an empty path, pipes and devices always pass.
+// Throws Error(cannot_write) if the folder does not exist.
+void check_output(const std::string& path, std::optional<Kind> kind);
 
 // Checks only that the folder exists (--force). Throws Error(cannot_write).
 void check_folder_of(const std::string& path);

@@ -1,6 +1,7 @@
 #include "libvpm/file/stream.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,6 +15,8 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/closed_pipe.h"
+#include "libvpm/file/temporary_name.h"
 
 namespace vpm::file {
 namespace {
@@ -34,13 +37,16 @@ class Descriptor {
   int number_;
 };
 
+std::string cannot_write_text(const std::string& path, const std::string& why) {
+  return "cannot write " + (path == "-" ? std::string("to standard output") : path) + ": " + why;
+}
 [[noreturn]] void cannot_write(const std::string& path, const std::string& why) {
-  throw Error(
-      ErrorKind::cannot_write,
-      "cannot write " + (path == "-" ? std::string("to standard output") : path) + ": " + why);
+  throw Error(ErrorKind::cannot_write, cannot_write_text(path, why));
 }
 [[noreturn]] void cannot_write(const std::string& path, int fault) {
-  cannot_write(path, std::string(std::strerror(fault)));
+  const std::string why = std::strerror(fault);
+  if (fault == EPIPE) throw ClosedPipe(cannot_write_text(path, why));
+  cannot_write(path, why);
 }
 
 void write_to(int descriptor, std::span<const std::byte> bytes, const std::string& path) {
@@ -107,10 +113,11 @@ class TemporaryFile {
   };
 
   void open(const fs::path& target) {
-    const std::string stem =
-        (target.parent_path() / (".vpm-" + std::to_string(::getpid()) + "-")).string();
+    const fs::path folder = target.parent_path();
+    remove_leftovers(folder.empty() ? "." : folder.string());
     for (int attempt = 0; descriptor_ < 0; ++attempt) {
-      const std::string path = stem + std::to_string(attempt) + ".tmp";
+      const std::string path =
+          (folder / temporary_name(target.filename().string(), attempt)).string();
       if (path.size() >= sizeof(place_.file.path)) cannot_write(target.string(), ENAMETOOLONG);
       std::memcpy(place_.file.path, path.c_str(), path.size() + 1);
       // Mode 0666 leaves the permissions to the umask.
@@ -118,6 +125,7 @@ class TemporaryFile {
       if (descriptor_ < 0 && errno != EEXIST) cannot_write(target.string(), errno);
     }
     place_.file.is_there = true;
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // tells others that this process lives
   }
 
   Place place_;

@@ -22,27 +22,32 @@ class Overwrite : public test::InTemporaryFolder {
     return test::kind_of_fault(check);
   }
   Outcome container(const std::string& name) const {
-    return outcome([&] { check_container_output(path(name), Kind::cloud); });
+    return outcome([&] { check_output(path(name), Kind::cloud); });
   }
   Outcome text(const std::string& name) const {
-    return outcome([&] { check_text_output(path(name)); });
+    return outcome([&] { check_output(path(name), std::nullopt); });
   }
 };
 
-TEST_F(Overwrite, AContainerReplacesOnlyItsOwnKind) {
-  EXPECT_EQ(container("cloud"), std::nullopt);
-  EXPECT_EQ(container("empty"), std::nullopt);
-  EXPECT_EQ(container("new"), std::nullopt);
-  EXPECT_EQ(container("text"), ErrorKind::invalid_argument);
-  EXPECT_EQ(outcome([&] { check_container_output(path("cloud"), Kind::packing); }),
-            ErrorKind::invalid_argument);
+TEST_F(Overwrite, NothingIsReplacedButEmptyFiles) {
+  for (const char* name : {"cloud", "text"}) {
+    EXPECT_EQ(container(name), ErrorKind::invalid_argument) << name;
+    EXPECT_EQ(text(name), ErrorKind::invalid_argument) << name;
+  }
+  for (const char* name : {"empty", "new"}) {
+    EXPECT_EQ(container(name), std::nullopt) << name;
+    EXPECT_EQ(text(name), std::nullopt) << name;
+  }
 }
 
-TEST_F(Overwrite, TextReplacesAnythingButAContainer) {
-  EXPECT_EQ(text("text"), std::nullopt);
-  EXPECT_EQ(text("empty"), std::nullopt);
-  EXPECT_EQ(text("new"), std::nullopt);
-  EXPECT_EQ(text("cloud"), ErrorKind::invalid_argument);
+TEST_F(Overwrite, NamesMustNotEndLikeOtherKinds) {
+  EXPECT_EQ(container("new.vpmc"), std::nullopt);
+  EXPECT_EQ(container("new.v2"), std::nullopt);
+  EXPECT_EQ(container("new.STL"), ErrorKind::invalid_argument);
+  EXPECT_EQ(container("new.vpmp"), ErrorKind::invalid_argument);
+  EXPECT_EQ(text("new.json"), std::nullopt);
+  EXPECT_EQ(text("new.ply"), std::nullopt);
+  EXPECT_EQ(text("new.vpmp"), ErrorKind::invalid_argument);
 }
 
 TEST_F(Overwrite, KnowsOneFileByManyNames) {
@@ -67,8 +72,8 @@ TEST_F(Overwrite, FoldersMustBeThere) {
 
 TEST_F(Overwrite, StreamsAndDevicesPass) {
   for (const char* name : {"-", "", "/dev/null", "/dev/stdout"}) {
-    EXPECT_EQ(outcome([&] { check_container_output(name, Kind::cloud); }), std::nullopt) << name;
-    EXPECT_EQ(outcome([&] { check_text_output(name); }), std::nullopt) << name;
+    EXPECT_EQ(outcome([&] { check_output(name, Kind::cloud); }), std::nullopt) << name;
+    EXPECT_EQ(outcome([&] { check_output(name, std::nullopt); }), std::nullopt) << name;
   }
 }
 

@@ -14,11 +14,13 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/file/closed_pipe.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "tools/common/error_text.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
+#include "tools/common/terminal_text.h"
 
 namespace vpm::tools {
 namespace {
@@ -30,9 +32,13 @@ extern "C" void clean_up_and_die(int signal) {
   std::raise(signal);
 }
 
+// True if the parent lets processes die of a closed pipe, as shells do.
+bool dies_of_closed_pipes = true;
+
 void set_signals() {
-  // Makes a closed pipe and a file beyond its size limit failed writes, which are reported.
-  std::signal(SIGPIPE, SIG_IGN);
+  // Makes a closed pipe and a file beyond its size limit failed writes, so that outputs are cleaned
+  // up.
+  dies_of_closed_pipes = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     // Keeps signals ignored that nohup or the shell of a background job has set so.
@@ -70,7 +76,16 @@ void refuse_cut_options(int argc, char** argv) {
 }
 
 void flush_output() {
-  if (!std::cout.flush()) throw Error(ErrorKind::cannot_write, "cannot write to standard output");
+  errno = 0;
+  if (std::cout.flush()) return;
+  if (errno == EPIPE) throw file::ClosedPipe("cannot write to standard output: Broken pipe");
+  throw Error(ErrorKind::cannot_write, "cannot write to standard output");
+}
+
+// Ends the process as a closed pipe ends others: without a message, by the signal.
+void die_of_closed_pipe() {
+  std::signal(SIGPIPE, SIG_DFL);
+  std::raise(SIGPIPE);
 }
 
 std::string message_of(const CLI::ParseError& fault) {
@@ -117,11 +132,8 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
-    std::cerr << name_ << ": error: " << message << '\n';
+    std::cerr << name_ << ": error: " << on_one_line(message) << '\n';
     return exit_code(kind);
-  };
-  const auto has_option = [&](const std::string& option) {
-    return app_.get_option_no_throw(option) != nullptr;
   };
   try {
     // Lets --dump-config pass without required options: inputs may not be known yet.
@@ -147,12 +159,17 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return 0;
   } catch (const CLI::Success& asked) {  // --help, --version
     const int code = app_.exit(asked);
-    return std::cout.flush() ? code
-                             : fail(ErrorKind::cannot_write, "cannot write to standard output");
+    errno = 0;
+    if (std::cout.flush()) return code;
+    if (errno == EPIPE && dies_of_closed_pipes) die_of_closed_pipe();
+    return fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
     return fail(ErrorKind::invalid_argument, message_of(fault) + " (see " + name_ + " --help)");
+  } catch (const file::ClosedPipe& fault) {
+    if (dies_of_closed_pipes) die_of_closed_pipe();
+    return fail(fault.kind(), fault.what());
   } catch (const Error& fault) {
-    return fail(fault.kind(), in_words_of_tools(fault.what(), has_option));
+    return fail(fault.kind(), in_words_of_options(fault.what()));
   } catch (const std::bad_alloc&) {
     return fail(ErrorKind::refused, "not enough memory for this input");
   } catch (const std::exception& fault) {
@@ -171,16 +188,25 @@ void Tool::refuse_empty_values() const {
   }
 }
 
+std::string Tool::in_words_of_options(const std::string& text) const {
+  return in_words_of_tools(
+      text, [&](const std::string& option) { return app_.get_option_no_throw(option) != nullptr; });
+}
+
+void Tool::print(const char* kind, const std::string& text) const {
+  std::cerr << name_ << ": " << kind << on_one_line(in_words_of_options(text)) << '\n';
+}
+
 void Tool::note(const std::string& text) const {
-  if (!common_.quiet) std::cerr << name_ << ": note: " << text << '\n';
+  if (!common_.quiet) print("note: ", text);
 }
 
 void Tool::warn(const std::string& text) const {
-  std::cerr << name_ << ": warning: " << text << '\n';
+  print("warning: ", text);
 }
 
 void Tool::detail(const std::string& text) const {
-  if (common_.verbose && !common_.quiet) std::cerr << name_ << ": " << text << '\n';
+  if (common_.verbose && !common_.quiet) print("", text);
 }
 
 nlohmann::json Tool::parameters() const {
@@ -197,32 +223,40 @@ nlohmann::json Tool::parameters() const {
   return all;
 }
 
+namespace {
+
+[[noreturn]] void wrong(const std::string& message) {
+  throw Error(ErrorKind::invalid_argument, message);
+}
+
+// Throws if both outputs would be one file or stream.
+void check_apart(const OutputFile& a, const OutputFile& b) {
+  const std::optional<int> descriptor = file::descriptor_of(a.path);
+  const bool share_descriptor = descriptor && descriptor == file::descriptor_of(b.path);
+  if (share_descriptor && descriptor == STDOUT_FILENO)
+    wrong(std::string("only one output can be standard output: ") + b.option + " or " + a.option);
+  if (share_descriptor || file::is_same_file(a.path, b.path))
+    wrong(std::string(b.option) + " and " + a.option + " would both be written to " + a.path +
+          "; name two files");
+}
+
+}  // namespace
+
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) {
-    throw Error(ErrorKind::invalid_argument, message);
-  };
-  for (auto a = outputs.begin(); a < outputs.end(); ++a) {
-    for (auto b = outputs.begin(); b < a; ++b) {
-      const std::optional<int> descriptor = file::descriptor_of(a->path);
-      if (descriptor == STDOUT_FILENO && descriptor == file::descriptor_of(b->path))
-        wrong(std::string("only one output can be standard output: ") + b->option + " or " +
-              a->option);
-      if (file::is_same_file(a->path, b->path) ||
-          (descriptor && descriptor == file::descriptor_of(b->path)))
-        wrong(std::string(b->option) + " and " + a->option + " would both be written to " +
-              a->path + "; name two files");
-    }
+  for (auto a = outputs.begin(); a < outputs.end(); ++a)
+    for (auto b = outputs.begin(); b < a; ++b) check_apart(*a, *b);
+  for (const OutputFile& output : outputs) {
     if (common.force) {
-      file::check_folder_of(a->path);
+      file::check_folder_of(output.path);
       continue;
     }
-    a->kind ? file::check_container_output(a->path, *a->kind) : file::check_text_output(a->path);
     for (const std::string& input : inputs) {
-      if (file::is_same_file(a->path, input))
-        wrong(std::string(a->option) + " would overwrite the input " + input +
+      if (file::is_same_file(output.path, input))
+        wrong(std::string(output.option) + " would overwrite the input " + input +
               "; name another output, or give --force");
     }
+    file::check_output(output.path, output.kind);
   }
 }
 

@@ -54,6 +54,9 @@ class Tool {
 
  private:
   void refuse_empty_values() const;
+  // Returns the text with options for the names in backquotes.
+  std::string in_words_of_options(const std::string& text) const;
+  void print(const char* kind, const std::string& text) const;
 
   std::string name_;
   CLI::App app_;
@@ -69,9 +72,9 @@ struct OutputFile {
   std::optional<file::Kind> kind;
 };
 
-// Throws Error(invalid_argument) if two outputs would be one file, or an output an input. Without
-// --force a container replaces only a container of its kind, and a text output (report, table,
-// mesh) anything but a container (libvpm/file/overwrite.h). Tools call it before the work begins.
+// Throws Error(invalid_argument) if two outputs would be one file, or an output an input, and
+// without --force if an output is there already or its name ends like that of another kind
+// (libvpm/file/overwrite.h). Tools call it before the work begins.
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common);
 

@@ -135,11 +135,14 @@ $ vpm-probe in.off -o /dev/null --act say --verbose
 2> vpm-probe: a detail
 
 # Provenance names no files and no option that changes no result.
-$ vpm-probe in.off -o out.txt --act parameters --threads 2 --levels 4 --flag
+$ vpm-probe in.off -o out.txt --force --act parameters --threads 2 --levels 4 --flag
 {"act":"parameters","count":3,"factor":0.1,"flag":true,"levels":4,"text":"none"}
 
-# A report may be renewed, but does not replace a vpm file.
+# Nothing is replaced without --force.
 $ vpm-probe in.off -o out.txt
+2> vpm-probe: error: out.txt exists; name another output, or give --force to overwrite it
+[2]
+$ vpm-probe in.off -o out.txt --force
 $ printf '\x89VPM\r\n\x1a\n\x01\0\0\0\x03\0\0\0' > frame.vpmc && vpm-probe in.off -o frame.vpmc
 2> vpm-probe: error: frame.vpmc exists and is a cloud (.vpmc); name another output, or give --force to overwrite it
 [2]
@@ -147,7 +150,7 @@ $ vpm-probe in.off -o frame.vpmc --force && cat frame.vpmc
 in.off none 3 0.100000 []
 
 # Outputs may be links, pipes and devices.
-$ ln -s out.txt link && vpm-probe in.off -o link --text through && readlink link && cat out.txt
+$ ln -s out.txt link && vpm-probe in.off -o link --force --text through && readlink link && cat out.txt
 out.txt
 in.off through 3 0.100000 []
 $ vpm-probe in.off -o /dev/stdout

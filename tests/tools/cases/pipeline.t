@@ -45,10 +45,10 @@ $ vpm-graph cube.vpmp -o wall.vpmc
 2> vpm-graph: error: wall.vpmc exists and is a cloud (.vpmc); name another output, or give --force to overwrite it
 [2]
 $ vpm-pack cube.off -o path.txt --spheres 5
-2> vpm-pack: error: path.txt exists and is not a vpm file; name another output, or give --force to overwrite it
+2> vpm-pack: error: path.txt exists; name another output, or give --force to overwrite it
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o cube.vpmg
-2> vpm-query: error: cube.vpmg exists and is a tool model (.vpmg); name another output, or give --force to overwrite it
+2> vpm-query: error: --output would overwrite the input cube.vpmg; name another output, or give --force
 [2]
 $ vpm-pack open.off -o new.vpmp
 2> vpm-pack: error: open.off: the mesh is open: 3 edges belong to one triangle only, around 1 hole: a loop of 3 edges through (0.1, 0.1, 0.1), (0.1, -0.1, 0.1), (0.1, -0.1, -0.1). * (glob)

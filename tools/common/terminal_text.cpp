@@ -1,0 +1,44 @@
+#include "tools/common/terminal_text.h"
+
+#include <cstdio>
+
+namespace vpm::tools {
+namespace {
+
+constexpr std::size_t kLongest = 2000;  // bytes
+
+// Returns the bytes of the character at `at` if it is UTF-8 of more than one byte; 0 otherwise.
+std::size_t multibyte_length(const std::string& text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
+                             : first >= 0xE0 && first < 0xF0 ? 3
+                             : first >= 0xF0 && first < 0xF5 ? 4
+                                                             : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((static_cast<unsigned char>(text[at + k]) & 0xC0) != 0x80) return 0;
+  // The control characters U+0080 to U+009F steer terminals too.
+  return first == 0xC2 && static_cast<unsigned char>(text[at + 1]) < 0xA0 ? 0 : length;
+}
+
+}  // namespace
+
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    if (line.size() > kLongest) return line + "…";
+    const std::size_t length = multibyte_length(text, at);
+    const bool is_printable = text[at] >= ' ' && text[at] <= '~';
+    if (length > 0 || is_printable) {
+      line.append(text, at, length > 0 ? length : 1);
+    } else {
+      char code[5];
+      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(text[at]));
+      line += code;
+    }
+    at += length > 0 ? length : 1;
+  }
+  return line;
+}
+
+}  // namespace vpm::tools
