@@ -1,6 +1,7 @@
 #include "libvpm/graph/build_tool_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -56,9 +57,37 @@ Normalized normalize(const Packing& packing, const MassProperties& mass) {
   return n;
 }
 
-void check(const Packing& packing, const MassProperties& mass, const GraphOptions& options) {
+// Returns the number of edges that a triangle has in one direction and none in the other.
+std::size_t count_open_edges(const Solid& solid) {
+  std::vector<std::array<std::uint32_t, 3>>
+      edges;  // ends in ascending order, and 1 if they were not
+  for (const Triangle& t : solid.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b), a > b ? 1U : 0U});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::size_t open = 0;
+  for (std::size_t begin = 0; begin < edges.size();) {
+    std::size_t end = begin;
+    std::int64_t balance = 0;
+    for (;
+         end < edges.size() && edges[end][0] == edges[begin][0] && edges[end][1] == edges[begin][1];
+         ++end)
+      balance += edges[end][2] == 1 ? 1 : -1;
+    open += static_cast<std::size_t>(std::abs(balance));
+    begin = end;
+  }
+  return open;
+}
+
+void check(const Packing& packing, const GraphOptions& options) {
   if (packing.spheres.empty()) refuse("the packing has no spheres", {}, "pack the mesh again");
-  if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
+  if (const std::size_t open = count_open_edges(packing.solid))
+    refuse("the packing's solid is open: " + std::to_string(open) +
+               " edges belong to triangles on one side only",
+           {}, "pack the mesh again");
   double before = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < packing.spheres.size(); ++i) {
     const Sphere& s = packing.spheres[i];
@@ -126,8 +155,9 @@ double samples_per_length(std::uint32_t spheres) {
 
 ToolModel build_tool_model(const Packing& packing, const GraphOptions& options,
                            std::vector<VoronoiQuality>* quality) {
+  check(packing, options);
   const MassProperties mass = enclosed_mass(packing.solid);
-  check(packing, mass, options);
+  if (!(mass.volume > 0)) refuse("the packing's solid has no volume", {}, "pack the mesh again");
   const Normalized n = normalize(packing, mass);
 
   ToolModel model;

@@ -112,6 +112,13 @@ TEST(BuildToolModel, FillsSoundLevelsOfPrefixes) {
   }
 }
 
+TEST(BuildToolModel, RefusesASolidThatIsOpen) {
+  Packing packing = test::greedy_packing(test::cube(), 1, 8000);
+  packing.solid.triangles.pop_back();
+  EXPECT_NE(test::refusal([&] { build_tool_model(packing, {}); }).find("3 edges"),
+            std::string::npos);
+}
+
 TEST(BuildToolModel, OneSphereIsATool) {
   const Packing packing = test::greedy_packing(test::cube(), 1, 8000);
   const ToolModel model = build_tool_model(packing, {});
