@@ -11,6 +11,7 @@ python=/usr/bin/python3
 packages=(
   g++ cmake ninja-build
   libcli11-dev nlohmann-json3-dev libxxhash-dev libtbb-dev libpng-dev libopenexr-dev
+  libtiff-dev libyaml-cpp-dev
   libopenmesh-dev libopenvdb-dev libblosc-dev libboost-iostreams-dev zlib1g-dev
   libjs-three python3 python3-numpy python3-matplotlib
 )

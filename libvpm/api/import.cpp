@@ -8,7 +8,7 @@ namespace vpm {
 PointCloud import_cloud(const std::string& path, const ImportParameters& parameters) {
   ImportOptions options;
   options.intrinsics = parameters.intrinsics;
-  options.units_per_metre = parameters.units_per_metre;
+  options.depth.units_per_metre = parameters.units_per_metre;
   options.to_world = parameters.to_world;
   options.normals = parameters.normals;
   check_normal_options(options.normals);

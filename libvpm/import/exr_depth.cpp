@@ -2,7 +2,9 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 
 #include <cmath>
 #include <cstring>
@@ -10,10 +12,14 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
+#include "libvpm/import/exr_channels.h"
 
 namespace vpm {
 namespace {
+
+using Imath::Box2i;
 
 class MemoryStream : public Imf::IStream {
  public:
@@ -36,84 +42,154 @@ class MemoryStream : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
-// Returns the channels that hold depth, all equal: Z, Y, or R G B. Empty if there are none.
-std::vector<std::string> depth_channels(const Imf::ChannelList& channels) {
-  for (const char* single : {"Z", "Y"}) {
-    if (channels.findChannel(single) != nullptr) return {single};
+struct Channel {
+  int part = 0;
+  ExrChannelName name;
+};
+
+// Returns the channels of all parts but those of deep images, which hold many values for a pixel.
+std::vector<Channel> channels_of(const Imf::MultiPartInputFile& file) {
+  std::vector<Channel> channels;
+  bool has_deep_part = false;
+  for (int part = 0; part < file.parts(); ++part) {
+    const Imf::Header& header = file.header(part);
+    const bool is_deep = header.hasType() && Imf::isDeepData(header.type());
+    has_deep_part = has_deep_part || is_deep;
+    if (is_deep) continue;
+    const std::string name = header.hasName() ? header.name() : std::to_string(part);
+    const Imf::ChannelList& list = header.channels();
+    for (auto it = list.begin(); it != list.end(); ++it)
+      channels.push_back({part, {file.parts() > 1 ? name : "", it.name()}});
   }
-  std::vector<std::string> rgb{"R", "G", "B"};
-  for (const std::string& name : rgb) {
-    if (channels.findChannel(name) == nullptr) return {};
-  }
-  return rgb;
+  if (channels.empty() && has_deep_part)
+    throw std::runtime_error("its pixels are deep, with many values each; flatten it first");
+  return channels;
 }
 
-std::string names_of(const Imf::ChannelList& channels) {
-  std::string names;
-  for (auto it = channels.begin(); it != channels.end(); ++it)
-    names += (names.empty() ? "" : ", ") + std::string(it.name());
-  return names.substr(0, 200);
+std::uint64_t extent(int low, int high) {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{high} - low + 1, 0));
 }
+
+// Reads the pixels of a channel that are in the part's data window.
+class PartReader {
+ public:
+  PartReader(Imf::MultiPartInputFile& file, int part, const std::string& name)
+      : file_(file, part), stored_(file_.header().dataWindow()), name_(name) {
+    check_image_size(width(), extent(stored_.min.y, stored_.max.y), name);
+  }
+
+  std::vector<float> read(const std::string& channel) {
+    const Imf::Channel* found = file_.header().channels().findChannel(channel);
+    if (found->xSampling != 1 || found->ySampling != 1)
+      throw std::runtime_error("channel " + file::shown(channel) +
+                               " has not a value at every pixel");
+    std::vector<float> values(width() * extent(stored_.min.y, stored_.max.y));
+    Imf::FrameBuffer buffer;
+    buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data(), stored_, sizeof(float),
+                                            sizeof(float) * width()));
+    file_.setFrameBuffer(buffer);
+    file_.readPixels(stored_.min.y, stored_.max.y);
+    return values;
+  }
+
+  // Returns the values in the display window, to which intrinsics refer; 0 where nothing is stored.
+  RawDepth in_display_window(std::vector<float> values) const {
+    const Box2i& display = file_.header().displayWindow();
+    RawDepth image;
+    const std::uint64_t columns = extent(display.min.x, display.max.x),
+                        rows = extent(display.min.y, display.max.y);
+    check_image_size(columns, rows, name_);
+    image.width = static_cast<std::uint32_t>(columns);
+    image.height = static_cast<std::uint32_t>(rows);
+    if (display == stored_) {
+      image.values = std::move(values);
+      return image;
+    }
+    image.values.resize(columns * rows);
+    for (int y = std::max(display.min.y, stored_.min.y);
+         y <= std::min(display.max.y, stored_.max.y); ++y) {
+      for (int x = std::max(display.min.x, stored_.min.x);
+           x <= std::min(display.max.x, stored_.max.x); ++x) {
+        image.values[extent(display.min.y, y - 1) * columns + extent(display.min.x, x - 1)] =
+            values[extent(stored_.min.y, y - 1) * width() + extent(stored_.min.x, x - 1)];
+      }
+    }
+    image.remarks.push_back({false, words_of_windows(display)});
+    return image;
+  }
+
+  bool has_integers(const std::string& channel) const {
+    return file_.header().channels().findChannel(channel)->type == Imf::UINT;
+  }
+
+ private:
+  std::uint64_t width() const { return extent(stored_.min.x, stored_.max.x); }
+
+  std::string words_of_windows(const Box2i& display) const {
+    const auto size = [](const Box2i& box) {
+      return std::to_string(extent(box.min.x, box.max.x)) + " x " +
+             std::to_string(extent(box.min.y, box.max.y));
+    };
+    return "its display window of " + size(display) +
+           " pixels is read, to which intrinsics refer; of it, the " + size(stored_) +
+           " pixels from (" + std::to_string(std::int64_t{stored_.min.x} - display.min.x) + ", " +
+           std::to_string(std::int64_t{stored_.min.y} - display.min.y) + ") on are stored";
+  }
+
+  Imf::InputPart file_;
+  Box2i stored_;
+  const std::string& name_;
+};
 
 bool same_measurement(float a, float b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-std::vector<float> read_channel(Imf::InputFile& file, const std::string& channel,
-                                const DepthImage& image) {
-  const auto& window = file.header().dataWindow();
-  const Imf::Channel* found = file.header().channels().findChannel(channel);
-  if (found->type == Imf::UINT || found->xSampling != 1 || found->ySampling != 1)
-    throw std::runtime_error("channel " + channel + " must be HALF or FLOAT at every pixel");
-  std::vector<float> values(std::size_t{image.width} * image.height);
-  Imf::FrameBuffer buffer;
-  buffer.insert(channel, Imf::Slice::Make(Imf::FLOAT, values.data(), window, sizeof(float),
-                                          sizeof(float) * image.width));
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
-  return values;
+void expect_equal(const std::vector<float>& a, const std::vector<float>& b, const RawDepth& image,
+                  const std::string& name) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (same_measurement(a[i], b[i])) continue;
+    refuse("R, G and B differ at pixel (" + std::to_string(i % image.width) + ", " +
+               std::to_string(i / image.width) + "): a colour image, no depth",
+           name);
+  }
 }
 
-DepthImage read_exr(std::span<const std::byte> bytes, const std::string& name,
-                    double units_per_metre) {
+RawDepth read_exr(std::span<const std::byte> bytes, const std::string& name,
+                  const std::string& asked) {
   MemoryStream stream(bytes, name);
-  Imf::InputFile file(stream, 0);
-  const auto& window = file.header().dataWindow();
-  if (window != file.header().displayWindow())
-    throw std::runtime_error("only part of the image is stored; write whole frames");
-  const auto width = static_cast<std::uint64_t>(std::int64_t{window.max.x} - window.min.x + 1);
-  const auto height = static_cast<std::uint64_t>(std::int64_t{window.max.y} - window.min.y + 1);
-  check_image_size(width, height, name);
-  DepthImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-  const std::vector<std::string> channels = depth_channels(file.header().channels());
-  if (channels.empty()) {
-    throw std::runtime_error("no channel Z or Y, nor R, G and B; it has " +
-                             names_of(file.header().channels()));
+  Imf::MultiPartInputFile file(stream, 0);
+  const std::vector<Channel> channels = channels_of(file);
+  std::vector<ExrChannelName> names;
+  for (const Channel& channel : channels) names.push_back(channel.name);
+  const std::vector<std::size_t> chosen = depth_channels(names, asked, name);
+  const Channel& first = channels[chosen.front()];
+  PartReader part(file, first.part, name);
+  RawDepth image = part.in_display_window(part.read(first.name.name));
+  image.are_integers = part.has_integers(first.name.name);
+  for (std::size_t k = 1; k < chosen.size(); ++k) {
+    expect_equal(part.in_display_window(part.read(channels[chosen[k]].name.name)).values,
+                 image.values, image, name);
   }
-  image.depth = read_channel(file, channels[0], image);
-  for (std::size_t c = 1; c < channels.size(); ++c) {
-    const std::vector<float> other = read_channel(file, channels[c], image);
-    for (std::size_t i = 0; i < other.size(); ++i) {
-      if (!same_measurement(other[i], image.depth[i])) {
-        throw std::runtime_error("R, G and B differ at pixel (" + std::to_string(i % width) + ", " +
-                                 std::to_string(i / width) + "): a colour image, no depth");
-      }
-    }
+  if (chosen.size() > 1) {
+    image.remarks.push_back(
+        {false, "no channel's name says depth: R, G and B, which are equal, are taken for it"});
+  } else if (channels.size() > 1) {
+    image.remarks.push_back({false, "depth is its channel " + file::shown(full_name(first.name))});
   }
-  for (float& depth : image.depth) depth = depth_in_metres(depth, units_per_metre);
   return image;
 }
 
 }  // namespace
 
-DepthImage parse_exr_depth(std::span<const std::byte> bytes, const std::string& name,
-                           double units_per_metre) {
+RawDepth parse_exr_depth(std::span<const std::byte> bytes, const std::string& name,
+                         const std::string& channel) {
   try {
-    return read_exr(bytes, name, units_per_metre);
+    return read_exr(bytes, name, channel);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& fault) {
-    refuse(std::string("not a depth image in OpenEXR: ") + fault.what(), name);
+    refuse(std::string("not a depth image in OpenEXR: ") + file::shown(fault.what(), 200), name);
   }
 }
 

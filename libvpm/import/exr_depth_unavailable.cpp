@@ -3,7 +3,7 @@
 
 namespace vpm {
 
-DepthImage parse_exr_depth(std::span<const std::byte>, const std::string& name, double) {
+RawDepth parse_exr_depth(std::span<const std::byte>, const std::string& name, const std::string&) {
   throw Error(ErrorKind::unavailable, "this build reads no OpenEXR", name,
               "build with VPM_EXR=ON, or convert the image to a 16-bit PNG");
 }

@@ -1,41 +1,84 @@
 #include "libvpm/import/import_cloud.h"
 
 #include <algorithm>
-#include <string_view>
+#include <cstdio>
+#include <utility>
 
-#include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/file_text.h"
+#include "libvpm/import/file_format.h"
 #include "libvpm/import/pcd.h"
-#include "libvpm/import/pinhole_fit.h"
 #include "libvpm/import/ply_points.h"
+#include "libvpm/import/point_scan.h"
 
 namespace vpm {
 namespace {
-
-using std::string_view_literals::operator""sv;
-
-enum class Format { png, exr, pcd, ply, unknown };
-
-Format format_of(std::string_view text) {
-  if (text.starts_with("\x89PNG\r\n\x1a\n"sv)) return Format::png;
-  if (text.starts_with("\x76\x2f\x31\x01"sv)) return Format::exr;
-  if (text.starts_with("ply\n"sv) || text.starts_with("ply\r"sv)) return Format::ply;
-  for (const std::string_view start : {"# .PCD"sv, "VERSION"sv, "FIELDS"sv, "#"sv}) {
-    if (text.starts_with(start)) return Format::pcd;
-  }
-  return Format::unknown;
-}
 
 std::size_t count_invalid(const DepthImage& depth) {
   return static_cast<std::size_t>(std::count_if(depth.depth.begin(), depth.depth.end(),
                                                 [](float d) { return !is_measured(d); }));
 }
 
-ImportedScan scan_of_depth(DepthImage depth, const Intrinsics& k, const Pose& to_world,
+RawDepth parse_depth(FileFormat format, std::span<const std::byte> bytes, const std::string& name,
+                     const ImportOptions& options) {
+  switch (format) {
+    case FileFormat::exr:
+      return parse_exr_depth(bytes, name, options.channel);
+    case FileFormat::tiff:
+      return parse_tiff_depth(bytes, name);
+    case FileFormat::netpbm:
+      return parse_netpbm_depth(bytes, name);
+    case FileFormat::npy:
+      return parse_npy_depth(bytes, name);
+    default:
+      return parse_png_depth(bytes, name);
+  }
+}
+
+// Throws Error(refused), with the intrinsics of the image's size, if the calibration is of another
+// one.
+void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
                            const std::string& name) {
+  const double width = options.calibrated_width, height = options.calibrated_height;
+  if (width == 0 || height == 0 || (width == image.width && height == image.height)) return;
+  const Intrinsics& k = *options.intrinsics;
+  const double across = image.width / width, down = image.height / height;
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "if it was scaled to that, give `intrinsics` %.9g,%.9g,%.9g,%.9g", across * k.fx,
+                down * k.fy, across * (k.cx + 0.5) - 0.5, down * (k.cy + 0.5) - 0.5);
+  refuse("the intrinsics are of an image of " + std::to_string(options.calibrated_width) + " x " +
+             std::to_string(options.calibrated_height) + " pixels; this one has " +
+             std::to_string(image.width) + " x " + std::to_string(image.height),
+         name, text);
+}
+
+ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,
+                           const std::string& name, const ImportOptions& options) {
+  if (!options.intrinsics) {
+    throw Error(ErrorKind::invalid_argument,
+                "a depth image needs `intrinsics`: fx,fy,cx,cy in pixels, or a file with them",
+                name);
+  }
+  const RawDepth raw = parse_depth(format, bytes, name, options);
+  check_calibrated_size(raw, options, name);
+  const Pose to_world = options.to_world ? with_own_axes(*options.to_world, options.axes) : Pose{};
+  ImportedScan scan = scan_of_depth(raw, *options.intrinsics, to_world, name, options.depth);
+  if (!options.channel.empty() && format != FileFormat::exr)
+    scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
+  return scan;
+}
+
+void append(Remarks& remarks, const Remarks& more) {
+  remarks.insert(remarks.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose& to_world,
+                           const std::string& name, const DepthReading& reading) {
   ImportedScan scan;
+  DepthImage depth = depth_in_metres_of(raw, k, reading, name, scan.remarks);
   scan.width = depth.width;
   scan.height = depth.height;
   scan.invalid = count_invalid(depth);
@@ -46,55 +89,14 @@ ImportedScan scan_of_depth(DepthImage depth, const Intrinsics& k, const Pose& to
   return scan;
 }
 
-ImportedScan scan_of_points(PointSet points, const std::string& name,
-                            const ImportOptions& options) {
-  const double scale = options.units_per_metre.value_or(1);
-  Pose to_world = options.to_world.value_or(points.viewpoint);
-  if (!options.to_world) to_world.translation = to_world.translation / scale;
-  if (points.organised()) {
-    if (options.intrinsics) check_pinhole(points, *options.intrinsics, name);
-    const Intrinsics k = options.intrinsics ? *options.intrinsics : fit_pinhole(points, name);
-    ImportedScan scan = scan_of_depth(depth_of(points, scale), k, to_world, name);
-    scan.intrinsics_recovered = !options.intrinsics;
-    return scan;
-  }
-  if (points.normals.empty()) {
-    refuse("points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz)",
-           name, "estimate them first, or give the depth image");
-  }
-  for (Vec3& p : points.positions) p = p / scale;
-  ImportedScan scan;
-  scan.width = points.width;
-  scan.height = points.height;
-  scan.points = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
-  scan.invalid =
-      static_cast<std::size_t>(std::count_if(points.positions.begin(), points.positions.end(),
-                                             [](const Vec3& p) { return !is_finite(p); }));
-  scan.without_normal = points.positions.size() - scan.invalid - scan.points.size();
-  return scan;
-}
-
-}  // namespace
-
 ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& name,
                          const ImportOptions& options) {
-  const Format format = format_of(as_text(bytes));
-  if (format == Format::pcd) return scan_of_points(parse_pcd(bytes, name), name, options);
-  if (format == Format::ply) return scan_of_points(parse_ply_points(bytes, name), name, options);
-  if (format == Format::unknown) {
-    refuse(bytes.empty() ? "the file is empty" : "neither PNG, OpenEXR, PCD nor PLY by its content",
-           name, "give a depth image or a cloud");
-  }
-  if (!options.intrinsics) {
-    throw Error(ErrorKind::invalid_argument,
-                "a depth image needs `intrinsics` fx,fy,cx,cy (pixels)", name);
-  }
-  DepthImage depth =
-      format == Format::png
-          ? parse_png_depth(bytes, name, options.units_per_metre.value_or(kPngUnitsPerMetre))
-          : parse_exr_depth(bytes, name, options.units_per_metre.value_or(1));
-  return scan_of_depth(std::move(depth), *options.intrinsics, options.to_world.value_or(Pose{}),
-                       name);
+  const FileFormat format = format_of(bytes, name);
+  const bool holds_points = format == FileFormat::pcd || format == FileFormat::ply;
+  if (!holds_points) return scan_of_image(format, bytes, name, options);
+  return scan_of_points(
+      format == FileFormat::pcd ? parse_pcd(bytes, name) : parse_ply_points(bytes, name), name,
+      options);
 }
 
 NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name) {
@@ -113,15 +115,23 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
   imported.invalid = scan.invalid;
   imported.intrinsics_recovered = scan.intrinsics_recovered;
   imported.normals_estimated = scan.image.has_value();
-  if (!scan.image) {
+  if (scan.image) {
+    const auto& [camera, depth] = *scan.image;
+    imported.cloud = make_cloud(depth, camera, options.normals);
+    if (imported.cloud.size() == 0) throw nothing_with_normal(scan, name);
+    imported.without_normal = depth.depth.size() - scan.invalid - imported.cloud.size();
+    append(imported.remarks, improbable_intrinsics(camera));
+  } else {
     imported.cloud = std::move(scan.points);
     imported.without_normal = scan.without_normal;
-    return imported;
   }
-  const auto& [camera, depth] = *scan.image;
-  imported.cloud = make_cloud(depth, camera, options.normals);
-  if (imported.cloud.size() == 0) throw nothing_with_normal(scan, name);
-  imported.without_normal = depth.depth.size() - scan.invalid - imported.cloud.size();
+  append(imported.remarks, scan.remarks);
+  imported.facts =
+      facts_of(imported.cloud, imported.invalid, std::size_t{imported.width} * imported.height);
+  append(imported.remarks, improbable_depths(imported.facts));
+  if (options.flip && scan.image)
+    imported.remarks.push_back(
+        {true, "`flip` is not used: normals estimated from depth face the camera"});
   return imported;
 }
 

@@ -1,4 +1,5 @@
-// Imports clouds from files of sensors, recognised by content: 16-bit PNG, OpenEXR, PCD, PLY.
+// Imports clouds from files of sensors and programs, recognised by content: depth images as PNG,
+// OpenEXR, TIFF, PGM, PFM and NPY, points as PCD and PLY.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +10,26 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
+#include "libvpm/import/camera_axes.h"
+#include "libvpm/import/depth_values.h"
+#include "libvpm/import/remark.h"
+#include "libvpm/import/scan_facts.h"
 
 namespace vpm {
 
 struct ImportOptions {
   // If unset, an organised PCD gets its own by a fit.
   std::optional<Intrinsics> intrinsics;
-  std::optional<double> units_per_metre;  // if unset, 1000 for PNG and 1 for others
-  std::optional<Pose> to_world;           // if unset, a PCD's VIEWPOINT, or identity
+  std::uint32_t calibrated_width = 0,
+                calibrated_height = 0;  // image of the intrinsics, px; 0 if it is not known
+  DepthReading depth;                   // its unit holds for points too
+  std::string channel;                  // of an OpenEXR image; if empty, its name tells
+  CameraAxes axes =
+      CameraAxes::opencv;        // of the frame that `to_world` takes to the world, and of points
+  std::optional<Pose> to_world;  // if unset, a PCD's VIEWPOINT, or identity for this library's axes
+  bool flip = false;             // turns the normals of points that have some and no camera
   NormalOptions normals;
 };
-
-inline constexpr double kPngUnitsPerMetre = 1000;
 
 struct ImportedCloud {
   Cloud cloud;
@@ -30,6 +39,8 @@ struct ImportedCloud {
   std::size_t without_normal = 0;  // measured, but not in the cloud
   bool intrinsics_recovered = false;
   bool normals_estimated = false;  // false: taken from the file
+  ScanFacts facts;
+  Remarks remarks;
 };
 
 // Refusal of a valid depth image in which nothing was measured.
@@ -47,6 +58,7 @@ struct ImportedScan {
   std::size_t invalid = 0;
   std::size_t without_normal = 0;  // counts points
   bool intrinsics_recovered = false;
+  Remarks remarks;
 };
 
 // Reads the scan only, for callers that process images themselves; throws as import_cloud does.
@@ -57,9 +69,10 @@ NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string&
 
 // Returns the cloud of a file. Depth images and organised PCD become clouds with a sensor, with
 // normals estimated from depth whatever the file holds. Other PCD and PLY must have normals,
-// pointing into free space. Throws Error(refused) for files that are damaged, unknown, without
-// normals or without any point (for depth: NothingMeasured), Error(invalid_argument) for depth
-// images without intrinsics, Error(unavailable) for OpenEXR in builds without it.
+// pointing into free space, as must grids that fit no pinhole camera. Throws Error(refused) for
+// files that are damaged, unknown, without normals or without any point (for depth:
+// NothingMeasured), Error(invalid_argument) for depth images without intrinsics, Error(unavailable)
+// for formats that this build lacks.
 ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& name,
                            const ImportOptions& options);
 

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
-#include "libvpm/import/file_text.h"
+#include "libvpm/file/text.h"
 #include "libvpm/import/lzf.h"
+#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 namespace {
@@ -25,7 +26,7 @@ struct Header {
   std::vector<Field> fields;
   std::uint64_t width = 0, height = 1, points = 0;
   std::uint64_t point_size = 0, point_values = 0;
-  Pose viewpoint;
+  std::optional<Pose> viewpoint;
   std::string encoding;
 };
 
@@ -38,7 +39,7 @@ constexpr std::uint64_t kMaxFields = 4096;
 class PcdParser {
  public:
   PcdParser(std::span<const std::byte> bytes, const std::string& name)
-      : bytes_(bytes), name_(name), cursor_(as_text(bytes)) {}
+      : bytes_(bytes), name_(name), cursor_(file::as_text(bytes)) {}
 
   PointSet parse() {
     read_header();
@@ -72,15 +73,15 @@ class PcdParser {
 
   std::span<const std::byte> bytes_;
   const std::string& name_;
-  TextCursor cursor_;
+  file::TextCursor cursor_;
   Header header_;
   std::array<const Field*, 6> column_{};
   PointSet points_;
 };
 
 std::uint64_t PcdParser::count_of(std::string_view word, const std::string& entry) const {
-  const std::optional<std::uint64_t> count = to_count(word);
-  if (!count) fail("header: '" + std::string(word) + "' in " + entry + " is not a count");
+  const std::optional<std::uint64_t> count = file::to_count(word);
+  if (!count) fail("header: '" + file::shown(word) + "' in " + entry + " is not a count");
   return *count;
 }
 
@@ -88,9 +89,9 @@ void PcdParser::read_header() {
   while (header_.encoding.empty()) {
     const std::optional<std::string_view> line = cursor_.line();
     if (!line) fail("header ends before its DATA line");
-    const std::vector<std::string_view> words = split_words(*line);
+    const std::vector<std::string_view> words = file::split_words(*line);
     if (words.empty() || words[0].front() == '#') continue;
-    if (words.size() < 2) fail("header: '" + std::string(words[0]) + "' has no value");
+    if (words.size() < 2) fail("header: '" + file::shown(words[0]) + "' has no value");
     read_entry(words);
   }
   check_header();
@@ -101,7 +102,7 @@ void PcdParser::read_entry(const std::vector<std::string_view>& words) {
   if (entry == "VERSION") {
     const std::string_view version = words[1].substr(words[1].find('.') + 1);
     if (version != "7" && version != "6")
-      fail("version " + std::string(words[1]) + " is not known; write version 0.7");
+      fail("version " + file::shown(words[1]) + " is not known; write version 0.7");
   } else if (entry == "FIELDS" || entry == "COLUMNS" || entry == "SIZE" || entry == "TYPE" ||
              entry == "COUNT") {
     read_fields(words);
@@ -116,7 +117,7 @@ void PcdParser::read_entry(const std::vector<std::string_view>& words) {
   } else if (entry == "DATA") {
     header_.encoding = words[1];
   } else {
-    fail("header: unknown entry '" + entry.substr(0, 40) + "'");
+    fail("header: unknown entry '" + file::shown(entry) + "'");
   }
 }
 
@@ -142,7 +143,7 @@ void PcdParser::read_fields(const std::vector<std::string_view>& words) {
     } else if (entry == "COUNT") {
       field.count = count_of(word, entry);
       if (field.count > kMaxFields)
-        fail("header: a COUNT of " + std::string(word) + " is too large");
+        fail("header: a COUNT of " + file::shown(word) + " is too large");
     } else {
       field.name = word;
     }
@@ -153,17 +154,19 @@ void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
   double n[7];
   if (words.size() != 8) fail("header: VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
   for (std::size_t i = 0; i < 7; ++i) {
-    const std::optional<double> number = to_number(words[i + 1]);
-    if (!number) fail("header: '" + std::string(words[i + 1]) + "' in VIEWPOINT is not a number");
+    const std::optional<double> number = file::to_number(words[i + 1]);
+    if (!number) fail("header: '" + file::shown(words[i + 1]) + "' in VIEWPOINT is not a number");
     n[i] = *number;
   }
-  header_.viewpoint.translation = {n[0], n[1], n[2]};
-  if (!is_finite(header_.viewpoint.translation)) fail("header: VIEWPOINT is not finite");
+  Pose viewpoint;
+  viewpoint.translation = {n[0], n[1], n[2]};
+  if (!is_finite(viewpoint.translation)) fail("header: VIEWPOINT is not finite");
   try {
-    header_.viewpoint.rotation = rotation_from_quaternion({n[4], n[5], n[6], n[3]});
+    viewpoint.rotation = rotation_from_quaternion({n[4], n[5], n[6], n[3]});
   } catch (const Error& fault) {
     refuse("PCD header: VIEWPOINT: " + fault.problem(), name_, fault.hint());
   }
+  header_.viewpoint = viewpoint;
 }
 
 void PcdParser::check_header() {
@@ -171,8 +174,9 @@ void PcdParser::check_header() {
   if (h.fields.empty()) fail("header names no FIELDS");
   for (Field& field : h.fields) {
     if (!is_known(field.type)) {
-      fail("header: field '" + field.name + "' has TYPE " + std::string(1, field.type.kind) +
-           " of SIZE " + std::to_string(field.type.size) + ", which is no number");
+      fail("header: field '" + file::shown(field.name) + "' has TYPE " +
+           file::shown({&field.type.kind, 1}) + " of SIZE " + std::to_string(field.type.size) +
+           ", which is no number");
     }
     field.offset = h.point_size;
     field.first = h.point_values;
@@ -192,7 +196,7 @@ void PcdParser::check_header() {
          " is not POINTS " + std::to_string(h.points));
   }
   if (h.encoding != "ascii" && h.encoding != "binary" && h.encoding != "binary_compressed")
-    fail("header: DATA '" + h.encoding.substr(0, 40) +
+    fail("header: DATA '" + file::shown(h.encoding) +
          "' is not ascii, binary or binary_compressed");
 }
 
@@ -205,6 +209,8 @@ void PcdParser::find_columns() {
   }
   // Ignores incomplete normals.
   if (!column_[3] || !column_[4] || !column_[5]) column_[3] = column_[4] = column_[5] = nullptr;
+  points_.are_float32 =
+      header_.encoding != "ascii" && column_[0]->type.kind == 'F' && column_[0]->type.size == 4;
 }
 
 void PcdParser::allocate() {
@@ -231,10 +237,9 @@ void PcdParser::read_ascii() {
     for (std::size_t c = 0; c < kColumns.size(); ++c) {
       if (column_[c] == nullptr) continue;
       const std::string_view word = words[column_[c]->first];
-      const std::optional<double> number = to_number(word);
+      const std::optional<double> number = file::to_number(word);
       if (!number) {
-        fail("point " + std::to_string(i) + ": '" + std::string(word.substr(0, 40)) +
-             "' is not a number");
+        fail("point " + std::to_string(i) + ": '" + file::shown(word) + "' is not a number");
       }
       value(c, i) = *number;
     }

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "libvpm/core/error.h"
-#include "libvpm/import/depth_files.h"
-
 namespace vpm {
 namespace {
 
@@ -29,38 +26,29 @@ class LineFit {
   double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0;
 };
 
-struct Residual {
-  double largest = 0;
-  std::size_t point = 0;
-};
+}  // namespace
 
-Residual largest_residual(const PointSet& points, const Intrinsics& k) {
-  Residual worst;
+PinholeFit fit_of(const PointSet& points, const Intrinsics& k) {
+  PinholeFit fit{k, 0, 0};
+  bool sees_any = false;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3 p = points.positions[i];
     if (!is_seen(p)) continue;
+    sees_any = true;
     const std::size_t column = i % points.width, row = i / points.width;
     const double u = k.fx * p.x / p.z + k.cx - static_cast<double>(column);
     const double v = k.fy * p.y / p.z + k.cy - static_cast<double>(row);
     const double off = std::max(std::abs(u), std::abs(v));
-    if (off > worst.largest) worst = {off, i};
+    if (off > fit.residual) {
+      fit.residual = off;
+      fit.point = i;
+    }
   }
-  return worst;
+  if (!sees_any) fit.residual = HUGE_VAL;
+  return fit;
 }
 
-std::string describe(const Residual& residual, const PointSet& points, const Intrinsics& k) {
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "point (%zu, %zu) is %.3g pixels away from where the pinhole camera "
-                "fx %.6g fy %.6g cx %.6g cy %.6g sees it (at most %.3g is accepted)",
-                residual.point % points.width, residual.point / points.width, residual.largest,
-                k.fx, k.fy, k.cx, k.cy, kPinholeTolerance);
-  return text;
-}
-
-}  // namespace
-
-Intrinsics fit_pinhole(const PointSet& points, const std::string& name) {
+PinholeFit fit_pinhole(const PointSet& points) {
   LineFit across, down;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const Vec3 p = points.positions[i];
@@ -69,35 +57,27 @@ Intrinsics fit_pinhole(const PointSet& points, const std::string& name) {
     across.add(p.x / p.z, static_cast<double>(column));
     down.add(p.y / p.z, static_cast<double>(row));
   }
-  if (!across.solvable() || !down.solvable()) {
-    refuse("too few points with z > 0 to tell the camera", name, "give `intrinsics` fx,fy,cx,cy");
-  }
+  if (!across.solvable() || !down.solvable()) return {};
   const Intrinsics k{across.focal(), down.focal(), across.centre(), down.centre()};
-  const Residual residual = largest_residual(points, k);
-  if (!(k.fx > 0 && k.fy > 0 && residual.largest <= kPinholeTolerance)) {
-    refuse("the organised cloud fits no pinhole camera with x right, y down, z forward: " +
-               describe(residual, points, k),
-           name);
-  }
-  return k;
+  return k.fx > 0 && k.fy > 0 ? fit_of(points, k) : PinholeFit{k, HUGE_VAL, 0};
 }
 
-void check_pinhole(const PointSet& points, const Intrinsics& k, const std::string& name) {
-  const Residual residual = largest_residual(points, k);
-  if (!(residual.largest <= kPinholeTolerance)) {
-    refuse(
-        "the organised cloud does not fit the intrinsics given: " + describe(residual, points, k),
-        name, "leave `intrinsics` out to have them recovered");
+std::string words_of(const PinholeFit& fit, const PointSet& points) {
+  const Intrinsics& k = fit.intrinsics;
+  if (k.fx == 0) return "too few of its points have z > 0 to tell the camera";
+  char text[256];
+  if (fit.residual == HUGE_VAL) {
+    std::snprintf(text, sizeof text,
+                  "its points tell the focal lengths %.4g and %.4g, which are not positive", k.fx,
+                  k.fy);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "point (%zu, %zu) is %.3g pixels away from where the pinhole camera "
+                  "fx %.6g fy %.6g cx %.6g cy %.6g sees it (at most %.3g is accepted)",
+                  fit.point % points.width, fit.point / points.width, fit.residual, k.fx, k.fy,
+                  k.cx, k.cy, kPinholeTolerance);
   }
-}
-
-DepthImage depth_of(const PointSet& points, double units_per_metre) {
-  DepthImage image{points.width, points.height, std::vector<float>(points.positions.size())};
-  for (std::size_t i = 0; i < image.depth.size(); ++i) {
-    const Vec3 p = points.positions[i];
-    image.depth[i] = is_seen(p) ? depth_in_metres(p.z, units_per_metre) : 0.0F;
-  }
-  return image;
+  return text;
 }
 
 }  // namespace vpm

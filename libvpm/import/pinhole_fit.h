@@ -1,10 +1,11 @@
 // Depth images of organised clouds.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <string>
 
 #include "libvpm/cloud/camera.h"
-#include "libvpm/cloud/depth_image.h"
 #include "libvpm/import/point_set.h"
 
 namespace vpm {
@@ -13,15 +14,22 @@ namespace vpm {
 // sees it; beyond, the grid is not that camera's.
 inline constexpr double kPinholeTolerance = 0.5;
 
-// Returns the pinhole camera (x right, y down, z forward) whose pixels see the points, by least
-// squares of u = fx x/z + cx and v = fy y/z + cy. Throws Error(refused) if the points determine no
-// camera or none fits to kPinholeTolerance, naming the residual.
-Intrinsics fit_pinhole(const PointSet& points, const std::string& name);
+// Camera whose pixels see the points of a grid.
+struct PinholeFit {
+  Intrinsics intrinsics;
+  double residual = HUGE_VAL;  // largest distance of a point from its pixel, px
+  std::size_t point = 0;       // the point that is so far off
 
-// Throws Error(refused), naming the residual, if the points do not fit the camera.
-void check_pinhole(const PointSet& points, const Intrinsics& k, const std::string& name);
+  bool fits() const { return residual <= kPinholeTolerance; }
+};
 
-// Returns z of every point in metres; 0 where nothing was measured.
-DepthImage depth_of(const PointSet& points, double units_per_metre);
+// Returns the pinhole camera (x right, y down, z forward) by least squares of u = fx x/z + cx and v
+// = fy y/z + cy, or the residual of the camera given. Its residual is infinite if too few points
+// have z > 0 or focal lengths are not positive.
+PinholeFit fit_pinhole(const PointSet& points);
+PinholeFit fit_of(const PointSet& points, const Intrinsics& intrinsics);
+
+// Returns for example "point (3, 4) is 2.1 pixels away from where …".
+std::string words_of(const PinholeFit& fit, const PointSet& points);
 
 }  // namespace vpm

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
-#include "libvpm/import/file_text.h"
+#include "libvpm/file/text.h"
+#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 namespace {
@@ -43,13 +44,13 @@ ScalarType scalar_type(std::string_view name) {
 
 // Returns e.g. "vertex 12", for messages.
 std::string where(const Element& element, std::uint64_t row) {
-  return element.name.substr(0, 40) + " " + std::to_string(row);
+  return file::shown(element.name) + " " + std::to_string(row);
 }
 
 class PlyParser {
  public:
   PlyParser(std::span<const std::byte> bytes, const std::string& name)
-      : bytes_(bytes), name_(name), cursor_(as_text(bytes)) {}
+      : bytes_(bytes), name_(name), cursor_(file::as_text(bytes)) {}
 
   PointSet parse() {
     read_header();
@@ -82,7 +83,7 @@ class PlyParser {
 
   std::span<const std::byte> bytes_;
   const std::string& name_;
-  TextCursor cursor_;
+  file::TextCursor cursor_;
   std::size_t at_ = 0;
   std::vector<std::string_view> row_;  // words of a line of text
   std::size_t word_ = 0;               // index of the next
@@ -97,7 +98,7 @@ void PlyParser::read_header() {
   for (;;) {
     const std::optional<std::string_view> line = cursor_.line();
     if (!line) fail("header ends before end_header");
-    const std::vector<std::string_view> words = split_words(*line);
+    const std::vector<std::string_view> words = file::split_words(*line);
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") break;
     if (words[0] == "format" && words.size() == 3) {
@@ -105,13 +106,13 @@ void PlyParser::read_header() {
       big_endian_ = words[1] == "binary_big_endian";
       has_format = ascii_ || big_endian_ || words[1] == "binary_little_endian";
     } else if (words[0] == "element" && words.size() == 3) {
-      const std::optional<std::uint64_t> count = to_count(words[2]);
-      if (!count) fail("header: '" + std::string(words[2].substr(0, 40)) + "' is not a count");
+      const std::optional<std::uint64_t> count = file::to_count(words[2]);
+      if (!count) fail("header: '" + file::shown(words[2]) + "' is not a count");
       elements_.push_back({std::string(words[1]), *count, {}});
     } else if (words[0] == "property") {
       read_property(words);
     } else {
-      fail("header: cannot read '" + std::string(line->substr(0, 60)) + "'");
+      fail("header: cannot read '" + file::shown(*line) + "'");
     }
   }
   if (!has_format) fail("header names no format that is known: ascii or binary, 1.0");
@@ -125,9 +126,9 @@ void PlyParser::read_property(const std::vector<std::string_view>& words) {
   property.type = scalar_type(words[words.size() - 2]);
   if (list) property.count_type = scalar_type(words[2]);
   if (!is_known(property.type) || (list && !is_known(property.count_type)))
-    fail("header: property '" + property.name.substr(0, 40) + "' has an unknown type");
+    fail("header: property '" + file::shown(property.name) + "' has an unknown type");
   if (list && property.count_type.kind == 'F')
-    fail("header: the length of list '" + property.name.substr(0, 40) + "' is not an integer");
+    fail("header: the length of list '" + file::shown(property.name) + "' is not an integer");
   elements_.back().properties.push_back(std::move(property));
 }
 
@@ -147,6 +148,7 @@ const Element& PlyParser::vertex_element() {
   has_normals_ = found[3] && found[4] && found[5];
   for (std::size_t c = 0; c < (has_normals_ ? 6U : 3U); ++c) found[c]->column = static_cast<int>(c);
   if (vertices->count == 0) fail("holds no points");
+  points_.are_float32 = !ascii_ && found[0]->type.kind == 'F' && found[0]->type.size == 4;
   if (vertices->count > kMaxPoints) {
     fail("header promises " + std::to_string(vertices->count) + " vertices; at most " +
          std::to_string(kMaxPoints) + " are read");
@@ -161,10 +163,10 @@ void PlyParser::check_count(const Element& element) const {
     least += ascii_ ? 2 : list ? property.count_type.size : property.type.size;
   }
   if (element.count == 0) return;
-  if (least == 0) fail("element '" + element.name.substr(0, 40) + "' has no properties");
+  if (least == 0) fail("element '" + file::shown(element.name) + "' has no properties");
   if (element.count > (bytes_.size() - at_ + 1) / least) {
     fail("is truncated: " + std::to_string(element.count) + " of element '" +
-         element.name.substr(0, 40) + "' cannot fit into the file");
+         file::shown(element.name) + "' cannot fit into the file");
   }
 }
 
@@ -173,9 +175,8 @@ double PlyParser::read_value(ScalarType type, const Element& element, std::uint6
     if (word_ == row_.size())
       fail(where(element, row) + " has fewer numbers in its line than the header says");
     const std::string_view word = row_[word_++];
-    const std::optional<double> number = to_number(word);
-    if (!number)
-      fail(where(element, row) + ": '" + std::string(word.substr(0, 40)) + "' is not a number");
+    const std::optional<double> number = file::to_number(word);
+    if (!number) fail(where(element, row) + ": '" + file::shown(word) + "' is not a number");
     return *number;
   }
   if (type.size > bytes_.size() - at_) fail("is truncated at " + where(element, row));

@@ -90,8 +90,7 @@ void check_image_size(std::uint64_t width, std::uint64_t height, const std::stri
   }
 }
 
-DepthImage parse_png_depth(std::span<const std::byte> bytes, const std::string& name,
-                           double units_per_metre) {
+RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& name) {
   PngReader png(bytes);
   if (!png.read_header()) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   if (!png.is_gray16()) {
@@ -100,17 +99,18 @@ DepthImage parse_png_depth(std::span<const std::byte> bytes, const std::string& 
            name, "depth needs one gray channel of 16 bits");
   }
   check_image_size(png.width(), png.height(), name);
-  DepthImage image{png.width(), png.height(), {}};
+  RawDepth image;
+  image.width = png.width();
+  image.height = png.height();
+  image.are_integers = image.are_16_bit = true;
   const std::size_t count = std::size_t{image.width} * image.height;
   if (2 * count > bytes.size() * kMaxDeflateRatio) refuse("the PNG is truncated", name);
   std::vector<std::uint16_t> values(count);
   std::vector<png_bytep> rows(image.height);
-  for (std::uint32_t v = 0; v < image.height; ++v)
-    rows[v] = reinterpret_cast<png_bytep>(values.data() + image.index(0, v));
+  for (std::size_t v = 0; v < image.height; ++v)
+    rows[v] = reinterpret_cast<png_bytep>(values.data() + v * image.width);
   if (!png.read_rows(rows)) refuse(std::string("not a sound PNG: ") + png.fault(), name);
-  image.depth.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    image.depth[i] = depth_in_metres(values[i], units_per_metre);
+  image.values.assign(values.begin(), values.end());
   return image;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ struct PointSet {
   std::uint32_t width = 0, height = 1;  // a sensor's grid, row by row, if height > 1
   std::vector<Vec3> positions;          // width * height
   std::vector<Vec3> normals;            // as many, or none; of any length
-  Pose viewpoint;                       // frame of the points to world
+  std::optional<Pose> viewpoint;        // frame of the points to world, if the file tells it
+  bool are_float32 = false;             // positions are float32 numbers in the file
 
   bool organised() const { return height > 1; }
 };

@@ -30,6 +30,7 @@ void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
     result.depth = on_device(scan, frame.path);
   else
     result.cloud = prepared(scan, frame.path);
+  result.remarks = scan.remarks;
 }
 
 DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& name) {
@@ -109,7 +110,9 @@ FrameFeed::~FrameFeed() {
 void FrameFeed::prepare_all(FrameSchedule schedule, const ImportOptions& options,
                             const Device& device, Denoising points) {
   try {
-    FrameReader reader(recording_, options, device, points);
+    ImportOptions quick = options;
+    quick.depth.looks_for_mistakes = false;  // the caller may look at one frame
+    FrameReader reader(recording_, quick, device, points);
     while (std::optional<FrameChange> change = schedule.next()) {
       PreparedChange result = reader.prepare(std::move(*change));
       std::unique_lock lock(mutex_);

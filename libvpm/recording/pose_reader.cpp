@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/file/text.h"
+#include "libvpm/recording/time_stamp.h"
 
 namespace vpm {
 namespace {
@@ -43,12 +44,10 @@ std::vector<double> numbers_of(const std::string& line) {
   std::vector<double> numbers;
   for (std::size_t at = line.find_first_not_of(kBetween); at != std::string::npos;) {
     const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
-    double value = 0;
-    const auto [stop, fault] = std::from_chars(line.data() + at, line.data() + end, value);
-    if (fault != std::errc() || stop != line.data() + end) {
-      refuse("not a number: " + line.substr(at, end - at));
-    }
-    numbers.push_back(value);
+    const std::string word = line.substr(at, end - at);
+    const std::optional<double> value = file::to_number(word);
+    if (!value) refuse("not a number: " + file::shown(word));
+    numbers.push_back(*value);
     at = line.find_first_not_of(kBetween, end);
   }
   return numbers;
@@ -67,7 +66,9 @@ std::vector<double> numbers_of(const nlohmann::json& list) {
 }  // namespace
 
 PoseReader::PoseReader(const std::string& path)
-    : name_(path == "-" ? "standard input" : path), stream_(path == "-" ? std::cin : file_) {
+    : name_(path == "-" ? "standard input" : path),
+      stream_(path == "-" ? std::cin : file_),
+      lines_(stream_) {
   if (path == "-") return;
   errno = 0;
   file_.open(path);
@@ -78,11 +79,31 @@ void PoseReader::refuse_empty() const {
   refuse("no pose in it", name_, "each line gives one: tx ty tz qx qy qz qw, or JSON");
 }
 
+std::optional<std::string> PoseReader::any_line() {
+  errno = 0;
+  ++line_;
+  try {
+    std::optional<std::string> line = lines_.next();
+    if (line && line_ == 1 && line->starts_with(kByteOrderMark))
+      line->erase(0, kByteOrderMark.size());
+    if (!line) --line_;
+    return line;
+  } catch (const Error& fault) {
+    refuse(fault.problem(), place(), fault.hint());
+  }
+}
+
 std::optional<std::string> PoseReader::next_line() {
-  for (std::string line; errno = 0, std::getline(stream_, line);) {
-    if (++line_ == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
-    if (!is_json(line)) line.resize(std::min(line.find('#'), line.size()));
-    if (line.find_first_not_of(kBlank) != std::string::npos) return line;
+  while (std::optional<std::string> line = any_line()) {
+    if (is_json(*line)) return line;
+    if (line_ == 1 || line->starts_with('#')) {
+      if (const auto columns = columns_of_header(*line)) {
+        columns_ = columns;
+        continue;
+      }
+    }
+    line->resize(std::min(line->find('#'), line->size()));
+    if (line->find_first_not_of(kBlank) != std::string::npos) return line;
   }
   if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
   return std::nullopt;
@@ -106,7 +127,7 @@ Pose PoseReader::parse_json(const std::string& line) {
   if (json.is_array()) return from_numbers(numbers_of(json));
   if (json.contains("time")) {
     if (!json["time"].is_number()) refuse("\"time\" must be a number of seconds");
-    time_ = json["time"].get<double>();
+    time_ = seconds_of_stamp(json["time"].get<double>());
   }
   for (const char* key : {"pose", "matrix"}) {
     if (json.contains(key)) return from_numbers(numbers_of(json[key]));
@@ -124,13 +145,15 @@ Pose PoseReader::parse_text(const std::string& line) {
       if (more.size() != kMatrixRow) refuse("a row of a 4x4 matrix must have four numbers");
       numbers.insert(numbers.end(), more.begin(), more.end());
     }
+  } else if (columns_) {
+    numbers = in_usual_order(numbers, *columns_);
   }
   return from_numbers(std::move(numbers));
 }
 
 Pose PoseReader::from_numbers(std::vector<double> n) {
   if (n.size() == kTimedPose && !time_) {
-    time_ = n.front();
+    time_ = seconds_of_stamp(n.front());
     n.erase(n.begin());
   }
   Pose pose;

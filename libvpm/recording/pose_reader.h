@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/file/line_stream.h"
+#include "libvpm/recording/pose_columns.h"
 
 namespace vpm {
 
@@ -17,7 +19,9 @@ namespace vpm {
 //                by row]}; "time" in an object, or an eighth number in front, is the time
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   4x4 text     four lines of four numbers for each pose
-// A '#' starts a comment, except in a line of JSON.
+// A '#' starts a comment, except in a line of JSON. A line of names, in a comment or first in the
+// file, tells the order of the numbers after it (pose_columns.h); otherwise quaternions end in w.
+// Times may be seconds or whole milli-, micro- or nanoseconds since 1970 (time_stamp.h).
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" reads standard input
@@ -38,6 +42,8 @@ class PoseReader {
 
  private:
   std::optional<std::string> next_line();
+  // Returns the next line; empty at the end. Throws Error(refused), naming it, if it is no text.
+  std::optional<std::string> any_line();
   Pose parse_json(const std::string& line);
   Pose parse_text(const std::string& line);
   // Takes 7 numbers, or 8 with the time first.
@@ -46,6 +52,8 @@ class PoseReader {
   std::string name_;
   std::ifstream file_;
   std::istream& stream_;
+  file::LineStream lines_;
+  std::optional<PoseColumns> columns_;
   std::size_t line_ = 0;
   std::optional<double> time_;
   double largest_deviation_ = 0;

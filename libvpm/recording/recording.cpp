@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/import/file_text.h"
+#include "libvpm/file/text.h"
+#include "libvpm/import/intrinsics_file.h"
+#include "libvpm/recording/time_stamp.h"
 #include "libvpm/recording/timed_path.h"
 
 namespace vpm {
@@ -29,26 +32,26 @@ bool is_file(const fs::path& path) {
 
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
-  TextCursor cursor(text);
+  file::TextCursor cursor(text);
   while (const auto line = cursor.line()) lines.push_back(line->substr(0, line->find('#')));
   return lines;
 }
 
 // Returns the time and file of the depth image in a line "time file" or "time file time file".
 std::optional<std::pair<double, std::string>> entry_of(std::string_view line) {
-  const std::vector<std::string_view> words = split_words(line);
+  const std::vector<std::string_view> words = file::split_words(line);
   if (words.empty()) return std::nullopt;
   const bool second = words.size() == 4 && words[3].find("depth") != std::string_view::npos;
   const bool fits = words.size() == 2 || words.size() == 4;
-  const std::optional<double> time = fits ? to_number(words[second ? 2 : 0]) : std::nullopt;
-  if (!time || !std::isfinite(*time)) refuse("not a time and a file: " + std::string(line));
-  return std::pair(*time, std::string(words[second ? 3 : 1]));
+  const std::optional<double> time = fits ? file::to_number(words[second ? 2 : 0]) : std::nullopt;
+  if (!time || !std::isfinite(*time)) refuse("not a time and a file: " + file::shown(line));
+  return std::pair(seconds_of_stamp(*time), std::string(words[second ? 3 : 1]));
 }
 
 void read_list(const fs::path& list, Recording& recording) {
   const std::vector<std::byte> bytes = file::read_all(list.string());
   std::size_t number = 0;
-  for (const std::string_view line : lines_of(as_text(bytes))) {
+  for (const std::string_view line : lines_of(file::as_text(bytes))) {
     ++number;
     try {
       const auto entry = entry_of(line);
@@ -69,8 +72,9 @@ void read_list(const fs::path& list, Recording& recording) {
 }
 
 bool is_frame(const fs::path& path) {
-  const std::string kind = path.extension().string();
-  return kind == ".png" || kind == ".exr" || kind == ".pcd" || kind == ".ply";
+  static const std::set<std::string> kKinds{".png",  ".exr", ".pcd", ".ply", ".tif",
+                                            ".tiff", ".pgm", ".pfm", ".npy"};
+  return kKinds.contains(path.extension().string());
 }
 
 std::string stem_of(const fs::path& path) {
@@ -99,12 +103,15 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// Returns the time in a name that is a number with a point.
+// Returns the time in a name that is a number with a point, or of so many digits that it counts
+// milli-, micro- or nanoseconds since 1970.
 std::optional<double> time_in(const fs::path& path) {
+  constexpr std::size_t kFewestDigits = 13;
   const std::string name = path.stem().string();
-  if (name.find('.') == std::string::npos) return std::nullopt;
-  const std::optional<double> time = to_number(name);
-  return time && std::isfinite(*time) ? time : std::nullopt;
+  const bool is_stamp = name.size() >= kFewestDigits && file::to_count(name);
+  if (name.find('.') == std::string::npos && !is_stamp) return std::nullopt;
+  const std::optional<double> time = file::to_number(name);
+  return time && std::isfinite(*time) ? std::optional(seconds_of_stamp(*time)) : std::nullopt;
 }
 
 // Returns the last number before the first dot of a name.
@@ -114,7 +121,7 @@ std::optional<std::uint64_t> number_in(const fs::path& path) {
   if (last == std::string::npos) return std::nullopt;
   const std::size_t before = stem.find_last_not_of("0123456789", last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  return to_count(std::string_view(stem).substr(first, last - first + 1));
+  return file::to_count(std::string_view(stem).substr(first, last - first + 1));
 }
 
 void number_frames(const std::vector<fs::path>& files, double frame_rate, Recording& recording) {
@@ -152,7 +159,8 @@ void read_folder(const fs::path& folder, double frame_rate, Recording& recording
   const std::vector<fs::path> files = files_of(folder);
   if (files.empty())
     refuse("no frames in it", folder.string(),
-           "wanted are .png, .exr, .pcd or .ply files, or depth.txt with \"time file\" lines");
+           "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd or .ply files, or depth.txt with "
+           "\"time file\" lines");
   const bool timed = std::all_of(files.begin(), files.end(),
                                  [](const fs::path& path) { return time_in(path).has_value(); });
   if (!timed) return number_frames(files, frame_rate, recording);
@@ -220,13 +228,7 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
 
 void read_intrinsics(const fs::path& path, Recording& recording) {
   if (!is_file(path)) return;
-  const std::vector<std::byte> bytes = file::read_all(path.string());
-  std::vector<double> n;
-  for (const std::string_view word : split_words(as_text(bytes)))
-    n.push_back(to_number(word).value_or(NAN));
-  if (n.size() != 9 || n[1] != 0 || n[3] != 0 || n[6] != 0 || n[7] != 0 || n[8] != 1)
-    refuse("not a camera's matrix fx 0 cx 0 fy cy 0 0 1", path.string(), "give `intrinsics`");
-  recording.intrinsics = Intrinsics{n[0], n[4], n[2], n[5]};
+  recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string()).intrinsics;
 }
 
 }  // namespace

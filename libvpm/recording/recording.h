@@ -3,11 +3,12 @@
 // Tries three layouts in this order:
 //   list         a text file of "time file" lines (TUM RGB-D: depth.txt; associations.txt with four
 //                columns, of which the depth image's are used), given itself or in the folder
-//   named times  files called after their time in seconds: 1305031102.160407.png
-//   numbered     files with a number in their name: frame-000460.depth.png (7-Scenes). Their times
+//   named times  files called after their time: 1305031102.160407.png (s), 1403636579763555584.png
+//   (ns) numbered     files with a number in their name: frame-000460.depth.png (7-Scenes). Their
+//   times
 //                are the numbers divided by the frame rate, from 0 for the first
-// In a folder, frames are images (.png, .exr) and clouds (.pcd, .ply); if some names contain
-// "depth", only those.
+// In a folder, frames are images (.png, .exr, .tif, .tiff, .pgm, .pfm, .npy) and clouds (.pcd,
+// .ply); if some names contain "depth", only those.
 #pragma once
 
 #include <optional>

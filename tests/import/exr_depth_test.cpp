@@ -65,25 +65,61 @@ std::string make_exr(int width, int height, bool as_half, const std::vector<ExrC
 const float kNaN = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 const std::vector<float> kValues{1.5F, 0, kNaN, -2, kInfinity, 0.25F};
-const std::vector<float> kDepth{1.5F, 0, 0, 0, 0, 0.25F};
 
-DepthImage parse(const std::string& file) {
-  return parse_exr_depth(bytes_of(file), "file", 1);
+RawDepth parse(const std::string& file, const std::string& channel = "") {
+  return parse_exr_depth(bytes_of(file), "file", channel);
 }
 std::string refused(const std::string& file) {
   return test::refusal([&] { parse(file); });
 }
 
+// True if both hold the same numbers; NaN is one.
+bool same_values(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
 TEST(ExrDepth, ReadsEachKindOfChannel) {
   for (const bool as_half : {false, true}) {
-    EXPECT_EQ(parse(make_exr(3, 2, as_half, {{"Z", kValues}})).depth, kDepth);
-    EXPECT_EQ(parse(make_exr(3, 2, as_half, {{"Y", kValues}})).depth, kDepth);
-    const DepthImage image =
+    EXPECT_TRUE(same_values(parse(make_exr(3, 2, as_half, {{"Z", kValues}})).values, kValues));
+    EXPECT_TRUE(same_values(parse(make_exr(3, 2, as_half, {{"Y", kValues}})).values, kValues));
+    const RawDepth image =
         parse(make_exr(3, 2, as_half, {{"R", kValues}, {"G", kValues}, {"B", kValues}}));
-    EXPECT_EQ(image.depth, kDepth);
+    EXPECT_TRUE(same_values(image.values, kValues));
     EXPECT_EQ(image.width, 3U);
     EXPECT_EQ(image.height, 2U);
   }
+}
+
+TEST(ExrDepth, TakesDepthByNameBesideAPicture) {
+  const std::vector<float> grey(6, 0.5F);
+  const std::string file =
+      make_exr(3, 2, false, {{"R", grey}, {"G", grey}, {"B", grey}, {"depth.Z", kValues}});
+  EXPECT_TRUE(same_values(parse(file).values, kValues));
+  EXPECT_EQ(parse(file, "R").values, grey);
+  EXPECT_TRUE(says(test::refusal([&] { parse(file, "Q"); }), "B, G, R, depth.Z"));
+  EXPECT_TRUE(
+      says(refused(make_exr(3, 2, false, {{"Z", kValues}, {"depth.Z", grey}})), "Z, depth.Z"));
+}
+
+TEST(ExrDepth, PutsACropIntoItsDisplayWindow) {
+  Imf::Header header(Imath::Box2i({0, 0}, {3, 2}), Imath::Box2i({1, 1}, {5, 1}));
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  std::vector<float> values{1, 2, 3, 4, 5};
+  Imf::FrameBuffer buffer;
+  buffer.insert("Z", Imf::Slice::Make(Imf::FLOAT, values.data(), header.dataWindow(), sizeof(float),
+                                      5 * sizeof(float)));
+  MemorySink sink;
+  {
+    Imf::OutputFile file(sink, header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(1);
+  }
+  const RawDepth image = parse(sink.bytes);
+  EXPECT_EQ(image.width, 4U);
+  EXPECT_EQ(image.values, (std::vector<float>{0, 0, 0, 0, 0, 1, 2, 3, 0, 0, 0, 0}));
+  ASSERT_EQ(image.remarks.size(), 1U);
+  EXPECT_TRUE(says(image.remarks[0].text, "4 x 3 pixels is read")) << image.remarks[0].text;
 }
 
 TEST(ExrDepth, RefusesWhatIsNoDepth) {
@@ -96,7 +132,7 @@ TEST(ExrDepth, RefusesWhatIsNoDepth) {
 
 TEST(ExrDepth, DamageIsRefused) {
   expect_damage_is_refused(make_exr(3, 2, true, {{"Y", kValues}}), 300,
-                           [](auto bytes) { parse_exr_depth(bytes, "file", 1); });
+                           [](auto bytes) { parse_exr_depth(bytes, "file", ""); });
 }
 
 }  // namespace

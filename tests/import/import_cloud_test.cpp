@@ -84,7 +84,7 @@ TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {
   EXPECT_EQ(imported.invalid, 1U);
   EXPECT_EQ(imported.cloud.positions[0].z, 2);
   EXPECT_EQ(imported.cloud.origin, (Vec3{1, 2, 3}));
-  options.units_per_metre = 4000;
+  options.depth.units_per_metre = 4000;
   EXPECT_EQ(import(depth_png(), options).cloud.positions[0].z, 0.5F);
 }
 
@@ -100,7 +100,8 @@ TEST(ImportCloud, ScatteredPointsKeepTheirNormals) {
 
 TEST(ImportCloud, RefusesWhatHoldsNoCloud) {
   EXPECT_TRUE(says(refused(""), "empty"));
-  EXPECT_TRUE(says(refused("OFF\n0 0 0\n"), "neither PNG, OpenEXR, PCD nor PLY"));
+  EXPECT_TRUE(
+      says(refused("OFF\n0 0 0\n"), "neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY"));
   EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
                    "need normals"));

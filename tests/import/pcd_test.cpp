@@ -130,7 +130,7 @@ TEST(Pcd, KeepsGridAndViewpoint) {
       "VIEWPOINT 1 2 3 0 1 0 0\nPOINTS 4\nDATA ascii\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n");
   EXPECT_TRUE(points.organised());
   EXPECT_EQ(points.width, 2U);
-  EXPECT_EQ(points.viewpoint * (Vec3{1, 1, 1}), (Vec3{2, 1, 2}));
+  EXPECT_EQ(*points.viewpoint * (Vec3{1, 1, 1}), (Vec3{2, 1, 2}));
 }
 
 TEST(Pcd, SaysWhatIsWrong) {

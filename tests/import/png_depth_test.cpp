@@ -10,19 +10,18 @@ namespace {
 const std::vector<std::uint16_t> kValues{0, 1, 255, 256, 1000, 65535};
 
 std::string refused(const std::string& file) {
-  return test::refusal([&] { parse_png_depth(bytes_of(file), "file", 1000); });
+  return test::refusal([&] { parse_png_depth(bytes_of(file), "file"); });
 }
 
-TEST(PngDepth, GivesMetresAndNoDepthForZero) {
+TEST(PngDepth, GivesTheValues) {
   for (const bool interlaced : {false, true}) {
     const std::string file = make_png(3, 2, 16, kValues, interlaced);
-    const DepthImage image = parse_png_depth(bytes_of(file), "file", 1000);
+    const RawDepth image = parse_png_depth(bytes_of(file), "file");
     EXPECT_EQ(image.width, 3U);
     EXPECT_EQ(image.height, 2U);
-    EXPECT_EQ(image.depth, (std::vector<float>{0, 0.001F, 0.255F, 0.256F, 1, 65.535F}));
+    EXPECT_EQ(image.values, (std::vector<float>{0, 1, 255, 256, 1000, 65535}));
+    EXPECT_EQ(image.usual_units_per_metre(), 1000);
   }
-  const std::string file = make_png(3, 2, 16, kValues);
-  EXPECT_EQ(parse_png_depth(bytes_of(file), "file", 5000).depth[4], 0.2F);
 }
 
 TEST(PngDepth, RefusesOtherImages) {
@@ -41,7 +40,7 @@ TEST(PngDepth, RefusesSizesThatTheFileCannotHold) {
 
 TEST(PngDepth, DamageIsRefused) {
   expect_damage_is_refused(make_png(3, 2, 16, kValues), 1000,
-                           [](auto bytes) { parse_png_depth(bytes, "file", 1000); });
+                           [](auto bytes) { parse_png_depth(bytes, "file"); });
 }
 
 }  // namespace

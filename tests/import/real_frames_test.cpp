@@ -40,7 +40,7 @@ TEST_P(RealFrame, BecomesASoundCloud) {
 #endif
   ImportOptions options;
   options.intrinsics = frame.intrinsics;
-  options.units_per_metre = frame.units_per_metre;
+  options.depth.units_per_metre = frame.units_per_metre;
   const ImportedCloud imported = import_cloud(file::read_all(path), path, options);
   validate(imported.cloud, path);
   EXPECT_EQ(imported.width, frame.width);

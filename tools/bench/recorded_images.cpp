@@ -85,7 +85,7 @@ std::vector<RecordedImage> recorded_images(const std::string& folder) {
     if (!std::filesystem::exists(path)) continue;
     ImportOptions options;
     options.intrinsics = frame.intrinsics;
-    options.units_per_metre = frame.units_per_metre;
+    options.depth.units_per_metre = frame.units_per_metre;
     try {
       images.push_back({frame.file, import_cloud(file::read_all(path), path, options).cloud});
     } catch (const Error& fault) {

@@ -1,21 +1,107 @@
 #include "tools/common/import_arguments.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
+#include "libvpm/import/intrinsics_file.h"
+#include "libvpm/recording/camera_pose_file.h"
 #include "tools/common/number_checks.h"
 
 namespace vpm::tools {
+namespace {
 
-void declare(CLI::App& app, ImportArguments& a) {
+constexpr std::array<std::pair<const char*, double>, 6> kUnitsPerMetre = {{
+    {"m", 1},
+    {"cm", 100},
+    {"mm", 1000},
+    {"um", 1e6},
+    {"in", 1 / 0.0254},
+    {"ft", 1 / 0.3048},
+}};
+
+[[noreturn]] void wrong(const std::string& message) {
+  throw Error(ErrorKind::invalid_argument, message);
+}
+
+// Returns the numbers of "1,2,3"; empty if the text is none of that.
+std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> numbers;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::vector<std::string_view> words =
+        file::split_words(std::string_view(text).substr(at, end - at));
+    const std::optional<double> number =
+        words.size() == 1 ? file::to_number(words[0]) : std::nullopt;
+    if (!number) return {};
+    numbers.push_back(*number);
+    at = end + 1;
+  }
+  return numbers;
+}
+
+// True if the text begins with a number, so that it names no file.
+bool begins_with_number(const std::string& text) {
+  return file::to_number(text.substr(0, text.find(','))).has_value();
+}
+
+void declare_camera(CLI::App& app, ImportArguments& a) {
   app.add_option("--intrinsics", a.intrinsics,
-                 "Intrinsics of the camera: fx,fy,cx,cy in pixels. An organised PCD needs none")
-      ->delimiter(',')
-      ->expected(4)
-      ->allow_extra_args(false);
-  app.add_option("--depth-scale", a.depth_scale,
-                 "Units of the file per metre; 1000 for PNG and 1 for others if not given");
+                 "Intrinsics of the camera: fx,fy,cx,cy in pixels, or a file with them (text, ROS "
+                 "camera_info, RealSense, "
+                 "Open3D). An organised PCD needs none")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("FX,FY,CX,CY or FILE");
+  app.add_option("--camera-pose", a.camera_pose,
+                 "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw, "
+                 "or a file with it (4x4, TUM, "
+                 "JSON)");
+  app.add_option("--axes", a.axes,
+                 "Axes of that frame: opencv (x right, y down, z forward), opengl (x right, y up, "
+                 "z backward) or ros (x forward, "
+                 "y left, z up)")
+      ->check(CLI::IsMember({"opencv", "opengl", "ros"}))
+      ->capture_default_str();
+}
+
+void declare_values(CLI::App& app, ImportArguments& a) {
+  app.add_option(
+      "--depth-scale", a.depth_scale,
+      "Units of the file per metre; if not given, 1000 for integers and 1 for floats and points");
+  app.add_option("--unit", a.unit, "Unit of the file instead: m, cm, mm, um, in or ft")
+      ->check(CLI::IsMember({"m", "cm", "mm", "um", "in", "ft"}));
+  app.add_option("--invalid", a.invalid,
+                 "Values of the file that mean \"not measured\", such as 65535,4095, beside the "
+                 "usual 0, 65535, 65504 and 1e10; "
+                 "none: 0 only")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("VALUES");
+  app.add_option("--range", a.range, "Take depths from NEAR to FAR metres only: near,far")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("NEAR,FAR");
+  app.add_flag(
+      "--along-ray", a.along_ray,
+      "The file holds distances along the ray; otherwise depth along the optical axis (z)");
+  app.add_option("--decode", a.decode,
+                 "Undo a coding of 16-bit values: rotated (SUN3D, APC), disparity (raw Kinect, "
+                 "NYU) or swapped (bytes)")
+      ->join(',');
+  app.add_option("--channel", a.channel,
+                 "Channel of an OpenEXR image that holds depth, if its name does not tell");
+  app.add_flag("--flip", a.flip,
+               "Turn the normals of points around: they must point into free space");
+}
+
+void declare_normals(CLI::App& app, ImportArguments& a) {
   app.add_option("--method", a.method,
                  "Estimate normals by inverse-depth, or by pca as printed in 2017")
       ->check(CLI::IsMember({"inverse-depth", "pca"}))
@@ -28,28 +114,92 @@ void declare(CLI::App& app, ImportArguments& a) {
          "--edge-gate", a.edge_gate,
          "Largest relative difference of inverse depth within one surface; 0 finds no edges")
       ->capture_default_str();
-  app.add_option("--camera-pose", a.camera_pose,
-                 "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw");
+}
+
+std::optional<double> units_per_metre(const ImportArguments& a) {
+  if (a.depth_scale && !a.unit.empty())
+    wrong("--depth-scale and --unit exclude each other: leave one of them out");
+  if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
+    wrong("--depth-scale must be finite and greater than 0");
+  for (const auto& [unit, per_metre] : kUnitsPerMetre)
+    if (a.unit == unit) return per_metre;
+  return a.depth_scale;
+}
+
+DepthReading depth_reading(const ImportArguments& a) {
+  DepthReading reading;
+  reading.units_per_metre = units_per_metre(a);
+  reading.along_ray = a.along_ray;
+  if (!a.decode.empty()) reading.decoding = decoding_from_text(a.decode);
+  reading.has_usual_markers = a.invalid != "none";
+  if (!a.invalid.empty() && reading.has_usual_markers) {
+    reading.invalid = numbers_in(a.invalid);
+    if (reading.invalid.empty())
+      wrong("--invalid " + a.invalid + ": give values with commas, such as 65535,4095, or none");
+  }
+  if (a.range.empty()) return reading;
+  const std::vector<double> range = numbers_in(a.range);
+  if (range.size() != 2 || !(range[0] >= 0 && range[1] > range[0]))
+    wrong("--range " + a.range + ": give near,far in metres, far greater than near");
+  reading.nearest = range[0];
+  reading.farthest = range[1];
+  return reading;
+}
+
+void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& options) {
+  if (a.intrinsics.empty()) return;
+  const std::vector<double> n = numbers_in(a.intrinsics);
+  if (begins_with_number(a.intrinsics)) {
+    if (n.size() != 4)
+      wrong("--intrinsics " + a.intrinsics +
+            ": give four numbers fx,fy,cx,cy, or a file with them");
+    options.intrinsics = {n[0], n[1], n[2], n[3]};
+  } else {
+    const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics);
+    say(tool, a.intrinsics, read.remarks);
+    options.intrinsics = read.intrinsics;
+    options.calibrated_width = read.width;
+    options.calibrated_height = read.height;
+  }
+  check_intrinsics(*options.intrinsics);
+}
+
+void read_pose(const Tool& tool, const ImportArguments& a, ImportOptions& options) {
+  options.axes = a.axes == "opengl" ? CameraAxes::opengl
+                 : a.axes == "ros"  ? CameraAxes::ros
+                                    : CameraAxes::opencv;
+  if (a.camera_pose.empty()) return;
+  double deviation = 0;
+  options.to_world = begins_with_number(a.camera_pose)
+                         ? pose_from_text(a.camera_pose, &deviation)
+                         : read_camera_pose(a.camera_pose, &deviation);
+  if (deviation > kRotationRounding)
+    tool.note("--camera-pose: its rotation is not exact and has been normalised");
+}
+
+}  // namespace
+
+void declare(CLI::App& app, ImportArguments& a) {
+  declare_camera(app, a);
+  declare_values(app, a);
+  declare_normals(app, a);
 }
 
 ImportOptions import_options(const Tool& tool, const ImportArguments& a) {
-  if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
-    throw Error(ErrorKind::invalid_argument, "--depth-scale must be finite and greater than 0");
   ImportOptions options;
   options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
   check_normal_options(options.normals);
-  options.units_per_metre = a.depth_scale;
-  if (!a.intrinsics.empty()) {
-    options.intrinsics = {a.intrinsics[0], a.intrinsics[1], a.intrinsics[2], a.intrinsics[3]};
-    check_intrinsics(*options.intrinsics);
-  }
-  if (!a.camera_pose.empty()) {
-    double deviation = 0;
-    options.to_world = pose_from_text(a.camera_pose, &deviation);
-    if (deviation > kRotationRounding)
-      tool.note("--camera-pose: its quaternion is not of unit length and has been normalised");
-  }
+  options.depth = depth_reading(a);
+  options.channel = a.channel;
+  options.flip = a.flip;
+  read_intrinsics(tool, a, options);
+  read_pose(tool, a, options);
   return options;
+}
+
+void say(const Tool& tool, const std::string& name, const Remarks& remarks) {
+  for (const Remark& remark : remarks)
+    remark.is_warning ? tool.warn(name + ": " + remark.text) : tool.note(name + ": " + remark.text);
 }
 
 }  // namespace vpm::tools

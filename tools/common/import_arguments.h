@@ -3,18 +3,19 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "libvpm/import/import_cloud.h"
 #include "tools/common/tool.h"
 
 namespace vpm::tools {
 
-// Values of the options that say how a depth image becomes a cloud; pixels, units per metre.
+// Values of the options that say how a depth image becomes a cloud, as the user wrote them.
 struct ImportArguments {
-  std::vector<double> intrinsics;
-  std::optional<double> depth_scale;
-  std::string method = "inverse-depth", camera_pose;
+  std::string intrinsics, camera_pose, axes = "opencv";
+  std::optional<double> depth_scale;  // units per metre
+  std::string unit, invalid, range, decode, channel;
+  bool along_ray = false, flip = false;
+  std::string method = "inverse-depth";
   int window = 7;
   double edge_gate = kEdgeGate;
 };
@@ -22,8 +23,12 @@ struct ImportArguments {
 // Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, ImportArguments& arguments);
 
-// Returns the values as libvpm takes them. Throws Error(invalid_argument) where one is out of
-// range; notes a quaternion that had to be normalised.
+// Returns the values as libvpm takes them, and reads the files that they name. Throws
+// Error(invalid_argument) where one is out of range, and what the files' readers throw; notes what
+// these say, and a quaternion that had to be normalised.
 ImportOptions import_options(const Tool& tool, const ImportArguments& arguments);
+
+// Prints what the readers say about a file.
+void say(const Tool& tool, const std::string& name, const Remarks& remarks);
 
 }  // namespace vpm::tools

@@ -23,7 +23,8 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("depth", a.depth,
-                 "Depth image (16-bit PNG, OpenEXR) or cloud (PCD, PLY); - is standard input");
+                 "Depth image (16-bit PNG, OpenEXR, TIFF, PGM, PFM, NPY) or cloud (PCD, PLY); - is "
+                 "standard input");
   app.add_option("-o,--output", a.output, "Cloud to write (.vpmc); - is standard output");
   declare(app, a.import);
   app.add_option("--report", a.report, "Write facts about image and cloud here (JSON)");
@@ -67,27 +68,44 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
     const Intrinsics& k = imported.cloud.sensor->camera.intrinsics;
     report["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
   }
+  const ScanFacts& facts = imported.facts;
+  if (facts.depth)
+    report["depth"] = {{"nearest", facts.depth->nearest},
+                       {"median", facts.depth->median},
+                       {"farthest", facts.depth->farthest}};
+  report["measured"] = facts.measured;
+  report["extent"] = {{facts.low.x, facts.low.y, facts.low.z},
+                      {facts.high.x, facts.high.y, facts.high.z}};
   return report;
 }
 
-void say_notes(const Tool& tool, const std::string& name, const ImportArguments& import,
-               const ImportedCloud& imported) {
-  if (!imported.cloud.sensor) {
-    if (!import.intrinsics.empty())
-      tool.warn(name + ": --intrinsics are not used: it holds points with normals, not an image");
-    return;
+std::string text_of(const Intrinsics& k) {
+  return std::to_string(k.fx) + "," + std::to_string(k.fy) + "," + std::to_string(k.cx) + "," +
+         std::to_string(k.cy);
+}
+
+void say_facts(const Tool& tool, const std::string& name, const ImportedCloud& imported) {
+  if (imported.intrinsics_recovered) {
+    tool.note(name + ": intrinsics recovered from its points: " +
+              text_of(imported.cloud.sensor->camera.intrinsics));
   }
-  const Camera& camera = imported.cloud.sensor->camera;
-  const Intrinsics& k = camera.intrinsics;
-  const std::string text = std::to_string(k.fx) + "," + std::to_string(k.fy) + "," +
-                           std::to_string(k.cx) + "," + std::to_string(k.cy);
-  if (imported.intrinsics_recovered)
-    tool.note(name + ": intrinsics recovered from its points: " + text);
-  if (!(k.cx >= 0 && k.cy >= 0 && k.cx < camera.width && k.cy < camera.height)) {
-    tool.warn(name + ": the principal point of " + text + " lies outside of the image of " +
-              std::to_string(camera.width) + " x " + std::to_string(camera.height) +
-              " pixels; are these the intrinsics of this image's size?");
+  say(tool, name, imported.remarks);
+  tool.detail(name + ": " + words_of(imported.facts));
+}
+
+// Returns the options with the numbers that they stand for in place of the names of files.
+nlohmann::json parameters_of(const Tool& tool, const ImportOptions& options) {
+  nlohmann::json parameters = tool.parameters();
+  if (options.intrinsics) {
+    const Intrinsics& k = *options.intrinsics;
+    parameters["intrinsics"] = {k.fx, k.fy, k.cx, k.cy};
   }
+  if (options.to_world) {
+    const Quaternion q = quaternion_from_rotation(options.to_world->rotation);
+    const Vec3 t = options.to_world->translation;
+    parameters["camera-pose"] = {t.x, t.y, t.z, q.x, q.y, q.z, q.w};
+  }
+  return parameters;
 }
 
 void run(const Tool& tool, const Arguments& a) {
@@ -100,10 +118,10 @@ void run(const Tool& tool, const Arguments& a) {
   ImportedCloud imported = import_cloud(bytes, name, options);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_notes(tool, name, a.import, imported);
+  say_facts(tool, name, imported);
   imported.cloud.provenance = {{"tool", tool.name()},
                                {"version", VPM_VERSION},
-                               {"parameters", tool.parameters()},
+                               {"parameters", parameters_of(tool, options)},
                                {"input_hash", file::content_hash({bytes})}};
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);

@@ -90,7 +90,9 @@ void Replay::find_first_cloud() {
     PreparedChange prepared = reader.prepare(std::move(*change));
     if (!prepared.unusable.empty()) why = prepared.unusable.back().message;
     first_cloud_ = std::move(prepared.cloud);
-    if (first_cloud_) return;
+    if (!first_cloud_) continue;
+    tools::say(tool_, recording_.frames[prepared.frame].path, prepared.remarks);
+    return;
   }
   refuse(arguments_.frames + ": no frame can be used; the last one: " + why);
 }

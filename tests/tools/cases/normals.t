@@ -4,7 +4,7 @@ $ cp $SOURCE/tests/tools/inputs/wall.png .
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report report.json --export wall.ply
 $ $VALIDATE normals-report report.json
 $ python3 -c 'import json; r = json.load(open("report.json")); del r["seconds"]; print(json.dumps(r, sort_keys=True))'
-{"edge_gate": 0.02, "height": 48, "intrinsics": [60.0, 60.0, 31.5, 23.5], "invalid": 1, "method": "inverse-depth", "points": 3071, "width": 64, "window": 7, "without_normal": 0}
+{"depth": {"farthest": 1.0, "median": 1.0, "nearest": 1.0}, "edge_gate": 0.02, "extent": [[-0.5249999761581421, -0.3916666805744171, 1.0], [0.5249999761581421, 0.3916666805744171, 1.0]], "height": 48, "intrinsics": [60.0, 60.0, 31.5, 23.5], "invalid": 1, "measured": 0.9996744791666666, "method": "inverse-depth", "points": 3071, "width": 64, "window": 7, "without_normal": 0}
 
 # The same bytes come from a pipe, with any number of threads.
 $ vpm-normals - -o - --intrinsics 60,60,31.5,23.5 --threads 1 < wall.png | cmp - wall.vpmc
@@ -20,7 +20,7 @@ $ vpm-normals grid.pcd -o grid.vpmc --intrinsics 60,60,31.5,23.5 --force && vpm-
 $ vpm-normals wall.ply -o scattered.vpmc --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["method"], r["points"], r["invalid"])'
 file 3071 0
 $ vpm-normals wall.ply -o scattered.vpmc --intrinsics 60,60,31.5,23.5 --force
-2> vpm-normals: warning: wall.ply: --intrinsics are not used: it holds points with normals, not an image
+2> vpm-normals: warning: wall.ply: --intrinsics is not used: it holds points with normals, not an image
 $ vpm-normals grid.pcd -o x.vpmc --intrinsics 90,90,31.5,23.5
 2> vpm-normals: error: grid.pcd: the organised cloud does not fit the intrinsics given: point (0, 0) is 15.7 pixels away from where the pinhole camera fx 90 fy 90 cx 31.5 cy 23.5 sees it (at most 0.5 is accepted); leave --intrinsics out to have them recovered
 [1]
@@ -33,10 +33,10 @@ $ vpm-normals wall.png
 2> vpm-normals: error: nothing would be written: give -o OUT.vpmc, --export, --report or --view
 [2]
 $ vpm-normals wall.png -o x.vpmc
-2> vpm-normals: error: wall.png: a depth image needs --intrinsics fx,fy,cx,cy (pixels)
+2> vpm-normals: error: wall.png: a depth image needs --intrinsics: fx,fy,cx,cy in pixels, or a file with them
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5
-2> vpm-normals: error: --intrinsics: At least 4 required but received 3 (see vpm-normals --help)
+2> vpm-normals: error: --intrinsics 60,60,31.5: give four numbers fx,fy,cx,cy, or a file with them
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 0,60,31.5,23.5
 2> vpm-normals: error: intrinsics: fx,fy,cx,cy must be finite and within 2^40, fx and fy greater than 0 (pixels)
@@ -65,8 +65,9 @@ $ vpm-normals wall.png -o - --report - --intrinsics 60,60,31.5,23.5
 $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report wall.vpmc
 2> vpm-normals: error: --output and --report would both be written to wall.vpmc; name two files
 [2]
-$ vpm-normals wall.png -o x.vpmc --intrinsics 600,600,319.5,239.5
-2> vpm-normals: warning: wall.png: the principal point of 600.000000,600.000000,319.500000,239.500000 lies outside of the image of 64 x 48 pixels; are these the intrinsics of this image's size?
+$ vpm-normals wall.png -o outside.vpmc --intrinsics 600,600,319.5,239.5
+2> vpm-normals: warning: wall.png: the principal point of 600,600,319.5,239.5 lies outside of the image of 64 x 48 pixels; are these the intrinsics of this image's size?
+2> vpm-normals: warning: wall.png: the focal lengths of 600,600,319.5,239.5 are improbable for an image of 64 x 48 pixels; are these the intrinsics of this image's size?
 
 # Unsuitable inputs are refused.
 $ vpm-normals nowhere.png -o x.vpmc --intrinsics 60,60,31.5,23.5
@@ -79,7 +80,7 @@ $ printf '' | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: standard input: the file is empty; give a depth image or a cloud
 [1]
 $ echo hello | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: error: standard input: neither PNG, OpenEXR, PCD nor PLY by its content; give a depth image or a cloud
+2> vpm-normals: error: standard input: neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY by its content; give a depth image or a cloud
 [1]
 $ printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n' | vpm-normals - -o x.vpmc
 2> vpm-normals: error: standard input: points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz); estimate them first, or give the depth image

@@ -1,0 +1,114 @@
+#include "libvpm/import/scan_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace vpm {
+namespace {
+
+template <class... Values>
+std::string text_of(const char* format, Values... values) {
+  char text[320];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+std::string intrinsics_text(const Intrinsics& k) {
+  return text_of("%.9g,%.9g,%.9g,%.9g", k.fx, k.fy, k.cx, k.cy);
+}
+
+std::string size_text(const Camera& camera) {
+  return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
+}
+
+// True if the numbers are parts of the image's size, as some programs write them.
+bool are_normalised(const Intrinsics& k) {
+  constexpr double kLargestFocal = 5, kLargestCentre = 1;
+  return k.fx < kLargestFocal && k.fy < kLargestFocal && k.cx >= 0 && k.cx <= kLargestCentre &&
+         k.cy >= 0 && k.cy <= kLargestCentre;
+}
+
+}  // namespace
+
+std::optional<DepthRange> range_of(const DepthImage& image) {
+  std::vector<float> measured;
+  std::copy_if(image.depth.begin(), image.depth.end(), std::back_inserter(measured), is_measured);
+  if (measured.empty()) return std::nullopt;
+  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
+  std::nth_element(measured.begin(), middle, measured.end());
+  return DepthRange{*std::min_element(measured.begin(), middle + 1), *middle,
+                    *std::max_element(middle, measured.end())};
+}
+
+ScanFacts facts_of(const Cloud& cloud, std::size_t invalid, std::size_t all) {
+  ScanFacts facts;
+  if (cloud.sensor) facts.depth = range_of(cloud.sensor->depth);
+  facts.measured = all == 0 ? 0 : 1 - static_cast<double>(invalid) / static_cast<double>(all);
+  if (cloud.size() == 0) return facts;
+  Vec3f low = cloud.positions.front(), high = low;
+  for (const Vec3f& p : cloud.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  facts.low = cloud.origin + widen(low);
+  facts.high = cloud.origin + widen(high);
+  return facts;
+}
+
+Remarks improbable_depths(const ScanFacts& facts) {
+  constexpr double kNearest = 0.05, kFarthest = 50, kFewest = 0.05;
+  Remarks remarks;
+  if (facts.depth && (facts.depth->median < kNearest || facts.depth->median > kFarthest)) {
+    remarks.push_back(
+        {true, text_of("half of its depths are %s %.3g m, which is improbable: is its unit another "
+                       "one? `unit` "
+                       "or `depth_scale` tells it",
+                       facts.depth->median < kNearest ? "below" : "above", facts.depth->median)});
+  }
+  if (facts.depth && facts.measured < kFewest)
+    remarks.push_back(
+        {true, text_of("only %.2g %% of its pixels hold a measurement", 100 * facts.measured)});
+  return remarks;
+}
+
+Remarks improbable_intrinsics(const Camera& camera) {
+  constexpr double kShortest = 0.2, kLongest = 5;  // times the image's width
+  const Intrinsics& k = camera.intrinsics;
+  const double width = camera.width, height = camera.height;
+  if (are_normalised(k) && camera.width > 1) {
+    const Intrinsics pixels{k.fx * width, k.fy * height, k.cx * width - 0.5, k.cy * height - 0.5};
+    return {{true, "the intrinsics " + intrinsics_text(k) +
+                       " are less than a pixel or a few; if they are parts of the image's " +
+                       "size, give `intrinsics` " + intrinsics_text(pixels)}};
+  }
+  Remarks remarks;
+  if (!(k.cx >= 0 && k.cy >= 0 && k.cx < width && k.cy < height)) {
+    remarks.push_back({true, "the principal point of " + intrinsics_text(k) +
+                                 " lies outside of the image of " + size_text(camera) +
+                                 "; are these the intrinsics of this image's size?"});
+  }
+  if (std::min(k.fx, k.fy) < kShortest * width || std::max(k.fx, k.fy) > kLongest * width) {
+    remarks.push_back({true, "the focal lengths of " + intrinsics_text(k) +
+                                 " are improbable for an image of " + size_text(camera) +
+                                 "; are these the intrinsics of this image's size?"});
+  }
+  return remarks;
+}
+
+std::string words_of(const ScanFacts& facts) {
+  std::string words;
+  if (facts.depth)
+    words = text_of("depth %.4g to %.4g m, median %.4g m; ", facts.depth->nearest,
+                    facts.depth->farthest, facts.depth->median);
+  const Vec3 size = facts.high - facts.low;
+  return words + text_of(
+                     "%.4g %% measured; the scene is %.4g x %.4g x %.4g m, from (%.4g, %.4g, %.4g) "
+                     "to (%.4g, %.4g, %.4g)",
+                     100 * facts.measured, size.x, size.y, size.z, facts.low.x, facts.low.y,
+                     facts.low.z, facts.high.x, facts.high.y, facts.high.z);
+}
+
+}  // namespace vpm

@@ -1,0 +1,163 @@
+// NPY, PGM, PFM and TIFF.
+#include <gtest/gtest.h>
+#ifdef VPM_TESTS_TIFF
+#include <tiffio.h>
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "libvpm/file/stream.h"
+#include "libvpm/file/temporary_folder.h"
+#include "libvpm/import/depth_files.h"
+#include "tests/import/test_files.h"
+#include "tests/refusal.h"
+
+namespace vpm {
+namespace {
+
+const std::vector<float> kRows{1, 2, 3, 4, 5, 6};
+
+template <class Value>
+Value in_other_order(Value value) {
+  std::string bytes;
+  append(bytes, value);
+  std::string turned(bytes.rbegin(), bytes.rend());
+  std::memcpy(&value, turned.data(), sizeof value);
+  return value;
+}
+
+// Returns an array whose header says what is given and whose values follow.
+template <class Value>
+std::string make_npy(const std::string& type, const std::string& order, const std::string& shape,
+                     const std::vector<Value>& values) {
+  const std::string header =
+      "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }\n";
+  std::string file("\x93NUMPY\x01\x00", 8);
+  append(file, static_cast<std::uint16_t>(header.size()));
+  file += header;
+  for (const Value value : values) append(file, value);
+  return file;
+}
+
+RawDepth npy(const std::string& file) {
+  return parse_npy_depth(bytes_of(file), "file");
+}
+
+TEST(NpyDepth, ReadsTypesAndOrders) {
+  const RawDepth floats = npy(make_npy<float>("<f4", "False", "(2, 3)", kRows));
+  EXPECT_EQ(floats.width, 3U);
+  EXPECT_EQ(floats.values, kRows);
+  EXPECT_FALSE(floats.are_integers);
+  EXPECT_EQ(npy(make_npy<double>("<f8", "False", "(1, 2, 3)", {1, 2, 3, 4, 5, 6})).values, kRows);
+  EXPECT_EQ(npy(make_npy<float>("<f4", "True", "(2, 3, 1)", {1, 4, 2, 5, 3, 6})).values, kRows);
+  std::vector<std::uint16_t> big;
+  for (std::uint16_t k = 1; k <= 6; ++k) big.push_back(in_other_order(k));
+  const RawDepth integers = npy(make_npy<std::uint16_t>(">u2", "False", "(2, 3)", big));
+  EXPECT_EQ(integers.values, kRows);
+  EXPECT_TRUE(integers.are_16_bit);
+  const std::vector<std::uint16_t> halves{0x3C00, 0x4000, 0x4200, 0x4400, 0x4500, 0x4600};
+  EXPECT_EQ(npy(make_npy<std::uint16_t>("<f2", "False", "(2, 3)", halves)).values, kRows);
+}
+
+TEST(NpyDepth, RefusesWhatIsNoDepth) {
+  const auto refused = [](const std::string& file) { return test::refusal([&] { npy(file); }); };
+  EXPECT_TRUE(says(refused(make_npy<char>("|u1", "False", "(2, 3)", {})), "|u1"));
+  EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", "(2, 3, 3)", kRows)), "3 dimensions"));
+  EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", "(20, 3)", kRows)), "truncated"));
+  expect_damage_is_refused(make_npy<float>("<f4", "False", "(2, 3)", kRows), 300,
+                           [](auto bytes) { parse_npy_depth(bytes, "file"); });
+}
+
+RawDepth netpbm(const std::string& file) {
+  return parse_netpbm_depth(bytes_of(file), "file");
+}
+
+TEST(NetpbmDepth, ReadsPgmAndPfm) {
+  std::string pgm = "P5\n# by hand\n3 2\n65535\n";
+  for (std::uint16_t k = 1; k <= 6; ++k) append(pgm, in_other_order(k));
+  EXPECT_EQ(netpbm(pgm).values, kRows);
+  EXPECT_TRUE(netpbm(pgm).are_16_bit);
+  EXPECT_EQ(netpbm("P2 3 2 4095 1 2 3\n4 5 6\n").values, kRows);
+  std::string pfm = "Pf\n3 2\n-1.0\n";
+  for (const float value : {4.F, 5.F, 6.F, 1.F, 2.F, 3.F}) append(pfm, value);
+  EXPECT_EQ(netpbm(pfm).values, kRows);
+  EXPECT_FALSE(netpbm(pfm).are_integers);
+}
+
+TEST(NetpbmDepth, RefusesWhatIsNoDepth) {
+  const auto refused = [](const std::string& file) { return test::refusal([&] { netpbm(file); }); };
+  EXPECT_TRUE(says(refused("P5 3 2 255\n123456"), "16 bits"));
+  EXPECT_TRUE(says(refused("P6 3 2 65535\n"), "colour"));
+  EXPECT_TRUE(says(refused("P5 3 2 65535\n12345"), "truncated"));
+  EXPECT_TRUE(says(refused("Pf 3 2 0\n"), "scale is 0"));
+}
+
+#ifdef VPM_TESTS_TIFF
+// Writes the rows with libtiff.
+template <class Value>
+std::string make_tiff(int format, bool tiled, const std::vector<Value>& values, const char* mode) {
+  const file::TemporaryFolder folder;
+  const std::string path = folder.path("a.tif");
+  TIFF* file = TIFFOpen(path.c_str(), mode);
+  TIFFSetField(file, TIFFTAG_IMAGEWIDTH, 3);
+  TIFFSetField(file, TIFFTAG_IMAGELENGTH, 2);
+  TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, static_cast<int>(8 * sizeof(Value)));
+  TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, 1);
+  TIFFSetField(file, TIFFTAG_SAMPLEFORMAT, format);
+  TIFFSetField(file, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+  TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(file, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  std::vector<Value> buffer(256);
+  if (tiled) {
+    TIFFSetField(file, TIFFTAG_TILEWIDTH, 16);
+    TIFFSetField(file, TIFFTAG_TILELENGTH, 16);
+    for (std::size_t k = 0; k < values.size(); ++k) buffer[k / 3 * 16 + k % 3] = values[k];
+    TIFFWriteTile(file, buffer.data(), 0, 0, 0, 0);
+  } else {
+    for (std::uint32_t v = 0; v < 2; ++v) {
+      std::copy_n(values.begin() + 3 * v, 3, buffer.begin());
+      TIFFWriteScanline(file, buffer.data(), v, 0);
+    }
+  }
+  TIFFClose(file);
+  const std::vector<std::byte> bytes = file::read_all(path);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(TiffDepth, ReadsRowsAndTilesOfBothByteOrders) {
+  for (const char* mode : {"wl", "wb"}) {
+    for (const bool tiled : {false, true}) {
+      const RawDepth floats = parse_tiff_depth(
+          bytes_of(make_tiff<float>(SAMPLEFORMAT_IEEEFP, tiled, kRows, mode)), "file");
+      EXPECT_EQ(floats.values, kRows);
+      EXPECT_FALSE(floats.are_integers);
+      const RawDepth integers = parse_tiff_depth(
+          bytes_of(make_tiff<std::uint16_t>(SAMPLEFORMAT_UINT, tiled, {1, 2, 3, 4, 5, 6}, mode)),
+          "file");
+      EXPECT_EQ(integers.values, kRows);
+      EXPECT_TRUE(integers.are_16_bit);
+    }
+  }
+}
+
+TEST(TiffDepth, RefusesWhatIsNoDepth) {
+  const std::string bytes =
+      make_tiff<std::uint8_t>(SAMPLEFORMAT_UINT, false, {1, 2, 3, 4, 5, 6}, "w");
+  EXPECT_TRUE(says(test::refusal([&] { parse_tiff_depth(bytes_of(bytes), "file"); }), "8 bits"));
+  // The last bytes, the offset of the next image, may be missing.
+  const std::string whole = make_tiff<float>(SAMPLEFORMAT_IEEEFP, false, kRows, "w");
+  for (std::size_t size = 0; size + 4 < whole.size(); ++size) {
+    EXPECT_NE(test::refusal([&] { parse_tiff_depth(bytes_of(whole.substr(0, size)), "file"); }), "")
+        << size;
+  }
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(~damaged[at]);
+    test::refusal([&] { parse_tiff_depth(bytes_of(damaged), "file"); });
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace vpm

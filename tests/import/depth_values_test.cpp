@@ -1,0 +1,143 @@
+#include "libvpm/import/depth_values.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/import/test_files.h"
+#include "tests/refusal.h"
+
+namespace vpm {
+namespace {
+
+const Intrinsics kCamera{100, 100, 0, 0};
+
+RawDepth image_of(std::vector<float> values, std::uint32_t width, bool is_16_bit) {
+  RawDepth raw;
+  raw.width = width;
+  raw.height = static_cast<std::uint32_t>(values.size()) / width;
+  raw.values = std::move(values);
+  raw.are_integers = raw.are_16_bit = is_16_bit;
+  return raw;
+}
+
+// Returns a slope of 16-bit values with steps of one.
+std::vector<float> slope(std::size_t count) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<float>(1000 + i));
+  return values;
+}
+
+float swapped(float value) {
+  const auto bits = static_cast<std::uint16_t>(value);
+  return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
+}
+
+struct Metres {
+  std::vector<float> depth;
+  Remarks remarks;
+};
+
+Metres metres(const RawDepth& raw, const DepthReading& reading = {}) {
+  Metres result;
+  result.depth = depth_in_metres_of(raw, kCamera, reading, "file", result.remarks).depth;
+  return result;
+}
+
+TEST(DepthValues, IntegersAreMillimetresAndFloatsMetresUnlessToldOtherwise) {
+  EXPECT_EQ(metres(image_of({1000, 0}, 2, true)).depth, (std::vector<float>{1, 0}));
+  EXPECT_EQ(metres(image_of({1, -1}, 2, false)).depth, (std::vector<float>{1, 0}));
+  EXPECT_EQ(metres(image_of({5000, 0}, 2, true), {.units_per_metre = 5000}).depth[0], 1);
+}
+
+TEST(DepthValues, UsualMarkersAreFoundAndSaid) {
+  for (const float marker : {65535.F, 65504.F, 1e10F}) {
+    const Metres read = metres(image_of({1, marker, 1.5F}, 3, false));
+    EXPECT_EQ(read.depth, (std::vector<float>{1, 0, 1.5F}));
+    ASSERT_EQ(read.remarks.size(), 1U);
+    EXPECT_FALSE(read.remarks[0].is_warning);
+    EXPECT_TRUE(says(read.remarks[0].text, "`invalid` none"));
+  }
+  const Metres kept =
+      metres(image_of({60000, 65535, 61000}, 3, true), {.has_usual_markers = false});
+  EXPECT_EQ(kept.depth[1], 65.535F);
+  EXPECT_TRUE(kept.remarks.empty());
+  EXPECT_EQ(metres(image_of({1000, 4095, 65535}, 3, true), {.invalid = {4095}}).depth,
+            (std::vector<float>{1, 0, 0}));
+}
+
+TEST(DepthValues, AFarValueOnManyPixelsIsSaid) {
+  const Metres read = metres(image_of({1, 10, 1.5F, 10}, 4, false));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_TRUE(says(read.remarks[0].text, "2 pixels hold 10"));
+  EXPECT_TRUE(says(read.remarks[0].text, "`invalid` 10"));
+  EXPECT_TRUE(metres(image_of({1, 10, 1.5F, 10}, 4, false), {.invalid = {10}}).remarks.empty());
+  EXPECT_TRUE(metres(image_of({1, 1, 1, 1}, 4, false)).remarks.empty()) << "a wall";
+}
+
+TEST(DepthValues, RotatedValuesAreNamedAndRead) {
+  std::vector<float> values = slope(200);
+  for (float& value : values) value *= 8;
+  const Metres read = metres(image_of(values, 200, true));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_TRUE(says(read.remarks[0].text, "`decode` rotated"));
+  const Metres decoded =
+      metres(image_of(values, 200, true), {.decoding = decoding_from_text("rotated")});
+  EXPECT_EQ(decoded.depth[5], 1.005F);
+  EXPECT_TRUE(decoded.remarks.empty());
+  EXPECT_EQ(
+      metres(image_of({9001 >> 13 | (9001 & 8191) << 3}, 1, true), {.decoding = {.rotated = true}})
+          .depth[0],
+      9.001F);
+}
+
+TEST(DepthValues, DisparitiesAreNamedAndRead) {
+  const Metres read = metres(image_of({700, 701, 2047}, 3, true));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_TRUE(says(read.remarks[0].text, "`decode` disparity"));
+  const std::vector<float> depth =
+      metres(image_of({700, 2047}, 2, true), {.decoding = decoding_from_text("disparity")}).depth;
+  EXPECT_NEAR(depth[0], 351.3 / 392.5, 1e-6);
+  EXPECT_EQ(depth[1], 0);
+  EXPECT_EQ(test::kind_of_fault(
+                [] { metres(image_of({1}, 1, false), {.decoding = {.disparity = true}}); }),
+            ErrorKind::invalid_argument);
+}
+
+TEST(DepthValues, TheOrderOfBytesIsToldByNeighbours) {
+  std::vector<float> values = slope(400);
+  for (float& value : values) value = swapped(value);
+  RawDepth raw = image_of(values, 400, true);
+  const Metres warned = metres(raw);
+  ASSERT_FALSE(warned.remarks.empty());
+  EXPECT_TRUE(says(warned.remarks[0].text, "`decode` swapped"));
+  raw.may_be_swapped = true;
+  EXPECT_EQ(metres(raw).depth[7], 1.007F);
+  EXPECT_EQ(metres(image_of(slope(400), 400, true)).depth[7], 1.007F);
+  EXPECT_TRUE(metres(image_of(slope(400), 400, true)).remarks.empty());
+}
+
+TEST(DepthValues, MarkersDoNotLookSwapped) {
+  std::vector<float> values(400, 1000);
+  for (std::size_t i = 0; i < values.size(); i += 2) values[i] = 65535;
+  const Metres read = metres(image_of(values, 400, true));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_FALSE(read.remarks[0].is_warning);
+}
+
+TEST(DepthValues, DistancesAlongTheRayBecomeDepth) {
+  const Metres read = metres(image_of({1, std::sqrt(2.F)}, 2, false), {.along_ray = true});
+  EXPECT_EQ(read.depth[0], 1);
+  EXPECT_NEAR(read.depth[1], std::sqrt(2) / std::sqrt(1.0001), 1e-6);
+}
+
+TEST(DepthValues, ARangeLeavesOutOtherDepths) {
+  EXPECT_EQ(metres(image_of({100, 1000, 9000}, 3, true), {.nearest = 0.5, .farthest = 5}).depth,
+            (std::vector<float>{0, 1, 0}));
+}
+
+TEST(DepthValues, UnknownCodingsAreRefused) {
+  EXPECT_EQ(test::kind_of_fault([] { decoding_from_text("rot13"); }), ErrorKind::invalid_argument);
+  EXPECT_TRUE(decoding_from_text("swapped,disparity").disparity);
+}
+
+}  // namespace
+}  // namespace vpm
