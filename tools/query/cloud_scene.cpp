@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "libvpm/cloud/cloud_file.h"
+#include "libvpm/core/error.h"
 
 namespace vpm::tools {
 
@@ -11,9 +12,15 @@ CloudScene::CloudScene(QuerySetup& setup) {
   const std::string& name = setup.arguments.cloud;
   const Cloud cloud = read_cloud(name);
   const auto start = std::chrono::steady_clock::now();
-  cloud_.emplace(cloud, setup.points);
+  try {
+    cloud_.emplace(cloud, setup.points);
+  } catch (const Error& fault) {
+    if (!fault.where().empty()) throw;
+    throw Error(fault.kind(), fault.problem(), name, fault.hint());
+  }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   prepare_seconds_ = taken.count();
+  check_.emplace(setup.tool, cloud, setup.models);
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 

@@ -7,6 +7,7 @@
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/scene/prepared_cloud.h"
 #include "tools/query/query_setup.h"
+#include "tools/query/setup_check.h"
 
 namespace vpm::tools {
 
@@ -19,9 +20,12 @@ class CloudScene {
   const PreparedCloud& cloud() const { return *cloud_; }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
+  // Returns the check that is to see all answers.
+  SetupCheck& check() { return *check_; }
 
  private:
   std::optional<PreparedCloud> cloud_;
+  std::optional<SetupCheck> check_;
   double prepare_seconds_ = 0;
 };
 

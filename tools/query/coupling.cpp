@@ -19,11 +19,12 @@ struct CoupledRun {
 
 // Moves the device along the path and writes a line for each step.
 CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelToolQuery& query,
-                  const PreparedCloud& cloud, std::optional<PoseView>& view, file::Output& output) {
+                  CloudScene& scene, std::optional<PoseView>& view, file::Output& output) {
   CoupledRun run;
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
-    step.contact = query.run(cloud, step.tool);
+    step.contact = query.run(scene.cloud(), step.tool);
+    scene.check().see(step.tool, 0, step.contact);
     run.seconds.push_back(query.seconds());
     if (view) view->add(0, step.tool, step.contact, query.query());
     step.rendered = coupling.advance(step.device, step.contact.wrench);
@@ -39,7 +40,7 @@ CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelToolQu
 void run_coupling(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   const ToolModel& model = setup.models.front();
-  const CloudScene scene(setup);
+  CloudScene scene(setup);
   PoseReader reader(a.poses);
   file::Output output(a.output);
   const CouplingParameters parameters =
@@ -50,9 +51,10 @@ void run_coupling(QuerySetup& setup) {
   note_scale(setup.tool, query);
   note_coupling(setup.tool, parameters, model, setup.options.stiffness);
   CoupledRun run = follow(path, VirtualCoupling(parameters, model.center_of_mass, first), query,
-                          scene.cloud(), setup.view, output);
+                          scene, setup.view, output);
   output.finish();
   note_deviation(setup.tool, "", reader.largest_deviation());
+  scene.check().warn_at_end();
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = scene.cloud().positions().size();

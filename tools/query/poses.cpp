@@ -10,16 +10,16 @@ namespace {
 // Queries of one tool and the lines of their results.
 class PoseQueries {
  public:
-  PoseQueries(QuerySetup& setup, const PreparedCloud& cloud, const Pose& first_pose,
-              file::Output& output)
+  PoseQueries(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, file::Output& output)
       : setup_(setup),
-        cloud_(cloud),
+        cloud_(scene.cloud()),
+        check_(scene.check()),
         output_(output),
-        query_(setup.models.front(), setup.options, setup.level, cloud, first_pose) {}
+        query_(setup.models.front(), setup.options, setup.level, scene.cloud(), first_pose) {}
 
   void ask(const Pose& pose) {
     const Result result = query_.run(cloud_, pose);
-    write(result);
+    write(pose, result);
     if (setup_.view) setup_.view->add(0, pose, result, query_.query());
     last_ = pose;
   }
@@ -27,7 +27,7 @@ class PoseQueries {
   void ask_together(const std::vector<Pose>& poses) {
     std::vector<Result> results(poses.size());
     query_.run(cloud_, jobs_of(poses), results);
-    for (const Result& result : results) write(result);
+    for (std::size_t k = 0; k < poses.size(); ++k) write(poses[k], results[k]);
     if (setup_.view) setup_.view->add_batch(query_.query(), cloud_, poses);
     last_ = poses.back();
   }
@@ -41,7 +41,8 @@ class PoseQueries {
   const Pose& last() const { return last_; }
 
  private:
-  void write(const Result& result) {
+  void write(const Pose& pose, const Result& result) {
+    check_.see(pose, 0, result);
     output_.append(result_line(seconds_.size(), result, query_.query().level(),
                                setup_.options.measure, query_.reason(), {}));
     seconds_.push_back(query_.seconds());
@@ -49,6 +50,7 @@ class PoseQueries {
 
   QuerySetup& setup_;
   const PreparedCloud& cloud_;
+  SetupCheck& check_;
   file::Output& output_;
   LevelToolQuery query_;
   std::vector<double> seconds_;
@@ -60,15 +62,16 @@ class PoseQueries {
 void run_poses(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   PoseSource source(a);
-  const CloudScene scene(setup);
+  CloudScene scene(setup);
   file::Output output(a.output);
-  PoseQueries queries(setup, scene.cloud(), source.first(), output);
+  PoseQueries queries(setup, scene, source.first(), output);
   note_scale(setup.tool, queries.query());
   const bool together = a.batch > 1;
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     together ? queries.ask_together(poses) : queries.ask(poses.front());
   output.finish();
   note_deviation(setup.tool, "", source.largest_deviation());
+  scene.check().warn_at_end();
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = scene.cloud().positions().size();

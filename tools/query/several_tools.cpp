@@ -14,10 +14,10 @@ namespace {
 // Queries of all tools, each at the level that the request chooses for it.
 class SeveralTools {
  public:
-  SeveralTools(QuerySetup& setup, const PreparedCloud& cloud, const Pose& first_pose)
-      : setup_(setup), cloud_(cloud) {
+  SeveralTools(QuerySetup& setup, CloudScene& scene, const Pose& first_pose)
+      : setup_(setup), cloud_(scene.cloud()), check_(scene.check()) {
     for (const ToolModel& model : setup.models) {
-      queries_.emplace_back(model, setup.options, setup.level, cloud, first_pose);
+      queries_.emplace_back(model, setup.options, setup.level, cloud_, first_pose);
       together_.push_back(&queries_.back().query());
     }
     for (const LevelToolQuery& query : queries_) note_scale(setup.tool, query);
@@ -29,6 +29,7 @@ class SeveralTools {
     const std::size_t tools = queries_.size();
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools;
+      check_.see(poses[k / tools], tool, results[k]);
       output.append(result_line(poses_asked_ + k / tools, results[k], together_[tool]->level(),
                                 setup_.options.measure, queries_[tool].reason(), {}, tool));
     }
@@ -67,6 +68,7 @@ class SeveralTools {
 
   QuerySetup& setup_;
   const PreparedCloud& cloud_;
+  SetupCheck& check_;
   std::deque<LevelToolQuery> queries_;
   std::vector<ToolQuery*> together_;
   std::size_t poses_asked_ = 0;
@@ -78,14 +80,15 @@ class SeveralTools {
 void run_several_tools(QuerySetup& setup) {
   const Arguments& a = setup.arguments;
   PoseSource source(a);
-  const CloudScene scene(setup);
+  CloudScene scene(setup);
   const Pose first = source.first();
   file::Output output(a.output);
-  SeveralTools tools(setup, scene.cloud(), first);
+  SeveralTools tools(setup, scene, first);
   for (auto poses = source.next(a.batch); !poses.empty(); poses = source.next(a.batch))
     tools.ask(poses, output);
   output.finish();
   note_deviation(setup.tool, "", source.largest_deviation());
+  scene.check().warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
   stats["cloud_points"] = scene.cloud().positions().size();
   stats["levels"] = tools.levels();
