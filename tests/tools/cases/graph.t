@@ -20,8 +20,8 @@ $ vpm-graph cube.vpmp -o - --levels 10,40,40,500 --threads 4 | cmp - cube.vpmg
 2> vpm-graph: note: --levels: the packing has 60 spheres; larger levels are left out
 
 # The mesh must be the one that was packed, read in the same unit.
-$ vpm-graph cube.vpmp -o cube.vpmg --mesh cube.off
-$ vpm-graph cube.vpmp -o cube.vpmg --mesh other.off
+$ vpm-graph cube.vpmp -o cube.vpmg --force --mesh cube.off
+$ vpm-graph cube.vpmp -o cube.vpmg --force --mesh other.off
 2> vpm-graph: error: cube.vpmp was not made of other.off: their solids have the hashes * and *; pack this mesh, or leave --mesh out (glob)
 [1]
 $ vpm-graph - -o cube.vpmg --mesh - < cube.vpmp
@@ -36,7 +36,7 @@ $ vpm-graph missing.vpmp -o out.vpmg
 2> vpm-graph: error: *missing.vpmp* (glob)
 [1]
 $ vpm-graph cube.vpmp -o cube.vpmp
-2> vpm-graph: error: cube.vpmp * (glob)
+2> vpm-graph: error: --output would overwrite the input cube.vpmp; name another output, or give --force
 [2]
 $ vpm-graph cube.vpmp
 2> vpm-graph: error: --output is required (see vpm-graph --help)

@@ -52,7 +52,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 1% -
 [(10, 'deadline missed'), (10, 'deadline missed'), (10, 'deadline missed')]
 
 # The scene's level is as fine as the points resolve: they are 17 mm apart.
-$ vpm-query --tool plain.vpmg --cloud wall.vpmc --poses path.txt --for-scene -o s.jsonl --stats stats.json && $VALIDATE query-result s.jsonl && $VALIDATE query-stats stats.json
+$ vpm-query --tool plain.vpmg --cloud wall.vpmc --poses path.txt --for-scene -o s.jsonl --stats stats.json --force && $VALIDATE query-result s.jsonl && $VALIDATE query-stats stats.json
 2> vpm-query: note: the scene resolves spheres from 0.01* m (points 0.01* m apart, noise * m) to *: the level of 60 is enough (glob)
 $ vpm-pack cube.off -o scene.vpmp --for-scene wall.vpmc --report pack.json && $VALIDATE pack-report pack.json
 2> vpm-pack: note: the scene asks for spheres from 0.01* m (points 0.01* m apart, noise * m) to * (glob)

@@ -21,7 +21,7 @@ $ vpm-query --tool cube.vpmg --cloud two.vpmc --pose 0,0,0.95,0,0,0,1 | cut -d, 
 $ grep 000002 steps.jsonl | cut -d, -f4- | sort -u | cmp - one
 
 # The clock and the number of threads change no result.
-$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --realtime --quiet --stats stats.json | cmp - steps.jsonl
+$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --realtime --quiet --stats stats.json --force | cmp - steps.jsonl
 $ $VALIDATE query-stats stats.json && python3 -c 'import json; r = json.load(open("stats.json"))["replay"]; print(r["real_time_factor"] < 1.01, "start_delay_us" in r, r["deadline_us"], sum(b["steps"] for b in r["latency_histogram"]))'
 True True 1000.0 201
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --threads 1 --quiet | cmp - steps.jsonl
@@ -30,7 +30,7 @@ $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --frame-latency 0.05 --quiet | python3 volumes.py
 [('', 0.0, 50), ('frame-000000.depth.png', 0.25, 34), ('frame-000001.depth.png', 0.3, 33), ('frame-000002.depth.png', 0.35, 33), ('frame-000003.depth.png', 0.4, 34), ('frame-000004.depth.png', 0.45, 17)]
 2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
-$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --rate 10 --quiet --stats stats.json | python3 volumes.py
+$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --rate 10 --quiet --stats stats.json --force | python3 volumes.py
 [('frame-000000.depth.png', 0.25, 1), ('frame-000003.depth.png', 0.4, 1), ('frame-000005.depth.png', 0.5, 1)]
 $ python3 -c 'import json; f = json.load(open("stats.json"))["replay"]["frames"]; print(f["listed"], f["used"], f["unseen"])'
 6 3 3
@@ -55,7 +55,7 @@ $ cp -r tum bad && grep -v 1000.033333 tum/depth.txt > bad/depth.txt && vpm-quer
 2> vpm-query: warning: bad/depth/1000.066667.png: came late; the loop went on with the frame before
 2> vpm-query: warning: 50 steps came before the first frame that can be used: nothing is in their way
 $ python3 $SOURCE/tests/tools/frames.py numbered holes 9 && rm holes/frame-000001.depth.png && cp $SOURCE/tests/tools/inputs/wall.png holes/frame-000002.depth.png && truncate -s 60 holes/frame-000002.depth.png && : > holes/frame-000003.depth.png && echo '-inf nan 0 0' > holes/frame-000005.pose.txt && cp dark/frame-000100.depth.png holes/frame-000006.depth.png
-$ vpm-query --tool cube.vpmg --frames holes --trajectory still.txt --frame-rate 100 --intrinsics 60,60,31.5,23.5 -o holes.jsonl --stats stats.json --quiet
+$ vpm-query --tool cube.vpmg --frames holes --trajectory still.txt --frame-rate 100 --intrinsics 60,60,31.5,23.5 -o holes.jsonl --stats stats.json --force --quiet
 2> vpm-query: warning: holes/frame-000002.depth.png: * (glob)
 2> vpm-query: warning: holes/frame-000003.depth.png: the file is empty; give a depth image or a cloud; the loop goes on with frame-000000.depth.png
 2> vpm-query: warning: holes/frame-000005.depth.png: no pose of its camera; the loop goes on with frame-000004.depth.png
@@ -71,7 +71,7 @@ $ mkdir none && cp dark/frame-000100.depth.png none/1.png && vpm-query --tool cu
 
 # Frames go with the other kinds of queries: coherent poses, deadlines, a virtual coupling.
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coherent --quiet | cmp - steps.jsonl
-$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --deadline-us 1e6 --quiet --stats stats.json | $VALIDATE query-result - && $VALIDATE query-stats stats.json
+$ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --deadline-us 1e6 --quiet --stats stats.json --force | $VALIDATE query-result - && $VALIDATE query-stats stats.json
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --coupling stiffness=500,damping=5 --stiffness 2e4 --quiet | tee coupled.jsonl | $VALIDATE coupling-step - && tail -n 1 coupled.jsonl | python3 -c 'import json; s = json.loads(input()); print(s["step"], s["frame"], s["tool"][2] < 0.95)'
 200 frame-000005.depth.png True
 
@@ -90,10 +90,10 @@ $ vpm-query --tool cube.vpmg --frames steps --cloud two.vpmc --trajectory still.
 [2]
 $ vpm-query --tool cube.vpmg --frames steps --trajectory still.txt
 2> vpm-query: note: frames have numbers, not times: they begin with the path, at --frame-rate
-2> vpm-query: error: steps/frame-000000.depth.png: a depth image needs --intrinsics fx,fy,cx,cy (pixels)
+2> vpm-query: error: steps/frame-000000.depth.png: a depth image needs --intrinsics: fx,fy,cx,cy in pixels, or a file with them
 [2]
 $ mkdir bare && vpm-query --tool cube.vpmg --frames bare --trajectory still.txt
-2> vpm-query: error: bare: no frames in it; wanted are .png, .exr, .pcd or .ply files, or depth.txt with "time file" lines
+2> vpm-query: error: bare: no frames in it; wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd or .ply files, or depth.txt with "time file" lines
 [1]
 $ vpm-query --tool cube.vpmg --frames gone --trajectory still.txt
 2> vpm-query: error: cannot read gone: No such file or directory
