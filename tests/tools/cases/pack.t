@@ -33,7 +33,7 @@ $ vpm-pack cube.off --min-radius 0.6 --export none.csv
 [1]
 
 # Some meshes are mended, others are refused.
-$ sed 's/^4 3 2 1 0$/4 0 1 2 3/' cube.off > turned.off && vpm-pack turned.off --spheres 1 --export one.csv
+$ sed 's/^4 3 2 1 0$/4 0 1 2 3/' cube.off > turned.off && vpm-pack turned.off --spheres 1 --export turned.csv
 2> vpm-pack: note: turned.off: 4 edges had neighbours of opposite orientation; 2 triangles were turned to face outward
 $ sed -e '2s/6/5/' -e '$d' cube.off > open.off && vpm-pack open.off -o open.vpmp
 2> vpm-pack: error: open.off: the mesh is open: 4 edges belong to one triangle only, around 1 hole: a loop of 4 edges through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1). * (glob)
@@ -81,4 +81,5 @@ empty.stl
 one.csv
 open.off
 report.json
+turned.csv
 turned.off
