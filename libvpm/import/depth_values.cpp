@@ -25,10 +25,6 @@ float decoded(float value, const DepthDecoding& decoding) {
   return depth > 0 && depth <= kFarthest ? static_cast<float>(depth) : 0.0F;
 }
 
-void append(Remarks& remarks, const Remarks& more) {
-  remarks.insert(remarks.end(), more.begin(), more.end());
-}
-
 bool decodes(const DepthDecoding& decoding) {
   return decoding.swapped || decoding.rotated || decoding.disparity;
 }

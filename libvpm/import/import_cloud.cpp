@@ -69,10 +69,6 @@ ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,
   return scan;
 }
 
-void append(Remarks& remarks, const Remarks& more) {
-  remarks.insert(remarks.end(), more.begin(), more.end());
-}
-
 }  // namespace
 
 ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose& to_world,

@@ -15,4 +15,8 @@ struct Remark {
 
 using Remarks = std::vector<Remark>;
 
+inline void append(Remarks& remarks, const Remarks& more) {
+  remarks.insert(remarks.end(), more.begin(), more.end());
+}
+
 }  // namespace vpm

@@ -99,10 +99,6 @@ Remarks coarse_coordinates(const PointSet& points, const Cloud& cloud) {
                      "or nearer to the origin"}};
 }
 
-void append(Remarks& remarks, const Remarks& more) {
-  remarks.insert(remarks.end(), more.begin(), more.end());
-}
-
 }  // namespace
 
 ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,

@@ -7,24 +7,13 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/json_numbers.h"
 #include "libvpm/recording/pose_reader.h"
 
 namespace vpm {
 namespace {
 
 using nlohmann::json;
-
-// Returns the numbers of a list, or of a list of lists.
-std::vector<double> numbers_of(const json& value) {
-  std::vector<double> numbers;
-  for (const json& item : value) {
-    for (const json& number : item.is_array() ? item : json::array({item})) {
-      if (!number.is_number()) refuse("a pose must be a list of numbers");
-      numbers.push_back(number.get<double>());
-    }
-  }
-  return numbers;
-}
 
 Pose from_matrix(const std::vector<double>& m, double* deviation) {
   if (m.size() != 16 || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)

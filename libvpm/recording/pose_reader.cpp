@@ -11,6 +11,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/file/text.h"
+#include "libvpm/recording/json_numbers.h"
 #include "libvpm/recording/time_stamp.h"
 
 namespace vpm {
@@ -49,16 +50,6 @@ std::vector<double> numbers_of(const std::string& line) {
     if (!value) refuse("not a number: " + file::shown(word));
     numbers.push_back(*value);
     at = line.find_first_not_of(kBetween, end);
-  }
-  return numbers;
-}
-
-std::vector<double> numbers_of(const nlohmann::json& list) {
-  if (!list.is_array()) refuse("a pose must be a list of numbers");
-  std::vector<double> numbers;
-  for (const nlohmann::json& number : list) {
-    if (!number.is_number()) refuse("a pose must be a list of numbers");
-    numbers.push_back(number.get<double>());
   }
   return numbers;
 }

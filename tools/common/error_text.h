@@ -12,6 +12,11 @@ namespace vpm::tools {
 // written.
 int exit_code(ErrorKind kind);
 
+// Throws Error(invalid_argument): the options are at fault, not the data.
+[[noreturn]] inline void refuse_usage(const std::string& message) {
+  throw Error(ErrorKind::invalid_argument, message);
+}
+
 // Returns the library's text with the user's words for parameters and functions in backquotes:
 // `max_hole` becomes --max-hole where has_option("--max-hole"), else the tool that has it is named.
 std::string in_words_of_tools(const std::string& text,

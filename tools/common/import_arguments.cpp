@@ -12,6 +12,7 @@
 #include "libvpm/file/text.h"
 #include "libvpm/import/intrinsics_file.h"
 #include "libvpm/recording/camera_pose_file.h"
+#include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
 
 namespace vpm::tools {
@@ -25,10 +26,6 @@ constexpr std::array<std::pair<const char*, double>, 6> kUnitsPerMetre = {{
     {"in", 1 / 0.0254},
     {"ft", 1 / 0.3048},
 }};
-
-[[noreturn]] void wrong(const std::string& message) {
-  throw Error(ErrorKind::invalid_argument, message);
-}
 
 // Returns the numbers of "1,2,3"; empty if the text is none of that.
 std::vector<double> numbers_in(const std::string& text) {
@@ -118,9 +115,9 @@ void declare_normals(CLI::App& app, ImportArguments& a) {
 
 std::optional<double> units_per_metre(const ImportArguments& a) {
   if (a.depth_scale && !a.unit.empty())
-    wrong("--depth-scale and --unit exclude each other: leave one of them out");
+    refuse_usage("--depth-scale and --unit exclude each other: leave one of them out");
   if (a.depth_scale && !(*a.depth_scale > 0 && std::isfinite(*a.depth_scale)))
-    wrong("--depth-scale must be finite and greater than 0");
+    refuse_usage("--depth-scale must be finite and greater than 0");
   for (const auto& [unit, per_metre] : kUnitsPerMetre)
     if (a.unit == unit) return per_metre;
   return a.depth_scale;
@@ -135,12 +132,13 @@ DepthReading depth_reading(const ImportArguments& a) {
   if (!a.invalid.empty() && reading.has_usual_markers) {
     reading.invalid = numbers_in(a.invalid);
     if (reading.invalid.empty())
-      wrong("--invalid " + a.invalid + ": give values with commas, such as 65535,4095, or none");
+      refuse_usage("--invalid " + a.invalid +
+                   ": give values with commas, such as 65535,4095, or none");
   }
   if (a.range.empty()) return reading;
   const std::vector<double> range = numbers_in(a.range);
   if (range.size() != 2 || !(range[0] >= 0 && range[1] > range[0]))
-    wrong("--range " + a.range + ": give near,far in metres, far greater than near");
+    refuse_usage("--range " + a.range + ": give near,far in metres, far greater than near");
   reading.nearest = range[0];
   reading.farthest = range[1];
   return reading;
@@ -151,8 +149,8 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& 
   const std::vector<double> n = numbers_in(a.intrinsics);
   if (begins_with_number(a.intrinsics)) {
     if (n.size() != 4)
-      wrong("--intrinsics " + a.intrinsics +
-            ": give four numbers fx,fy,cx,cy, or a file with them");
+      refuse_usage("--intrinsics " + a.intrinsics +
+                   ": give four numbers fx,fy,cx,cy, or a file with them");
     options.intrinsics = {n[0], n[1], n[2], n[3]};
   } else {
     const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics);

@@ -225,19 +225,16 @@ nlohmann::json Tool::parameters() const {
 
 namespace {
 
-[[noreturn]] void wrong(const std::string& message) {
-  throw Error(ErrorKind::invalid_argument, message);
-}
-
 // Throws if both outputs would be one file or stream.
 void check_apart(const OutputFile& a, const OutputFile& b) {
   const std::optional<int> descriptor = file::descriptor_of(a.path);
   const bool share_descriptor = descriptor && descriptor == file::descriptor_of(b.path);
   if (share_descriptor && descriptor == STDOUT_FILENO)
-    wrong(std::string("only one output can be standard output: ") + b.option + " or " + a.option);
+    refuse_usage(std::string("only one output can be standard output: ") + b.option + " or " +
+                 a.option);
   if (share_descriptor || file::is_same_file(a.path, b.path))
-    wrong(std::string(b.option) + " and " + a.option + " would both be written to " + a.path +
-          "; name two files");
+    refuse_usage(std::string(b.option) + " and " + a.option + " would both be written to " +
+                 a.path + "; name two files");
 }
 
 }  // namespace
@@ -253,8 +250,8 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
     }
     for (const std::string& input : inputs) {
       if (file::is_same_file(output.path, input))
-        wrong(std::string(output.option) + " would overwrite the input " + input +
-              "; name another output, or give --force");
+        refuse_usage(std::string(output.option) + " would overwrite the input " + input +
+                     "; name another output, or give --force");
     }
     file::check_output(output.path, output.kind);
   }

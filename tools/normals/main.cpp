@@ -9,6 +9,7 @@
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/view/page.h"
+#include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"
 #include "tools/common/tool.h"
 #include "tools/normals/scan_view.h"
@@ -35,12 +36,9 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) {
-    throw Error(ErrorKind::invalid_argument, message);
-  };
-  if (a.depth.empty()) wrong("no depth image is given: name a file, or - for a pipe");
+  if (a.depth.empty()) refuse_usage("no depth image is given: name a file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
-    wrong("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
+    refuse_usage("nothing would be written: give -o OUT.vpmc, --export, --report or --view");
   if (!a.export_path.empty()) check_points_path(a.export_path);
   check_files({a.depth},
               {{"--output", a.output, file::Kind::cloud},

@@ -22,6 +22,7 @@
 #include "libvpm/packing/packing_export.h"
 #include "libvpm/packing/validation.h"
 #include "libvpm/view/page.h"
+#include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/repair_option.h"
 #include "tools/common/scene_report.h"
@@ -118,21 +119,18 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
 }
 
 void check(const Arguments& a, const CommonOptions& common) {
-  const auto wrong = [](const std::string& message) {
-    throw Error(ErrorKind::invalid_argument, message);
-  };
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
-    wrong("--max-hole belongs to --repair voxel or flood");
+    refuse_usage("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
-    wrong("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
+    refuse_usage("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
-    wrong("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
+    refuse_usage("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
-    wrong("only one of the mesh and --for-scene can be standard input");
+    refuse_usage("only one of the mesh and --for-scene can be standard input");
   if (!a.export_path.empty()) export_format(a.export_path);
   if (!a.link.empty() && a.export_path.empty())
-    wrong("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
+    refuse_usage("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt},

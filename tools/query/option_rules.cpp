@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "libvpm/core/error.h"
+#include "tools/common/error_text.h"
 
 namespace vpm::tools {
 namespace {
@@ -100,10 +100,6 @@ constexpr Words kWords[kModes] = {
     {"several tools in a cloud", "chosen by more than one --tool"},
 };
 
-[[noreturn]] void wrong(const std::string& message) {
-  throw Error(ErrorKind::invalid_argument, message);
-}
-
 // True if both are the same text or the same number.
 bool is_same_value(const std::string& a, const std::string& b) {
   double x = 0, y = 0;
@@ -136,9 +132,9 @@ void refuse_options_of_other_modes(const CLI::App& app, Mode mode) {
     if (row.in_mode[column] == no && is_given(app, row.option)) misplaced.push_back(row.option);
   if (misplaced.empty()) return;
   const bool is_one = misplaced.size() == 1;
-  wrong(list_of(misplaced, "and") + (is_one ? " does" : " do") + " not go with " +
-        kWords[column].mode + ", " + kWords[column].choice + ": leave " + (is_one ? "it" : "them") +
-        " out");
+  refuse_usage(list_of(misplaced, "and") + (is_one ? " does" : " do") + " not go with " +
+               kWords[column].mode + ", " + kWords[column].choice + ": leave " +
+               (is_one ? "it" : "them") + " out");
 }
 
 void refuse_missing_options(const CLI::App& app, Mode mode) {
@@ -148,13 +144,13 @@ void refuse_missing_options(const CLI::App& app, Mode mode) {
   for (const Row& row : kTable) {
     const bool given = is_given(app, row.option);
     if (row.in_mode[column] == required && !given)
-      wrong(std::string(row.option) + " is missing: " + row.advice);
+      refuse_usage(std::string(row.option) + " is missing: " + row.advice);
     if (row.in_mode[column] != either) continue;
     alternatives.push_back(row.option);
     has_one = has_one || given;
   }
   if (!alternatives.empty() && !has_one)
-    wrong(list_of(alternatives, "or") + " is missing: give one of them");
+    refuse_usage(list_of(alternatives, "or") + " is missing: give one of them");
 }
 
 }  // namespace
@@ -163,11 +159,12 @@ void check_options(const CLI::App& app, Mode mode) {
   refuse_options_of_other_modes(app, mode);
   for (const auto& [first, second] : kExclusive)
     if (is_given(app, first) && is_given(app, second))
-      wrong(std::string(first) + " and " + second + " exclude each other: leave one of them out");
+      refuse_usage(std::string(first) + " and " + second +
+                   " exclude each other: leave one of them out");
   refuse_missing_options(app, mode);
   for (const auto& [option, needed, advice] : kNeeds)
     if (is_given(app, option) && !is_given(app, needed))
-      wrong(std::string(option) + " needs " + needed + ": " + advice);
+      refuse_usage(std::string(option) + " needs " + needed + ": " + advice);
 }
 
 }  // namespace vpm::tools
