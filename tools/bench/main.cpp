@@ -17,7 +17,9 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("suite", a.suite, "Suite to run: " + suite_names());
-  app.add_option("--out", a.folder, "Write SUITE.json and SUITE.csv into this folder")
+  app.add_option(
+         "--out", a.folder,
+         "Write SUITE.json and SUITE.csv into this folder, which is made if the one above is there")
       ->capture_default_str();
   app.add_flag("--quick", a.quick, "Run a small version that takes seconds");
   app.add_flag("--all", a.all,
@@ -45,20 +47,27 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 // Returns the command that repeats the run, with placeholders for folders.
-std::string command_of(const Arguments& a, const std::string& device) {
+std::string command_of(const Arguments& a, const std::string& device, int threads) {
   const bool usual_noise = a.noise_seed == SuiteOptions::kUsualNoise;
   return "vpm-bench " + a.suite + (a.quick ? " --quick" : "") + (a.all ? " --all" : "") +
          (a.baseline ? " --baseline" : "") +
          (usual_noise ? "" : " --noise-seed " + std::to_string(a.noise_seed)) +
          (a.occluded == "near" ? "" : " --shadows " + a.occluded) +
          (device == "auto" ? "" : " --device " + device) +
+         (threads == 0 ? "" : " --threads " + std::to_string(threads)) +
          (a.meshes.empty() ? "" : " --meshes MESHES") + (a.data.empty() ? "" : " --data DATA");
 }
 
 void run(const tools::Tool& tool, const Arguments& a) {
   const std::string& device = tool.common().device;
   const bool asks_device = device != "auto" || needs_device(a.suite);
-  if (is_suite(a.suite)) make_folder(a.folder);
+  if (is_suite(a.suite)) {
+    make_folder(a.folder);
+    tools::check_files({},
+                       {{"--out", a.folder + "/" + a.suite + ".json", {}},
+                        {"--out", a.folder + "/" + a.suite + ".csv", {}}},
+                       tool.common());
+  }
   tools::Progress progress("vpm-bench " + a.suite, tool.common());
   const Report report = run_suite(
       a.suite,
@@ -70,8 +79,9 @@ void run(const tools::Tool& tool, const Arguments& a) {
        .baseline = a.baseline,
        .noise_seed = a.noise_seed,
        .occluded = a.occluded == "solid" ? OccludedSpace::solid : OccludedSpace::within_reach,
-       .device = asks_device ? tool.device() : Device{}});
-  write(report, command_of(a, device), a.folder);
+       .device = asks_device ? tool.device() : Device{},
+       .threads = tool.common().threads});
+  write(report, command_of(a, device, tool.common().threads), a.folder);
   if (!tool.common().quiet) std::cout << report.summary << std::flush;
   if (!report.failure.empty())
     refuse(report.failure + "; " + a.folder + "/" + a.suite + ".json names them");

@@ -96,9 +96,9 @@ Report run_replay(const SuiteOptions& options) {
                      {"recording", synthetic ? "synthetic" : fs::path(folder).filename().string()}};
   const bool on_cpu = !options.device.is_cuda();
   std::vector<std::function<void()>> parts;
-  if (on_cpu) parts.emplace_back([&] { time_frames(options.quick, report); });
+  if (on_cpu) parts.emplace_back([&] { time_frames(options, report); });
   parts.emplace_back([&] { time_queries(tool, options, report); });
-  if (on_cpu) parts.emplace_back([&] { time_coherence(tool, options.quick, report); });
+  if (on_cpu) parts.emplace_back([&] { time_coherence(tool, options, report); });
   parts.emplace_back([&] { time_points_outside(tool, options, report); });
   parts.emplace_back([&] { run_stream(tool, folder, options, report); });
   parts.emplace_back([&] { run_soak(tool, folder, options, report); });

@@ -31,13 +31,13 @@ Durations timed(int calls, int warm_up, const std::function<void(int call)>& bod
 void time_queries(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
 // Times coherent poses beside the same poses on their own; steps of 0.5 mm, 1 thread.
-void time_coherence(const ReplayTool& tool, bool quick, Report& report);
+void time_coherence(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
 // Times a cloud with twice the points, all added ones beyond the tool's radius; 1 thread.
 void time_points_outside(const ReplayTool& tool, const SuiteOptions& options, Report& report);
 
 // Times the way from the raw depth image to the prepared cloud; 1 and 2 threads.
-void time_frames(bool quick, Report& report);
+void time_frames(const SuiteOptions& options, Report& report);
 
 // Runs a path of the tool of 5 s or more through a recording at 1 kHz and reports, for each level,
 // latencies, the volume's profile and the time of each frame. `folder` is the recording's; it must

@@ -14,6 +14,7 @@
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/replay_parts.h"
 #include "tools/bench/replay_peers.h"
+#include "tools/bench/thread_cap.h"
 
 namespace vpm::bench {
 namespace {
@@ -210,14 +211,14 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
   const PreparedCloud sparse(sparse_grazing_view());
   const Peers peers(tool.solid);
   const PixelCloud pixels = make_pixel_cloud(seen.depth, seen.scene.camera);
-  for (int threads = 1; threads <= (suite.device.is_cuda() ? 1 : 2); ++threads) {
-    set_thread_count(threads);
+  for (const int threads : compared_threads(suite)) {
+    if (suite.device.is_cuda() && threads != 1) continue;
+    const ThreadCap cap(suite, threads);
     for (const std::uint32_t level : tool.levels)
       time_level(tool, suite, seen, level, threads, report);
     time_sparse_points(tool, suite, seen, sparse, threads, report);
     time_peers(tool, suite, seen, peers, pixels, threads, report);
   }
-  set_thread_count(0);
   report.settings["query"] = {{"points", seen.prepared.positions().size()},
                               {"scene", seen.scene.name},
                               {"noise", "kinect"},
@@ -267,25 +268,25 @@ void time_coherence(const ReplayTool& tool, const PreparedCloud& cloud, const Co
   report.summary += line;
 }
 
-void time_coherence(const ReplayTool& tool, bool quick, Report& report) {
+void time_coherence(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
   const synthetic::Scene scene = the_scene();
   const PreparedCloud cloud(make_cloud(noisy_depth(scene), scene.camera, NormalOptions{}));
   constexpr double kRadius = 20e-3;
-  const int poses = static_cast<int>(2 * kPi * kRadius / kCoherentStep), rounds = quick ? 1 : 8;
+  const int poses = static_cast<int>(2 * kPi * kRadius / kCoherentStep),
+            rounds = suite.quick ? 1 : 8;
   const Pose inside = pose_inside(tool.model, cloud);
   const Pose before{inside.rotation, inside.translation - Vec3{0, 0, 1.5 * tool.model.reach}};
   const CoherentPath contact{"in contact", circle(inside, kRadius, poses)},
       free{"free", circle(before, kRadius, poses)};
-  set_thread_count(1);
+  const ThreadCap cap(suite, 1);
   for (const std::uint32_t level : tool.levels) {
     time_coherence(tool, cloud, free, level, rounds, report);
     time_coherence(tool, cloud, contact, level, rounds, report);
   }
-  set_thread_count(0);
 }
 
 void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Report& report) {
-  set_thread_count(1);
+  const ThreadCap cap(suite, 1);
   for (const bool camera : {true, false}) {
     const PreparedCloud once(wide_view(640, camera)), twice(wide_view(1280, camera));
     const std::uint32_t level = tool.levels[camera ? 1 : 0];
@@ -314,15 +315,14 @@ void time_points_outside(const ReplayTool& tool, const SuiteOptions& suite, Repo
                   100 * change);
     report.summary += line;
   }
-  set_thread_count(0);
 }
 
-void time_frames(bool quick, Report& report) {
+void time_frames(const SuiteOptions& suite, Report& report) {
   const synthetic::Scene scene = the_scene();
   const DepthImage depth = noisy_depth(scene);
-  const int calls = quick ? 5 : 101, warm_up = 2;
-  for (const int threads : {1, 2}) {
-    set_thread_count(threads);
+  const int calls = suite.quick ? 5 : 101, warm_up = 2;
+  for (const int threads : compared_threads(suite)) {
+    const ThreadCap cap(suite, threads);
     const auto add = [&](const std::string& what, const std::function<void(int)>& body) {
       const Durations d = timed(calls, warm_up, body);
       report.results.push_back({{"part", "frame"},
@@ -349,7 +349,6 @@ void time_frames(bool quick, Report& report) {
     PreparedCloud frame{Cloud{}};
     add("all, inverse-depth", [&](int) { preparation.prepare(depth, scene.camera, frame); });
   }
-  set_thread_count(0);
 }
 
 }  // namespace vpm::bench

@@ -15,6 +15,7 @@
 #include "libvpm/recording/timed_path.h"
 #include "tools/bench/peak_memory.h"
 #include "tools/bench/replay_parts.h"
+#include "tools/bench/thread_cap.h"
 
 namespace vpm::bench {
 namespace {
@@ -201,14 +202,13 @@ void run_stream(const ReplayTool& tool, const std::string& folder, const SuiteOp
                 Report& report) {
   const Stream stream = read_stream(folder, suite.device);
   const SampledPath path = path_through(stream, tool.model, suite.quick ? 1 : 5);
-  set_thread_count(1);  // for the loop; another thread prepares frames
+  const ThreadCap cap(suite, 1);  // for the loop; another thread prepares frames
   report.table.columns = {"spheres", "time", "volume_fraction"};
   for (const std::uint32_t level : tool.levels) {
     ToolQuery query(tool.model,
                     {.level = level, .device = suite.device, .coherent = !suite.device.is_cuda()});
     add_pass(pass_over(stream, path, query), level, report);
   }
-  set_thread_count(0);
 }
 
 void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOptions& suite,

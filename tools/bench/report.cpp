@@ -67,12 +67,15 @@ nlohmann::json to_json(const Report& report, const std::string& command) {
 }
 
 void make_folder(const std::string& folder) {
+  if (std::filesystem::is_directory(folder)) return;
   std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (fault) {
-    throw Error(ErrorKind::cannot_write,
-                "cannot make the folder " + folder + ": " + fault.message());
-  }
+  std::filesystem::create_directory(folder, fault);
+  if (!fault) return;
+  const std::string advice = fault == std::errc::no_such_file_or_directory
+                                 ? "; correct its name, or make the folder above it"
+                                 : "";
+  throw Error(ErrorKind::cannot_write,
+              "cannot make the folder " + folder + ": " + fault.message() + advice);
 }
 
 void write(const Report& report, const std::string& command, const std::string& folder) {

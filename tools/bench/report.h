@@ -30,8 +30,8 @@ std::string to_csv(const Table& table);
 // time.
 nlohmann::json to_json(const Report& report, const std::string& command);
 
-// Makes the folder before the work begins, so that a refusal comes at once. Throws
-// Error(cannot_write).
+// Makes the folder before the work begins, so that a refusal comes at once; but no folders above
+// it, whose names may be typing errors. Throws Error(cannot_write).
 void make_folder(const std::string& folder);
 
 // Writes <folder>/<suite>.json and .csv; makes the folder. Throws Error(cannot_write).

@@ -25,6 +25,7 @@ struct SuiteOptions {
   OccludedSpace occluded =
       OccludedSpace::within_reach;  // accuracy; solid leaves out clouds without camera
   Device device = {};               // computes the queries, in suites that take one
+  int threads = 0;                  // to measure with; 0: what each part usually takes
 };
 
 // Returns the names of all suites, "accuracy, extremes, ...", or of those that take a CUDA device.
@@ -43,7 +44,7 @@ Report run_accuracy(const SuiteOptions& options);
 // refused with a message.
 Report run_extremes(const SuiteOptions& options);
 
-// Times every stage from the mesh to the wrench, with 1 and 2 threads.
+// Times every stage from the mesh to the wrench, with 1 and 2 threads or with `threads`.
 Report run_timing(const SuiteOptions& options);
 
 // Measures time against error over everything that a user can turn, and the choices of --max-error

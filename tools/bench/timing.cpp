@@ -21,6 +21,7 @@
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
+#include "tools/bench/thread_cap.h"
 
 namespace vpm::bench {
 namespace {
@@ -60,8 +61,9 @@ class Timing {
     report_.table.columns = {"stage",        "spheres", "threads", "median_ms", "quartile1_ms",
                              "quartile3_ms", "min_ms",  "max_ms",  "runs"};
     report_.summary =
-        "stage                                      spheres       1 thread: median [quartiles] ms"
-        "      2 threads   ratio\n";
+        "stage                                      spheres threads: median [quartiles] ms, and "
+        "the "
+        "ratio of the first to the last\n";
   }
 
   Report run() {
@@ -72,16 +74,19 @@ class Timing {
   }
 
  private:
-  // Times one stage with 1 and with 2 threads; the time is per call if the stage makes `times`
+  // Times one stage with each number of threads; the time is per call if the stage makes `times`
   // calls.
   void time(const std::string& stage, std::size_t spheres, int runs,
             const std::function<void()>& body, std::size_t times = 1) {
-    Spread by_threads[2];
-    for (const int threads : {1, 2}) {
-      set_thread_count(threads);
+    std::vector<double> medians;
+    char text[160];
+    std::snprintf(text, sizeof text, "%-42s %7zu", stage.c_str(), spheres);
+    std::string line = text;
+    for (const int threads : compared_threads(options_)) {
+      const ThreadCap cap(options_, threads);
       std::vector<double> took = milliseconds_of(runs, body);
       for (double& of_run : took) of_run /= static_cast<double>(times);
-      const Spread s = by_threads[threads - 1] = spread_of(took);
+      const Spread s = spread_of(took);
       report_.table.rows.push_back({stage, static_cast<double>(spheres),
                                     static_cast<double>(threads), s.median, s.quartile1,
                                     s.quartile3, s.min, s.max, static_cast<double>(runs)});
@@ -94,13 +99,13 @@ class Timing {
                                  {"min_ms", s.min},
                                  {"max_ms", s.max},
                                  {"runs", runs}});
+      std::snprintf(text, sizeof text, " %3d: %10.3f [%.3f, %.3f]", threads, s.median, s.quartile1,
+                    s.quartile3);
+      line += text;
+      medians.push_back(s.median);
     }
-    set_thread_count(0);
-    char line[160];
-    std::snprintf(line, sizeof line, "%-42s %7zu %12.3f [%.3f, %.3f] %15.3f %7.2f\n", stage.c_str(),
-                  spheres, by_threads[0].median, by_threads[0].quartile1, by_threads[0].quartile3,
-                  by_threads[1].median, by_threads[0].median / by_threads[1].median);
-    report_.summary += line;
+    std::snprintf(text, sizeof text, " %7.2f\n", medians.front() / medians.back());
+    report_.summary += line + text;
     if (options_.progress) {
       const double recorded = options_.data.empty() ? 0 : 1;
       const double stages = 7 + recorded + (9 + 3 * recorded) * static_cast<double>(sizes_.size());

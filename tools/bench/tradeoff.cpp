@@ -20,6 +20,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/suite.h"
+#include "tools/bench/thread_cap.h"
 #include "tools/bench/tradeoff_report.h"
 #include "tools/bench/view.h"
 
@@ -164,8 +165,8 @@ class Tradeoff {
   }
 
   void vary(const std::string& what, std::uint32_t spheres, Measure measured_by,
-            const Sensing& sensing, int threads) {
-    set_thread_count(threads);
+            const Sensing& sensing, int usual_threads) {
+    const ThreadCap cap(options_, usual_threads);
     for (const Case& c : cases_) {
       QueryOptions query_options;
       query_options.measure = measured_by;
@@ -179,7 +180,7 @@ class Tradeoff {
                  to_text(sensing.normals.method),
                  sensing.normals.window,
                  static_cast<int>(sensing.stride),
-                 threads,
+                 thread_count(),
                  spheres,
                  0,
                  {}};
@@ -187,7 +188,6 @@ class Tradeoff {
       measured_.push_back(m);
       if (options_.progress) options_.progress(std::min(0.99, 0.0013 * measured_.size()));
     }
-    set_thread_count(0);
   }
 
   static Sensing sensing(Noise noise) {
@@ -223,7 +223,7 @@ class Tradeoff {
 
   void vary_threads() {
     for (const std::uint32_t spheres : {kUsual, levels_.back()})
-      for (const int threads : {1, 2})
+      for (const int threads : compared_threads(options_))
         vary("threads", spheres, Measure::refined, sensing(Noise::none), threads);
   }
 
@@ -253,7 +253,7 @@ class Tradeoff {
   void keep_deadlines() {
     const std::size_t queries = options_.quick ? 500 : 10000;
     constexpr int kSteps = 250;
-    set_thread_count(1);
+    const ThreadCap cap(options_, 1);
     for (const Case& c : cases_) {
       const synthetic::Scene scene = synthetic::make_scene(c.scene);
       const Tool& t = tool(c.shape);
@@ -277,7 +277,6 @@ class Tradeoff {
         deadlines_.push_back(d);
       }
     }
-    set_thread_count(0);
   }
 
   // Measures levels and packings by --for-scene beside the fixed sizes.
@@ -298,15 +297,12 @@ class Tradeoff {
         QueryOptions query_options;
         query_options.level = f.level;
         query_options.device = options_.device;
-        set_thread_count(1);
-        f.level_errors = measure(c, t.model, query_options, sensing(noise), f.level_us);
-        set_thread_count(0);
         const ToolModel packed = packed_for(t.solid.solid(), f.scale);
         f.packed = static_cast<std::uint32_t>(packed.spheres.size());
-        set_thread_count(1);
+        const ThreadCap cap(options_, 1);
+        f.level_errors = measure(c, t.model, query_options, sensing(noise), f.level_us);
         f.packed_errors =
             measure(c, packed, {.device = options_.device}, sensing(noise), f.packed_us);
-        set_thread_count(0);
         fitted_.push_back(f);
       }
     }

@@ -9,3 +9,11 @@ $ vpm-bench speed
 $ vpm-bench timing --noise-seed 3
 2> vpm-bench: error: timing takes no --noise-seed, which is for accuracy; leave it out
 [2]
+
+# A folder is made, but none above it, whose name may be a typing error. Results are kept.
+$ vpm-bench extremes --quick --quiet --out resluts/today
+2> vpm-bench: error: cannot make the folder resluts/today: No such file or directory; correct its name, or make the folder above it
+[4]
+$ mkdir today && echo {} > today/extremes.json && vpm-bench extremes --quick --quiet --out today
+2> vpm-bench: error: today/extremes.json exists; name another output, or give --force to overwrite it
+[2]
