@@ -5,14 +5,14 @@ usage: plot_accuracy.py FOLDER    (reads accuracy.csv and accuracy.json, writes 
 """
 import csv
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+from plot_folder import draw_folder
 
 LINES = {("paper", "none"): ("C1", "-"), ("paper", "kinect"): ("C1", ":"),
          ("refined", "none"): ("C0", "-"), ("refined", "kinect"): ("C0", ":")}
@@ -57,8 +57,7 @@ def draw_errors(axis, results):
     axis.legend(fontsize=7, ncol=4)
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     with (folder / "accuracy.csv").open() as file:
         rows = list(csv.DictReader(file))
     report = json.loads((folder / "accuracy.json").read_text())
@@ -73,4 +72,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["accuracy.csv", "accuracy.json"], "vpm-bench accuracy --out FOLDER")

@@ -5,14 +5,14 @@ usage: plot_demo.py FOLDER
 """
 import csv
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+from plot_folder import draw_folder
 
 STATES = [("outside", "#a0a0a0"), ("boundary", "#ff8c00"), ("inside", "#c80000")]
 ML = 1e6  # millilitres in a cubic metre
@@ -81,12 +81,11 @@ def draw(folder, results, truth):
     print(f"\nThe picture is {folder / 'demo.png'}; the other files lie beside it.")
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     results, truth = read(folder)
     describe(folder, results, truth)
     draw(folder, results, truth)
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["results.jsonl", "truth.csv", "pack.json", "stats.json", "spheres.csv", "depth.png"], "scripts/demo.sh FOLDER")

@@ -4,14 +4,14 @@
 usage: plot_packing.py FOLDER    (reads packing.json, writes packing.png)
 """
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+
+from plot_folder import draw_folder
 
 STYLES = {"vpm-pack": "-", "refined voxels": "--", "voxel centres": ":"}
 APOLLONIAN = -0.2126  # exponent of what greedy packings leave uncovered
@@ -61,8 +61,7 @@ def draw_cost(axis, rows):
     axis.legend(fontsize=8)
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     rows = json.loads((folder / "packing.json").read_text())["results"]
     figure, (coverage, growth, cost) = plt.subplots(1, 3, figsize=(17, 5))
     draw_coverage(coverage, [r for r in rows if r["part"] == "coverage"])
@@ -74,4 +73,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["packing.json"], "vpm-bench packing --out FOLDER")

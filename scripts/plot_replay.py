@@ -5,13 +5,13 @@ and the time of each frame.
 usage: plot_replay.py FOLDER    (reads replay.json, writes replay_profile.png and replay_frames.png)
 """
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+from plot_folder import draw_folder
 
 
 def thousands(number):
@@ -50,13 +50,14 @@ def frames(streams, path):
     print(path)
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     report = json.loads((folder / "replay.json").read_text())
     streams = [r for r in report["results"] if r["part"] == "stream"]
+    if not streams:
+        raise ValueError("no pass over the stream")
     profile(streams, folder / "replay_profile.png")
     frames(streams, folder / "replay_frames.png")
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["replay.json"], "vpm-bench replay --out FOLDER")

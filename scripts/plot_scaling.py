@@ -5,13 +5,13 @@ boundary and flood, and along the path of the tool, both logarithmic (figures 7 
 usage: plot_scaling.py FOLDER    (reads scaling.json, writes scaling.png)
 """
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+from plot_folder import draw_folder
 
 # Maps a measure to its label, its color, and the fields with the times of its boundary and its flood.
 MEASURES = {
@@ -53,8 +53,7 @@ def draw_path(axis, frames):
     axis.set_title(f"{frames[0]['spheres']:,} spheres along the path".replace(",", " "), fontsize=9)
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     report = json.loads((folder / "scaling.json").read_text())
     rows = [r for r in report["results"] if r["part"] == "spheres"]
     frames = [r for r in report["results"] if r["part"] == "frame"]
@@ -73,4 +72,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["scaling.json"], "vpm-bench scaling --out FOLDER")

@@ -4,8 +4,6 @@
 usage: plot_timing.py FOLDER    (reads timing.json, writes timing.png)
 """
 import json
-import pathlib
-import sys
 
 import matplotlib
 
@@ -13,13 +11,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from plot_folder import draw_folder
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+
+def draw_results(folder):
     rows = json.loads((folder / "timing.json").read_text())["results"]
     stages = list(dict.fromkeys((r["stage"], r["spheres"]) for r in rows))
     figure, axis = plt.subplots(figsize=(10, 0.5 * len(stages) + 1.5))
-    for threads, shift in ((1, -0.2), (2, 0.2)):
+    counts = sorted({r["threads"] for r in rows})
+    for k, threads in enumerate(counts):
+        shift = 0.4 * (k - (len(counts) - 1) / 2)
         of = {(r["stage"], r["spheres"]): r for r in rows if r["threads"] == threads}
         median = np.array([of[s]["median_ms"] for s in stages])
         low = median - np.array([of[s]["quartile1_ms"] for s in stages])
@@ -40,4 +41,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["timing.json"], "vpm-bench timing --out FOLDER")

@@ -4,13 +4,13 @@
 usage: plot_tradeoff.py FOLDER    (reads tradeoff.json, writes tradeoff.png)
 """
 import json
-import pathlib
-import sys
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+from plot_folder import draw_folder
 
 COLORS = {("refined", "none"): "tab:blue", ("refined", "kinect"): "tab:cyan",
           ("paper", "none"): "tab:red", ("paper", "kinect"): "tab:orange"}
@@ -22,10 +22,11 @@ def point(row):
     return row["mean_us"], max(100 * row["volume_mean"], 1e-4)
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def draw_results(folder):
     report = json.loads((folder / "tradeoff.json").read_text())
     rows = [r for r in report["results"] if "mean_us" in r]
+    if not rows:
+        raise ValueError("no times")
     figure, axis = plt.subplots(figsize=(8, 5.5))
     for (measure, noise), color in COLORS.items():
         curve = sorted((r for r in rows if (r["varied"], r["measure"], r["noise"])
@@ -52,4 +53,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    draw_folder(draw_results, ["tradeoff.json"], "vpm-bench tradeoff --out FOLDER")
