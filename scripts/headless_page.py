@@ -4,6 +4,8 @@
         page = browser.open("pose.html", 1280, 720)
         page.evaluate("vpm.setStep(3)")
         page.screenshot("pose.png")
+
+usage as a program: headless_page.py PAGE.html PICTURE.png [JAVASCRIPT to run before the picture is taken]
 """
 import base64
 import json
@@ -11,6 +13,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -165,3 +168,23 @@ class Page:
 
     def close(self):
         self.browser.call("Target.closeTarget", targetId=self.target)
+
+
+def main():
+    if len(sys.argv) not in (3, 4):
+        print(__doc__, file=sys.stderr)
+        return 2
+    if not program():
+        sys.exit("headless_page.py: there is no Chromium; install it (Debian: chromium)")
+    with Browser() as browser:
+        page = browser.open(pathlib.Path(sys.argv[1]).resolve())
+        if len(sys.argv) == 4:
+            page.evaluate(sys.argv[3])
+        page.screenshot(pathlib.Path(sys.argv[2]))
+        for fault in page.faults:
+            print(f"headless_page.py: {sys.argv[1]}: {fault}", file=sys.stderr)
+        return 1 if page.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

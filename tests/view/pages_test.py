@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zlib
 
@@ -150,6 +151,18 @@ class Query(PageTest):
         page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight")
         self.assertEqual(page.report()["step"], 4)
 
+    def test_button_plays_the_path_and_stops(self):
+        page = self.open("query.html")
+        page.evaluate("document.getElementById('play').click()")
+        deadline = time.monotonic() + 20
+        while page.report()["step"] == 0 and time.monotonic() < deadline:
+            time.sleep(0.1)
+        self.assertGreater(page.report()["step"], 0)
+        page.evaluate("document.getElementById('play').click()")
+        stopped = page.report()["step"]
+        time.sleep(0.5)
+        self.assertEqual(page.report()["step"], stopped)
+
     def test_screenshots_show_tool_and_surface_on_desks_and_phones(self):
         for width, height, phone in ((1280, 720, False), (390, 844, True)):
             page = self.open("query.html", width, height, phone)
@@ -249,6 +262,24 @@ class Query(PageTest):
         self.assertEqual(page.report()["faults"], [])
 
 
+    def test_a_recording_shows_the_frame_of_each_step(self):
+        recording = pathlib.Path(__file__).resolve().parents[3] / "shared/data/depth/redkitchen_seq"
+        if not recording.is_dir():
+            self.skipTest("the recording is not there")
+        camera = numpy.loadtxt(recording / "frame-000460.pose.txt")
+        steps = [(k / 30, camera[:3, :3] @ (0, 0, 1.2 + 0.1 * k) + camera[:3, 3]) for k in range(5)]
+        (FOLDER / "kitchen.txt").write_text("".join(f"{t} {x} {y} {z} 0 0 0 1\n" for t, (x, y, z) in steps))
+        run("vpm-query", "--tool", "tool.vpmg", "--frames", recording, "--trajectory", "kitchen.txt", "--rate", 100,
+            "--intrinsics", "585,585,320,240", "--depth-scale", 1000, "--quiet", "-o", "kitchen.jsonl", "--view",
+            "kitchen.html")
+        page, lines = self.open("kitchen.html"), results("kitchen.jsonl")
+        self.assertEqual(page.report()["steps"], len(lines))
+        page.evaluate(f"vpm.setStep({len(lines) - 1})")
+        self.assert_shows(page, lines[-1])
+        page.evaluate("vpm.setView('camera')")
+        self.assertGreater(share(scene(page), surface), 0.1)
+
+
 class OtherTools(PageTest):
     def test_a_packing_grows_with_the_slider(self):
         page, report = self.open("pack.html"), json.loads((FOLDER / "pack.json").read_text())
@@ -271,6 +302,23 @@ class OtherTools(PageTest):
         self.assertIn("the mesh is open", page.evaluate("document.getElementById('notes').textContent"))
         orange = lambda r, g, b: (r > 0.7) & (g > 0.2) & (g < 0.55) & (b < 0.25)
         self.assertGreater(share(scene(page), orange), 0.0003)
+
+    def test_an_edge_of_four_triangles_is_shown(self):
+        (FOLDER / "edge.off").write_text(
+            "OFF\n6 8 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n0 0 -1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+            "3 0 4 1\n3 0 1 5\n3 0 5 4\n3 1 4 5\n")
+        run("vpm-pack", "edge.off", "-o", "edge.vpmp", "--view", "edge.html", code=1)
+        page = self.open("edge.html")
+        self.assertEqual(self.layer(page, "non-manifold edges")["count"], 1)
+        self.assertGreater(numpy.std(scene(page)), 0.02)
+
+    def test_other_tools_fit_a_phone(self):
+        for name in ("pack.html", "graph.html", "normals.html", "open.html"):
+            if name == "open.html":
+                self.test_a_refused_mesh_shows_its_defects()
+            page = self.open(name, 390, 844, True)
+            self.assertLessEqual(page.evaluate("document.documentElement.scrollWidth - innerWidth"), 0, name)
+            self.assertGreater(numpy.std(scene(page)), 0.02, name)
 
     def test_a_scan_tells_which_pixels_have_no_normal(self):
         page, report = self.open("normals.html"), json.loads((FOLDER / "normals.json").read_text())
