@@ -32,7 +32,7 @@ for sanitizer in memcheck racecheck initcheck synccheck; do sanitize $sanitizer 
 sanitize memcheck cuda_baseline_tests memcheck-baseline
 
 "$bundle/bin/control-loop" "$tool" "$cloud" device=cpu queries=1 poses="$work/poses.jsonl" path=400 >/dev/null
-query=("$bundle/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet)
+query=("$bundle/bin/vpm-query" --tool "$tool" --cloud "$cloud" --quiet --force)
 same=()
 for measure in refined paper; do
   for level in ${levels//,/ }; do
