@@ -148,9 +148,15 @@ class FootSearch {
       least = is_better ? off : least;
       on_surface.normal = choose(is_better, normal, on_surface.normal);
     };
+    // Takes each normal by value: a choice between members would put them all in local memory.
+    Stored in_row_side = beside.left, in_column_side = beside.above;
+#ifdef __CUDA_ARCH__
+#pragma unroll 1  // needs fewer registers
+#endif
     for (std::int32_t side = -1; side <= 1; side += 2) {
-      consider(in_row, u + side * beside.across, v, side < 0 ? beside.left : beside.right);
-      consider(in_column, u, v + side * beside.down, side < 0 ? beside.above : beside.below);
+      consider(in_row, u + side * beside.across, v, in_row_side);
+      consider(in_column, u, v + side * beside.down, in_column_side);
+      in_row_side = beside.right, in_column_side = beside.below;
     }
     on_surface.distance =
         least < HUGE_VAL ? dot(on_surface.normal, x_ - on_surface.foot) : on_surface.distance;
