@@ -61,12 +61,11 @@ class GroupMeasure {
       if (c < work_.level.task_group_count) look_at(c, slot, lanes);
       __syncthreads();
       note_pushed();
-      classify_seen();
+      classify_seen(first + slots * work_.part.parts >= work_.level.task_group_count);
       __syncthreads();
       clear_seen();
       __syncthreads();
     }
-    tasks_.measure();
     return tasks_.found();
   }
 
@@ -151,13 +150,14 @@ class GroupMeasure {
       if ((task.flags & BlockTask::is_head) != 0) note_pushed(task, normal);
     }
   }
-  // Classifies the listed block tasks in rounds, before each of which the lists get room: those of
-  // cut clusters by the first warps, others by the rest. Neighbours go to different warps.
-  __device__ void classify_seen() {
+  // Classifies the listed block tasks in rounds, after each of which the lists get room: those of
+  // cut clusters by the first warps, others by the rest. Neighbours go to different warps. Empties
+  // the lists after the last round of the last groups, so that measuring is compiled in once.
+  __device__ void classify_seen(bool is_last) {
     const unsigned clipped_count = shared_.clipped_count, count = shared_.seen_count;
     const unsigned warps = idle_warps(), lanes = lanes_of_clipped(warps);
     const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
-    for (unsigned clipped = 0, others = 0; clipped < clipped_count || others < count;) {
+    for (unsigned clipped = 0, others = 0; is_last || clipped < clipped_count || others < count;) {
       const unsigned first =
           warps_for_clipped(warps, warps_of(clipped_count - clipped, lanes), count - others);
       const unsigned rest = warps - first;
@@ -172,7 +172,9 @@ class GroupMeasure {
       }
       clipped = min(clipped_count, clipped + first * (32 / lanes));
       others = min(count, others + rest * (32 / kLanes));
-      tasks_.make_room(blockDim.x);
+      const bool ends = is_last && clipped == clipped_count && others == count;
+      tasks_.make_room(ends ? TaskLists::kTasks + 1 : blockDim.x);
+      is_last &= !ends;
     }
   }
   __device__ static unsigned warps_of(unsigned units, unsigned lanes) {
