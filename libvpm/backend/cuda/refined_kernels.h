@@ -203,7 +203,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ PoseFrame frame;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
-  const RefinedSpace space = space_of(launch.space, launch.room, blockIdx.x);
+  __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory
+  if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
     for (const CellNotes& notes : space.notes) notes.clear(level, {});
   };
