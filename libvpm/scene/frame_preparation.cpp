@@ -114,14 +114,9 @@ void FramePreparation::prepare(const DepthImage& depth, const Camera& camera,
   }
 }
 
-// Returns false if a normal is not sound.
-bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
-                                    PreparedCloud& cloud) {
-  validate(camera, "the cloud");
-  const std::size_t width = depth.width, height = depth.height, pixels = width * height;
-  const Intrinsics& k = camera.intrinsics;
-  const Rotation to_camera =
-      relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
+// Gives the cloud the frame's camera and room for a point in each pixel.
+void FramePreparation::take_camera(const Camera& camera, PreparedCloud& cloud) {
+  const std::size_t width = camera.width, pixels = width * camera.height;
   if (!cloud.is_organised()) cloud = PreparedCloud{Cloud{}};  // clears the data of disks
   cloud.serial_ = PreparedCloud::next_serial();
   cloud.origin_ = camera.to_world.translation;
@@ -129,9 +124,21 @@ bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camer
   cloud.positions_.resize(pixels);
   cloud.normals_.resize(pixels);
   cloud.pixel_begin_.resize(pixels + 1);
-  row_points_.resize(height);
+  row_points_.resize(camera.height);
   rays_.resize(width + kTile);
-  for (std::size_t u = 0; u < width; ++u) rays_[u] = (static_cast<double>(u) - k.cx) / k.fx;
+  for (std::size_t u = 0; u < width; ++u)
+    rays_[u] = (static_cast<double>(u) - camera.intrinsics.cx) / camera.intrinsics.fx;
+}
+
+// Returns false if a normal is not sound.
+bool FramePreparation::prepare_rows(const DepthImage& depth, const Camera& camera,
+                                    PreparedCloud& cloud) {
+  validate(camera, "the cloud");
+  const std::size_t width = depth.width;
+  const Intrinsics& k = camera.intrinsics;
+  const Rotation to_camera =
+      relative_to(camera.to_world, {{}, camera.to_world.translation}).rotation;
+  take_camera(camera, cloud);
   images_.resize(depth.width, depth.height, options_);
   steps_.resize(depth.width, depth.height);
   SeenImage& seen = steps_.seen();

@@ -19,6 +19,7 @@ class FramePreparation {
   void prepare(const DepthImage& depth, const Camera& camera, PreparedCloud& cloud);
 
  private:
+  void take_camera(const Camera& camera, PreparedCloud& cloud);
   bool prepare_rows(const DepthImage& depth, const Camera& camera, PreparedCloud& cloud);
   void close_ranks(std::size_t width, PreparedCloud& cloud) const;
 

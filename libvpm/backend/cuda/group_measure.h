@@ -211,6 +211,11 @@ class GroupMeasure {
   __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const;
   __device__ void note_pushed(const BlockTask& task, Vec3 normal);
   __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap);
+  __device__ std::uint32_t word_of_cell(Side side, Side of_sphere, bool whole, bool hidden) const;
+  template <class BallClass>
+  __device__ void add_ambiguous(const BlockTask& task, const BallClass& in_ball, Vec3 at,
+                                double radius, const SurfaceSample& on_surface);
+  __device__ void add_whole(const BlockTask& task);
   __device__ void list_block(const BlockTask& task, BlockClass found);
 
   const PoseWork<Surface>& work_;
@@ -260,28 +265,55 @@ __device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
     whole |= side == Side::no_surface && behind;
   }
   if (!active) return;
-  if (lanes.lane == BlockTask::of_cell && head) {
-    std::uint32_t word = whole ? cell_bit::whole : 0;
-    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
-    if ((whole || side == Side::ambiguous) && hidden) {
-      word |= cell_bit::hidden;
-      atomicAdd(&work_.counters.hidden, 1U);
-    }
-    note_cell(task, word, gap);
-  }
+  if (lanes.lane == BlockTask::of_cell && head)
+    note_cell(task, word_of_cell(side, of_sphere, whole, hidden), gap);
   if (lanes.lane != BlockTask::of_block) return;
-  if (side == Side::ambiguous && (flags & BlockTask::has_block) != 0) {
-    TangentPlane tangent;
-    const BlockClass found = class_of_block(
-        work_.surface, in_ball, at, ball.radius, work_.level.tool_reach, [&] { return on_surface; },
-        tangent);
-    if (found == BlockClass::cut)
-      tasks_.add_clipped(task, {tangent, work_.to_surface});
-    else
-      list_block(task, found);
-  } else if (whole && (flags & BlockTask::is_compact) != 0) {
-    if (head) tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
-  } else if (whole && (flags & BlockTask::has_block) != 0) {
+  if (side == Side::ambiguous)
+    add_ambiguous(task, in_ball, at, ball.radius, on_surface);
+  else if (whole)
+    add_whole(task);
+}
+
+// Returns the word to note of a cell that is `whole` behind the surface or ambiguous; counts a
+// hidden one.
+template <class Surface>
+__device__ std::uint32_t GroupMeasure<Surface>::word_of_cell(Side side, Side of_sphere, bool whole,
+                                                             bool hidden) const {
+  std::uint32_t word = whole ? cell_bit::whole : 0;
+  if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
+  if ((whole || side == Side::ambiguous) && hidden) {
+    word |= cell_bit::hidden;
+    atomicAdd(&work_.counters.hidden, 1U);
+  }
+  return word;
+}
+
+// Lists the block of an ambiguous cell; its ball was classified and, where that is ambiguous,
+// sampled.
+template <class Surface>
+template <class BallClass>
+__device__ void GroupMeasure<Surface>::add_ambiguous(const BlockTask& task,
+                                                     const BallClass& in_ball, Vec3 at,
+                                                     double radius,
+                                                     const SurfaceSample& on_surface) {
+  if ((task.flags & BlockTask::has_block) == 0) return;
+  TangentPlane tangent;
+  const BlockClass found = class_of_block(
+      work_.surface, in_ball, at, radius, work_.level.tool_reach, [&] { return on_surface; },
+      tangent);
+  if (found == BlockClass::cut)
+    tasks_.add_clipped(task, {tangent, work_.to_surface});
+  else
+    list_block(task, found);
+}
+
+// Lists the block of a cell that counts whole, or the cell itself where it is compact.
+template <class Surface>
+__device__ void GroupMeasure<Surface>::add_whole(const BlockTask& task) {
+  if ((task.flags & BlockTask::is_compact) != 0) {
+    if ((task.flags & BlockTask::is_head) != 0)
+      tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
+  } else if ((task.flags & BlockTask::has_block) != 0) {
     tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
   }
 }

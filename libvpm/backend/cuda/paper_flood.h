@@ -126,6 +126,14 @@ class PaperFlood {
   __device__ static unsigned before(const Subwarp& subwarp, unsigned ballot) {
     return __popc(ballot & ((1U << subwarp.lane) - 1));
   }
+  // Returns the sum of the values in a warp's lanes up to this one.
+  __device__ static unsigned sum_upto(const Subwarp& warp, unsigned value) {
+    for (unsigned step = 1; step < 32; step *= 2) {
+      const unsigned lower = __shfl_up_sync(~0U, value, step);
+      if (warp.lane >= step) value += lower;
+    }
+    return value;
+  }
 
   __device__ void enter();
   __device__ void pass_front(unsigned size);
@@ -291,11 +299,7 @@ __device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
       claim(warp, words[k] == 0, spheres[k]);
     }
     __syncthreads();
-    unsigned upto = shared_.counts[warp.lane];
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const unsigned lower = __shfl_up_sync(~0U, upto, step);
-      if (warp.lane >= step) upto += lower;
-    }
+    const unsigned upto = sum_upto(warp, shared_.counts[warp.lane]);
 #pragma unroll
     for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
       const unsigned slot =
