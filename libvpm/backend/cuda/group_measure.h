@@ -42,12 +42,16 @@ struct SampleByLanes : SampleInTurn {
 template <class Surface>
 class GroupMeasure {
  public:
-  __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared)
-      : work_(work), counts_points_(counts_points), shared_(shared), tasks_(work, shared.lists) {}
+  // Adds to `found`, this thread's sums, which are 0 before.
+  __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared,
+                          RawResult& found)
+      : work_(work),
+        counts_points_(counts_points),
+        shared_(shared),
+        tasks_(work, shared.lists, found) {}
 
-  // Classifies the task groups of the block's part. Returns this thread's sums. Call from all
-  // threads.
-  __device__ RawResult run() {
+  // Classifies the task groups of the block's part. Call from all threads.
+  __device__ void run() {
     if (kFloods && work_.part.part == 0 && threadIdx.x == 0) work_.space.parents[0] = 0;
     clear_seen();
     tasks_.clear();
@@ -66,7 +70,7 @@ class GroupMeasure {
       clear_seen();
       __syncthreads();
     }
-    return tasks_.found();
+    tasks_.finish();
   }
 
  private:

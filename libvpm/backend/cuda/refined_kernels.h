@@ -96,7 +96,9 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
   }
-  return GroupMeasure<Surface>(work, launch.counts_points, shared.measure).run();
+  RawResult found;
+  GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
+  return found;
 }
 
 // Notes the planes of cut cells if the first step has not; few queries need them.
@@ -203,6 +205,10 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ PoseFrame frame;
   __shared__ RefinedCounters counters;
   __shared__ RawResult total;
+  // Keeps each thread's sums, which are seldom used, out of its registers. A flood has none.
+  __shared__ RawResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
+  RawResult of_flood;
+  RawResult& found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
   __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory
   if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
@@ -228,7 +234,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
     const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
                                  {});
-    const RawResult found = GroupMeasure<Surface>(work, launch.counts_points, shared.measure).run();
+    found = RawResult{};
+    GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
     if (Surface::kTellsInside) add_block(found, total);
     space.notes[(turn + 1) % 2].clear(level, {});
     __syncthreads();

@@ -13,8 +13,9 @@ class TaskMeasure {
  public:
   using Measure = CellMeasure<Surface>;
 
-  __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists)
-      : work_(work), lists_(lists) {}
+  // Adds to `found`, this thread's sums.
+  __device__ TaskMeasure(const PoseWork<Surface>& work, TaskLists& lists, RawResult& found)
+      : work_(work), lists_(lists), found_(found) {}
 
   // Empties the lists. Call from all threads of the block.
   __device__ void clear() {
@@ -35,11 +36,8 @@ class TaskMeasure {
   }
   // Measures all listed tasks. Call from all threads of the block.
   __device__ void measure();
-  // Returns the sums of this thread.
-  __device__ RawResult found() {
-    count_cell(words_before_, bits_added_, found_);
-    return found_;
-  }
+  // Counts the cell noted last. Call it once, after all else.
+  __device__ void finish() { count_cell(words_before_, bits_added_, found_); }
 
   __device__ void add(unsigned list, const Task& task) { lists_.add(list, task); }
   __device__ void add_clipped(const BlockTask& block_task, const ClipPlane& plane);
@@ -80,7 +78,7 @@ class TaskMeasure {
 
   const PoseWork<Surface>& work_;
   TaskLists& lists_;
-  RawResult found_;
+  RawResult& found_;
   std::uint32_t words_before_ = 0, bits_added_ = 0;  // word of the cell noted last
 };
 
