@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
@@ -37,6 +38,17 @@ struct Part {
   bool is_tiled() const { return tile_width > 0 && tile_height > 0; }
 };
 
+constexpr std::size_t kAfterChannelName = 16;  // type, flags, sampling
+
+// Lengths of values by the names of their types; those that are not here say their length.
+constexpr std::pair<std::string_view, std::uint64_t> kLengths[] = {
+    {"box2i", 16},    {"box2f", 16},   {"int", 4},      {"float", 4},
+    {"double", 8},    {"v2i", 8},      {"v2f", 8},      {"v2d", 16},
+    {"v3i", 12},      {"v3f", 12},     {"v3d", 24},     {"m33f", 36},
+    {"m33d", 72},     {"m44f", 64},    {"m44d", 128},   {"compression", 1},
+    {"lineOrder", 1}, {"envmap", 1},   {"tiledesc", 9}, {"deepImageState", 1},
+    {"keycode", 28},  {"rational", 8}, {"timecode", 8}, {"chromaticities", 32}};
+
 // Returns the rows that are compressed together.
 std::uint64_t rows_per_chunk(std::uint8_t compression) {
   constexpr std::array<std::uint64_t, 10> kRows{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
@@ -65,14 +77,43 @@ class HeaderCheck {
     for (;;) {
       const std::string_view name = next_string();
       if (name.empty()) return;
-      next_string();  // its type, which follows from the name for all that are looked at
+      const std::string_view type = next_string();
       const std::uint32_t size = next<std::uint32_t>();
       if (size > text_.size() - at_)
         throw std::runtime_error("attribute " + file::shown(name) + " of " + std::to_string(size) +
                                  " bytes is longer than the file; it is damaged");
-      keep(part, name, text_.substr(at_, size));
+      const std::string_view value = text_.substr(at_, size);
+      check_length(name, type, value);
+      keep(part, name, value);
       at_ += size;
     }
+  }
+
+  // OpenEXR reads values of most types to an end that is not the declared one. All after it would
+  // be other attributes to OpenEXR than they are here.
+  static void check_length(std::string_view name, std::string_view type, std::string_view value) {
+    std::uint64_t length = value.size();
+    for (const auto& [known, bytes] : kLengths)
+      if (type == known) length = bytes;
+    if (type == "chlist") length = length_of_channels(value);
+    if (type == "preview")
+      length = 8 + 4 * std::uint64_t{as<std::uint32_t>(value)} *
+                       as<std::uint32_t>(value.substr(std::min<std::size_t>(value.size(), 4)));
+    if (length != value.size())
+      throw std::runtime_error("attribute " + file::shown(name) + " has " +
+                               std::to_string(value.size()) + " bytes, its value " +
+                               std::to_string(length) + "; it is damaged");
+  }
+
+  // Returns the bytes to the empty name that ends a list of channels, which is a part of it.
+  static std::uint64_t length_of_channels(std::string_view list) {
+    std::uint64_t at = 0;
+    while (at < list.size() && list[at] != 0) {
+      const std::size_t end = list.find('\0', at);
+      if (end == list.npos) return list.size() + 1;
+      at = end + 1 + kAfterChannelName;
+    }
+    return at + 1;
   }
 
   static void keep(Part& part, std::string_view name, std::string_view value) {
@@ -88,13 +129,12 @@ class HeaderCheck {
   }
 
   static std::uint64_t bytes_of_channels(std::string_view list) {
-    constexpr std::size_t kAfterName = 16;  // type, flags, sampling
     std::uint64_t bytes = 0;
     for (std::size_t at = 0; at < list.size() && list[at] != 0;) {
       const std::size_t end = std::min(list.find('\0', at), list.size());
       const auto type = as<std::uint32_t>(list.substr(std::min(end + 1, list.size())));
       bytes += type == 1 ? 2 : 4;  // 1 is HALF
-      at = end + 1 + kAfterName;
+      at = end + 1 + kAfterChannelName;
     }
     return bytes;
   }

@@ -7,9 +7,9 @@
 
 namespace vpm {
 
-// Throws std::runtime_error if an attribute is longer than the file, if the image cannot have its
-// rows or tiles in the file, or if reading it would take more memory than a file of this size may
-// ask for (most_memory). Passes over what OpenEXR itself refuses.
+// Throws std::runtime_error if an attribute is longer than the file or than its value, if the image
+// cannot have its rows or tiles in the file, or if reading it would take more memory than a file of
+// this size may ask for (most_memory). Passes over what OpenEXR itself refuses.
 void check_exr_header(std::span<const std::byte> bytes);
 
 }  // namespace vpm

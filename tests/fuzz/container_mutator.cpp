@@ -133,6 +133,7 @@ class Changes {
  private:
   void change_blindly(Data& data, std::size_t more) {
     const std::size_t size = data.size();
+    if (size + more == 0) return;
     data.resize(size + more);
     data.resize(LLVMFuzzerMutate(data.data(), size, size + more));
   }

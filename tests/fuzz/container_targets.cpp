@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "libvpm/cloud/cloud_file.h"
 #include "libvpm/model/packing_file.h"
 #include "libvpm/model/tool_model_file.h"
@@ -17,7 +19,10 @@ void run_vpmp(Bytes input) {
     const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
     if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)
       return;
-    validate(build_tool_model(packing, {}), "built");
+    GraphOptions options;  // coarse: the default takes half a second for a cube
+    for (const Sphere& sphere : packing.spheres)
+      options.epsilon = std::max(options.epsilon, sphere.radius / 4);
+    validate(build_tool_model(packing, options), "built");
   });
 }
 #endif

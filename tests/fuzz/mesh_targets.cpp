@@ -1,7 +1,5 @@
-#include "libvpm/graph/build_tool_model.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_parsers.h"
-#include "libvpm/packing/certificate.h"
 #include "libvpm/packing/packer.h"
 #include "tests/fuzz/targets.h"
 

@@ -145,6 +145,15 @@ TEST(ExrDepth, TakesNoMemoryForAttributesThatAreNotThere) {
   }
 }
 
+// OpenEXR reads a list of channels to its own end, and takes what follows for the next attribute.
+TEST(ExrDepth, RefusesAttributesThatAreLongerThanTheirValue) {
+  std::string file = make_exr(3, 2, false, {{"Z", kValues}});
+  const std::size_t size = file.find("chlist") + 7;
+  file[size] = static_cast<char>(file[size] + 4);
+  file.insert(size + 4 + 19, "abc", 4);
+  EXPECT_TRUE(says(refused(file), "has 23 bytes, its value 19")) << refused(file);
+}
+
 TEST(ExrDepth, TakesNoMoreMemoryForAnImageThanItsFileMayAskFor) {
   const std::string sound = make_exr(3, 2, false, {{"Z", kValues}});
   const auto with_window = [&](const std::string& name, std::int32_t right, std::int32_t bottom) {
