@@ -63,6 +63,7 @@ class Check {
  public:
   Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
     result_.facts.format = mesh.format;
+    result_.notes = mesh.notes;
     vertices() = mesh.vertices;
     triangles() = triangulate(mesh);
   }
@@ -287,6 +288,7 @@ class Check {
             ? "give `repair` to fill planar and small holes, `repair` voxel for a new surface, or "
               "`weld` if parts should meet and do not"
             : "give `repair` voxel for a new surface, or mend it in a mesh editor";
+    if (!mesh_.doubt.empty()) refuse(mesh_.doubt + "; so " + defects, mesh_.name);
     refuse(defects + ".", mesh_.name,
            std::string("Only a closed surface has an inside: ") + advice);
   }

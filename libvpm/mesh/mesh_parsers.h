@@ -29,4 +29,7 @@ inline constexpr std::size_t kMaxVertices = 0xfffffffe;
 void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
                          std::size_t file_bytes);
 
+// Notes, if there are such vertices, that they were divided by a w other than 1.
+void note_division(std::size_t vertices, RawMesh& mesh);
+
 }  // namespace vpm

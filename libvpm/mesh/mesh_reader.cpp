@@ -56,7 +56,26 @@ void check_header_counts(const std::string& name, const std::string& what, doubl
   }
 }
 
-RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
+void note_division(std::size_t vertices, RawMesh& mesh) {
+  if (vertices == 0) return;
+  mesh.notes.push_back(std::to_string(vertices) +
+                       (vertices == 1 ? " vertex has" : " vertices have") +
+                       " a fourth coordinate w other than 1, by which the others were divided");
+}
+
+void RawMesh::end_polygon() {
+  const std::size_t begin = polygon_end.empty() ? 0 : polygon_end.back();
+  if (corners.size() - begin >= 3) {
+    polygon_end.push_back(corners.size());
+  } else {
+    corners.resize(begin);
+    ++dropped_polygons;
+  }
+}
+
+namespace {
+
+RawMesh parse(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) refuse("the file is empty", name);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
@@ -74,6 +93,18 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
   refuse("this is no mesh in a format that is read here: OBJ, OFF, PLY, STL or OM", name);
+}
+
+}  // namespace
+
+RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
+  RawMesh mesh = parse(bytes, name);
+  const std::size_t dropped = mesh.dropped_polygons;
+  if (dropped > 0) {
+    mesh.notes.push_back(std::to_string(dropped) + (dropped == 1 ? " face" : " faces") +
+                         " of fewer than three corners dropped");
+  }
+  return mesh;
 }
 
 RawMesh read_mesh(const std::string& path) {

@@ -28,15 +28,22 @@ struct RawMesh {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> corners;
   std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`
+  std::size_t dropped_polygons = 0;      // of fewer than three corners
+  std::vector<std::string> notes;        // how the file was taken where it could be taken otherwise
+  std::string doubt;  // defect of the file that may have opened the mesh; empty if there is none
 
   std::size_t polygon_count() const { return polygon_end.size(); }
+  // Ends the polygon of the corners appended last, and drops it if they are fewer than three.
+  void end_polygon();
 };
 
 // Returns "OBJ", "OFF", ...
 const char* name_of(MeshFormat format);
 
-// Cuts polygons into triangles by ear clipping in their own plane; polygons without a plane, or
-// that cross themselves, become fans. Throws Error(refused) for more than 4096 corners.
+// Cuts polygons into triangles whose corners are the polygon's, in the plane along whose normal the
+// polygon is seen largest: polygons of four corners by a diagonal, convex ones as a fan, others by
+// GLU's tessellator. Throws Error(refused) for polygons that cross themselves, and
+// Error(unavailable) for those that need GLU where it was not built.
 std::vector<Triangle> triangulate(const RawMesh& mesh);
 
 // Parses a mesh. The format is recognised by content, or by the extension of `name` if the content
