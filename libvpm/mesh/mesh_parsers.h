@@ -14,6 +14,8 @@ RawMesh parse_off(std::string_view text, const std::string& name);
 RawMesh parse_off_binary(std::string_view body, const std::string& name);
 RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
+RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,
+                    const std::string& node);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
 
 bool looks_like_off(std::string_view text);

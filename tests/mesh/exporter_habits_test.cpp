@@ -235,5 +235,39 @@ TEST(BinaryStl, AttributesMayBeBytesThatFollow) {
   expect_cube(with_colors, "a.stl", 0.5);
 }
 
+TEST(FarFromTheOrigin, TheLossOfFloatsIsSaid) {
+  const std::string far = as_binary_stl(moved(make_cube(0.3), {4.65e6, 1e3, 20}));
+  EXPECT_NE(refusal_of(far, "a.stl").find("where floats of 32 bits are 0.5 apart"), far.npos)
+      << refusal_of(far, "a.stl");
+  EXPECT_NE(refusal_of(far, "a.stl").find("move it to the origin before"), far.npos);
+  // A cube whose corners are floats all the same.
+  const CheckedSolid coarse =
+      solid_of(as_binary_stl(moved(make_cube(0.5), {1 << 20, 0, 0})), "a.stl");
+  ASSERT_EQ(coarse.warnings.size(), 1U);
+  EXPECT_NE(coarse.warnings[0].find("coarse for a mesh that is 0.866 across"), far.npos);
+  // Doubles are fine enough there, and floats are near the origin.
+  EXPECT_TRUE(solid_of(as_obj(moved(make_cube(0.3), {4.65e6, 1e3, 20})), "a.obj").warnings.empty());
+  EXPECT_TRUE(solid_of(as_binary_stl(make_cube(0.3)), "a.stl").warnings.empty());
+}
+
+TEST(NotAMesh, IsNamedWithTheNextStep) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"version https://git-lfs.github.com/spec/v1\n",
+       "a Git LFS pointer, not the file itself; fetch"},
+      {"<!DOCTYPE html>", "this is a web page; download"},
+      {"\x1f\x8b\x08", "compressed by gzip; unpack"},
+      {"PK\x03\x04", "an archive"},
+      {"ISO-10303-21;\n", "a STEP file of CAD; export a mesh"},
+      {"<?xml version=\"1.0\"?>\n<robot name=\"x\">", "a robot description"},
+      {"%PDF-1.4", "a PDF document"},
+      {"\x89PNG\r\n", "a PNG picture; give the mesh"},
+      {"# .PCD v0.7", "a cloud of points"}};
+  for (const auto& [content, message] : cases) {
+    for (const char* const name : {"a.obj", "a.stl", "a.off", "a.ply", "a.dae", "standard input"})
+      EXPECT_NE(refusal_of(content, name).find(message), std::string::npos)
+          << name << ": " << refusal_of(content, name);
+  }
+}
+
 }  // namespace
 }  // namespace vpm::test
