@@ -179,10 +179,13 @@ RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat 
   } catch (const std::exception& error) {
     fault = error.what();
   }
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    refuse(
-        std::string("assimp cannot read this ") + name_of(format) + ": " + file::shown(fault, 200),
-        name);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    const bool says_why = !fault.empty() && fault.find("No suitable reader") == fault.npos;
+    refuse(std::string("assimp cannot read this ") + name_of(format) + " file" +
+               (says_why ? ": " + file::shown(fault, 200)
+                         : ", which is damaged or of a version that it does not know"),
+           name, "save it again, or as OBJ, PLY or STL");
+  }
   const std::vector<PlacedNode> nodes = chosen_nodes(*scene, name, node);
   const double unit = unit_of(*scene, format);
   for (const PlacedNode& placed : nodes)

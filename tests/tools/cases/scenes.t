@@ -39,5 +39,5 @@ $ printf 'v 0 0 0\nf 1 1 1\n' > a.obj && vpm-pack a.obj --node tip -o x.vpmp
 2> vpm-pack: error: a.obj: OBJ has no nodes; leave --node out
 [2]
 $ head -c 500 cube.glb > cut.glb && vpm-pack cut.glb -o x.vpmp
-2> vpm-pack: error: cut.glb: assimp cannot read this glTF: No suitable reader found for the file format of file "$$$___magic___$$$.glb".
+2> vpm-pack: error: cut.glb: assimp cannot read this glTF file, which is damaged or of a version that it does not know; save it again, or as OBJ, PLY or STL
 [1]
