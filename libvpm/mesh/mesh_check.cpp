@@ -6,6 +6,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/coarse_floats.h"
 #include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
@@ -21,6 +22,7 @@ constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
 // Least volume relative to area times diagonal. Rounding gives a flat closed mesh about 1e-16; the
 // thinnest plate worth packing has far more.
 constexpr double kFlat = 1e-12;
+constexpr const char* kMoveToOrigin = "move it to the origin before it is saved in such floats";
 constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
 
 std::string text_of(Vec3 p) {
@@ -63,12 +65,13 @@ class Check {
  public:
   Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
     result_.facts.format = mesh.format;
+    result_.notes = mesh.notes;
     vertices() = mesh.vertices;
     triangles() = triangulate(mesh);
   }
 
   CheckedSolid run() {
-    if (triangles().empty()) refuse("the mesh has no faces", mesh_.name);
+    if (triangles().empty()) refuse_faceless();
     check_extent();
     const std::size_t repeated = drop_collapsed(triangles());
     facts().collapsed_triangles += repeated;
@@ -114,7 +117,7 @@ class Check {
   }
 
   void join_vertices() {
-    const bool is_soup = mesh_.format == MeshFormat::stl || options_.repair != Repair::none;
+    const bool is_soup = lists_corners(mesh_.format) || options_.repair != Repair::none;
     if (!is_soup && !options_.weld.has_value()) return;
     const Weld done =
         weld(vertices(), options_.weld.value_or(kDefaultWeld) * diagonal_, triangles());
@@ -128,13 +131,18 @@ class Check {
          " with two equal corners dropped");
   }
 
+  [[noreturn]] void refuse_faceless() const {
+    if (mesh_.dropped_polygons == 0) refuse("the mesh has no faces", mesh_.name);
+    refuse("the mesh has no faces of three corners or more", mesh_.name);
+  }
+
   [[noreturn]] void refuse_empty() const {
     refuse("every triangle has two equal corners; the mesh has no surface", mesh_.name);
   }
 
   // Formats with indices may still list a point twice, e.g. at a seam of textures.
   void close_by_welding() {
-    if (topology_.boundary.empty() || mesh_.format == MeshFormat::stl || options_.weld.has_value())
+    if (topology_.boundary.empty() || lists_corners(mesh_.format) || options_.weld.has_value())
       return;
     std::vector<Triangle> joined = triangles();
     const Weld done = weld(vertices(), kDefaultWeld * diagonal_, joined);
@@ -414,7 +422,17 @@ CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
     throw Error(ErrorKind::invalid_argument,
                 "must lie between 0 and 0.1; it is a share of the mesh's diagonal", "weld");
   }
-  return Check(mesh, options).run();
+  const std::string coarse = coarse_floats(mesh);
+  try {
+    CheckedSolid checked = Check(mesh, options).run();
+    if (!coarse.empty()) checked.warnings.push_back(coarse + "; " + kMoveToOrigin);
+    return checked;
+  } catch (const Error& fault) {
+    if (fault.kind() != ErrorKind::refused || (coarse.empty() && mesh.doubt.empty())) throw;
+    const std::string cause = mesh.doubt.empty() ? coarse : mesh.doubt;
+    refuse(cause + "; so " + fault.problem(), fault.where(),
+           mesh.doubt.empty() ? kMoveToOrigin : "save it again, or fetch all of it");
+  }
 }
 
 }  // namespace vpm

@@ -11,7 +11,7 @@ namespace vpm {
 Solid triangles_of(const RawMesh& mesh, const SolidOptions& options) {
   Solid result{mesh.vertices, triangulate(mesh)};
   drop_collapsed(result.triangles);
-  const bool is_soup = mesh.format == MeshFormat::stl || options.repair != Repair::none;
+  const bool is_soup = lists_corners(mesh.format) || options.repair != Repair::none;
   if (is_soup || options.weld) {
     Box box;
     for (const Vec3& p : result.vertices) box.add(p);
