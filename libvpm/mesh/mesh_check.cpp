@@ -337,8 +337,7 @@ class Check {
       facts().zero_area_triangles +=
           !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
     }
-    contacts_ = find_contacts(vertices(), triangles(), progress_of(kShellsDone, kContactsDone),
-                              &contacts_work_);
+    contacts_ = find_contacts(vertices(), triangles(), progress_of(kShellsDone, kContactsDone));
     if (contacts_.empty()) return;
     const std::vector<TrianglePair> pairs = intersecting(contacts_, vertices(), triangles());
     facts().self_intersections = pairs.size();
@@ -360,8 +359,7 @@ class Check {
 
   // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
-    const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1),
-                             contacts_work_);
+    const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1));
     std::size_t shell_count = 0;
     const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
     std::vector<char> bounds(shell_count, 0);
@@ -422,7 +420,6 @@ class Check {
   CheckedSolid result_;
   Topology topology_;
   std::vector<TrianglePair> contacts_;
-  std::uint64_t contacts_work_ = 0;
   double diagonal_ = 0;
   double unit_ = 1;  // of the vertices, in the file's
 };

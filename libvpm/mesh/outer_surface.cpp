@@ -306,7 +306,7 @@ void OuterSurface::find_sides(Cells& cells, const Topology& topology) {
 }
 
 OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts,
-                           const MeshProgress& progress, std::uint64_t work_of_contacts)
+                           const MeshProgress& progress)
     : side_(solid.triangles.size(), Side::outward) {
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
   std::size_t shell_count = 0;
@@ -315,7 +315,6 @@ OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& 
     side_.assign(side_.size(), Side::unknown);
     Cells cells(solid, contacts);
     cells.progress = progress;
-    if (!cells.limit.spend(work_of_contacts)) cells.refuse_work();
     find_sides(cells, topology);
     if (std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::outward; }))
       surface_ = cells.surface(side_);

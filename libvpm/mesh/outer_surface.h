@@ -19,10 +19,9 @@ namespace vpm {
 class OuterSurface {
  public:
   // Needs `contacts` from find_contacts, and a closed, consistently oriented solid with at least
-  // one triangle. Throws TooMuchWork beyond WorkLimit, to which the work of `contacts` counts if it
-  // is given.
+  // one triangle. Throws TooMuchWork beyond WorkLimit.
   OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts,
-               const MeshProgress& progress = {}, std::uint64_t work_of_contacts = 0);
+               const MeshProgress& progress = {});
 
   // True if the triangle meets no other and has the inside, or the outside, on both sides.
   bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }

@@ -9,7 +9,7 @@
 namespace vpm {
 namespace {
 
-constexpr std::size_t kFirstRound = 32;
+constexpr std::size_t kFirstRound = 4;
 // Work of a round, relative to the limit, below which the next round is twice as long.
 constexpr std::uint64_t kSmallRound = 64;
 // Ranges of a round that threads share.
