@@ -63,7 +63,8 @@ double area_of(const Solid& solid) {
 // Takes one mesh from raw triangles to the solid; each step is one check.
 class Check {
  public:
-  Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
+  Check(const RawMesh& mesh, const SolidOptions& options, const MeshProgress& progress)
+      : mesh_(mesh), options_(options), progress_(progress) {
     result_.facts.format = mesh.format;
     result_.notes = mesh.notes;
     vertices() = mesh.vertices;
@@ -71,6 +72,15 @@ class Check {
   }
 
   CheckedSolid run() {
+    try {
+      return checked();
+    } catch (const TooMuchWork& fault) {
+      refuse(fault.problem() + ", at " + text_of(fault.at / unit_), mesh_.name, fault.hint());
+    }
+  }
+
+ private:
+  CheckedSolid checked() {
     if (triangles().empty()) refuse_faceless();
     check_extent();
     const std::size_t repeated = drop_collapsed(triangles());
@@ -89,13 +99,13 @@ class Check {
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
     for (Vec3& p : vertices()) p = options_.scale * p;
+    unit_ = options_.scale;
     look_for_self_intersections();
     drop_inner_shells();
     measure();
     return std::move(result_);
   }
 
- private:
   std::vector<Vec3>& vertices() { return result_.solid.vertices; }
   std::vector<Triangle>& triangles() { return result_.solid.triangles; }
   MeshFacts& facts() { return result_.facts; }
@@ -307,8 +317,8 @@ class Check {
     if (!consistent && orient_consistently(topology_, triangles()) == kNotOrientable) {
       refuse("the surface is one-sided (like a Klein bottle); it has no inside", mesh_.name);
     }
-    const ShellOrientation done =
-        orient_shells(vertices(), shell, shell_count, consistent, triangles());
+    const ShellOrientation done = orient_shells(vertices(), shell, shell_count, consistent,
+                                                triangles(), progress_of(0, kShellsDone));
     facts().shells = shell_count;
     facts().cavities = done.cavities;
     for (std::size_t k = 0; k < given.size(); ++k)
@@ -335,9 +345,9 @@ class Check {
       facts().zero_area_triangles +=
           !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
     }
-    contacts_ = find_contacts(vertices(), triangles());
+    contacts_ = find_contacts(vertices(), triangles(), progress_of(kShellsDone, kContactsDone));
     if (contacts_.empty()) return;
-    const std::vector<TrianglePair> pairs = find_self_intersections(vertices(), triangles());
+    const std::vector<TrianglePair> pairs = intersecting(contacts_, vertices(), triangles());
     facts().self_intersections = pairs.size();
     if (pairs.empty()) return;
     std::vector<std::uint32_t> first;
@@ -357,7 +367,7 @@ class Check {
 
   // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
-    const OuterSurface outer(result_.solid, contacts_);
+    const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1));
     std::size_t shell_count = 0;
     const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
     std::vector<char> bounds(shell_count, 0);
@@ -400,20 +410,32 @@ class Check {
     }
   }
 
+  // Shares of the progress after two of the steps that may take long.
+  static constexpr double kShellsDone = 0.2, kContactsDone = 0.5;
+
+  // Returns what shows the progress of a step that takes these fractions of all.
+  MeshProgress progress_of(double from, double to) const {
+    if (!progress_) return {};
+    return [this, from, to](double done) { progress_(from + done * (to - from)); };
+  }
+
   void note(const std::string& text) { result_.notes.push_back(text); }
   void warn(const std::string& text) { result_.warnings.push_back(text); }
 
   const RawMesh& mesh_;
   const SolidOptions& options_;
+  const MeshProgress& progress_;
   CheckedSolid result_;
   Topology topology_;
   std::vector<TrianglePair> contacts_;
   double diagonal_ = 0;
+  double unit_ = 1;  // of the vertices, in the file's
 };
 
 }  // namespace
 
-CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
+CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options,
+                        const MeshProgress& progress) {
   if (!(options.scale > 0 && std::isfinite(options.scale)))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "scale");
   if (options.max_hole && !(*options.max_hole > 0))
@@ -424,7 +446,7 @@ CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
   }
   const std::string coarse = coarse_floats(mesh);
   try {
-    CheckedSolid checked = Check(mesh, options).run();
+    CheckedSolid checked = Check(mesh, options, progress).run();
     if (!coarse.empty()) checked.warnings.push_back(coarse + "; " + kMoveToOrigin);
     return checked;
   } catch (const Error& fault) {

@@ -23,6 +23,19 @@ Solid triangles_of(const RawMesh& mesh, const SolidOptions& options) {
   return result;
 }
 
+namespace {
+
+// Returns no pairs if there are too many to look for.
+std::vector<TrianglePair> crossing_pairs(const Solid& solid) {
+  try {
+    return find_self_intersections(solid.vertices, solid.triangles);
+  } catch (const TooMuchWork&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 MeshDefects find_defects(const Solid& solid) {
   MeshDefects defects;
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
@@ -42,8 +55,7 @@ MeshDefects find_defects(const Solid& solid) {
   if (topology.boundary.empty())
     for (const std::uint32_t v : topology.pinched) defects.pinched.push_back(solid.vertices[v]);
   std::vector<char> crosses(solid.triangles.size(), 0);
-  for (const auto& [a, b] : find_self_intersections(solid.vertices, solid.triangles))
-    crosses[a] = crosses[b] = 1;
+  for (const auto& [a, b] : crossing_pairs(solid)) crosses[a] = crosses[b] = 1;
   for (std::size_t k = 0; k < crosses.size(); ++k) {
     const Triangle& t = solid.triangles[k];
     if (crosses[k] != 0)

@@ -154,9 +154,10 @@ std::string link_name(const Arguments& a) {
 }
 
 // Makes the solid; of a mesh that is refused, --view shows why.
-CheckedSolid checked_solid(const Arguments& a, const RawMesh& mesh) {
+CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& mesh) {
   try {
-    return make_solid(mesh, solid_options(a));
+    Progress progress("checking the mesh", tool.common());
+    return make_solid(mesh, solid_options(a), [&](double done) { progress.update(done); });
   } catch (const Error& fault) {
     if (!a.view.empty() && fault.kind() == ErrorKind::refused)
       write_defects_view(a.view, mesh, solid_options(a), fault.what());
@@ -282,7 +283,7 @@ void run(const Tool& tool, Arguments a) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = checked_solid(a, parse_mesh(bytes, name, a.node));
+  CheckedSolid checked = checked_solid(tool, a, parse_mesh(bytes, name, a.node));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
