@@ -23,6 +23,7 @@ constexpr Start kStarts[] = {
      "fetch it with: git lfs pull"},
     {"<!doctype html"sv, "a web page", "download the file itself"},
     {"<html"sv, "a web page", "download the file itself"},
+    {"<mujoco"sv, "a robot description (MJCF)", "give one of the files that it names"},
     {"<robot"sv, "a robot description (URDF)", "give one of the files that it names"},
     {"\x1f\x8b"sv, "compressed by gzip", "unpack it first: gunzip"},
     {"pk\x03\x04"sv, "an archive (zip, npz)", "unpack it first, or save one array as .npy"},
@@ -39,7 +40,24 @@ constexpr Start kStarts[] = {
     {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL"},
     {"astm-e57"sv, "an E57 cloud", "convert it to PLY with normals, for example by PDAL"},
     {"iso-10303-21"sv, "a STEP file of CAD", "export a mesh from it"},
+    {"blender"sv, "a Blender file", "export a mesh from it"},
+    {"7z\xbc\xaf"sv, "compressed by 7-Zip", "unpack it first: 7z x"},
+    {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", "export a mesh from it"},
 };
+
+// Tells the kinds of XML by what stands behind the declaration and comments.
+std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
+  constexpr std::size_t kLooked = 4096;
+  const std::string text = in_lower_case(as_text(bytes.first(std::min(bytes.size(), kLooked))));
+  const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  if (text.compare(begin, 5, "<?xml") != 0) return std::nullopt;
+  for (const char* const robot : {"<robot", "<mujoco", "<sdf"}) {
+    if (text.find(robot) != text.npos)
+      return ForeignContent{"a robot description (URDF, MJCF, SDF)",
+                            "give one of the files that it names"};
+  }
+  return ForeignContent{"an XML file", "give the file that was meant"};
+}
 
 std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
   Preamble preamble;
@@ -61,6 +79,7 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   const std::string start = in_lower_case(text.substr(begin));
   for (const Start& known : kStarts)
     if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next};
+  if (const auto xml = xml_kind(bytes)) return xml;
   return own_kind(bytes);
 }
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <charconv>
@@ -56,6 +57,11 @@ void write_to(int descriptor, std::span<const std::byte> bytes, const std::strin
     if (written < 0) cannot_write(path, errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+bool is_changed(const struct stat& before, const struct stat& after) {
+  return before.st_size != after.st_size || before.st_mtim.tv_sec != after.st_mtim.tv_sec ||
+         before.st_mtim.tv_nsec != after.st_mtim.tv_nsec;
 }
 
 void sync(int descriptor, const std::string& path) {
@@ -239,7 +245,7 @@ std::optional<int> descriptor_of(std::string_view path) {
   return std::nullopt;
 }
 
-std::vector<std::byte> read_all(const std::string& path) {
+std::vector<std::byte> read_all(const std::string& path, std::size_t most_of_a_pipe) {
   const bool is_input = path == "-";
   const auto cannot_read = [&](const std::string& why) {
     refuse("cannot read " + (is_input ? std::string("standard input") : path) + ": " + why);
@@ -250,20 +256,29 @@ std::vector<std::byte> read_all(const std::string& path) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) cannot_read(std::strerror(errno));
   if (S_ISDIR(status.st_mode)) cannot_read("it is a folder");
+  const auto is_file = S_ISREG(status.st_mode);
+  const std::size_t told = is_file ? static_cast<std::size_t>(status.st_size) : 0;
+  const std::size_t most = std::max(told, most_of_a_pipe);
 
   // Reads one byte more than the file holds, so that its end is met without growing the buffer.
   constexpr std::size_t kFirstPipeBuffer = std::size_t{1} << 16;
-  std::vector<std::byte> bytes(
-      S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : kFirstPipeBuffer);
+  std::vector<std::byte> bytes(is_file ? told + 1 : kFirstPipeBuffer);
   std::size_t size = 0;
   for (;;) {
-    if (size == bytes.size()) bytes.resize(2 * size);
+    if (size > most) {
+      cannot_read("it goes on after " + std::to_string(most) +
+                  " bytes, the most that is read of a pipe or device; give a file instead");
+    }
+    if (size == bytes.size()) bytes.resize(std::min(2 * size, most + 1));
     const ssize_t count = ::read(descriptor, bytes.data() + size, bytes.size() - size);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) cannot_read(std::strerror(errno));
     if (count == 0) break;
     size += static_cast<std::size_t>(count);
   }
+  struct stat after {};
+  if (is_file && ::fstat(descriptor, &after) == 0 && is_changed(status, after))
+    cannot_read("it changed while it was read; try again when it is written");
   bytes.resize(size);
   return bytes;
 }

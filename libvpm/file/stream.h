@@ -11,9 +11,12 @@
 
 namespace vpm::file {
 
-// Returns the bytes of a file. Throws Error(refused) if it does not exist, is a folder, or cannot
-// be read.
-std::vector<std::byte> read_all(const std::string& path);
+// Limits what is read from a pipe or device, which may go on for ever: 1 GiB.
+inline constexpr std::size_t kMostOfAPipe = std::size_t{1} << 30;
+
+// Returns the bytes of a file. Throws Error(refused) if it does not exist, is a folder, cannot be
+// read, changes while it is read, or is a pipe or device of more than `most_of_a_pipe` bytes.
+std::vector<std::byte> read_all(const std::string& path, std::size_t most_of_a_pipe = kMostOfAPipe);
 
 // Returns the descriptor that an output path names: "-", /dev/stdout, /dev/stderr, /dev/fd/3. Empty
 // for all other paths.

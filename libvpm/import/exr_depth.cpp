@@ -15,6 +15,7 @@
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/exr_channels.h"
+#include "libvpm/import/exr_header.h"
 
 namespace vpm {
 namespace {
@@ -157,6 +158,7 @@ void expect_equal(const std::vector<float>& a, const std::vector<float>& b, cons
 
 RawDepth read_exr(std::span<const std::byte> bytes, const std::string& name,
                   const std::string& asked) {
+  check_exr_header(bytes);
   MemoryStream stream(bytes, name);
   Imf::MultiPartInputFile file(stream, 0);
   const std::vector<Channel> channels = channels_of(file);

@@ -90,6 +90,15 @@ void check_image_size(std::uint64_t width, std::uint64_t height, const std::stri
   }
 }
 
+void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,
+                        const std::string& name) {
+  if (sizeof(float) * width * height <= most_memory(file_bytes)) return;
+  refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) +
+             " pixels does not come from a file of " + std::to_string(file_bytes) +
+             " bytes; it is truncated or damaged",
+         name, "store it with less compression if it is sound");
+}
+
 RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& name) {
   PngReader png(bytes);
   if (!png.read_header()) refuse(std::string("not a sound PNG: ") + png.fault(), name);
@@ -99,6 +108,7 @@ RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& na
            name, "depth needs one gray channel of 16 bits");
   }
   check_image_size(png.width(), png.height(), name);
+  check_image_memory(png.width(), png.height(), bytes.size(), name);
   RawDepth image;
   image.width = png.width();
   image.height = png.height();

@@ -68,13 +68,10 @@ struct CloseTiff {
 };
 using TiffFile = std::unique_ptr<TIFF, CloseTiff>;
 
-constexpr tmsize_t kMostMemory = tmsize_t{1} << 30;  // bytes of one allocation of libtiff
-// Pixels per byte of the file beyond which it must be truncated: no image of a sensor is so empty.
-constexpr std::uint64_t kMostPixelsPerByte = 4096;
-
 TiffFile open_tiff(TiffSource& source, const std::string& name) {
   TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, kMostMemory);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options,
+                                      static_cast<tmsize_t>(most_memory(source.bytes.size())));
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_first_fault, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options, pass_over, nullptr);
   TIFF* const file = TIFFClientOpenExt(name.c_str(), "rm", &source, read_bytes, write_no_bytes,
@@ -120,8 +117,7 @@ class TiffReader {
     image_.width = field(TIFFTAG_IMAGEWIDTH);
     image_.height = field(TIFFTAG_IMAGELENGTH);
     check_image_size(image_.width, image_.height, name_);
-    if (std::uint64_t{image_.width} * image_.height / kMostPixelsPerByte > source_.bytes.size())
-      fail("the file is truncated");
+    check_image_memory(image_.width, image_.height, source_.bytes.size(), name_);
     const int samples = short_field(TIFFTAG_SAMPLESPERPIXEL),
               bits = short_field(TIFFTAG_BITSPERSAMPLE), format = short_field(TIFFTAG_SAMPLEFORMAT);
     const bool is_float = format == SAMPLEFORMAT_IEEEFP;
@@ -174,9 +170,10 @@ class TiffReader {
 
   // Returns libtiff's size of a buffer if it holds `values` values.
   std::size_t buffer_size(tmsize_t size, std::uint64_t values) const {
-    if (size <= 0 || size > kMostMemory || static_cast<std::uint64_t>(size) < values * type_.size)
+    const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(size, 0));
+    if (bytes == 0 || bytes > most_memory(source_.bytes.size()) || bytes < values * type_.size)
       fail(source_.fault);
-    return static_cast<std::size_t>(size);
+    return bytes;
   }
 
   const std::string& name_;

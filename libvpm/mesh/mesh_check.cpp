@@ -6,6 +6,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/coarse_floats.h"
 #include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
@@ -21,6 +22,7 @@ constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
 // Least volume relative to area times diagonal. Rounding gives a flat closed mesh about 1e-16; the
 // thinnest plate worth packing has far more.
 constexpr double kFlat = 1e-12;
+constexpr const char* kMoveToOrigin = "move it to the origin before it is saved in such floats";
 constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
 
 std::string text_of(Vec3 p) {
@@ -61,14 +63,25 @@ double area_of(const Solid& solid) {
 // Takes one mesh from raw triangles to the solid; each step is one check.
 class Check {
  public:
-  Check(const RawMesh& mesh, const SolidOptions& options) : mesh_(mesh), options_(options) {
+  Check(const RawMesh& mesh, const SolidOptions& options, const MeshProgress& progress)
+      : mesh_(mesh), options_(options), progress_(progress) {
     result_.facts.format = mesh.format;
+    result_.notes = mesh.notes;
     vertices() = mesh.vertices;
     triangles() = triangulate(mesh);
   }
 
   CheckedSolid run() {
-    if (triangles().empty()) refuse("the mesh has no faces", mesh_.name);
+    try {
+      return checked();
+    } catch (const TooMuchWork& fault) {
+      refuse(fault.problem() + ", at " + text_of(fault.at / unit_), mesh_.name, fault.hint());
+    }
+  }
+
+ private:
+  CheckedSolid checked() {
+    if (triangles().empty()) refuse_faceless();
     check_extent();
     const std::size_t repeated = drop_collapsed(triangles());
     facts().collapsed_triangles += repeated;
@@ -86,13 +99,13 @@ class Check {
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
     for (Vec3& p : vertices()) p = options_.scale * p;
+    unit_ = options_.scale;
     look_for_self_intersections();
     drop_inner_shells();
     measure();
     return std::move(result_);
   }
 
- private:
   std::vector<Vec3>& vertices() { return result_.solid.vertices; }
   std::vector<Triangle>& triangles() { return result_.solid.triangles; }
   MeshFacts& facts() { return result_.facts; }
@@ -114,7 +127,7 @@ class Check {
   }
 
   void join_vertices() {
-    const bool is_soup = mesh_.format == MeshFormat::stl || options_.repair != Repair::none;
+    const bool is_soup = lists_corners(mesh_.format) || options_.repair != Repair::none;
     if (!is_soup && !options_.weld.has_value()) return;
     const Weld done =
         weld(vertices(), options_.weld.value_or(kDefaultWeld) * diagonal_, triangles());
@@ -128,13 +141,18 @@ class Check {
          " with two equal corners dropped");
   }
 
+  [[noreturn]] void refuse_faceless() const {
+    if (mesh_.dropped_polygons == 0) refuse("the mesh has no faces", mesh_.name);
+    refuse("the mesh has no faces of three corners or more", mesh_.name);
+  }
+
   [[noreturn]] void refuse_empty() const {
     refuse("every triangle has two equal corners; the mesh has no surface", mesh_.name);
   }
 
   // Formats with indices may still list a point twice, e.g. at a seam of textures.
   void close_by_welding() {
-    if (topology_.boundary.empty() || mesh_.format == MeshFormat::stl || options_.weld.has_value())
+    if (topology_.boundary.empty() || lists_corners(mesh_.format) || options_.weld.has_value())
       return;
     std::vector<Triangle> joined = triangles();
     const Weld done = weld(vertices(), kDefaultWeld * diagonal_, joined);
@@ -299,8 +317,8 @@ class Check {
     if (!consistent && orient_consistently(topology_, triangles()) == kNotOrientable) {
       refuse("the surface is one-sided (like a Klein bottle); it has no inside", mesh_.name);
     }
-    const ShellOrientation done =
-        orient_shells(vertices(), shell, shell_count, consistent, triangles());
+    const ShellOrientation done = orient_shells(vertices(), shell, shell_count, consistent,
+                                                triangles(), progress_of(0, kShellsDone));
     facts().shells = shell_count;
     facts().cavities = done.cavities;
     for (std::size_t k = 0; k < given.size(); ++k)
@@ -327,9 +345,9 @@ class Check {
       facts().zero_area_triangles +=
           !has_area(vertices()[t[0]], vertices()[t[1]], vertices()[t[2]]);
     }
-    contacts_ = find_contacts(vertices(), triangles());
+    contacts_ = find_contacts(vertices(), triangles(), progress_of(kShellsDone, kContactsDone));
     if (contacts_.empty()) return;
-    const std::vector<TrianglePair> pairs = find_self_intersections(vertices(), triangles());
+    const std::vector<TrianglePair> pairs = intersecting(contacts_, vertices(), triangles());
     facts().self_intersections = pairs.size();
     if (pairs.empty()) return;
     std::vector<std::uint32_t> first;
@@ -349,7 +367,7 @@ class Check {
 
   // Drops shells wholly within the solid, which would only be obstacles for the spheres.
   void drop_inner_shells() {
-    const OuterSurface outer(result_.solid, contacts_);
+    const OuterSurface outer(result_.solid, contacts_, progress_of(kContactsDone, 1));
     std::size_t shell_count = 0;
     const std::vector<std::uint32_t> shell = shells_of(topology_, shell_count);
     std::vector<char> bounds(shell_count, 0);
@@ -392,20 +410,32 @@ class Check {
     }
   }
 
+  // Shares of the progress after two of the steps that may take long.
+  static constexpr double kShellsDone = 0.2, kContactsDone = 0.5;
+
+  // Returns what shows the progress of a step that takes these fractions of all.
+  MeshProgress progress_of(double from, double to) const {
+    if (!progress_) return {};
+    return [this, from, to](double done) { progress_(from + done * (to - from)); };
+  }
+
   void note(const std::string& text) { result_.notes.push_back(text); }
   void warn(const std::string& text) { result_.warnings.push_back(text); }
 
   const RawMesh& mesh_;
   const SolidOptions& options_;
+  const MeshProgress& progress_;
   CheckedSolid result_;
   Topology topology_;
   std::vector<TrianglePair> contacts_;
   double diagonal_ = 0;
+  double unit_ = 1;  // of the vertices, in the file's
 };
 
 }  // namespace
 
-CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
+CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options,
+                        const MeshProgress& progress) {
   if (!(options.scale > 0 && std::isfinite(options.scale)))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "scale");
   if (options.max_hole && !(*options.max_hole > 0))
@@ -414,7 +444,17 @@ CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options) {
     throw Error(ErrorKind::invalid_argument,
                 "must lie between 0 and 0.1; it is a share of the mesh's diagonal", "weld");
   }
-  return Check(mesh, options).run();
+  const std::string coarse = coarse_floats(mesh);
+  try {
+    CheckedSolid checked = Check(mesh, options, progress).run();
+    if (!coarse.empty()) checked.warnings.push_back(coarse + "; " + kMoveToOrigin);
+    return checked;
+  } catch (const Error& fault) {
+    if (fault.kind() != ErrorKind::refused || (coarse.empty() && mesh.doubt.empty())) throw;
+    const std::string cause = mesh.doubt.empty() ? coarse : mesh.doubt;
+    refuse(cause + "; so " + fault.problem(), fault.where(),
+           mesh.doubt.empty() ? kMoveToOrigin : "save it again, or fetch all of it");
+  }
 }
 
 }  // namespace vpm

@@ -13,6 +13,7 @@
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/outer_surface.h"
 #include "libvpm/mesh/voxel_repair.h"
+#include "libvpm/mesh/work_limit.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
@@ -56,8 +57,10 @@ struct CheckedSolid {
 
 // Checks, repairs and orients a mesh. Throws Error(refused) for meshes that are empty; open,
 // non-manifold or one-sided beyond the requested repair (naming rims of holes by their first
-// vertices); without volume; or of an extent outside 1e-30 to 1e30 m. Throws
-// Error(invalid_argument) for options out of range.
-CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {});
+// vertices); without volume; of an extent outside 1e-30 to 1e30 m; or
+// that meet or nest in more places than WorkLimit allows. Throws Error(invalid_argument) for
+// options out of range.
+CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options = {},
+                        const MeshProgress& progress = {});
 
 }  // namespace vpm

@@ -11,7 +11,7 @@ namespace vpm {
 Solid triangles_of(const RawMesh& mesh, const SolidOptions& options) {
   Solid result{mesh.vertices, triangulate(mesh)};
   drop_collapsed(result.triangles);
-  const bool is_soup = mesh.format == MeshFormat::stl || options.repair != Repair::none;
+  const bool is_soup = lists_corners(mesh.format) || options.repair != Repair::none;
   if (is_soup || options.weld) {
     Box box;
     for (const Vec3& p : result.vertices) box.add(p);
@@ -22,6 +22,19 @@ Solid triangles_of(const RawMesh& mesh, const SolidOptions& options) {
   for (Vec3& p : result.vertices) p = options.scale * p;
   return result;
 }
+
+namespace {
+
+// Returns no pairs if there are too many to look for.
+std::vector<TrianglePair> crossing_pairs(const Solid& solid) {
+  try {
+    return find_self_intersections(solid.vertices, solid.triangles);
+  } catch (const TooMuchWork&) {
+    return {};
+  }
+}
+
+}  // namespace
 
 MeshDefects find_defects(const Solid& solid) {
   MeshDefects defects;
@@ -42,8 +55,7 @@ MeshDefects find_defects(const Solid& solid) {
   if (topology.boundary.empty())
     for (const std::uint32_t v : topology.pinched) defects.pinched.push_back(solid.vertices[v]);
   std::vector<char> crosses(solid.triangles.size(), 0);
-  for (const auto& [a, b] : find_self_intersections(solid.vertices, solid.triangles))
-    crosses[a] = crosses[b] = 1;
+  for (const auto& [a, b] : crossing_pairs(solid)) crosses[a] = crosses[b] = 1;
   for (std::size_t k = 0; k < crosses.size(); ++k) {
     const Triangle& t = solid.triangles[k];
     if (crosses[k] != 0)

@@ -18,7 +18,7 @@ struct MeshDefects {
   std::vector<Segment> non_manifold;          // edges of more than two triangles
   std::vector<Segment> conflicting;           // edges whose two triangles face opposite ways
   std::vector<Vec3> pinched;                  // vertices in which the surface touches itself
-  std::vector<std::array<Vec3, 3>> crossing;  // triangles that cut others
+  std::vector<std::array<Vec3, 3>> crossing;  // triangles that cut others; none beyond WorkLimit
 };
 
 // Returns the triangles as make_solid() sees them before it checks them: cut from polygons, welded

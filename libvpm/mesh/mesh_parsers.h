@@ -14,6 +14,8 @@ RawMesh parse_off(std::string_view text, const std::string& name);
 RawMesh parse_off_binary(std::string_view body, const std::string& name);
 RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
+RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,
+                    const std::string& node);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
 
 bool looks_like_off(std::string_view text);
@@ -28,5 +30,8 @@ inline constexpr std::size_t kMaxVertices = 0xfffffffe;
 // `what`.
 void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
                          std::size_t file_bytes);
+
+// Notes, if there are such vertices, that they were divided by a w other than 1.
+void note_division(std::size_t vertices, RawMesh& mesh);
 
 }  // namespace vpm

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/foreign_content.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/text_lines.h"
@@ -43,8 +45,20 @@ const char* name_of(MeshFormat format) {
       return "STL";
     case MeshFormat::om:
       return "OM";
+    case MeshFormat::dae:
+      return "COLLADA";
+    case MeshFormat::gltf:
+      return "glTF";
+    case MeshFormat::threemf:
+      return "3MF";
+    case MeshFormat::fbx:
+      return "FBX";
   }
   return "";
+}
+
+bool lists_corners(MeshFormat format) {
+  return format == MeshFormat::stl || format >= MeshFormat::dae;
 }
 
 void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
@@ -56,7 +70,56 @@ void check_header_counts(const std::string& name, const std::string& what, doubl
   }
 }
 
-RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
+void note_division(std::size_t vertices, RawMesh& mesh) {
+  if (vertices == 0) return;
+  mesh.notes.push_back(std::to_string(vertices) +
+                       (vertices == 1 ? " vertex has" : " vertices have") +
+                       " a fourth coordinate w other than 1, by which the others were divided");
+}
+
+void RawMesh::end_polygon() {
+  const std::size_t begin = polygon_end.empty() ? 0 : polygon_end.back();
+  if (corners.size() - begin >= 3) {
+    polygon_end.push_back(corners.size());
+  } else {
+    corners.resize(begin);
+    ++dropped_polygons;
+  }
+}
+
+namespace {
+
+// Returns the format of a file of a scene, which holds meshes in nodes.
+std::optional<MeshFormat> scene_by_content(std::string_view text) {
+  const std::string_view start = text.substr(0, 4096);
+  if (start.starts_with("glTF")) return MeshFormat::gltf;
+  if (start.starts_with("Kaydara FBX Binary")) return MeshFormat::fbx;
+  if (start.find("<COLLADA") != start.npos) return MeshFormat::dae;
+  if (start.starts_with("PK\x03\x04") && text.find("3D/3dmodel.model") != text.npos)
+    return MeshFormat::threemf;
+  return std::nullopt;
+}
+
+std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
+  if (extension == "dae") return MeshFormat::dae;
+  if (extension == "gltf" || extension == "glb") return MeshFormat::gltf;
+  if (extension == "3mf") return MeshFormat::threemf;
+  if (extension == "fbx") return MeshFormat::fbx;
+  return std::nullopt;
+}
+
+// Refuses what is known to be something else than a mesh, by name.
+void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
+                    const std::string& name) {
+  if (const auto other = file::foreign_content(bytes))
+    refuse("this is " + other->what, name, other->next);
+  const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
+  if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
+  if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
+  if (text.starts_with("# .PCD")) refuse("this is a cloud of points (PCD)", name, hint);
+}
+
+RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
   if (bytes.empty()) refuse("the file is empty", name);
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
@@ -67,13 +130,37 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name) {
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
+  if (const auto scene = scene_by_content(text)) return parse_scene(text, name, *scene, node);
+  refuse_foreign(bytes, text, name);
+  if (const auto scene = scene_by_extension(extension))
+    return parse_scene(text, name, *scene, node);
   if (extension == "obj") return parse_obj(text, name);
   if (extension == "off") return parse_off(text, name);
   if (extension == "ply") return parse_ply(text, name);
   if (extension == "stl") return parse_stl(text, name);
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
-  refuse("this is no mesh in a format that is read here: OBJ, OFF, PLY, STL or OM", name);
+  refuse(
+      "this is no mesh in a format that is read here: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF "
+      "or FBX",
+      name);
+}
+
+}  // namespace
+
+RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name,
+                   const std::string& node) {
+  RawMesh mesh = parse(bytes, name, node);
+  if (!node.empty() && mesh.format < MeshFormat::dae) {
+    throw Error(ErrorKind::invalid_argument,
+                std::string(name_of(mesh.format)) + " has no nodes; leave `node` out", name);
+  }
+  const std::size_t dropped = mesh.dropped_polygons;
+  if (dropped > 0) {
+    mesh.notes.push_back(std::to_string(dropped) + (dropped == 1 ? " face" : " faces") +
+                         " of fewer than three corners dropped");
+  }
+  return mesh;
 }
 
 RawMesh read_mesh(const std::string& path) {

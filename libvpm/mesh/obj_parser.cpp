@@ -11,6 +11,7 @@ namespace {
 // Returns the vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", which counts from 1, or
 // backwards from the last vertex so far.
 std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::size_t so_far) {
+  if (word.starts_with('+')) word.remove_prefix(1);
   const std::string_view digits = word.substr(0, word.find('/'));
   std::int64_t index = 0;
   const auto [stop, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
@@ -24,6 +25,20 @@ std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::
   return static_cast<std::uint32_t>(from_zero);
 }
 
+// Returns the point of a line "v x y z", or, as the format says of "v x y z w", divided by w.
+// Colours may follow in place of w.
+Vec3 vertex(TextLines& lines, std::size_t& divided) {
+  const Vec3 p = lines.point();
+  if (lines.rest().empty()) return p;
+  const std::string_view fourth = lines.word();
+  if (fourth.empty() || !lines.word().empty()) return p;
+  const double w = lines.to_number(fourth, "w");
+  if (w == 1) return p;
+  if (w == 0 || !is_finite(p / w)) lines.refuse_here("the vertex divided by its w is not finite");
+  ++divided;
+  return p / w;
+}
+
 }  // namespace
 
 RawMesh parse_obj(std::string_view text, const std::string& name) {
@@ -32,14 +47,14 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
   mesh.name = name;
   std::uint32_t largest = 0;  // a face may name a later vertex
   std::size_t largest_line = 0;
-  TextLines lines(text, name, '#');
+  std::size_t divided = 0;
+  TextLines lines(text, name, '#', '\\');
   while (lines.next_line()) {
     const std::string_view keyword = lines.word();
     if (keyword == "v") {
       if (mesh.vertices.size() == kMaxVertices) lines.refuse_here("more than 2^32 - 2 vertices");
-      mesh.vertices.push_back(lines.point());
+      mesh.vertices.push_back(vertex(lines, divided));
     } else if (keyword == "f") {
-      const std::size_t begin = mesh.corners.size();
       for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
         mesh.corners.push_back(corner_vertex(lines, word, mesh.vertices.size()));
         if (mesh.corners.back() >= largest) {
@@ -47,8 +62,7 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
           largest_line = lines.line_number();
         }
       }
-      if (mesh.corners.size() - begin < 3) lines.refuse_here("a face has fewer than 3 corners");
-      mesh.polygon_end.push_back(mesh.corners.size());
+      mesh.end_polygon();
     }
   }
   if (!mesh.corners.empty() && largest >= mesh.vertices.size()) {
@@ -57,6 +71,7 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
                std::to_string(mesh.vertices.size()) + " vertices",
            name);
   }
+  note_division(divided, mesh);
   return mesh;
 }
 

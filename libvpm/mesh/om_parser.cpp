@@ -3,8 +3,12 @@
 #include <OpenMesh/Core/IO/importer/ImporterT.hh>
 #include <OpenMesh/Core/IO/reader/OMReader.hh>
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
+#include <algorithm>
 #include <cstring>
+#include <optional>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_parsers.h"
@@ -84,62 +88,96 @@ Header header_of(std::string_view bytes) {
   return header;
 }
 
-// Returns the bytes of one element of a chunk as OpenMesh's reader takes them; 0 for chunks that it
-// cannot read.
+// True if the chunk is one that a mesh is made of: positions of vertices, or indices that connect.
+bool makes_the_mesh(const Chunk::Header& chunk) {
+  return chunk.type_ == Chunk::Type_Topology || chunk.type_ == Chunk::Type_Pos;
+}
+
+// Returns the bytes of one element of a chunk; 0 for a chunk whose header makes no sense. OpenMesh
+// aborts, or throws what is no Error, on sizes of scalars that it does not expect.
 std::size_t element_bytes(const Chunk::Header& chunk) {
   const std::size_t dimensions = OpenMesh::IO::OMFormat::dimensions(chunk);
   const std::size_t integer = std::size_t{1} << chunk.bits_;
-  const bool is_surface =
-      chunk.entity_ == Chunk::Entity_Vertex || chunk.entity_ == Chunk::Entity_Face;
+  const std::size_t real = std::size_t{4} << chunk.bits_;
+  const bool is_float_or_double = chunk.float_ != 0 && chunk.bits_ <= Chunk::Float_64;
   switch (chunk.type_) {
-    case Chunk::Type_Topology:
+    case Chunk::Type_Topology:  // its header leaves other fields as they were
+      if (chunk.bits_ > Chunk::Integer_32) return 0;
       if (chunk.entity_ == Chunk::Entity_Halfedge) return 3 * integer;  // next, to, face
-      return is_surface ? integer : 0;
+      return chunk.entity_ == Chunk::Entity_Vertex || chunk.entity_ == Chunk::Entity_Face ? integer
+                                                                                          : 0;
     case Chunk::Type_Pos:
-      return chunk.entity_ == Chunk::Entity_Vertex && dimensions == 3 && chunk.float_ != 0 &&
-                     chunk.bits_ == Chunk::Float_32
-                 ? 12
+      return chunk.entity_ == Chunk::Entity_Vertex && dimensions == 3 && is_float_or_double
+                 ? 3 * real
                  : 0;
     case Chunk::Type_Normal:
-      return is_surface && dimensions == 3 ? 12 : 0;
+      return dimensions == 3 && is_float_or_double ? 3 * real : 0;
+    case Chunk::Type_Status:  // its header says 8 bits
+      return sizeof(std::uint32_t);
     case Chunk::Type_Color:
-      return is_surface && dimensions == 3 ? 3 : 0;
+      return dimensions * (chunk.float_ != 0 ? real : integer);
     case Chunk::Type_Texcoord:
-      return chunk.entity_ == Chunk::Entity_Vertex && dimensions == 2 ? 8 : 0;
+      return is_float_or_double ? dimensions * real : 0;
     default:
       return 0;
   }
 }
 
-std::size_t elements(const Chunk::Header& chunk, const Header& header) {
-  if (chunk.entity_ == Chunk::Entity_Vertex) return header.vertices;
-  if (chunk.entity_ == Chunk::Entity_Face) return header.faces;
-  return chunk.entity_ == Chunk::Entity_Halfedge ? 2 * std::size_t{header.edges} : 0;
+// Returns how many elements the header gives a chunk; empty for an entity that there is not.
+std::optional<std::size_t> elements(const Chunk::Header& chunk, const Header& header) {
+  switch (chunk.entity_) {
+    case Chunk::Entity_Vertex:
+      return header.vertices;
+    case Chunk::Entity_Mesh:
+      return 1;
+    case Chunk::Entity_Face:
+      return header.faces;
+    case Chunk::Entity_Edge:
+      return header.edges;
+    case Chunk::Entity_Halfedge:
+      return 2 * std::size_t{header.edges};
+    default:
+      return std::nullopt;
+  }
 }
 
-// Checks chunks before OpenMesh's reader, which trusts a file and aborts on a damaged one.
-void check_chunks(std::string_view bytes, const Header& header, const std::string& name) {
+// Returns the header, the chunks that make the mesh and the last one, which end within the file and
+// are there once each. OpenMesh's reader gets nothing else: it trusts a file, and aborts on a
+// damaged one.
+std::string checked_chunks(std::string_view bytes, const Header& header, const std::string& name) {
+  std::string checked(bytes.substr(0, sizeof header));
+  std::set<std::pair<unsigned, unsigned>> seen;  // types and entities of chunks that make the mesh
   std::size_t at = sizeof header;
   while (true) {
     std::uint16_t word = 0;
+    const std::size_t begin = at;
     if (bytes.size() < at + sizeof word)
       refuse("the file ends without its last chunk; it is truncated", name);
     std::memcpy(&word, bytes.data() + at, sizeof word);
     Chunk::Header chunk{};
     chunk << word;
-    if (chunk.entity_ == Chunk::Entity_Sentinel) return;
+    at += sizeof word;
+    if (chunk.entity_ == Chunk::Entity_Sentinel)
+      return checked.append(bytes.substr(begin, sizeof word));
     const std::size_t element = element_bytes(chunk);
-    if (chunk.name_ != 0 || element == 0) {
-      refuse("the chunk at byte " + std::to_string(at) +
-                 " is none of positions, connectivity, normals, colours and texture coordinates",
+    const std::optional<std::size_t> count = elements(chunk, header);
+    if (chunk.name_ != 0 || element == 0 || !count) {
+      refuse("the chunk at byte " + std::to_string(begin) +
+                 " is none of positions, connectivity, normals, colours, texture coordinates and "
+                 "status",
              name, "save the mesh without other properties");
     }
-    at += sizeof word;
-    if ((bytes.size() - at) / element < elements(chunk, header))
-      refuse("the chunk before byte " + std::to_string(at) +
+    if ((bytes.size() - at) / element < *count)
+      refuse("the chunk at byte " + std::to_string(begin) +
                  " is longer than the file; it is truncated or damaged",
              name);
-    at += element * elements(chunk, header);
+    at += element * *count;
+    if (!makes_the_mesh(chunk)) continue;
+    if (!seen.emplace(unsigned{chunk.type_}, unsigned{chunk.entity_}).second)
+      refuse("the chunk at byte " + std::to_string(begin) +
+                 " gives the mesh a second time; the file is damaged",
+             name);
+    checked.append(bytes.substr(begin, at - begin));
   }
 }
 
@@ -165,11 +203,13 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
                       12.0 * header.vertices + header.faces + 6.0 * header.edges, bytes.size());
   if (header.version < OpenMesh::IO::OMFormat::mk_version(2, 0))
     refuse("an OM file of a version before 2.0", name, "save it again with a newer OpenMesh");
-  check_chunks(bytes, header, name);
+  constexpr std::uint32_t kMostElements = 0x3fffffff;  // half-edges are numbered by int
+  if (std::max({header.vertices, header.faces, header.edges}) > kMostElements)
+    refuse("an OM file of more than 1073741823 vertices, faces or edges", name);
   Mesh empty;
   Collector found(empty);
   OpenMesh::IO::Options options;
-  std::istringstream stream{std::string(bytes)};
+  std::istringstream stream(checked_chunks(bytes, header, name));
   omerr().disable();  // it would print to standard error what the refusal says
   const bool is_read = OpenMesh::IO::OMReader().read(stream, found, options);
   omerr().enable();

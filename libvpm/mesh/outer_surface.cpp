@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <string>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/ray_crossings.h"
 #include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/triangle_cells.h"
 #include "libvpm/mesh/winding_number.h"
@@ -73,6 +75,8 @@ struct OuterSurface::Cells {
       : solid(s),
         bvh(s.vertices, s.triangles),
         winding(bvh),
+        rays(s.vertices, s.triangles),
+        limit(s.triangles.size()),
         begin(s.triangles.size() + 1),
         coplanar(contact_tolerance(s.vertices)) {
     partners.resize(2 * contacts.size());
@@ -98,17 +102,36 @@ struct OuterSurface::Cells {
     return behind ? Side::outward : Side::turned;
   }
 
-  Side side_of_whole(std::uint32_t t) const {
+  // Returns the mean winding number of both sides of x, which lies on the triangles `here`, with
+  // the given step between them as seen from the first, which has this plane.
+  double number_at(Vec3 x, std::span<const std::uint32_t> here, double step, const Flat& plane,
+                   std::uint64_t& work) const {
+    constexpr double kAlong = 1e-6;  // sine of the angle below which a ray runs along the triangle
+    const double ahead = dot(plane.normal, RayCrossings::kDirection);
+    bool doubtful = !(std::abs(ahead) > kAlong);
+    int count = 0;
+    work += rays.from(x, [&](std::uint32_t t, Crossing crossing) {
+      if (std::find(here.begin(), here.end(), t) != here.end()) return;
+      doubtful = doubtful || crossing == Crossing::doubtful;
+      count += crossing == Crossing::outward ? 1 : -1;
+    });
+    if (!doubtful) return count + (ahead > 0 ? 0.5 : -0.5) * step;
+    work += work::kSolidAngle * (kNearVisits + solid.triangles.size() / kFarShare);
+    return winding.at(x, here);
+  }
+
+  Side side_of_whole(std::uint32_t t, std::uint64_t& work) const {
     const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
-    return side_of(winding.at(middle, std::array{t}), 1);
+    return side_of(number_at(middle, std::array{t}, 1, flat(t), work), 1);
   }
 
   // Returns the side of a cell with centre x. The first of several coinciding triangles stands for
   // all.
   Side side_of_cell(std::uint32_t t, const Flat& plane, Vec3 x,
-                    const std::vector<std::uint32_t>& in_plane) const {
+                    const std::vector<std::uint32_t>& in_plane, std::uint64_t& work) const {
     std::vector<std::uint32_t> here{t};
     double step = 1;
+    work += 2 * in_plane.size();
     for (const std::uint32_t other : in_plane) {
       const Flat its = flat(other);
       if (!its.covers(x)) continue;
@@ -116,7 +139,7 @@ struct OuterSurface::Cells {
       here.push_back(other);
       step += dot(its.normal, plane.normal) > 0 ? 1 : -1;
     }
-    return side_of(winding.at(x, here), step);
+    return side_of(number_at(x, here, step, plane, work), step);
   }
 
   // Returns the heights of the corners over the plane, 0 for those in it.
@@ -152,26 +175,31 @@ struct OuterSurface::Cells {
     return true;
   }
 
-  // Returns the parts of an intersecting triangle that bound the solid, facing outward.
-  std::vector<Corners> pieces_of_cut(std::uint32_t t) const {
+  // Returns the parts of an intersecting triangle that bound the solid, facing outward; some of
+  // them once its work is more than `most_work`.
+  std::vector<Corners> pieces_of_cut(std::uint32_t t, std::uint64_t most_work,
+                                     std::uint64_t& work) const {
     const Flat plane = flat(t);
     std::vector<TriangleSegment> segments;
     std::vector<std::uint32_t> in_plane;
     for (std::size_t k = begin[t]; k < begin[t + 1]; ++k) {
       if (!add_segments(t, plane, partners[k], segments)) in_plane.push_back(partners[k]);
     }
+    work += work::kTriangles * (begin[t + 1] - begin[t]);
     std::vector<Corners> pieces;
-    for (const std::vector<Vec2>& cell : triangle_cells(segments)) {
+    for (const std::vector<Vec2>& cell : triangle_cells(segments, most_work, work)) {
       if (cell.size() < 3) continue;
+      if (work > most_work) break;
       Vec2 middle;
       for (const Vec2& p : cell) middle = {middle.x + p.x, middle.y + p.y};
       const auto corners = static_cast<double>(cell.size());
-      const Side side =
-          side_of_cell(t, plane, plane.lift({middle.x / corners, middle.y / corners}), in_plane);
+      const Side side = side_of_cell(t, plane, plane.lift({middle.x / corners, middle.y / corners}),
+                                     in_plane, work);
       if (side == Side::none) continue;
       const Vec3 first = plane.lift(cell[0]);
       for (std::size_t k = 2; k < cell.size(); ++k)
         pieces.push_back(faced(side, first, plane.lift(cell[k - 1]), plane.lift(cell[k])));
+      work += work::kPiece * cell.size();
     }
     return pieces;
   }
@@ -180,19 +208,21 @@ struct OuterSurface::Cells {
     return side == Side::outward ? Corners{a, b, c} : Corners{a, c, b};
   }
 
-  Solid surface(const std::vector<Side>& side) const {
-    const auto count = static_cast<std::uint32_t>(side.size());
-    std::vector<std::vector<Corners>> pieces(count);
-    constexpr std::size_t kTogether = 16;
-    parallel_for(count, kTogether, [&](std::size_t first, std::size_t last) {
-      for (auto t = static_cast<std::uint32_t>(first); t < last; ++t) {
-        if (side[t] == Side::cut) {
-          pieces[t] = pieces_of_cut(t);
-        } else if (side[t] != Side::none) {
-          pieces[t] = {faced(side[t], corner(t, 0), corner(t, 1), corner(t, 2))};
-        }
+  Solid surface(const std::vector<Side>& side) {
+    std::vector<std::vector<Corners>> pieces(side.size());
+    // One triangle may take a small part of all work, which bounds what a round takes.
+    const std::uint64_t most_work = limit.most() / kLargestShare;
+    const auto work_of = [&](std::size_t k) {
+      const auto t = static_cast<std::uint32_t>(k);
+      std::uint64_t work = 0;
+      if (side[t] == Side::cut) {
+        pieces[t] = pieces_of_cut(t, most_work, work);
+      } else if (side[t] != Side::none) {
+        pieces[t] = {faced(side[t], corner(t, 0), corner(t, 1), corner(t, 2))};
       }
-    });
+      return work > most_work ? limit.most() : work;
+    };
+    if (!run_within(limit, side.size(), work_of, progress)) refuse_work();
     Solid result;
     for (const std::vector<Corners>& some : pieces) {
       for (const Corners& p : some) {
@@ -204,50 +234,87 @@ struct OuterSurface::Cells {
     return result;
   }
 
+  // Names the triangle that meets the most others.
+  [[noreturn]] void refuse_work() const {
+    std::uint32_t worst = 0;
+    for (std::uint32_t t = 0; t + 1 < begin.size(); ++t) {
+      if (begin[t + 1] - begin[t] > begin[worst + 1] - begin[worst]) worst = t;
+    }
+    throw TooMuchWork(
+        "the mesh meets itself in so many places that the boundary of what it encloses cannot be "
+        "cut out: " +
+            std::to_string(partners.size() / 2) + " pairs of its " +
+            std::to_string(solid.triangles.size()) + " triangles meet, " +
+            std::to_string(begin[worst + 1] - begin[worst]) + " of them with one triangle",
+        (corner(worst, 0) + corner(worst, 1) + corner(worst, 2)) / 3,
+        "delete doubled or tangled parts, or give `repair` voxel for a new surface");
+  }
+
+  // Share of a large mesh's triangles that a winding number visits, and the number that it visits
+  // of any: counts what is near, as dipoles take the rest.
+  static constexpr std::size_t kFarShare = 16;
+  static constexpr std::uint64_t kNearVisits = 64;
+  static constexpr std::uint64_t kLargestShare = 8;
+
   const Solid& solid;
   TriangleBvh bvh;
   WindingNumber winding;
+  RayCrossings rays;
+  WorkLimit limit;
+  MeshProgress progress;
   std::vector<std::size_t> begin;  // row offsets of `partners`
   std::vector<std::uint32_t> partners;
   double coplanar;  // m
 };
 
-void OuterSurface::find_sides(const Cells& cells, const Topology& topology) {
+void OuterSurface::find_sides(Cells& cells, const Topology& topology) {
   const auto count = static_cast<std::uint32_t>(side_.size());
-  // Sides continue between triangles that meet no other: one answer per connected part.
-  std::vector<std::uint32_t> part;
+  // Sides continue between triangles that meet no other: one answer per connected part, for its
+  // widest triangle.
+  std::vector<std::uint32_t> part, widest, part_of(count, Topology::kNone);
   for (std::uint32_t seed = 0; seed < count; ++seed) {
     if (cells.is_cut(seed)) side_[seed] = Side::cut;
-    if (side_[seed] != Side::unknown) continue;
+    if (side_[seed] == Side::cut || part_of[seed] != Topology::kNone) continue;
+    const auto index = static_cast<std::uint32_t>(widest.size());
     part.assign(1, seed);
-    side_[seed] = Side::none;
+    part_of[seed] = index;
+    widest.push_back(seed);
     double largest = 0;
-    std::uint32_t widest = seed;
     for (std::size_t k = 0; k < part.size(); ++k) {
       const std::uint32_t t = part[k];
       const Vec3 a = cells.corner(t, 0);
       const double area2 = squared_norm(cross(cells.corner(t, 1) - a, cells.corner(t, 2) - a));
-      if (area2 > largest) largest = area2, widest = t;
+      if (area2 > largest) largest = area2, widest[index] = t;
       for (const std::uint32_t other : topology.neighbor[t]) {
-        if (other == Topology::kNone || cells.is_cut(other) || side_[other] != Side::unknown)
+        if (other == Topology::kNone || cells.is_cut(other) || part_of[other] != Topology::kNone)
           continue;
-        side_[other] = Side::none;
+        part_of[other] = index;
         part.push_back(other);
       }
     }
-    const Side side = cells.side_of_whole(widest);
-    for (const std::uint32_t t : part) side_[t] = side;
+  }
+  std::vector<Side> side(widest.size());
+  const auto work_of = [&](std::size_t k) {
+    std::uint64_t work = 0;
+    side[k] = cells.side_of_whole(widest[k], work);
+    return work;
+  };
+  if (!run_within(cells.limit, widest.size(), work_of)) cells.refuse_work();
+  for (std::uint32_t t = 0; t < count; ++t) {
+    if (part_of[t] != Topology::kNone) side_[t] = side[part_of[t]];
   }
 }
 
-OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts)
+OuterSurface::OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts,
+                           const MeshProgress& progress)
     : side_(solid.triangles.size(), Side::outward) {
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
   std::size_t shell_count = 0;
   shells_of(topology, shell_count);
   if (!contacts.empty() || shell_count > 1) {
     side_.assign(side_.size(), Side::unknown);
-    const Cells cells(solid, contacts);
+    Cells cells(solid, contacts);
+    cells.progress = progress;
     find_sides(cells, topology);
     if (std::any_of(side_.begin(), side_.end(), [](Side s) { return s != Side::outward; }))
       surface_ = cells.surface(side_);

@@ -19,8 +19,9 @@ namespace vpm {
 class OuterSurface {
  public:
   // Needs `contacts` from find_contacts, and a closed, consistently oriented solid with at least
-  // one triangle.
-  OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts);
+  // one triangle. Throws TooMuchWork beyond WorkLimit.
+  OuterSurface(const Solid& solid, const std::vector<TrianglePair>& contacts,
+               const MeshProgress& progress = {});
 
   // True if the triangle meets no other and has the inside, or the outside, on both sides.
   bool bounds_nothing(std::uint32_t triangle) const { return side_[triangle] == Side::none; }
@@ -33,7 +34,7 @@ class OuterSurface {
   enum class Side : char { unknown, outward, turned, none, cut };
   struct Cells;
 
-  void find_sides(const Cells& cells, const Topology& topology);
+  void find_sides(Cells& cells, const Topology& topology);
 
   std::vector<Side> side_;
   std::optional<Solid> surface_;

@@ -66,7 +66,7 @@ Type parse_type(const TextLines& lines, std::string_view word) {
   for (const TypeName& known : kTypeNames) {
     if (word == known.name) return known.type;
   }
-  lines.refuse_here(std::string(word.substr(0, 40)) + " is not a type of a PLY property");
+  lines.refuse_here(file::shown(word, 40) + " is not a type of a PLY property");
 }
 
 Property parse_property(TextLines& lines) {
@@ -279,7 +279,6 @@ void read_face(Body& body, const Element& element, std::size_t vertex_count, Raw
       continue;
     }
     const std::size_t count = list_length(body, property);
-    if (count < 3) body.refuse_here(face + " has fewer than 3 corners");
     for (std::size_t k = 0; k < count; ++k) {
       const double index = body.value(property.type);
       if (!(index >= 0 && index < static_cast<double>(vertex_count) &&
@@ -289,7 +288,7 @@ void read_face(Body& body, const Element& element, std::size_t vertex_count, Raw
       }
       mesh.corners.push_back(static_cast<std::uint32_t>(index));
     }
-    mesh.polygon_end.push_back(mesh.corners.size());
+    mesh.end_polygon();
   }
 }
 
@@ -349,7 +348,7 @@ void check_elements(const Header& header, const std::string& name) {
 }  // namespace
 
 bool looks_like_ply(std::string_view bytes) {
-  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r") || bytes.starts_with("ply ");
 }
 
 RawMesh parse_ply(std::string_view bytes, const std::string& name) {

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
-#include "libvpm/core/parallel.h"
+#include "libvpm/mesh/ray_crossings.h"
 #include "libvpm/model/sphere.h"
 
 namespace vpm {
@@ -95,38 +96,121 @@ bool box_holds(const Shell& shell, Vec3 p) {
 
 enum class Enclosure { none, half, whole };
 
-// Ignores vertices on the other shell's surface, since parts may touch.
-Enclosure enclosure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                    const Shell& outer, const Shell& inner) {
-  std::size_t inside = 0, outside = 0;
-  for (const Vec3 p : inner.samples) {
-    if (!box_holds(outer, p)) {
-      ++outside;
-    } else {
-      const std::optional<double> number = winding_number(vertices, triangles, outer, p);
-      if (number) ++(std::abs(*number) > 0.5 ? inside : outside);
-    }
-    if (2 * outside > inner.samples.size()) return Enclosure::none;
-  }
-  if (inside == 0 || outside > inside) return Enclosure::none;
-  return outside == 0 ? Enclosure::whole : Enclosure::half;
-}
+// Finds the shells around each shell, by rays from some of its vertices.
+class EnclosureSearch {
+ public:
+  EnclosureSearch(const std::vector<Vec3>& vertices,
+                  const std::vector<std::uint32_t>& shell_of_triangle,
+                  const std::vector<Triangle>& triangles, const std::vector<Shell>& shells)
+      : vertices_(vertices),
+        shell_of_(shell_of_triangle),
+        triangles_(triangles),
+        shells_(shells),
+        rays_(vertices, triangles) {}
 
-// Returns for each shell the shells that enclose at least `least` of it.
-std::vector<std::vector<std::uint32_t>> find_enclosing(const std::vector<Vec3>& vertices,
-                                                       const std::vector<Triangle>& triangles,
-                                                       const std::vector<Shell>& shells,
-                                                       Enclosure least) {
-  std::vector<std::vector<std::uint32_t>> enclosing(shells.size());
-  parallel_for(shells.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      for (std::uint32_t other = 0; other < shells.size(); ++other) {
-        if (other != k && enclosure(vertices, triangles, shells[other], shells[k]) >= least)
-          enclosing[k].push_back(other);
-      }
+  // Returns for each shell, in ascending order, the shells that enclose at least `least` of it.
+  std::vector<std::vector<std::uint32_t>> all(Enclosure least, const MeshProgress& progress) const {
+    std::vector<std::vector<std::uint32_t>> enclosing(shells_.size());
+    std::vector<std::uint64_t> work(shells_.size(), 0);
+    WorkLimit limit(triangles_.size());
+    const auto work_of = [&](std::size_t k) {
+      return work[k] = find(static_cast<std::uint32_t>(k), least, enclosing[k]);
+    };
+    if (!run_within(limit, shells_.size(), work_of, progress)) {
+      const auto worst = std::max_element(work.begin(), work.end()) - work.begin();
+      throw TooMuchWork(
+          "its " + std::to_string(shells_.size()) +
+              " shells (connected surfaces) lie around or on one another in too many places",
+          shells_[static_cast<std::size_t>(worst)].samples.front(),
+          "delete doubled or inner parts, or pack the parts one by one");
     }
-  });
-  return enclosing;
+    return enclosing;
+  }
+
+ private:
+  // Counts of what the samples of one shell, and the ray from one sample, meet of another shell.
+  struct Tally {
+    std::uint32_t inside = 0, undecided = 0;  // samples
+    int enclosures = 0;                       // of the present sample
+    bool doubtful = false, passed = false, listed = false;
+  };
+  // Kept from shell to shell, so that each costs only what its rays pass.
+  struct Scratch {
+    std::vector<Tally> tally;  // all zero between calls
+    std::vector<std::uint32_t> passed, listed;
+  };
+
+  // Ignores vertices on the other shell's surface, since parts may touch.
+  std::uint64_t find(std::uint32_t k, Enclosure least, std::vector<std::uint32_t>& found) const {
+    static thread_local Scratch scratch;
+    if (scratch.tally.size() < shells_.size()) scratch.tally.resize(shells_.size());
+    std::uint64_t work = 0;
+    for (const Vec3 p : shells_[k].samples) work += add_sample(p, k, scratch);
+    std::sort(scratch.listed.begin(), scratch.listed.end());
+    for (const std::uint32_t other : scratch.listed) {
+      if (enclosure(scratch.tally[other], shells_[k].samples.size()) >= least)
+        found.push_back(other);
+      scratch.tally[other] = {};
+    }
+    scratch.listed.clear();
+    return work;
+  }
+
+  static Enclosure enclosure(const Tally& tally, std::size_t samples) {
+    const std::size_t outside = samples - tally.inside - tally.undecided;
+    if (tally.inside == 0 || outside > tally.inside || 2 * outside > samples)
+      return Enclosure::none;
+    return outside == 0 ? Enclosure::whole : Enclosure::half;
+  }
+
+  // Adds what a sample of shell `own` says of the shells that its ray passes. Returns the work.
+  std::uint64_t add_sample(Vec3 p, std::uint32_t own, Scratch& scratch) const {
+    std::vector<Tally>& tally = scratch.tally;
+    std::uint64_t work = rays_.from(p, [&](std::uint32_t t, Crossing crossing) {
+      Tally& other = tally[shell_of_[t]];
+      if (!other.passed && shell_of_[t] != own) {
+        other.passed = true;
+        scratch.passed.push_back(shell_of_[t]);
+      }
+      other.doubtful = other.doubtful || crossing == Crossing::doubtful;
+      other.enclosures += crossing == Crossing::outward ? 1 : -1;
+    });
+    tally[own] = {};
+    for (const std::uint32_t index : scratch.passed) {
+      Tally& other = tally[index];
+      std::optional<double> number = other.enclosures;
+      if (!box_holds(shells_[index], p)) {
+        number = 0;
+      } else if (other.doubtful) {
+        number = winding_number(vertices_, triangles_, shells_[index], p);
+        work += work::kSolidAngle * shells_[index].triangles.size();
+      }
+      if (!other.listed && (!number || std::abs(*number) > 0.5)) {
+        other.listed = true;
+        scratch.listed.push_back(index);
+      }
+      if (!number) ++other.undecided;
+      if (number && std::abs(*number) > 0.5) ++other.inside;
+      other.enclosures = 0;
+      other.doubtful = other.passed = false;
+    }
+    scratch.passed.clear();
+    return work;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<std::uint32_t>& shell_of_;
+  const std::vector<Triangle>& triangles_;
+  const std::vector<Shell>& shells_;
+  RayCrossings rays_;
+};
+
+std::vector<std::vector<std::uint32_t>> find_enclosing(
+    const std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& shell_of_triangle,
+    const std::vector<Triangle>& triangles, const std::vector<Shell>& shells, Enclosure least,
+    const MeshProgress& progress) {
+  if (shells.size() < 2) return std::vector<std::vector<std::uint32_t>>(shells.size());
+  return EnclosureSearch(vertices, shell_of_triangle, triangles, shells).all(least, progress);
 }
 
 }  // namespace
@@ -136,7 +220,8 @@ std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
                                      std::size_t shell_count,
                                      const std::vector<Triangle>& triangles) {
   const std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
-  const auto enclosing = find_enclosing(vertices, triangles, shells, Enclosure::half);
+  const auto enclosing =
+      find_enclosing(vertices, shell_of_triangle, triangles, shells, Enclosure::half, {});
   std::vector<ShellPlace> places;
   for (std::size_t k = 0; k < shells.size(); ++k)
     places.push_back({enclosing[k].size(), shells[k].volume >= 0});
@@ -146,11 +231,12 @@ std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
 ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& shell_of_triangle,
                                std::size_t shell_count, bool given_consistent,
-                               std::vector<Triangle>& triangles) {
+                               std::vector<Triangle>& triangles, const MeshProgress& progress) {
   std::vector<Shell> shells = collect(vertices, shell_of_triangle, shell_count, triangles);
   // Without consistent orientation, a shell that crosses another is a body.
-  const auto enclosing = find_enclosing(vertices, triangles, shells,
-                                        given_consistent ? Enclosure::half : Enclosure::whole);
+  const auto enclosing =
+      find_enclosing(vertices, shell_of_triangle, triangles, shells,
+                     given_consistent ? Enclosure::half : Enclosure::whole, progress);
   // Nested shells turn with the outermost one.
   const auto faces_wrong = [&](std::size_t k) {
     if (given_consistent) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libvpm/mesh/work_limit.h"
 #include "libvpm/model/solid.h"
 
 namespace vpm {
@@ -15,7 +16,8 @@ struct ShellPlace {
   bool outward = true;  // as its triangles face
 };
 
-// Returns the place of each shell, numbered as by shells_of in topology.h.
+// Returns the place of each shell, numbered as by shells_of in topology.h. Throws TooMuchWork
+// beyond WorkLimit.
 std::vector<ShellPlace> place_shells(const std::vector<Vec3>& vertices,
                                      const std::vector<std::uint32_t>& shell_of_triangle,
                                      std::size_t shell_count,
@@ -29,10 +31,10 @@ struct ShellOrientation {
 // Turns shells so that the mesh bounds a solid. Outermost shells come to face outward. If the file
 // is consistent, shells within others keep their orientation relative to the shell around them; if
 // not (`given_consistent` is false), they alternate: a shell wholly within an odd number of others
-// is a cavity.
+// is a cavity. Throws TooMuchWork beyond WorkLimit, as above.
 ShellOrientation orient_shells(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& shell_of_triangle,
                                std::size_t shell_count, bool given_consistent,
-                               std::vector<Triangle>& triangles);
+                               std::vector<Triangle>& triangles, const MeshProgress& progress = {});
 
 }  // namespace vpm

@@ -1,6 +1,5 @@
 #include "libvpm/mesh/text_lines.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -10,6 +9,8 @@
 
 namespace vpm {
 namespace {
+
+constexpr std::size_t kLongestShown = 40;
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
@@ -21,29 +22,45 @@ std::string_view without_leading_blanks(std::string_view text) {
   return text.substr(skip);
 }
 
+std::string_view without_trailing_blanks(std::string_view text) {
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string_view without_plus(std::string_view word) {
+  return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
+}
+
 std::string quoted(std::string_view word) {
-  constexpr std::size_t kLongestShown = 40;
-  std::string shown;
-  for (const char c : word.substr(0, kLongestShown)) shown += c >= ' ' && c <= '~' ? c : '?';
-  return "'" + shown + (word.size() > kLongestShown ? "...'" : "'");
+  return "'" + file::shown(word, kLongestShown) + "'";
 }
 
 }  // namespace
 
-TextLines::TextLines(std::string_view text, std::string name, char comment)
-    : text_(text), name_(std::move(name)), comment_(comment) {}
+TextLines::TextLines(std::string_view text, std::string name, char comment, char continuation)
+    : cursor_(text), name_(std::move(name)), comment_(comment), continuation_(continuation) {}
+
+bool TextLines::load_line() {
+  const std::optional<std::string_view> line = cursor_.line();
+  continues_ = false;
+  rest_ = {};
+  if (!line) return false;
+  ++line_number_;
+  std::string_view text = comment_ == 0 ? *line : line->substr(0, line->find(comment_));
+  if (continuation_ != 0) {
+    const std::string_view trimmed = without_trailing_blanks(text);
+    continues_ = trimmed.ends_with(continuation_);
+    if (continues_) text = trimmed.substr(0, trimmed.size() - 1);
+  }
+  rest_ = without_leading_blanks(text);
+  return true;
+}
 
 bool TextLines::next_line() {
-  while (at_ < text_.size()) {
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
-    std::string_view line = text_.substr(at_, end - at_);
-    at_ = std::min(end + 1, text_.size());
-    ++line_number_;
-    if (comment_ != 0) line = line.substr(0, line.find(comment_));
-    rest_ = without_leading_blanks(line);
-    if (!rest_.empty()) return true;
+  while (continues_ && load_line()) {
   }
-  rest_ = {};
+  while (load_line())
+    if (!rest_.empty() || continues_) return true;
   return false;
 }
 
@@ -56,18 +73,23 @@ void TextLines::require_line(const char* what) {
 }
 
 std::string_view TextLines::word() {
+  while (rest_.empty()) {
+    if (continues_ ? !load_line() : !(crosses_ && next_line())) return {};
+  }
   std::size_t length = 0;
   while (length < rest_.size() && !is_blank(rest_[length])) ++length;
   const std::string_view found = rest_.substr(0, length);
-  rest_ = without_leading_blanks(rest_.substr(length));
+  pass(length);
   return found;
 }
 
-double TextLines::number(const char* what) {
-  std::string_view text = word();
-  if (text.empty()) refuse_here(std::string(what) + " is missing");
-  const std::string_view given = text;
-  if (text.front() == '+') text.remove_prefix(1);
+void TextLines::pass(std::size_t count) {
+  rest_ = without_leading_blanks(rest_.substr(count));
+}
+
+double TextLines::to_number(std::string_view given, const char* what) const {
+  if (given.empty()) refuse_missing(what);
+  const std::string_view text = without_plus(given);
   double value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault == std::errc::invalid_argument) {
@@ -80,10 +102,9 @@ double TextLines::number(const char* what) {
 }
 
 std::int64_t TextLines::integer(const char* what) {
-  std::string_view text = word();
-  if (text.empty()) refuse_here(std::string(what) + " is missing");
-  const std::string_view given = text;
-  if (text.front() == '+') text.remove_prefix(1);
+  const std::string_view given = word();
+  if (given.empty()) refuse_missing(what);
+  const std::string_view text = without_plus(given);
   std::int64_t value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault != std::errc()) {
@@ -100,6 +121,13 @@ Vec3 TextLines::point() {
   p.z = number("z");
   if (!is_finite(p)) refuse_here("a coordinate is not finite");
   return p;
+}
+
+void TextLines::refuse_missing(const char* what) const {
+  if (!crosses_) refuse_here(std::string(what) + " is missing");
+  refuse("the file ends after line " + std::to_string(line_number_) + " where " + what +
+             " should follow; it is truncated",
+         name_);
 }
 
 void TextLines::refuse_here(const std::string& defect) const {

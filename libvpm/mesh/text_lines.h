@@ -7,36 +7,52 @@
 #include <string_view>
 
 #include "libvpm/core/vec3.h"
+#include "libvpm/file/text.h"
 
 namespace vpm {
 
 class TextLines {
  public:
-  // Skips everything after `comment` on a line; 0 for formats without comments.
-  TextLines(std::string_view text, std::string name, char comment);
+  // Skips everything after `comment` on a line; 0 for formats without comments. A line that ends in
+  // `continuation` goes on in the next one; 0 for formats without that.
+  TextLines(std::string_view text, std::string name, char comment, char continuation = 0);
 
-  // Moves to the next line that has a word; false at the end of the text.
+  // Moves to the next line that has a word; false at the end of the text. Lines end in LF, CRLF or
+  // CR (file::TextCursor).
   bool next_line();
   // Moves like next_line(), but throws Error(refused) at the end: "ends where <what> should
   // follow".
   void require_line(const char* what);
+  // Lets words be taken across the ends of lines, or not.
+  void cross_lines(bool crosses) { crosses_ = crosses; }
 
   // Returns the next word of this line; empty at its end.
   std::string_view word();
-  double number(const char* what);
+  double number(const char* what) { return to_number(word(), what); }
   std::int64_t integer(const char* what);
   // Returns three finite numbers.
   Vec3 point();
+  // Returns the word as a number; throws Error(refused) if it is none.
+  double to_number(std::string_view word, const char* what) const;
+
+  // Returns what is left of this line, from its next word on.
+  std::string_view rest() const { return rest_; }
+  // Passes over `count` characters of the rest.
+  void pass(std::size_t count);
 
   std::size_t line_number() const { return line_number_; }
-  std::size_t offset() const { return at_; }  // position after this line
+  std::size_t offset() const { return cursor_.offset(); }  // position after this line
   [[noreturn]] void refuse_here(const std::string& defect) const;
 
  private:
-  std::string_view text_;
+  bool load_line();
+  [[noreturn]] void refuse_missing(const char* what) const;
+
+  file::TextCursor cursor_;
   std::string name_;
-  char comment_;
-  std::size_t at_ = 0;
+  char comment_, continuation_;
+  bool continues_ = false;  // the line goes on in the next one
+  bool crosses_ = false;
   std::size_t line_number_ = 0;
   std::string_view rest_;  // rest of the line
 };

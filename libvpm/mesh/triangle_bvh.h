@@ -49,6 +49,7 @@ class TriangleBvh {
 
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<Corners>& corners() const { return corners_; }
+  Vec3 origin() const { return origin_; }  // of the boxes
 
  private:
   struct Build;

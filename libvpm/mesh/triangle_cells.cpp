@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "libvpm/mesh/work_limit.h"
+
 namespace vpm {
 namespace {
 
@@ -66,6 +68,7 @@ class Partition {
     while (!rest.empty()) {
       const auto [at, piece] = rest.back();
       rest.pop_back();
+      work_ += kVisit;
       if (nodes_[at].front == 0) {
         split(at, *line);
       } else {
@@ -73,6 +76,8 @@ class Partition {
       }
     }
   }
+
+  std::uint64_t work() const { return work_; }
 
   std::vector<std::vector<Vec2>> cells() && {
     std::vector<std::vector<Vec2>> cells;
@@ -113,16 +118,27 @@ class Partition {
     nodes_[at] = {{}, line, nodes_.size(), nodes_.size() + 1};
     nodes_.push_back(std::move(front));
     nodes_.push_back(std::move(back));
+    work_ += work::kPiece;
   }
 
+  // Cost of testing a segment against one line.
+  static constexpr std::uint64_t kVisit = 2;
+
+  std::uint64_t work_ = 0;
   std::vector<Node> nodes_{Node{{{0, 0}, {1, 0}, {0, 1}}, {}, 0, 0}};
 };
 
 }  // namespace
 
-std::vector<std::vector<Vec2>> triangle_cells(const std::vector<TriangleSegment>& segments) {
+std::vector<std::vector<Vec2>> triangle_cells(const std::vector<TriangleSegment>& segments,
+                                              std::uint64_t most_work, std::uint64_t& work) {
   Partition partition;
-  for (const TriangleSegment& s : segments) partition.insert(s);
+  for (const TriangleSegment& s : segments) {
+    partition.insert(s);
+    if (work + partition.work() > most_work) break;
+  }
+  work += partition.work();
+  if (work > most_work) return {};
   return std::move(partition).cells();
 }
 

@@ -1,18 +1,19 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_reader.h"
+#include "libvpm/mesh/polygon_cutting.h"
 
 namespace vpm {
 namespace {
 
-// Limits corners, since ear clipping takes quadratic time; no honest file has more.
-constexpr std::size_t kMaxCorners = 4096;
-
-struct Point2 {
-  double x = 0, y = 0;
-};
+// Polygons whose width is less than this fraction of their length are taken for lines.
+constexpr double kThin = 1e-13;
+// Limits corners of a polygon that is not convex, for which GLU may take quadratic time.
+constexpr std::size_t kMostCorners = 8192;
+constexpr const char* kHint = "save triangles in the program that wrote it";
 
 // Returns twice the signed area of the triangle a, b, c.
 double turn(Point2 a, Point2 b, Point2 c) {
@@ -46,62 +47,188 @@ std::vector<Point2> project(const std::vector<Vec3>& corners, Vec3 normal) {
   return flat;
 }
 
-bool is_ear(const std::vector<Point2>& flat, const std::vector<std::size_t>& ring, std::size_t at) {
-  const std::size_t count = ring.size();
-  const std::size_t before = ring[(at + count - 1) % count], here = ring[at],
-                    after = ring[(at + 1) % count];
-  if (!(turn(flat[before], flat[here], flat[after]) > 0)) return false;
-  return std::none_of(ring.begin(), ring.end(), [&](std::size_t other) {
-    return other != before && other != here && other != after &&
-           turn(flat[before], flat[here], flat[other]) >= 0 &&
-           turn(flat[here], flat[after], flat[other]) >= 0 &&
-           turn(flat[after], flat[before], flat[other]) >= 0;
+// True if all corners lie on one line, or in one point.
+bool is_line(const std::vector<Vec3>& corners) {
+  const auto from_first = [&](Vec3 p) { return norm(p - corners[0]); };
+  const Vec3 farthest = *std::max_element(corners.begin(), corners.end(), [&](Vec3 a, Vec3 b) {
+    return from_first(a) < from_first(b);
+  });
+  const Vec3 along = farthest - corners[0];
+  const double length = norm(along);
+  return std::all_of(corners.begin(), corners.end(), [&](Vec3 p) {
+    return norm(cross(p - corners[0], along)) <= kThin * length * length;
   });
 }
 
-// Cuts ears in the plane of the polygon. The rest without an ear (degenerate, crossing) becomes a
-// fan. `emit` takes positions within the polygon.
+// True if every corner turns left, and the polygon goes once around.
+bool is_convex(const std::vector<Point2>& flat) {
+  const std::size_t count = flat.size();
+  const Point2 last = flat[count - 1];
+  for (std::size_t k = 0; k < count; ++k) {
+    const Point2 here = flat[k], after = flat[(k + 1) % count];
+    if (!(turn(flat[(k + count - 1) % count], here, after) > 0)) return false;
+    if (k + 2 < count && !(turn(last, here, after) > 0)) return false;
+  }
+  return true;
+}
+
+// True if the corner of a polygon of four can be cut off.
+bool is_ear_of_four(const std::vector<Point2>& flat, std::size_t at) {
+  const Point2 before = flat[(at + 3) % 4], here = flat[at], after = flat[(at + 1) % 4],
+               other = flat[(at + 2) % 4];
+  return turn(before, here, after) > 0 &&
+         !(turn(before, here, other) >= 0 && turn(here, after, other) >= 0 &&
+           turn(after, before, other) >= 0);
+}
+
+// Cuts polygons; `Emit` takes positions within the polygon.
 template <class Emit>
-void clip_ears(const std::vector<Vec3>& corners, Emit emit) {
-  const std::vector<Point2> flat = project(corners, newell_normal(corners));
-  std::vector<std::size_t> ring(corners.size());
-  for (std::size_t k = 0; k < ring.size(); ++k) ring[k] = k;
-  std::size_t at = 0, tried = 0;
-  while (ring.size() > 3 && tried < ring.size()) {
-    if (at >= ring.size()) at = 0;
-    if (is_ear(flat, ring, at)) {
-      emit(ring[(at + ring.size() - 1) % ring.size()], ring[at], ring[(at + 1) % ring.size()]);
-      ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(at));
-      tried = 0;
+class Cutter {
+ public:
+  Cutter(const RawMesh& mesh, std::size_t begin, std::size_t end, Emit emit)
+      : mesh_(mesh), index_(mesh.corners.data() + begin), emit_(emit) {
+    for (std::size_t k = 0; k < end - begin; ++k) corners_.push_back(mesh.vertices[index_[k]]);
+  }
+
+  void cut() {
+    const std::vector<Point2> flat = project(corners_, newell_normal(corners_));
+    if (corners_.size() == 4) {
+      cut_four(flat);
+    } else if (is_convex(flat)) {
+      cut_convex();
+    } else if (is_line(corners_)) {
+      for (std::size_t k = 2; k < corners_.size(); ++k) emit_(0, k - 1, k);
     } else {
-      ++at;
-      ++tried;
+      cut_any(flat);
     }
   }
-  for (std::size_t k = 2; k < ring.size(); ++k) emit(ring[0], ring[k - 1], ring[k]);
-}
+
+ private:
+  void cut_four(const std::vector<Point2>& flat) {
+    for (std::size_t at = 0; at < 4; ++at) {
+      if (!is_ear_of_four(flat, at)) continue;
+      emit_((at + 3) % 4, at, (at + 1) % 4);
+      const std::size_t a = at == 0 ? 1 : 0, b = at <= 1 ? 2 : 1, c = at == 3 ? 2 : 3;
+      emit_(a, b, c);
+      return;
+    }
+    emit_(0, 1, 2);
+    emit_(0, 2, 3);
+  }
+
+  // Cuts a fan about the last corner.
+  void cut_convex() {
+    const std::size_t last = corners_.size() - 1;
+    for (std::size_t k = 0; k + 2 < last; ++k) emit_(last, k, k + 1);
+    emit_(last - 2, last - 1, last);
+  }
+
+  void cut_any(const std::vector<Point2>& flat) {
+    if (corners_.size() > kMostCorners) {
+      refuse(text_of_polygon() + "is not convex; such polygons may have " +
+                 std::to_string(kMostCorners) + " corners",
+             mesh_.name, kHint);
+    }
+    const std::vector<std::size_t> ring = without_spikes(flat);
+    if (ring.size() == 3) emit_(ring[0], ring[1], ring[2]);
+    if (ring.size() <= 3) return;
+    const double unit = size_of(flat);
+    std::vector<Point2> points;
+    for (const std::size_t k : ring) points.push_back({flat[k].x / unit, flat[k].y / unit});
+    const PolygonCutting cutting = cut_polygon(points);
+    if (cutting.fault != CuttingFault::none) refuse_polygon(cutting.fault);
+    for (const CornerTriangle& t : cutting.triangles) emit_(ring[t[0]], ring[t[1]], ring[t[2]]);
+  }
+
+  // Returns the largest coordinate, rounded to a power of two, by which division is exact.
+  static double size_of(const std::vector<Point2>& flat) {
+    double size = 0;
+    for (const Point2& p : flat) size = std::max({size, std::abs(p.x), std::abs(p.y)});
+    return std::ldexp(1.0, std::ilogb(size));
+  }
+
+  // Cuts off corners that equal a neighbour, or whose neighbours are equal, and returns the others.
+  std::vector<std::size_t> without_spikes(const std::vector<Point2>& flat) {
+    const auto equal = [&](std::size_t a, std::size_t b) {
+      return flat[a].x == flat[b].x && flat[a].y == flat[b].y;
+    };
+    const auto is_spike = [&](std::size_t before, std::size_t here, std::size_t after) {
+      return equal(here, after) || equal(before, here) || equal(before, after);
+    };
+    std::vector<std::size_t> ring;
+    for (std::size_t k = 0; k < flat.size(); ++k) {
+      ring.push_back(k);
+      while (ring.size() >= 3 && is_spike(ring.end()[-3], ring.end()[-2], k)) {
+        emit_flat(ring.end()[-3], ring.end()[-2], k);
+        ring.erase(ring.end() - 2);
+      }
+    }
+    std::size_t first = 0;  // those before were cut off
+    while (ring.size() - first >= 3) {
+      const std::size_t last = ring.back(), before = ring.end()[-2];
+      if (is_spike(before, last, ring[first])) {
+        emit_flat(before, last, ring[first]);
+        ring.pop_back();
+      } else if (is_spike(last, ring[first], ring[first + 1])) {
+        emit_flat(last, ring[first], ring[first + 1]);
+        ++first;
+      } else {
+        break;
+      }
+    }
+    ring.erase(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(first));
+    return ring;
+  }
+
+  // Emits a triangle without area that closes the surface, unless two of its corners are one
+  // vertex.
+  void emit_flat(std::size_t a, std::size_t b, std::size_t c) {
+    if (index_[a] != index_[b] && index_[b] != index_[c] && index_[c] != index_[a]) emit_(a, b, c);
+  }
+
+  std::string text_of_polygon() const {
+    char text[120];
+    std::snprintf(text, sizeof text, "a polygon of %zu corners, from (%.6g, %.6g, %.6g), ",
+                  corners_.size(), corners_[0].x, corners_[0].y, corners_[0].z);
+    return text;
+  }
+
+  [[noreturn]] void refuse_polygon(CuttingFault fault) const {
+    const std::string polygon = text_of_polygon();
+    if (fault == CuttingFault::crosses_itself)
+      refuse(polygon + "crosses itself as seen along its normal", mesh_.name, kHint);
+    if (fault == CuttingFault::unavailable) {
+      throw Error(ErrorKind::unavailable,
+                  polygon +
+                      "is not convex; this build cuts only convex ones, for want of GLU "
+                      "(Debian: libglu1-mesa-dev)",
+                  mesh_.name, kHint);
+    }
+    refuse(polygon + "could not be cut into triangles here, which says nothing against the mesh",
+           mesh_.name, kHint);
+  }
+
+  const RawMesh& mesh_;
+  const std::uint32_t* index_;
+  Emit emit_;
+  std::vector<Vec3> corners_;
+};
 
 }  // namespace
 
 std::vector<Triangle> triangulate(const RawMesh& mesh) {
   std::vector<Triangle> triangles;
   triangles.reserve(mesh.corners.size() - 2 * mesh.polygon_count());
-  std::vector<Vec3> corners;
   std::size_t begin = 0;
   for (const std::size_t end : mesh.polygon_end) {
     const std::uint32_t* const index = mesh.corners.data() + begin;
+    const auto emit = [&](std::size_t a, std::size_t b, std::size_t c) {
+      triangles.push_back({index[a], index[b], index[c]});
+    };
     if (end - begin == 3) {
-      triangles.push_back({index[0], index[1], index[2]});
+      emit(0, 1, 2);
     } else {
-      if (end - begin > kMaxCorners) {
-        refuse("a polygon has " + std::to_string(end - begin) + " corners", mesh.name,
-               "cut it into triangles");
-      }
-      corners.clear();
-      for (std::size_t k = begin; k < end; ++k) corners.push_back(mesh.vertices[mesh.corners[k]]);
-      clip_ears(corners, [&](std::size_t a, std::size_t b, std::size_t c) {
-        triangles.push_back({index[a], index[b], index[c]});
-      });
+      Cutter(mesh, begin, end, emit).cut();
     }
     begin = end;
   }

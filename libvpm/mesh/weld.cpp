@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -27,12 +28,17 @@ struct CellHash {
   }
 };
 
-// Vertices that were not joined, in a grid as wide as the tolerance: whatever lies within the
+// Vertices that were not joined, in a grid twice as wide as the tolerance: whatever lies within the
 // tolerance is in the same or a neighbouring grid cell.
 class Representatives {
  public:
-  Representatives(const std::vector<Vec3>& vertices, Vec3 low, double tolerance)
-      : vertices_(vertices), low_(low), tolerance_(tolerance), next_(vertices.size(), kNone) {
+  Representatives(const std::vector<Vec3>& vertices, double tolerance)
+      : vertices_(vertices),
+        width_(2 * tolerance),
+        far_(kFar * width_),
+        far_bits_(std::bit_cast<std::int64_t>(far_)),
+        tolerance_(tolerance),
+        next_(vertices.size(), kNone) {
     first_.reserve(vertices.size());
   }
 
@@ -58,25 +64,31 @@ class Representatives {
   }
 
  private:
-  Cell cell_of(Vec3 p) const {
-    const Vec3 at = (p - low_) / tolerance_;
-    return {static_cast<std::int64_t>(std::floor(at.x)),
-            static_cast<std::int64_t>(std::floor(at.y)),
-            static_cast<std::int64_t>(std::floor(at.z))};
+  // Number of cells up to which a quotient tells cells apart, and doubles in a cell beyond: there
+  // the tolerance is less than four steps from one double to the next.
+  static constexpr double kFar = 0x1p50;
+  static constexpr int kStepBits = 2;
+
+  Cell cell_of(Vec3 p) const { return {row_of(p.x), row_of(p.y), row_of(p.z)}; }
+
+  // Ascends with x; rows of coordinates within the tolerance differ by at most one.
+  std::int64_t row_of(double x) const {
+    if (std::abs(x) < far_) return static_cast<std::int64_t>(std::floor(x / width_));
+    const std::int64_t steps = std::bit_cast<std::int64_t>(std::abs(x)) - far_bits_;
+    const std::int64_t row = static_cast<std::int64_t>(kFar) + (steps >> kStepBits);
+    return x < 0 ? -1 - row : row;
   }
 
   const std::vector<Vec3>& vertices_;
-  Vec3 low_;
+  double width_, far_;
+  std::int64_t far_bits_;
   double tolerance_;
   std::vector<std::uint32_t> next_;
   std::unordered_map<Cell, std::uint32_t, CellHash> first_;
 };
 
 std::vector<std::uint32_t> join_near(const std::vector<Vec3>& vertices, double tolerance) {
-  Vec3 low = vertices.front();
-  for (const Vec3& p : vertices)
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  Representatives representatives(vertices, low, tolerance);
+  Representatives representatives(vertices, tolerance);
   std::vector<std::uint32_t> target(vertices.size());
   for (std::uint32_t k = 0; k < vertices.size(); ++k) {
     const std::uint32_t found = representatives.find(vertices[k]);

@@ -206,6 +206,29 @@ TEST_F(Stream, WhatCannotBeReadIsSaid) {
   EXPECT_EQ(kind_of_fault([&] { read_all(path(".")); }), ErrorKind::refused);
 }
 
+TEST_F(Stream, AnEndlessInputIsReadToItsLimit) {
+  constexpr std::size_t kMost = 100'000;
+  const std::optional<Error> fault = test::fault_of([&] { read_all("/dev/zero", kMost); });
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->kind(), ErrorKind::refused);
+  EXPECT_NE(std::string(fault->what()).find("100000 bytes"), std::string::npos) << fault->what();
+}
+
+TEST_F(Stream, APipeMayBeAsLongAsTheLimitAndAFileLonger) {
+  constexpr std::size_t kMost = 1000;
+  write_all(path("file"), std::string(kMost + 1, 'x'));
+  EXPECT_EQ(read_all(path("file"), kMost).size(), kMost + 1);
+  for (const std::size_t size : {kMost, kMost + 1}) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    write_all("/dev/fd/" + std::to_string(ends[1]), std::string(size, 'x'));
+    ::close(ends[1]);
+    const std::string from = "/dev/fd/" + std::to_string(ends[0]);
+    EXPECT_EQ(test::kind_of_fault([&] { read_all(from, kMost); }).has_value(), size > kMost);
+    ::close(ends[0]);
+  }
+}
+
 TEST_F(Stream, ThreadsMayWriteAtOnce) {
   std::vector<std::thread> threads;
   for (int k = 0; k < 8; ++k) {

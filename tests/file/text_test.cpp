@@ -69,6 +69,12 @@ TEST(ForeignContent, NamesWhatPeopleGiveByMistake) {
             "a Git LFS pointer, not the file itself");
   EXPECT_EQ(what("\n<!DOCTYPE HTML>"), "a web page");
   EXPECT_EQ(what("PK\x03\x04"), "an archive (zip, npz)");
+  EXPECT_EQ(what("<?xml version=\"1.0\"?>\n<!-- made -->\n<robot name=\"x\">"),
+            "a robot description (URDF, MJCF, SDF)");
+  EXPECT_EQ(what("<?xml version=\"1.0\"?><svg/>"), "an XML file");
+  EXPECT_EQ(what("ISO-10303-21;\nHEADER;"), "a STEP file of CAD");
+  EXPECT_EQ(what("\x1f\x8b\x08"), "compressed by gzip");
+  EXPECT_EQ(what("%PDF-1.7"), "a PDF document");
   EXPECT_EQ(what("# .PCD v0.7"), "");
   EXPECT_EQ(what(""), "");
 }

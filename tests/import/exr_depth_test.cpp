@@ -130,6 +130,45 @@ TEST(ExrDepth, RefusesWhatIsNoDepth) {
   EXPECT_TRUE(says(refused(make_exr(3, 2, true, {{"A", kValues}})), "it has A"));
 }
 
+// Returns a header of one attribute, which says that it is this long and is not there.
+std::string header_of_attribute(const std::string& type, std::uint32_t size) {
+  std::string file("\x76\x2f\x31\x01\x02\0\0\0", 8);
+  file += std::string("a\0", 2) + type + '\0';
+  file.append(reinterpret_cast<const char*>(&size), sizeof size);
+  return file + std::string(60, '\0');
+}
+
+TEST(ExrDepth, TakesNoMemoryForAttributesThatAreNotThere) {
+  for (const char* type : {"opaque", "string", "floatvector", "preview", "chlist", "of others"}) {
+    for (const std::uint32_t size : {61U, 0x7fffffffU, 0xffffffffU})
+      EXPECT_TRUE(says(refused(header_of_attribute(type, size)), "longer than the file")) << type;
+  }
+}
+
+// OpenEXR reads a list of channels to its own end, and takes what follows for the next attribute.
+TEST(ExrDepth, RefusesAttributesThatAreLongerThanTheirValue) {
+  std::string file = make_exr(3, 2, false, {{"Z", kValues}});
+  const std::size_t size = file.find("chlist") + 7;
+  file[size] = static_cast<char>(file[size] + 4);
+  file.insert(size + 4 + 19, "abc", 4);
+  EXPECT_TRUE(says(refused(file), "has 23 bytes, its value 19")) << refused(file);
+}
+
+TEST(ExrDepth, TakesNoMoreMemoryForAnImageThanItsFileMayAskFor) {
+  const std::string sound = make_exr(3, 2, false, {{"Z", kValues}});
+  const auto with_window = [&](const std::string& name, std::int32_t right, std::int32_t bottom) {
+    std::string file = sound;
+    const std::size_t value = file.find(name + '\0' + "box2i") + name.size() + 1 + 6 + 4;
+    file.replace(value + 8, 4, reinterpret_cast<const char*>(&right), 4);
+    file.replace(value + 12, 4, reinterpret_cast<const char*>(&bottom), 4);
+    return file;
+  };
+  EXPECT_TRUE(says(refused(with_window("dataWindow", 8191, 8191)), "does not fit into the file"));
+  EXPECT_TRUE(says(refused(with_window("dataWindow", 268'000'000, 0)), "MB of memory"));
+  EXPECT_TRUE(says(refused(with_window("displayWindow", 8191, 8191)), "MB of memory"));
+  EXPECT_NE(refused(with_window("dataWindow", 0x7fffffff, 0x7fffffff)), "");
+}
+
 TEST(ExrDepth, DamageIsRefused) {
   expect_damage_is_refused(make_exr(3, 2, true, {{"Y", kValues}}), 300,
                            [](auto bytes) { parse_exr_depth(bytes, "file", ""); });

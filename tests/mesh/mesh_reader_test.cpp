@@ -122,7 +122,9 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
       {"a.obj", "v 0 0 0\nf 0 1 1\n", "line 2: vertex index 0 is out of range"},
       {"a.obj", "v 0 0 0\nf -2 1 1\n", "line 2: vertex index -2 is out of range"},
       {"a.obj", "f 99999999999999999999 1 1\n", "is out of range"},
-      {"a.obj", "v 0 0 0\nf 1 1\n", "line 2: a face has fewer than 3 corners"},
+      {"a.obj", "v 0 0 0\nf 1 1\n", "the mesh has no faces"},
+      {"a.obj", "v 0 0 0 0\nf 1 1 1\n", "line 1: the vertex divided by its w is not finite"},
+      {"a.obj", "v 0 0 0 w\nf 1 1 1\n", "line 1: w is 'w'"},
       {"a.obj", "v 0 0 0\nf a b c\n", "line 2: a corner of the face is not a vertex index"},
       {"a.off", "OFF\n", "the file ends after line 1"},
       {"a.off", "OFF\n8 x\n", "line 2: the number of faces is 'x'"},
@@ -131,9 +133,14 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
       {"a.off", "OFF\n4 9000000000000000000 0\n", "but the file has only"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: vertex index 3"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "line 6: vertex index -1"},
-      {"a.off", "OFF\n3 1 0\n0 0 0.0000\n1 0 0\n0 1 0\n2 0 1\n", "fewer than 3 corners"},
+      {"a.off", "OFF\n3 1 0\n0 0 0.0000\n1 0 0\n0 1 0\n2 0 1\n", "the mesh has no faces"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-3 0 1 2\n", "number of corners is negative"},
+      {"a.off", "OFF 3 1 0\n0 0 0 1 0 0 0\n1 0\n3 0 1\n", "line 3: z is missing"},
+      {"a.off", "4nOFF\n4\n3 1 0\n", "its points have 4 dimensions"},
+      {"a.off", "4OFF\n1 0 0\n1 2 3 0\n", "divided by its w"},
+      {"a.off", "COFF BINARY\n", "binary OFF is read with three coordinates only"},
       {"a.off", "OFF\n3 2 0\n0 0 0.00000000\n1 0 0\n0 1 0\n3 0 1 2\n", "truncated"},
-      {"a.off", "4OFF\n3 1 0\n", "expected the keyword OFF"},
+      {"a.off", "OFFER\n3 1 0\n", "expected the keyword OFF"},
       {"a.ply", "plY\n", "must begin with 'ply'"},
       {"a.ply", "ply\nformat ascii 1.0\n", "the file ends after line 2"},
       {"a.ply", "ply\nformat text 1.0\nend_header\n", "line 2: unknown format"},
@@ -168,6 +175,8 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
        "endsolid\n",
        "line 6: a facet must have 3 vertices"},
       {"a.stl", "too short", "too few for a binary STL file"},
+      {"a.stl", std::string(200, 'x'), "the file is text, but no STL"},
+      {"a.stl", std::string(200, '\0'), "the header says 0 triangles, and 116 bytes follow"},
   };
   for (const Bad& bad : cases) {
     const std::string message = refusal_of(bad.content, bad.name);
@@ -180,6 +189,7 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
 TEST(MeshReader, BinaryCountsAreHeldAgainstTheFileBeforeMemoryIsTaken) {
   std::string stl = as_binary_stl(make_cube(1));
   stl.replace(80, 4, "\xff\xff\xff\xff");
+  stl.pop_back();
   EXPECT_NE(refusal_of(stl, "a.stl").find("4294967295 triangles"), std::string::npos);
   std::string ply = as_binary_ply(make_cube(1), false);
   ply.replace(ply.find("element vertex 8"), 16, "element vertex 9000000000000000000");

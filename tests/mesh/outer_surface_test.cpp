@@ -30,6 +30,11 @@ Solid turned(Solid solid) {
   return solid;
 }
 
+std::vector<std::vector<Vec2>> triangle_cells(const std::vector<TriangleSegment>& segments) {
+  std::uint64_t work = 0;
+  return vpm::triangle_cells(segments, UINT64_MAX, work);
+}
+
 double area_of(const std::vector<std::vector<Vec2>>& cells) {
   double area = 0;
   for (const auto& cell : cells) {

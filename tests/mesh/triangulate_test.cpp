@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <random>
 
+#include "libvpm/core/error.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "tests/mesh/mesh_files.h"
 
@@ -48,6 +51,131 @@ TEST(Triangulate, CutsConcavePolygonsInAnyPlane) {
   std::vector<Vec3> tilted;
   for (const Vec3& p : arrow) tilted.push_back(p.x * u + p.y * v);
   expect_cut_well(tilted, cross(u, v), 3);
+}
+
+Vec3 on_circle(double radius, double turns) {
+  const double angle = 2 * M_PI * turns;
+  return {radius * std::cos(angle), radius * std::sin(angle), 0};
+}
+
+double area_of(const std::vector<Vec3>& corners) {
+  Vec3 sum;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    sum += cross(corners[k], corners[(k + 1) % corners.size()]);
+  return 0.5 * norm(sum);
+}
+
+TEST(Triangulate, CutsConcavePolygonsOfManyCornersQuickly) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> radius(0.1, 1);
+  for (const int count : {5, 6, 7, 8, 9, 30, 400, 4096}) {
+    std::vector<Vec3> star;
+    for (int k = 0; k < count; ++k)
+      star.push_back(on_circle(radius(random), static_cast<double>(k) / count));
+    const auto start = std::chrono::steady_clock::now();
+    expect_cut_well(star, {0, 0, 1}, area_of(star));
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(taken.count(), 2) << count;  // 0.1 s where nothing else runs
+  }
+}
+
+TEST(Triangulate, CutsConvexPolygonsAsAFanAboutTheLastCorner) {
+  std::vector<Vec3> round;
+  for (int k = 0; k < 6; ++k) round.push_back(on_circle(1, k / 6.0));
+  EXPECT_EQ(triangulate(polygon(round)),
+            (std::vector<Triangle>{{5, 0, 1}, {5, 1, 2}, {5, 2, 3}, {3, 4, 5}}));
+}
+
+TEST(Triangulate, CutsPolygonsWithCornersOnOneLine) {
+  // A rectangle whose long sides have corners on and next to a line.
+  for (const double off : {0.0, 1e-16, 1e-12, 1e-9}) {
+    std::vector<Vec3> corners;
+    for (int k = 0; k <= 20; ++k) corners.push_back({0.1 * k, k % 2 == 0 ? 0 : off, 0});
+    for (int k = 20; k >= 0; --k) corners.push_back({0.1 * k, 1 + (k % 3 == 0 ? 0 : off), 0});
+    expect_cut_well(corners, {0, 0, 1}, area_of(corners));
+    for (Vec3& p : corners) p.y *= 1e-6;
+    expect_cut_well(corners, {0, 0, 1}, area_of(corners));
+  }
+}
+
+// Returns a square of edge 10 with square holes, each reached by a bridge along which the polygon
+// goes to and fro.
+std::vector<Vec3> with_holes(int holes) {
+  std::vector<Vec3> corners{{10, 10, 0}, {0, 10, 0}, {0, 0, 0}};
+  for (int k = 0; k < holes; ++k) {
+    const double x = 1 + 8.0 * k / holes, wide = 4.0 / holes;
+    corners.push_back({x, 0, 0});
+    for (const Vec3 p :
+         {Vec3{x, 2, 0}, {x, 2 + wide, 0}, {x + wide, 2 + wide, 0}, {x + wide, 2, 0}, {x, 2, 0}})
+      corners.push_back(p);
+    corners.push_back({x, 0, 0});
+  }
+  corners.push_back({10, 0, 0});
+  return corners;
+}
+
+TEST(Triangulate, CutsPolygonsWithHoles) {
+  for (const int holes : {1, 2, 7, 300}) {
+    const double wide = 4.0 / holes;
+    expect_cut_well(with_holes(holes), {0, 0, 1}, 100 - holes * wide * wide);
+  }
+}
+
+TEST(Triangulate, CutsPolygonsThatGoToAndFro) {
+  // Goes to (5, 5) and back, and names one corner twice.
+  const RawMesh mesh =
+      parse("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nv 0 4 0\nv -1 -1 0\nf 1 2 2 3 4 5 1 6\n", "a.obj");
+  std::vector<Triangle> triangles = triangulate(mesh);
+  EXPECT_EQ(triangles.size(), 3U);
+}
+
+TEST(Triangulate, RefusesPolygonsThatCrossThemselves) {
+  std::vector<Vec3> pentagram;
+  for (int k = 0; k < 5; ++k) pentagram.push_back(on_circle(1, 0.4 * k));
+  std::vector<Vec3> eight{{0, 0, 0}, {2, 2, 0}, {3, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+  for (const auto& corners : {pentagram, eight}) {
+    try {
+      triangulate(polygon(corners));
+      ADD_FAILURE() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("a polygon of 5 corners, from ("),
+                std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("crosses itself"), std::string::npos);
+    }
+  }
+}
+
+// Returns a plate of 10 x 10 x 1 with a square hole through it; its two large faces are polygons
+// that reach the hole by a bridge. Corners of the bridge are listed twice if `repeats`.
+std::string plate_with_hole(bool repeats) {
+  std::string obj;
+  for (const int z : {0, 1}) {
+    for (const char* const xy : {"0 0", "10 0", "10 10", "0 10", "3 3", "7 3", "7 7", "3 7"})
+      obj += std::string("v ") + xy + " " + std::to_string(z) + "\n";
+  }
+  obj += "v 0 0 0\nv 3 3 0\nv 0 0 1\nv 3 3 1\n";
+  obj += repeats ? "f 1 5 6 7 8 18 17 4 3 2\nf 9 10 11 12 19 20 16 15 14 13\n"
+                 : "f 1 5 6 7 8 5 1 4 3 2\nf 9 10 11 12 9 13 16 15 14 13\n";
+  for (int k = 1; k <= 4; ++k) {
+    const int next = k % 4 + 1;
+    const auto side = [&](int a, int b, int c, int d) {
+      obj += "f";
+      for (const int v : {a, b, c, d}) obj += " " + std::to_string(v);
+      obj += "\n";
+    };
+    side(k, next, next + 8, k + 8);
+    side(next + 4, k + 4, k + 12, next + 12);
+  }
+  return obj;
+}
+
+TEST(Triangulate, ASolidMayHaveFacesWithHoles) {
+  for (const bool repeats : {false, true}) {
+    const CheckedSolid plate = solid_of(plate_with_hole(repeats), "plate.obj");
+    EXPECT_DOUBLE_EQ(plate.facts.volume, 84) << repeats;
+    EXPECT_EQ(plate.facts.euler, 0) << repeats;
+    EXPECT_EQ(plate.facts.turned_triangles, 0U) << repeats;
+  }
 }
 
 TEST(Triangulate, ClosesWhatHasNoPlane) {

@@ -21,6 +21,24 @@ SECONDS = 120
 CAMERA = "--intrinsics 150,150,79.5,59.5"
 PASSES = 0.002  # m^3 of the cube that is behind the wall
 
+BRICK = 0.006  # m^3
+# Row: folder; mesh; exit status of vpm-pack; text that its messages hold; volume of the solid.
+MESHES = [
+    ("M01", "a.off", 0, "", BRICK),
+    ("M02", "a.off", 0, "", BRICK),
+    ("M06", "a.obj", 0, "1 face of fewer than three corners dropped", BRICK),
+    ("M08", "a.obj", 0, "", BRICK),
+    ("M09", "a.obj", 0, "", BRICK),
+    ("M09b", "a.stl", 0, "", BRICK),
+    ("M10", "a.obj", 0, "w other than 1, by which the others were divided", BRICK / 8),
+    ("M20", "a.ply", 0, "", BRICK),
+    ("M26", "a.stl", 0, "", BRICK),
+    ("M29", "a.stl", 0, "the header says 0 triangles, but the file has 12", BRICK),
+    ("M33a", "a.stl", 1, "this is a Git LFS pointer, not the file itself; fetch it with: git lfs pull", None),
+    ("M33b", "a.obj", 1, "this is a Git LFS pointer, not the file itself; fetch it with: git lfs pull", None),
+    ("V09", "brick_mm.obj", 0, "m across: if its unit is the millimetre, give --scale 0.001", None),
+    ("V09", "brick_mm.obj --scale 0.001", 0, "", BRICK),
+]
 # Row: folder; options of vpm-normals with the input; exit status; text that its messages hold; volumes at the poses.
 CLOUDS = [
     ("D01", f"a.png {CAMERA}", 0, "hold 65535", [PASSES]),
@@ -68,6 +86,15 @@ def volume_faults(row, done, volumes):
         yield f"{row}: volumes {found}, expected {volumes} {done.stderr}"
 
 
+def mesh_faults(tools, folder, arguments, status, text, volume):
+    row = f"{folder}: vpm-pack {arguments}"
+    done = tools.run(f"cd {folder} && vpm-pack {arguments} --spheres 60 --report -")
+    if done.returncode != status or text not in done.stderr or (not text and done.stderr):
+        yield f"{row}: exit status {done.returncode}, expected {status} and '{text}': {done.stderr}"
+    elif volume is not None and abs(json.loads(done.stdout)["volume_mesh"] - volume) > 1e-6 * volume:
+        yield f"{row}: volume {json.loads(done.stdout)['volume_mesh']}, expected {volume}"
+
+
 def cloud_faults(tools, folder, arguments, status, text, volumes):
     row = f"{folder}: vpm-normals {arguments}"
     here = f"cd {folder} && "
@@ -109,7 +136,8 @@ def main():
         tools = Tools(options.bin, folder)
         tools.must("vpm-pack base/cube.off -o cube.vpmp --spheres 1000 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet")
         tools.must(f"vpm-normals base_wall/wall.png -o wall.vpmc {CAMERA}")
-        faults = [fault for row in CLOUDS for fault in cloud_faults(tools, *row)]
+        faults = [fault for row in MESHES for fault in mesh_faults(tools, *row)]
+        faults += [fault for row in CLOUDS for fault in cloud_faults(tools, *row)]
         faults += [fault for row in POSES for fault in pose_faults(tools, *row)]
         faults += scale_faults(tools)
     print("\n".join(faults))

@@ -11,8 +11,24 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of(const json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+std::string text_of(const std::string& key, const json& value) {
+  if (!value.is_string()) return value.dump();
+  const auto& text = value.get_ref<const std::string&>();
+  // A path would end there for the system, but not for the checks before.
+  if (text.find('\0') != text.npos)
+    throw CLI::FileError("the configuration's '" + key + "' has a character of code 0 in it");
+  return text;
+}
+
+// Returns a configuration of at most a million bytes, far more than all options take.
+std::string whole_text(std::istream& input) {
+  constexpr std::size_t kLongest = 1'000'000;
+  std::string text(kLongest + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  if (text.size() > kLongest)
+    throw CLI::FileError("the configuration is longer than " + std::to_string(kLongest) + " bytes");
+  return text;
 }
 
 // True if a value of `option` is written as a JSON number; a file may be called 1e5 and is not.
@@ -68,7 +84,7 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
   json config;
   try {
-    config = json::parse(input, [](int depth, json::parse_event_t, const json&) {
+    config = json::parse(whole_text(input), [](int depth, json::parse_event_t, const json&) {
       constexpr int kDeepest = 32;  // JSON values are copied recursively and could fill the stack
       if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
       return true;
@@ -80,6 +96,8 @@ std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const 
     throw CLI::FileError("the configuration must be a JSON object of options");
   std::vector<CLI::ConfigItem> found;
   for (const auto& [key, value] : config.items()) {
+    if (key.find('\0') != key.npos)
+      throw CLI::FileError("a name in the configuration has a character of code 0 in it");
     CLI::ConfigItem item;
     item.name = key;
     const json list = value.is_array() ? value : json::array({value});
@@ -88,7 +106,7 @@ std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const 
         throw CLI::FileError("the configuration's '" + key +
                              "' must be a number, a string, true, false or a list of these");
       }
-      item.inputs.push_back(text_of(element));
+      item.inputs.push_back(text_of(key, element));
     }
     found.push_back(item);
   }

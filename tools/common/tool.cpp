@@ -17,6 +17,7 @@
 #include "libvpm/file/closed_pipe.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
+#include "tools/common/early_failure.h"
 #include "tools/common/error_text.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
@@ -129,6 +130,7 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
 }
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
+  end_of_early_failures();
   open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
@@ -141,8 +143,9 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
       for (CLI::Option* option : app_.get_options()) option->required(false);
     }
     refuse_cut_options(argc, argv);
+    refuse_values_of_flags(argc, argv);
     app_.parse(argc, argv);
-    refuse_empty_values();
+    refuse_senseless_values();
     if (dump_config_) {
       std::cout << app_.config_to_str(true, false);
       flush_output();
@@ -177,14 +180,32 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   }
 }
 
-// Refuses empty values, which come of unset variables in scripts.
-void Tool::refuse_empty_values() const {
+// Refuses --grow=1e999, of which CLI11 makes whatever it can.
+void Tool::refuse_values_of_flags(int argc, char** argv) const {
+  for (int k = 1; k < argc && std::string_view(argv[k]) != "--"; ++k) {
+    const std::string argument = argv[k];
+    const std::string name = argument.substr(0, argument.find('='));
+    if (!name.starts_with("--") || name.size() == argument.size()) continue;
+    const CLI::Option* option = app_.get_option_no_throw(name);
+    if (option != nullptr && option->get_expected_max() == 0)
+      refuse_usage(name + " takes no value; leave out " + argument.substr(name.size()));
+  }
+}
+
+// Refuses empty values, which come of unset variables in scripts, and values other than true and
+// false that a configuration gives to a flag.
+void Tool::refuse_senseless_values() const {
   for (const CLI::Option* option : app_.get_options()) {
     const std::vector<std::string>& values = option->results();
     if (option->get_expected_max() > 0 &&
         std::find(values.begin(), values.end(), "") != values.end())
       throw Error(ErrorKind::invalid_argument,
                   option->get_name() + ": its value is empty; give one, or leave the option out");
+    const bool is_nonsense = std::any_of(values.begin(), values.end(), [](const std::string& v) {
+      return v != "true" && v != "false";
+    });
+    if (option->get_expected_max() == 0 && is_nonsense)
+      refuse_usage("--config: " + config_key(*option) + " must be true or false");
   }
 }
 

@@ -53,7 +53,8 @@ class Tool {
   nlohmann::json parameters() const;
 
  private:
-  void refuse_empty_values() const;
+  void refuse_values_of_flags(int argc, char** argv) const;
+  void refuse_senseless_values() const;
   // Returns the text with options for the names in backquotes.
   std::string in_words_of_options(const std::string& text) const;
   void print(const char* kind, const std::string& text) const;

@@ -75,7 +75,11 @@ SolidOptions options_of(const nlohmann::json& provenance, const std::string& pac
 }
 
 void check_mesh(const Packing& packing, const Arguments& a) {
-  const RawMesh mesh = parse_mesh(file::read_all(a.mesh), a.mesh);
+  const nlohmann::json::json_pointer node_at("/parameters/node");
+  const bool has_node =
+      packing.provenance.contains(node_at) && packing.provenance.at(node_at).is_string();
+  const std::string node = has_node ? packing.provenance.at(node_at).get<std::string>() : "";
+  const RawMesh mesh = parse_mesh(file::read_all(a.mesh), a.mesh, node);
   const std::string expected = content_hash(packing.solid);
   const std::string found =
       content_hash(make_solid(mesh, options_of(packing.provenance, a.packing)).solid);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -36,7 +37,7 @@ namespace {
 constexpr long long kMostSpheres = 0xFFFFFFFE;  // a packing file counts them in 32 bits
 
 struct Arguments {
-  std::string mesh, repair, output, report, export_path, link, for_scene, view;
+  std::string mesh, node, repair, output, report, export_path, link, for_scene, view;
   std::size_t spheres = 1000;
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld, max_hole;
@@ -45,7 +46,9 @@ struct Arguments {
 };
 
 void declare(CLI::App& app, Arguments& a) {
-  app.add_option("mesh", a.mesh, "Closed mesh: OBJ, OFF, PLY, STL or OM; - is standard input");
+  app.add_option(
+      "mesh", a.mesh,
+      "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard input");
   app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")
       ->check(whole_number_in(1, kMostSpheres))
@@ -78,6 +81,8 @@ void declare(CLI::App& app, Arguments& a) {
       "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
                  "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
+  app.add_option("--node", a.node,
+                 "Read only this node of a COLLADA, glTF, 3MF or FBX file, with those below it");
   app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
       ->capture_default_str();
   app.add_option("--weld", a.weld,
@@ -123,7 +128,8 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
     refuse_usage("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
-    refuse_usage("no mesh is given: name an OBJ, OFF, PLY, STL or OM file, or - for a pipe");
+    refuse_usage(
+        "no mesh is given: name an OBJ, OFF, PLY, STL, COLLADA or glTF file, or - for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
     refuse_usage("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
@@ -148,14 +154,30 @@ std::string link_name(const Arguments& a) {
 }
 
 // Makes the solid; of a mesh that is refused, --view shows why.
-CheckedSolid checked_solid(const Arguments& a, const RawMesh& mesh) {
+CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& mesh) {
   try {
-    return make_solid(mesh, solid_options(a));
+    Progress progress("checking the mesh", tool.common());
+    return make_solid(mesh, solid_options(a), [&](double done) { progress.update(done); });
   } catch (const Error& fault) {
     if (!a.view.empty() && fault.kind() == ErrorKind::refused)
       write_defects_view(a.view, mesh, solid_options(a), fault.what());
     throw;
   }
+}
+
+// Warns if the mesh is larger or smaller than tools are, and names the scale that is likely meant.
+void warn_of_size(const Tool& tool, const Arguments& a, const std::string& prefix,
+                  const MeshFacts& facts) {
+  constexpr double kLargest = 100, kSmallest = 0.001;  // m
+  const Vec3 sides = facts.high - facts.low;
+  const double size = std::max({sides.x, sides.y, sides.z});
+  if (size >= kSmallest && size <= kLargest) return;
+  const bool is_large = size > kLargest;
+  char text[200];
+  std::snprintf(text, sizeof text, "the mesh is %.3g m across: if %s, give --scale %g", size,
+                is_large ? "its unit is the millimetre" : "it was scaled to metres twice",
+                a.scale * (is_large ? 0.001 : 1000));
+  tool.warn(prefix + text);
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
@@ -261,10 +283,11 @@ void run(const Tool& tool, Arguments a) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::byte> bytes = file::read_all(a.mesh);
   const std::string name = a.mesh == "-" ? "standard input" : a.mesh;
-  CheckedSolid checked = checked_solid(a, parse_mesh(bytes, name));
+  CheckedSolid checked = checked_solid(tool, a, parse_mesh(bytes, name, a.node));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
+  warn_of_size(tool, a, prefix, checked.facts);
 
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);

@@ -72,6 +72,32 @@ $ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
 2> vpm-probe: error: Could not convert: --count = five (see vpm-probe --help)
 [2]
 
+
+# No text of a configuration may end early for the system, and none is read without end.
+$ echo '{"output": "out.txt\u0000.vpmp"}' | vpm-probe --config - in.off
+2> vpm-probe: error: the configuration's 'output' has a character of code 0 in it (see vpm-probe --help)
+[2]
+$ echo '{"out\u0000put": "out.txt"}' | vpm-probe --config - in.off
+2> vpm-probe: error: a name in the configuration has a character of code 0 in it (see vpm-probe --help)
+[2]
+$ (echo '['; yes '"a",') | vpm-probe --config - in.off -o -
+2> vpm-probe: error: the configuration is longer than 1000000 bytes (see vpm-probe --help)
+[2]
+
+# Flags take no value on the command line, and true or false in a configuration.
+$ vpm-probe in.off -o - --flag=1e999
+2> vpm-probe: error: --flag takes no value; leave out =1e999
+[2]
+$ vpm-probe in.off -o - --flag=true
+2> vpm-probe: error: --flag takes no value; leave out =true
+[2]
+$ vpm-probe --version=2
+2> vpm-probe: error: --version takes no value; leave out =2
+[2]
+$ echo '{"flag": 2}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: --config: flag must be true or false
+[2]
+
 # Each kind of error has its exit code.
 $ vpm-probe in.off -o - --act refuse
 2> vpm-probe: error: input.off: refused as asked

@@ -68,6 +68,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.3,0,0,0,1 -o /dev/nu
 2> vpm-query: warning: at no pose is the tool within its size of the surface; are poses and scene in the same frame and unit?
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.7,0,0,0,1 -o /dev/null
 $ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph large.vpmp -o large.vpmg --quiet && vpm-query --tool large.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o /dev/null
+2> vpm-pack: warning: cube.off: the mesh is 200 m across: if its unit is the millimetre, give --scale 1
 2> vpm-query: warning: the tool is 346 m across and the scene 1.37 m: is one of them in other units than metres? vpm-pack --scale and vpm-normals --unit tell them
 
 # Files that were given by mistake are named.

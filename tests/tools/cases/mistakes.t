@@ -183,7 +183,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --for-sce
 {"pose":
 
 # Numbers may be written as CLI11 reads them, which JSON does not.
-$ vpm-pack cube.off --scale .001 --spheres 5 -o small.vpmp && vpm-graph small.vpmp --mesh cube.off -o small.vpmg && echo made
+$ vpm-pack cube.off --scale .1 --spheres 5 -o small.vpmp && vpm-graph small.vpmp --mesh cube.off -o small.vpmg && echo made
 made
 $ vpm-graph cube.vpmp --levels 010 -o x.vpmg
 2> vpm-graph: error: --levels: 010 begins with a zero; write it without (see vpm-graph --help)

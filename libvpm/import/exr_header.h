@@ -1,0 +1,15 @@
+// Checks the header of an OpenEXR file before OpenEXR sees it, which takes memory for what a header
+// declares before it reads it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace vpm {
+
+// Throws std::runtime_error if an attribute is longer than the file or than its value, if the image
+// cannot have its rows or tiles in the file, or if reading it would take more memory than a file of
+// this size may ask for (most_memory). Passes over what OpenEXR itself refuses.
+void check_exr_header(std::span<const std::byte> bytes);
+
+}  // namespace vpm

@@ -1,0 +1,9 @@
+#include "libvpm/mesh/polygon_cutting.h"
+
+namespace vpm {
+
+PolygonCutting cut_polygon(std::span<const Point2>) {
+  return {.fault = CuttingFault::unavailable};
+}
+
+}  // namespace vpm

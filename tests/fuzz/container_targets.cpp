@@ -1,0 +1,47 @@
+#include <algorithm>
+
+#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/model/packing_file.h"
+#include "libvpm/model/tool_model_file.h"
+#include "tests/fuzz/container_mutator.h"
+#include "tests/fuzz/query_check.h"
+#include "tests/fuzz/targets.h"
+#ifdef VPM_FUZZ_SOLID
+#include "libvpm/graph/build_tool_model.h"
+#endif
+
+namespace vpm::fuzz {
+
+#ifdef VPM_FUZZ_SOLID
+void run_vpmp(Bytes input) {
+  constexpr std::size_t kMostSpheres = 12, kMostTriangles = 40;  // of which a tool model is made
+  expect_error_at_most([&] {
+    const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
+    if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)
+      return;
+    GraphOptions options;  // coarse: the default takes half a second for a cube
+    for (const Sphere& sphere : packing.spheres)
+      options.epsilon = std::max(options.epsilon, sphere.radius / 4);
+    validate(build_tool_model(packing, options), "built");
+  });
+}
+#endif
+
+void run_vpmg(Bytes input) {
+  expect_error_at_most(
+      [&] { expect_sound_answers(parse_tool_model(with_mended_checksums(input), "x.vpmg")); });
+}
+
+void run_vpmc(Bytes input) {
+  expect_error_at_most(
+      [&] { expect_sound_answers(parse_cloud(with_mended_checksums(input), "x.vpmc")); });
+}
+
+void run_container(Bytes input) {
+  const std::vector<std::byte> bytes(input.begin(), input.end());
+  expect_error_at_most([&] { parse_packing(bytes, "x"); });
+  expect_error_at_most([&] { parse_tool_model(bytes, "x"); });
+  expect_error_at_most([&] { parse_cloud(bytes, "x"); });
+}
+
+}  // namespace vpm::fuzz

@@ -1,0 +1,46 @@
+// Targets of the fuzzer: each feeds bytes to one reader, and what is accepted to what uses it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "libvpm/core/pose.h"
+
+namespace vpm::fuzz {
+
+using Bytes = std::span<const std::byte>;
+
+struct Target {
+  const char* name;  // of its folders of seeds and findings too
+  void (*run)(Bytes input);
+  // Changes `size` bytes, at most to `most`, and returns the new size; null: bytes are changed
+  // blindly.
+  std::size_t (*mutate)(std::uint8_t* data, std::size_t size, std::size_t most,
+                        unsigned seed) = nullptr;
+};
+
+// Returns the target of this name, or null.
+const Target* find_target(std::string_view name);
+std::span<const Target> all_targets();
+
+// Ends the process by SIGABRT: a promise is broken.
+[[noreturn]] void fail(const std::string& promise);
+
+// Runs a reader. It may throw Error only, with a message that is not empty, of one line of
+// printable characters, and of 1500 bytes at most.
+void expect_error_at_most(const std::function<void()>& reader);
+
+void expect_finite(const Pose& pose);
+
+// Returns the path of a file in memory that has these bytes until the next call.
+const std::string& path_of(Bytes bytes);
+
+inline std::string text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace vpm::fuzz

@@ -1,0 +1,43 @@
+// Entry points of libFuzzer. VPM_FUZZ_TARGET names the target; libFuzzer's own options follow.
+#include <cstdio>
+#include <cstdlib>
+
+#include "libvpm/core/parallel.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace {
+
+const vpm::fuzz::Target* target = nullptr;
+
+}  // namespace
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+extern "C" int LLVMFuzzerInitialize(int*, char***);
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed);
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  const char* const name = std::getenv("VPM_FUZZ_TARGET");
+  target = name != nullptr ? vpm::fuzz::find_target(name) : nullptr;
+  if (target == nullptr) {
+    std::fputs("set VPM_FUZZ_TARGET to one of these:", stderr);
+    for (const vpm::fuzz::Target& each : vpm::fuzz::all_targets())
+      std::fprintf(stderr, " %s", each.name);
+    std::fputs("\n", stderr);
+    std::exit(2);
+  }
+  vpm::set_thread_count(1);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  target->run(std::as_bytes(std::span(data, size)));
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
+  return target->mutate != nullptr ? target->mutate(data, size, most, seed)
+                                   : LLVMFuzzerMutate(data, size, most);
+}

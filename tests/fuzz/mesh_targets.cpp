@@ -1,0 +1,71 @@
+#include "libvpm/mesh/mesh_check.h"
+#include "libvpm/mesh/mesh_parsers.h"
+#include "libvpm/packing/packer.h"
+#include "tests/fuzz/targets.h"
+
+namespace vpm::fuzz {
+namespace {
+
+constexpr std::size_t kMostToSolid = 64;  // polygons that are made a solid
+constexpr std::size_t kMostToPack = 40;   // triangles that are packed
+
+void expect_sound(const RawMesh& mesh) {
+  for (const std::uint32_t corner : mesh.corners)
+    if (corner >= mesh.vertices.size()) fail("a corner is out of range");
+  for (const Vec3& vertex : mesh.vertices)
+    if (!is_finite(vertex)) fail("a vertex is not finite");
+  std::size_t end = 0;
+  for (const std::size_t next : mesh.polygon_end) {
+    if (next < end || next > mesh.corners.size()) fail("polygons do not ascend");
+    end = next;
+  }
+}
+
+template <class Parser>
+void run_mesh(const Parser& parse) {
+  expect_error_at_most([&] {
+    const RawMesh mesh = parse();
+    expect_sound(mesh);
+    if (mesh.polygon_count() <= kMostToSolid) make_solid(mesh);
+  });
+}
+
+}  // namespace
+
+void run_obj(Bytes input) {
+  run_mesh([&] { return parse_mesh(input, "x.obj"); });
+}
+void run_off(Bytes input) {
+  run_mesh([&] { return parse_mesh(input, "x.off"); });
+}
+void run_ply(Bytes input) {
+  run_mesh([&] { return parse_mesh(input, "x.ply"); });
+}
+void run_stl(Bytes input) {
+  run_mesh([&] { return parse_mesh(input, "x.stl"); });
+}
+void run_om(Bytes input) {
+  run_mesh([&] { return parse_om(text_of(input), "x.om"); });
+}
+
+void run_solid(Bytes input) {
+  if (input.empty()) return;
+  const auto choice = static_cast<unsigned>(input[0]);
+  expect_error_at_most([&] {
+    SolidOptions options;
+    options.repair = static_cast<Repair>(choice % 4);
+    options.repair_voxels = 12;
+    if ((choice & 4) != 0) options.weld = 1e-6;
+    if ((choice & 8) != 0) options.scale = 0.001;
+    const CheckedSolid checked = make_solid(parse_mesh(input.subspan(1), "x.obj"), options);
+    if (checked.solid.triangles.size() > kMostToPack) return;
+    PackOptions pack_options;
+    pack_options.spheres = 3;
+    pack_options.enclosure = &checked.enclosure;
+    const PackResult packed = pack(checked.solid, pack_options);
+    for (const Sphere& sphere : packed.spheres)
+      if (!is_finite(sphere.center) || !(sphere.radius > 0)) fail("a sphere is not sound");
+  });
+}
+
+}  // namespace vpm::fuzz

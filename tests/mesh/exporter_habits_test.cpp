@@ -1,0 +1,273 @@
+// Reads what programs write that differs from the plain form of a format, each after public reports
+// about other readers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "libvpm/synthetic/shapes.h"
+#include "tests/mesh/mesh_files.h"
+
+namespace vpm::test {
+namespace {
+
+using synthetic::make_cube;
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+std::string in_capitals(std::string text) {
+  for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  return text;
+}
+
+std::string all_of(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& note : notes) text += note + "\n";
+  return text;
+}
+
+// Expects a cube of the given edge and notes that hold the given text, or none if it is empty.
+void expect_cube(const std::string& content, const std::string& name, double edge,
+                 const std::string& note = "") {
+  const CheckedSolid solid = solid_of(content, name);
+  EXPECT_NEAR(solid.facts.volume, edge * edge * edge, 1e-12) << content.substr(0, 400);
+  EXPECT_EQ(solid.facts.triangles, 12U);
+  const std::string notes = all_of(solid.notes);
+  if (note.empty()) {
+    EXPECT_EQ(notes, "") << content.substr(0, 400);
+  } else {
+    EXPECT_NE(notes.find(note), notes.npos) << notes;
+  }
+}
+
+TEST(LineEnds, MayBeOfAnyKindInTextAndInHeaders) {
+  const Solid cube = make_cube(0.5);
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    expect_cube(replaced(as_obj(cube), "\n", end), "a.obj", 0.5);
+    expect_cube(replaced(as_off(cube), "\n", end), "a.off", 0.5);
+    expect_cube(replaced(as_ascii_stl(cube), "\n", end), "a.stl", 0.5);
+    expect_cube(replaced(as_ascii_ply(cube), "\n", end), "a.ply", 0.5);
+    for (const bool big_endian : {false, true}) {
+      const std::string ply = as_binary_ply(cube, big_endian);
+      const std::size_t body = ply.find("end_header\n") + 11;
+      expect_cube(replaced(ply.substr(0, body), "\n", end) + ply.substr(body), "a.ply", 0.5);
+    }
+  }
+  // The format is recognised without a name, too.
+  for (const std::string& text : {as_obj(cube), as_off(cube), as_ascii_stl(cube)})
+    expect_cube(replaced(text, "\n", "\r"), "standard input", 0.5);
+}
+
+TEST(LineEnds, MayBeMixed) {
+  std::string mixed = as_off(make_cube(0.5));
+  const std::string ends[] = {"\n", "\r\n", "\r"};
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = mixed.find('\n', at)) != mixed.npos; ++count) {
+    mixed.replace(at, 1, ends[count % 3]);
+    at += ends[count % 3].size();
+  }
+  expect_cube(mixed, "a.off", 0.5);
+}
+
+TEST(LineEnds, ALineFeedAfterACarriageReturnMayBeData) {
+  // The first byte after the header is 10, a line feed, in a header whose lines end in CR.
+  std::string ply = as_binary_ply(make_cube(0.5), false);
+  ply.replace(ply.find("element vertex 8\n"), 17,
+              "element odd 1\nproperty uchar k\nelement vertex 8\n");
+  const std::size_t body = ply.find("end_header\n") + 11;
+  expect_cube(replaced(ply.substr(0, body), "\n", "\r") + "\n" + ply.substr(body), "a.ply", 0.5);
+  expect_cube(replaced(ply.substr(0, body), "\n", "\r\n") + "\n" + ply.substr(body), "a.ply", 0.5);
+}
+
+TEST(Off, IsReadByWords) {
+  const std::string off = as_off(make_cube(0.5));
+  const std::string rest = off.substr(4);  // after "OFF\n"
+  expect_cube("OFF8 12 0\n" + rest.substr(7), "a.off", 0.5);
+  expect_cube("OFF " + rest, "a.off", 0.5);
+  expect_cube("# first\n\nOFF # second\n# third\n" + replaced(rest, "\n", " # c\n\n#\n"), "a.off",
+              0.5);
+  expect_cube("OFF " + replaced(rest, "\n", " "), "a.off", 0.5);
+  expect_cube("OFF\n" + replaced(rest, " ", "\n"), "a.off", 0.5);
+  expect_cube("OFF\n8\n12 " + rest.substr(7), "a.off", 0.5);  // without the count of edges
+  expect_cube(rest, "a.off", 0.5);                            // without the keyword
+  expect_cube("OFF 8 12 0\n" + replaced(rest.substr(7), "0 \n", "0\n"), "standard input", 0.5);
+}
+
+// Returns the cube with `extras` after each vertex and `colors` after each face.
+std::string off_with(const std::string& keyword, const std::string& extras,
+                     const std::string& colors, const std::string& end) {
+  const Solid cube = make_cube(0.5);
+  std::string out = keyword + "\n8 12 0\n";
+  for (const Vec3& p : cube.vertices) {
+    for (const double c : {p.x, p.y, p.z}) out += std::to_string(c) + " ";
+    out += end + extras + "\n";
+  }
+  for (const Triangle& t : cube.triangles) {
+    out += "3";
+    for (const std::uint32_t k : t) out += " " + std::to_string(k);
+    out += " " + colors + "\n";
+  }
+  return out;
+}
+
+TEST(Off, HasWhatItsKeywordSays) {
+  for (const std::string end : {"", "\n"}) {
+    expect_cube(off_with("COFF", "255 0 0 255", "", end), "a.off", 0.5);
+    expect_cube(off_with("COFF", "1 0 0", "", end), "a.off", 0.5);
+    expect_cube(off_with("COFF", "1 0 0 1", "1 0 0", end), "a.off", 0.5);
+    expect_cube(off_with("NOFF", "1 0 0", "", end), "a.off", 0.5);
+    expect_cube(off_with("CNOFF", "1 0 0 255 0 0 255", "7", end), "a.off", 0.5);
+    expect_cube(off_with("STOFF", "0 1", "", end), "a.off", 0.5);
+    expect_cube(off_with("STCN4OFF", "1 1 0 0 0.5 0.5 0.5 0.5 0 0", "", end), "a.off", 0.5);
+    expect_cube(off_with("4OFF", "1", "", end), "a.off", 0.5);
+    expect_cube(off_with("4OFF", "2", "", end), "a.off", 0.25, "8 vertices have a fourth");
+    expect_cube(off_with("nOFF\n3", "", "", end), "a.off", 0.5);
+    expect_cube(off_with("4nOFF 3", "1", "1 0 0", end), "a.off", 0.5);
+  }
+  // Colours that the keyword does not announce are passed over where each vertex has its line.
+  expect_cube(off_with("OFF", "255 0 0", "3 255 0 0", ""), "a.off", 0.5);
+}
+
+TEST(Obj, LinesContinueAfterABackslash) {
+  const std::string obj = as_obj(make_cube(0.5));
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string broken = replaced(replaced(obj, " 0", " \\\n0"), "f ", "f\\\n ");
+    expect_cube(replaced("vt 0 \\\n0\n" + broken, "\n", end), "a.obj", 0.5);
+  }
+}
+
+TEST(Obj, WIsDividedAndColoursAreNot) {
+  const std::string obj = as_obj(make_cube(0.5));
+  const std::size_t faces = obj.find("f ");
+  const std::string vertices = obj.substr(0, faces).substr(obj.find("v "));
+  const auto with = [&](const std::string& more) {
+    return replaced(vertices, "\n", more + "\n") + obj.substr(faces);
+  };
+  expect_cube(with(" 1"), "a.obj", 0.5);
+  expect_cube(with(" 1.0"), "a.obj", 0.5);
+  expect_cube(with(" 2"), "a.obj", 0.25, "8 vertices have a fourth coordinate w other than 1");
+  expect_cube(with(" 0.5 0.5 0.5"), "a.obj", 0.5);
+  expect_cube(with(" 0.5 0.5 0.5 1"), "a.obj", 0.5);
+}
+
+TEST(Numbers, MayHaveAPlus) {
+  const Solid cube = make_cube(0.5);
+  expect_cube(replaced(as_obj(cube), " 0", " +0"), "a.obj", 0.5);
+  expect_cube(replaced(as_off(cube), "0.5", "+0.5"), "a.off", 0.5);
+  expect_cube(replaced(as_ascii_ply(cube), "0.5", "+.5e+0"), "a.ply", 0.5);
+  expect_cube(replaced(as_ascii_stl(cube), "vertex 0.5", "vertex +0.5"), "a.stl", 0.5);
+  EXPECT_EQ(parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf +1 +2/+2 +3\n", "a.obj").polygon_count(), 1U);
+}
+
+TEST(Faces, OfFewerThanThreeCornersAreDropped) {
+  const Solid cube = make_cube(0.5);
+  const std::string note = "2 faces of fewer than three corners dropped";
+  expect_cube(as_obj(cube) + "f 1 2\nf 3\n", "a.obj", 0.5, note);
+  const std::string off = replaced(as_off(cube), "8 12 0", "8 14 0") + "2 0 1\n1 0\n";
+  expect_cube(off, "a.off", 0.5, note);
+  expect_cube(replaced(as_ascii_ply(cube), "face 12", "face 14") + "2 0 1\n0\n", "a.ply", 0.5,
+              note);
+}
+
+TEST(AsciiStl, KeywordsAreReadAsProgramsWriteThem) {
+  const std::string stl = as_ascii_stl(make_cube(0.5));
+  expect_cube(in_capitals(stl), "a.stl", 0.5);
+  expect_cube(in_capitals(stl), "standard input", 0.5);
+  const std::string apart =
+      replaced(replaced(replaced(stl, "endloop", "end loop"), "endfacet", "end facet"), "endsolid",
+               "end solid");
+  expect_cube(apart, "a.stl", 0.5);
+  expect_cube(in_capitals(apart), "a.stl", 0.5);
+}
+
+TEST(AsciiStl, SeveralSolidsAreAllRead) {
+  const std::string stl = as_ascii_stl(make_cube(0.5)),
+                    other = as_ascii_stl(moved(make_cube(0.5), {2, 0, 0}));
+  const CheckedSolid both = solid_of(stl + other, "a.stl");
+  EXPECT_NEAR(both.facts.volume, 0.25, 1e-12);
+  EXPECT_EQ(all_of(both.notes), "2 solids stand one after the other; all were read\n");
+  EXPECT_NE(refusal_of(stl + other.substr(0, other.find("endsolid")), "a.stl"), "");
+  EXPECT_NE(refusal_of(stl + "solid x\n", "a.stl"), "");
+}
+
+std::string with_count(std::string stl, std::uint32_t count) {
+  std::memcpy(stl.data() + 80, &count, sizeof count);
+  return stl;
+}
+
+TEST(BinaryStl, TrianglesAreCountedFromTheBytes) {
+  const std::string stl = as_binary_stl(make_cube(0.5));
+  expect_cube(with_count(stl, 0), "a.stl", 0.5, "says 0 triangles, but the file has 12, which");
+  expect_cube(with_count(stl, 5), "a.stl", 0.5, "says 5 triangles, but the file has 12, which");
+  expect_cube(with_count(stl, 0xffffffff), "a.stl", 0.5, "but the file has 12, which");
+  expect_cube(stl + "\n", "a.stl", 0.5, "1 byte after the last of 12 triangles");
+  // Where bytes are missing, that is what is wrong with the mesh.
+  const std::string cut = stl.substr(0, stl.size() - 100);
+  EXPECT_NE(refusal_of(cut, "a.stl").find("the header says 12 triangles, but the file has 10 and"),
+            std::string::npos)
+      << refusal_of(cut, "a.stl");
+}
+
+TEST(BinaryStl, SeveralFilesAreAllRead) {
+  const std::string stl = as_binary_stl(make_cube(0.5)),
+                    other = as_binary_stl(moved(make_cube(0.5), {2, 0, 0}));
+  for (const std::string name : {"a.stl", "standard input"}) {
+    const CheckedSolid both = solid_of(stl + other, name);
+    EXPECT_NEAR(both.facts.volume, 0.25, 1e-12);
+    EXPECT_EQ(all_of(both.notes), "2 STL files stand one after the other; all were read\n");
+  }
+}
+
+TEST(BinaryStl, AttributesMayBeBytesThatFollow) {
+  const std::string stl = as_binary_stl(make_cube(0.5));
+  std::string with_payload = stl.substr(0, 84), with_colors = stl;
+  for (std::size_t k = 0; k < 12; ++k) {
+    const std::size_t facet = 84 + 50 * k;
+    const char payload = static_cast<char>(k % 4);
+    with_payload += stl.substr(facet, 48) + payload + '\0' + std::string(k % 4, 'x');
+    with_colors[facet + 48] = 31;
+  }
+  expect_cube(with_payload, "a.stl", 0.5, "18 bytes of attributes between the triangles");
+  expect_cube(with_colors, "a.stl", 0.5);
+}
+
+TEST(FarFromTheOrigin, TheLossOfFloatsIsSaid) {
+  const std::string far = as_binary_stl(moved(make_cube(0.3), {4.65e6, 1e3, 20}));
+  EXPECT_NE(refusal_of(far, "a.stl").find("where floats of 32 bits are 0.5 apart"), far.npos)
+      << refusal_of(far, "a.stl");
+  EXPECT_NE(refusal_of(far, "a.stl").find("move it to the origin before"), far.npos);
+  // A cube whose corners are floats all the same.
+  const CheckedSolid coarse =
+      solid_of(as_binary_stl(moved(make_cube(0.5), {1 << 20, 0, 0})), "a.stl");
+  ASSERT_EQ(coarse.warnings.size(), 1U);
+  EXPECT_NE(coarse.warnings[0].find("coarse for a mesh that is 0.866 across"), far.npos);
+  // Doubles are fine enough there, and floats are near the origin.
+  EXPECT_TRUE(solid_of(as_obj(moved(make_cube(0.3), {4.65e6, 1e3, 20})), "a.obj").warnings.empty());
+  EXPECT_TRUE(solid_of(as_binary_stl(make_cube(0.3)), "a.stl").warnings.empty());
+}
+
+TEST(NotAMesh, IsNamedWithTheNextStep) {
+  const std::pair<std::string, const char*> cases[] = {
+      {"version https://git-lfs.github.com/spec/v1\n",
+       "a Git LFS pointer, not the file itself; fetch"},
+      {"<!DOCTYPE html>", "this is a web page; download"},
+      {"\x1f\x8b\x08", "compressed by gzip; unpack"},
+      {"PK\x03\x04", "an archive"},
+      {"ISO-10303-21;\n", "a STEP file of CAD; export a mesh"},
+      {"<?xml version=\"1.0\"?>\n<robot name=\"x\">", "a robot description"},
+      {"%PDF-1.4", "a PDF document"},
+      {"\x89PNG\r\n", "a PNG picture; give the mesh"},
+      {"# .PCD v0.7", "a cloud of points"}};
+  for (const auto& [content, message] : cases) {
+    for (const char* const name : {"a.obj", "a.stl", "a.off", "a.ply", "a.dae", "standard input"})
+      EXPECT_NE(refusal_of(content, name).find(message), std::string::npos)
+          << name << ": " << refusal_of(content, name);
+  }
+}
+
+}  // namespace
+}  // namespace vpm::test

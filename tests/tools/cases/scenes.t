@@ -1,0 +1,43 @@
+# vpm-pack reads COLLADA, glTF, 3MF and FBX by assimp, in metres and with the transforms of nodes.
+
+$ python3 $SOURCE/tests/tools/scene_files.py .
+$ for f in cube.dae cube.gltf beside.gltf cube.glb cube.3mf cube.fbx; do vpm-pack $f --spheres 5 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["format"], r["mesh"]["triangles"], round(r["volume_mesh"], 5))'; done
+COLLADA 12 1.0
+glTF 12 1.0
+glTF 12 1.0
+glTF 12 1.0
+3MF 12 1.0
+FBX 12 1.0
+2> vpm-pack: note: cube.dae: its unit was applied; transforms of nodes were applied; z is up, as in the file
+2> vpm-pack: note: cube.gltf: its coordinates are metres; transforms of nodes were applied; y is up, as in the file
+2> vpm-pack: note: beside.gltf: its coordinates are metres; transforms of nodes were applied; y is up, as in the file
+2> vpm-pack: note: cube.glb: its coordinates are metres; transforms of nodes were applied; y is up, as in the file
+2> vpm-pack: note: cube.3mf: its unit is taken to be 0.001 m, which 3MF has by default; transforms of nodes were applied; z is up, as in the file
+2> vpm-pack: note: cube.fbx: its unit is taken to be 0.1 m, as the file says; transforms of nodes were applied; z is up, as in the file
+$ for f in cube.dae cube.glb cube.3mf; do vpm-pack - --spheres 5 --report - --quiet < $f | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["format"], round(r["volume_mesh"], 5))'; done
+COLLADA 1.0
+glTF 1.0
+3MF 1.0
+
+# Several nodes are joined, or one is chosen.
+$ for f in two.dae two.glb; do vpm-pack $f --spheres 5 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["shells"], round(r["volume_mesh"], 5))'; done
+2 1.125
+2 1.125
+2> vpm-pack: note: two.dae: its unit was applied; transforms of nodes were applied; y is up, as in the file
+2> vpm-pack: note: two.dae: the meshes of 2 nodes are joined: body, tip; --node chooses one
+2> vpm-pack: note: two.glb: its coordinates are metres; transforms of nodes were applied; y is up, as in the file
+2> vpm-pack: note: two.glb: the meshes of 2 nodes are joined: body, tip; --node chooses one
+$ for f in two.dae two.glb; do vpm-pack $f --node tip --spheres 5 --report - --quiet | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["shells"], round(r["volume_mesh"], 5))'; done
+1 0.125
+1 0.125
+$ vpm-pack two.dae --node hand -o x.vpmp
+2> vpm-pack: error: two.dae: it has no node 'hand'; nodes with faces: body, tip
+[1]
+$ vpm-pack two.dae --node tip -o tip.vpmp --spheres 9 --quiet && vpm-graph tip.vpmp --mesh two.dae -o tip.vpmg --quiet && echo made
+made
+$ printf 'v 0 0 0\nf 1 1 1\n' > a.obj && vpm-pack a.obj --node tip -o x.vpmp
+2> vpm-pack: error: a.obj: OBJ has no nodes; leave --node out
+[2]
+$ head -c 500 cube.glb > cut.glb && vpm-pack cut.glb -o x.vpmp
+2> vpm-pack: error: cut.glb: assimp cannot read this glTF file, which is damaged or of a version that it does not know; save it again, or as OBJ, PLY or STL
+[1]
