@@ -207,8 +207,7 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
   __shared__ RawResult total;
   // Keeps each thread's sums, which are seldom used, out of its registers. A flood has none.
   __shared__ RawResult of_threads[Surface::kTellsInside ? kBatchThreads : 1];
-  RawResult of_flood;
-  RawResult& found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
+  RawResult of_flood, &found = Surface::kTellsInside ? of_threads[threadIdx.x] : of_flood;
   __shared__ RefinedSpace space;  // in registers it would be indexed, thus in local memory
   if (threadIdx.x == 0) space = space_of(launch.space, launch.room, blockIdx.x);
   const auto clear_notes = [&](const LevelView& level) {
