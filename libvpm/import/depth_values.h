@@ -22,7 +22,7 @@ struct DepthDecoding {
 // Parses "swapped", "rotated", "disparity", or several with commas. Throws Error(invalid_argument).
 DepthDecoding decoding_from_text(const std::string& text);
 
-// What the values mean, where that differs from what is usual.
+// Tells what the values of a depth image mean, where that differs from what is usual.
 struct DepthReading {
   std::optional<double> units_per_metre = {};  // if unset, 1000 for integers and 1 for floats
   std::vector<double> invalid = {};            // values of the file that mean "not measured"

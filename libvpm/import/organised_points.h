@@ -9,7 +9,7 @@
 
 namespace vpm {
 
-// What is known of the frame that a file's points are in.
+// Holds what a file tells of the frame that its points are in.
 struct PointFrame {
   CameraAxes axes = CameraAxes::opencv;  // of the points
   std::optional<Pose> to_world;          // of those axes; translation in the file's unit

@@ -1,4 +1,4 @@
-// What a reader says about a file that it could read.
+// Holds what a reader says about a file that it could read.
 #pragma once
 
 #include <string>

@@ -107,7 +107,7 @@ function sphereMaterial() {
   });
 }
 
-// What the camera saw on a sheet: free before the surface, hidden behind it, not measured.
+// Draws what the camera saw on a sheet: free before the surface, hidden behind it, not measured.
 function sheetMaterial() {
   return new THREE.ShaderMaterial({
     transparent: true, depthWrite: false, side: THREE.DoubleSide,

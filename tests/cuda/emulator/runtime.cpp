@@ -66,7 +66,7 @@ Streams& streams() {
   return all;
 }
 
-// What a handle of an event stands for. A stream that still has to wait for it shares it, so that
+// Holds what a handle of an event stands for. A stream that still has to wait for it shares it, so that
 // the handle may be destroyed first.
 struct EventState {
   std::mutex mutex;
