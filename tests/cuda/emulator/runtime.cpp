@@ -66,8 +66,8 @@ Streams& streams() {
   return all;
 }
 
-// Holds what a handle of an event stands for. A stream that still has to wait for it shares it, so that
-// the handle may be destroyed first.
+// Holds what a handle of an event stands for. A stream that still has to wait for it shares it, so
+// that the handle may be destroyed first.
 struct EventState {
   std::mutex mutex;
   std::condition_variable changed;
