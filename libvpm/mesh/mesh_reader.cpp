@@ -95,8 +95,10 @@ std::optional<MeshFormat> scene_by_content(std::string_view text) {
   if (start.starts_with("glTF")) return MeshFormat::gltf;
   if (start.starts_with("Kaydara FBX Binary")) return MeshFormat::fbx;
   if (start.find("<COLLADA") != start.npos) return MeshFormat::dae;
-  if (start.starts_with("PK\x03\x04") && text.find("3D/3dmodel.model") != text.npos)
-    return MeshFormat::threemf;
+  if (start.starts_with("PK\x03\x04")) {
+    for (const char* model : {"3D/3dmodel.model", "3D/3DModel.model"})  // as programs spell it
+      if (text.find(model) != text.npos) return MeshFormat::threemf;
+  }
   return std::nullopt;
 }
 

@@ -66,7 +66,7 @@ def glb(nodes, edge):
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
-def threemf(path, edge):
+def threemf(path, edge, name="3D/3dmodel.model"):
     vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % tuple(edge * c for c in v) for v in VERTICES)
     triangles = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % t for t in TRIANGLES)
     model = ('<?xml version="1.0" encoding="UTF-8"?><model unit="millimeter" xml:lang="en-US" '
@@ -80,9 +80,9 @@ def threemf(path, edge):
                          'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>')
         archive.writestr("_rels/.rels", '<?xml version="1.0" encoding="UTF-8"?><Relationships '
                          'xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
-                         'Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"'
+                         f'Target="/{name}" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"'
                          '/></Relationships>')
-        archive.writestr("3D/3dmodel.model", model)
+        archive.writestr(name, model)
 
 
 def fbx(edge, unit_in_cm):
@@ -138,6 +138,7 @@ def main():
     (folder / "cube.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5))
     (folder / "two.glb").write_bytes(glb([("body", 2, (0, 0, 0)), ("tip", -1, (3, 0, 0))], 0.5))
     threemf(folder / "cube.3mf", 1000)
+    threemf(folder / "spelled.3mf", 1000, "3D/3DModel.model")  # as some programs spell it
     (folder / "cube.fbx").write_text(fbx(5, 10))
 
 

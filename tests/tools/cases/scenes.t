@@ -14,9 +14,10 @@ FBX 12 1.0
 2> vpm-pack: note: cube.glb: its coordinates are metres; transforms of nodes were applied; y is up, as in the file
 2> vpm-pack: note: cube.3mf: its unit is taken to be 0.001 m, which 3MF has by default; transforms of nodes were applied; z is up, as in the file
 2> vpm-pack: note: cube.fbx: its unit is taken to be 0.1 m, as the file says; transforms of nodes were applied; z is up, as in the file
-$ for f in cube.dae cube.glb cube.3mf; do vpm-pack - --spheres 5 --report - --quiet < $f | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["format"], round(r["volume_mesh"], 5))'; done
+$ for f in cube.dae cube.glb cube.3mf spelled.3mf; do vpm-pack - --spheres 5 --report - --quiet < $f | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["format"], round(r["volume_mesh"], 5))'; done
 COLLADA 1.0
 glTF 1.0
+3MF 1.0
 3MF 1.0
 
 # Several nodes are joined, or one is chosen.
