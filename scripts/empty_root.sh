@@ -23,6 +23,7 @@ fill() {
     tail -n 20 "$root.log" >&2
     cannot "debootstrap failed; the end of what it said stands above"
   fi
+  chmod 755 "$root"  # as on a machine: other users than root may enter
   mount -t proc proc "$root/proc" || cannot "$root/proc cannot be mounted"
   echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/no-sync"  # faster, and the root does not outlive this script
   echo 'Acquire::Retries "3";' >"$root/etc/apt/apt.conf.d/retries"

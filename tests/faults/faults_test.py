@@ -51,8 +51,11 @@ class Room:
 
     def run(self, command, **options):
         options.setdefault("stdin", subprocess.DEVNULL)
-        return subprocess.run(command, cwd=self.folder, capture_output=True, timeout=SECONDS,
-                              **options)
+        try:
+            return subprocess.run(command, cwd=self.folder, capture_output=True, timeout=SECONDS,
+                                  **options)
+        except PermissionError as fault:  # a folder above the tools or the test is locked
+            raise Skipped(f"another user may not run the tools here: {fault}") from None
 
     def names(self):
         return sorted(path.name for path in self.folder.iterdir())
