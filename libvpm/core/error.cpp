@@ -1,30 +1,13 @@
 #include "libvpm/core/error.h"
 
-#include <cstdio>
+#include <utility>
+
+#include "libvpm/core/printable.h"
 
 namespace vpm {
 namespace {
 
-constexpr std::size_t kLongest = 1000;  // bytes of a text
-
-// Returns the text without what a file or a name may have put into it to steer a terminal: control
-// characters become \xNN. Cuts it, between characters of UTF-8, if it is long.
-std::string as_shown(const std::string& text) {
-  std::string shown;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool is_inside_character = (byte & 0xC0) == 0x80;
-    if (shown.size() > kLongest && !is_inside_character) return shown + "…";
-    if (byte < ' ' || byte == 0x7f) {
-      char code[5];
-      std::snprintf(code, sizeof code, "\\x%02x", byte);
-      shown += code;
-    } else {
-      shown += c;
-    }
-  }
-  return shown;
-}
+constexpr std::size_t kLongest = 1000;  // bytes of a part
 
 std::string message_of(const std::string& what, const std::string& where, const std::string& hint) {
   return (where.empty() ? "" : where + ": ") + what +
@@ -35,9 +18,13 @@ std::string message_of(const std::string& what, const std::string& where, const 
 
 Error::Error(ErrorKind kind, const std::string& what, const std::string& where,
              const std::string& hint)
-    : std::runtime_error(message_of(as_shown(what), as_shown(where), as_shown(hint))),
+    : Error(kind, std::make_shared<const Parts>(Parts{printable(what, kLongest),
+                                                      printable(where, kLongest),
+                                                      printable(hint, kLongest)})) {}
+
+Error::Error(ErrorKind kind, std::shared_ptr<const Parts> parts)
+    : std::runtime_error(message_of(parts->problem, parts->where, parts->hint)),
       kind_(kind),
-      parts_(
-          std::make_shared<const Parts>(Parts{as_shown(what), as_shown(where), as_shown(hint)})) {}
+      parts_(std::move(parts)) {}
 
 }  // namespace vpm

@@ -14,6 +14,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/printable.h"
 #include "libvpm/file/closed_pipe.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
@@ -21,7 +22,6 @@
 #include "tools/common/error_text.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
-#include "tools/common/terminal_text.h"
 
 namespace vpm::tools {
 namespace {
@@ -32,6 +32,8 @@ extern "C" void clean_up_and_die(int signal) {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
+
+constexpr std::size_t kLongestMessage = 2000;  // bytes
 
 // True if the parent lets processes die of a closed pipe, as shells do.
 bool dies_of_closed_pipes = true;
@@ -134,7 +136,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
-    std::cerr << name_ << ": error: " << on_one_line(message) << '\n';
+    std::cerr << name_ << ": error: " << printable(message, kLongestMessage) << '\n';
     return exit_code(kind);
   };
   try {
@@ -215,7 +217,8 @@ std::string Tool::in_words_of_options(const std::string& text) const {
 }
 
 void Tool::print(const char* kind, const std::string& text) const {
-  std::cerr << name_ << ": " << kind << on_one_line(in_words_of_options(text)) << '\n';
+  std::cerr << name_ << ": " << kind << printable(in_words_of_options(text), kLongestMessage)
+            << '\n';
 }
 
 void Tool::note(const std::string& text) const {

@@ -20,7 +20,8 @@ enum class ErrorKind {
 // backquotes: "give a wider `max_hole`", so that a program can put its own words there.
 class VPM_API Error : public std::runtime_error {
  public:
-  // Makes what() of the three texts: "where: what; hint". Parts that are empty are left out.
+  // Makes what() of the three texts: "where: what; hint". Parts that are empty are left out. Bytes
+  // that could steer a terminal become \xNN, and a text of more than 1000 bytes is cut.
   Error(ErrorKind kind, const std::string& what, const std::string& where = {},
         const std::string& hint = {});
 
@@ -37,6 +38,8 @@ class VPM_API Error : public std::runtime_error {
   struct Parts {
     std::string problem, where, hint;
   };
+  Error(ErrorKind kind, std::shared_ptr<const Parts> parts);
+
   ErrorKind kind_;
   std::shared_ptr<const Parts> parts_;  // shared, so that copies of an exception cannot throw
 };

@@ -1,11 +1,9 @@
-#include "tools/common/terminal_text.h"
+#include "libvpm/core/printable.h"
 
 #include <cstdio>
 
-namespace vpm::tools {
+namespace vpm {
 namespace {
-
-constexpr std::size_t kLongest = 2000;  // bytes
 
 // Returns the bytes of the character at `at` if it is UTF-8 of more than one byte; 0 otherwise.
 std::size_t multibyte_length(const std::string& text, std::size_t at) {
@@ -23,13 +21,12 @@ std::size_t multibyte_length(const std::string& text, std::size_t at) {
 
 }  // namespace
 
-std::string on_one_line(const std::string& text) {
+std::string printable(const std::string& text, std::size_t most) {
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
-    if (line.size() > kLongest) return line + "…";
+    if (line.size() > most) return line + "…";
     const std::size_t length = multibyte_length(text, at);
-    const bool is_printable = text[at] >= ' ' && text[at] <= '~';
-    if (length > 0 || is_printable) {
+    if (length > 0 || (text[at] >= ' ' && text[at] <= '~')) {
       line.append(text, at, length > 0 ? length : 1);
     } else {
       char code[5];
@@ -41,4 +38,4 @@ std::string on_one_line(const std::string& text) {
   return line;
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm
