@@ -212,7 +212,6 @@ void time_queries(const ReplayTool& tool, const SuiteOptions& suite, Report& rep
   const Peers peers(tool.solid);
   const PixelCloud pixels = make_pixel_cloud(seen.depth, seen.scene.camera);
   for (const int threads : compared_threads(suite)) {
-    if (suite.device.is_cuda() && threads != 1) continue;
     const ThreadCap cap(suite, threads);
     for (const std::uint32_t level : tool.levels)
       time_level(tool, suite, seen, level, threads, report);

@@ -9,9 +9,11 @@
 
 namespace vpm::bench {
 
-// Returns the numbers of threads that a suite compares: 1 and 2, or what --threads gives.
+// Returns the numbers of threads that a suite compares: what --threads gives, or else 1 and 2, but
+// only 1 beside a device, which computes whatever the host's threads are.
 inline std::vector<int> compared_threads(const SuiteOptions& options) {
-  return options.threads > 0 ? std::vector{options.threads} : std::vector{1, 2};
+  if (options.threads > 0) return {options.threads};
+  return options.device.is_cuda() ? std::vector{1} : std::vector{1, 2};
 }
 
 // Caps the threads of the library while it lives: at what --threads gives, else at `usual`.

@@ -62,8 +62,7 @@ class Timing {
                              "quartile3_ms", "min_ms",  "max_ms",  "runs"};
     report_.summary =
         "stage                                      spheres threads: median [quartiles] ms, and "
-        "the "
-        "ratio of the first to the last\n";
+        "the ratio of the first to the last\n";
   }
 
   Report run() {
