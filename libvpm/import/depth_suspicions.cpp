@@ -12,16 +12,15 @@ bool is_value(float value) {
   return value > 0 && value < HUGE_VALF;
 }
 
-double swapped(float value) {
-  const auto bits = static_cast<std::uint16_t>(value);
-  return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
-}
-
 std::string pixels_text(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " pixel" : " pixels");
 }
 
 }  // namespace
+
+std::uint16_t swapped(std::uint16_t bits) {
+  return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
+}
 
 std::string number_text(double value) {
   char text[32];
@@ -40,7 +39,8 @@ bool look_swapped(std::span<const float> values, std::size_t width) {
     if (i % width == 0 || !is_value(left) || !is_value(right) || left == right) continue;
     if (left == kMarker || right == kMarker) continue;
     as_given += std::abs(static_cast<double>(right) - left);
-    as_swapped += std::abs(swapped(right) - swapped(left));
+    as_swapped += std::abs(swapped(static_cast<std::uint16_t>(right)) -
+                           swapped(static_cast<std::uint16_t>(left)));
     ++pairs;
   }
   return pairs >= kFewestPairs && as_given > kSmoother * as_swapped;
@@ -66,8 +66,7 @@ Remarks coding_suspicions(std::span<const float> values) {
   if (multiples == measured && distinct >= kFewestSteps) {
     return {{true,
              "all values are multiples of 8, as if they were rotated by three bits (SUN3D, APC), "
-             "which makes depths 8 "
-             "times too large; if so, give `decode` rotated"}};
+             "which makes depths 8 times too large; if so, give `decode` rotated"}};
   }
   if (largest == kLargestDisparity && 100 * marked > measured) {
     return {{true, "no value is above 2047, which " + pixels_text(marked) +

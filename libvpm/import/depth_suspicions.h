@@ -1,6 +1,7 @@
 // Recognises values of depth images that do not mean what they seem to.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@ Remarks coding_suspicions(std::span<const float> values);
 // Returns a warning if the largest value, of those up to `farthest`, is on many pixels and far from
 // all others, like a marker for "nothing there" or the range's end.
 Remarks marker_suspicions(std::span<const float> values, double farthest);
+
+// Returns the value with its two bytes exchanged.
+std::uint16_t swapped(std::uint16_t bits);
 
 // Returns the number as short as "%g" writes it.
 std::string number_text(double value);

@@ -16,7 +16,7 @@ constexpr std::array kUsualMarkers{65535.0F, 65504.0F, 1e10F, std::numeric_limit
 
 float decoded(float value, const DepthDecoding& decoding) {
   auto bits = static_cast<std::uint16_t>(value);
-  if (decoding.swapped) bits = static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
+  if (decoding.swapped) bits = swapped(bits);
   if (decoding.rotated) bits = static_cast<std::uint16_t>((bits >> 3) | (bits << 13));
   if (!decoding.disparity) return bits;
   // Beyond 10 m, disparities of a Kinect tell nothing (toolbox of NYU Depth V2).
@@ -48,8 +48,7 @@ bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading&
             ? Remark{false, "its values stand with the low byte first, and are read so"}
             : Remark{true,
                      "neighbouring values differ as if the order of their two bytes were wrong; if "
-                     "so, "
-                     "give `decode` swapped"});
+                     "so, give `decode` swapped"});
   }
   const Remarks suspicions = reading.looks_for_mistakes ? coding_suspicions(values) : Remarks{};
   append(remarks, suspicions);

@@ -67,10 +67,6 @@ std::vector<Channel> channels_of(const Imf::MultiPartInputFile& file) {
   return channels;
 }
 
-std::uint64_t extent(int low, int high) {
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(std::int64_t{high} - low + 1, 0));
-}
-
 // Reads the pixels of a channel that are in the part's data window.
 class PartReader {
  public:

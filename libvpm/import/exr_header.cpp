@@ -20,11 +20,6 @@ struct Window {
 
   std::uint64_t width() const { return extent(left, right); }
   std::uint64_t height() const { return extent(top, bottom); }
-
- private:
-  static std::uint64_t extent(std::int64_t low, std::int64_t high) {
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(high - low + 1, 0));
-  }
 };
 
 // Holds what decides how much memory a part takes.
@@ -95,7 +90,7 @@ class HeaderCheck {
     std::uint64_t length = value.size();
     for (const auto& [known, bytes] : kLengths)
       if (type == known) length = bytes;
-    if (type == "chlist") length = length_of_channels(value);
+    if (type == "chlist") length = channels_of(value).length;
     if (type == "preview")
       length = 8 + 4 * std::uint64_t{as<std::uint32_t>(value)} *
                        as<std::uint32_t>(value.substr(std::min<std::size_t>(value.size(), 4)));
@@ -105,15 +100,22 @@ class HeaderCheck {
                                std::to_string(length) + "; it is damaged");
   }
 
-  // Returns the bytes to the empty name that ends a list of channels, which is a part of it.
-  static std::uint64_t length_of_channels(std::string_view list) {
-    std::uint64_t at = 0;
+  struct Channels {
+    std::uint64_t length = 0;  // bytes to the empty name that ends the list, which is a part of it
+    std::uint64_t bytes_per_pixel = 0;
+  };
+  static Channels channels_of(std::string_view list) {
+    Channels channels;
+    std::size_t at = 0;
     while (at < list.size() && list[at] != 0) {
       const std::size_t end = list.find('\0', at);
-      if (end == list.npos) return list.size() + 1;
+      if (end == list.npos) return {list.size() + 1, channels.bytes_per_pixel};
+      const auto type = as<std::uint32_t>(list.substr(end + 1));
+      channels.bytes_per_pixel += type == 1 ? 2 : 4;  // 1 is HALF
       at = end + 1 + kAfterChannelName;
     }
-    return at + 1;
+    channels.length = at + 1;
+    return channels;
   }
 
   static void keep(Part& part, std::string_view name, std::string_view value) {
@@ -121,22 +123,11 @@ class HeaderCheck {
     if (name == "displayWindow") part.display = as<Window>(value);
     if (name == "compression") part.compression = as<std::uint8_t>(value);
     if (name == "chunkCount") part.chunks = as<std::uint32_t>(value);
-    if (name == "channels") part.bytes_per_pixel = bytes_of_channels(value);
+    if (name == "channels") part.bytes_per_pixel = channels_of(value).bytes_per_pixel;
     if (name == "tiles") {
       part.tile_width = as<std::uint32_t>(value);
       part.tile_height = as<std::uint32_t>(value.substr(std::min<std::size_t>(value.size(), 4)));
     }
-  }
-
-  static std::uint64_t bytes_of_channels(std::string_view list) {
-    std::uint64_t bytes = 0;
-    for (std::size_t at = 0; at < list.size() && list[at] != 0;) {
-      const std::size_t end = std::min(list.find('\0', at), list.size());
-      const auto type = as<std::uint32_t>(list.substr(std::min(end + 1, list.size())));
-      bytes += type == 1 ? 2 : 4;  // 1 is HALF
-      at = end + 1 + kAfterChannelName;
-    }
-    return bytes;
   }
 
   void check(const Part& part) const {

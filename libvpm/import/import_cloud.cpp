@@ -1,7 +1,6 @@
 #include "libvpm/import/import_cloud.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "libvpm/core/error.h"
@@ -43,14 +42,12 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
   if (width == 0 || height == 0 || (width == image.width && height == image.height)) return;
   const Intrinsics& k = *options.intrinsics;
   const double across = image.width / width, down = image.height / height;
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "if it was scaled to that, give `intrinsics` %.9g,%.9g,%.9g,%.9g", across * k.fx,
-                down * k.fy, across * (k.cx + 0.5) - 0.5, down * (k.cy + 0.5) - 0.5);
+  const Intrinsics scaled{across * k.fx, down * k.fy, across * (k.cx + 0.5) - 0.5,
+                          down * (k.cy + 0.5) - 0.5};
   refuse("the intrinsics are of an image of " + std::to_string(options.calibrated_width) + " x " +
              std::to_string(options.calibrated_height) + " pixels; this one has " +
              std::to_string(image.width) + " x " + std::to_string(image.height),
-         name, text);
+         name, "if it was scaled to that, give `intrinsics` " + intrinsics_text(scaled));
 }
 
 ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,

@@ -133,8 +133,7 @@ ImportedScan scan_of_points(PointSet points, const std::string& name,
   ImportedScan scan =
       view ? scan_of_view(*view, told, name, options)
            : scan_without_camera(std::move(points), told, name, options, units_per_metre);
-  const Remarks unused = view ? Remarks{} : unused_options(options);
-  remarks.insert(remarks.end(), unused.begin(), unused.end());
+  if (!view) append(remarks, unused_options(options));
   scan.remarks.insert(scan.remarks.begin(), remarks.begin(), remarks.end());
   return scan;
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/core/box.h"
+
 namespace vpm {
 namespace {
 
@@ -14,10 +16,6 @@ std::string text_of(const char* format, Values... values) {
   char text[320];
   std::snprintf(text, sizeof text, format, values...);
   return text;
-}
-
-std::string intrinsics_text(const Intrinsics& k) {
-  return text_of("%.9g,%.9g,%.9g,%.9g", k.fx, k.fy, k.cx, k.cy);
 }
 
 std::string size_text(const Camera& camera) {
@@ -32,6 +30,10 @@ bool are_normalised(const Intrinsics& k) {
 }
 
 }  // namespace
+
+std::string intrinsics_text(const Intrinsics& k) {
+  return text_of("%.9g,%.9g,%.9g,%.9g", k.fx, k.fy, k.cx, k.cy);
+}
 
 std::optional<DepthRange> range_of(const DepthImage& image) {
   std::vector<float> measured;
@@ -48,13 +50,10 @@ ScanFacts facts_of(const Cloud& cloud, std::size_t invalid, std::size_t all) {
   if (cloud.sensor) facts.depth = range_of(cloud.sensor->depth);
   facts.measured = all == 0 ? 0 : 1 - static_cast<double>(invalid) / static_cast<double>(all);
   if (cloud.size() == 0) return facts;
-  Vec3f low = cloud.positions.front(), high = low;
-  for (const Vec3f& p : cloud.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  facts.low = cloud.origin + widen(low);
-  facts.high = cloud.origin + widen(high);
+  Box box;
+  for (const Vec3f& p : cloud.positions) box.add(widen(p));
+  facts.low = cloud.origin + box.low;
+  facts.high = cloud.origin + box.high;
   return facts;
 }
 

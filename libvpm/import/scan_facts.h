@@ -18,6 +18,9 @@ struct ScanFacts {
   Vec3 low, high;                   // corners of the box about the cloud's points, world, m
 };
 
+// Returns the numbers as the parameter `intrinsics` takes them: "fx,fy,cx,cy".
+std::string intrinsics_text(const Intrinsics& intrinsics);
+
 // Returns the range of the measured pixels; empty if there is none.
 std::optional<DepthRange> range_of(const DepthImage& depth);
 

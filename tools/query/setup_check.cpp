@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "libvpm/cloud/kd_tree.h"
+#include "libvpm/core/box.h"
 
 namespace vpm::tools {
 namespace {
@@ -19,12 +20,9 @@ std::string metres_text(double length) {
 
 double diagonal_of(const std::vector<Vec3f>& points) {
   if (points.empty()) return 0;
-  Vec3f low = points.front(), high = low;
-  for (const Vec3f& p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  return norm(widen(high) - widen(low));
+  Box box;
+  for (const Vec3f& p : points) box.add(widen(p));
+  return norm(box.size());
 }
 
 // Returns the distance of `along` from the plane through the axis `slope` of the camera, positive
