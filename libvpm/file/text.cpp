@@ -11,7 +11,7 @@ constexpr std::string_view kBlank = " \t\r\n\v\f";
 
 template <class Number>
 std::optional<Number> parse(std::string_view word) {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  word = without_plus(word);
   Number value{};
   const auto [stop, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (fault != std::errc() || stop != word.data() + word.size()) return std::nullopt;
@@ -33,6 +33,10 @@ std::vector<std::string_view> split_words(std::string_view line) {
     at = line.find_first_not_of(kBlank, end);
   }
   return words;
+}
+
+std::string_view without_plus(std::string_view word) {
+  return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
 }
 
 std::optional<double> to_number(std::string_view word) {

@@ -20,7 +20,7 @@ std::string coarse_floats(const RawMesh& mesh) {
   if (!(farthest <= std::numeric_limits<float>::max())) return "";
   const auto last = static_cast<float>(farthest);
   const double step = double{std::nextafter(last, std::numeric_limits<float>::infinity())} - last;
-  const double diagonal = norm(box.high - box.low);
+  const double diagonal = norm(box.size());
   if (!(step > kCoarse * diagonal) || farthest == 0) return "";
   const auto is_float = [](const Vec3& p) { return widen(narrow(p)) == p; };
   if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_float)) return "";

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffff;
 
 // Numbers the points of the ring, so that corners at one point have one number.
-std::vector<std::uint32_t> numbered_points(std::span<const Point2> ring) {
+std::vector<std::uint32_t> numbered_points(std::span<const Vec2> ring) {
   std::vector<std::uint32_t> order(ring.size()), number(ring.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
   const auto key = [&](std::uint32_t k) { return std::pair(ring[k].x, ring[k].y); };
@@ -60,7 +60,7 @@ void GLAPIENTRY combine(GLdouble at[3], void* vertices[4], GLfloat[4], void** me
 }
 
 // Returns the triangles' points, three for each.
-std::vector<std::uint32_t> swept_points(std::span<const Point2> ring,
+std::vector<std::uint32_t> swept_points(std::span<const Vec2> ring,
                                         const std::vector<std::uint32_t>& number,
                                         PolygonCutting& result) {
   std::vector<Vertex> vertices;
@@ -174,7 +174,7 @@ class Corners {
 
 }  // namespace
 
-PolygonCutting cut_polygon(std::span<const Point2> ring) {
+PolygonCutting cut_polygon(std::span<const Vec2> ring) {
   PolygonCutting result;
   const std::vector<std::uint32_t> number = numbered_points(ring);
   const std::vector<std::uint32_t> points = swept_points(ring, number, result);

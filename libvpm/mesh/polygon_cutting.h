@@ -7,11 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace vpm {
+#include "libvpm/mesh/predicates.h"
 
-struct Point2 {
-  double x = 0, y = 0;
-};
+namespace vpm {
 
 using CornerTriangle = std::array<std::uint32_t, 3>;
 
@@ -20,13 +18,13 @@ enum class CuttingFault { none, crosses_itself, not_cut, unavailable };
 struct PolygonCutting {
   std::vector<CornerTriangle> triangles;  // positions within the ring
   CuttingFault fault = CuttingFault::none;
-  Point2 place;  // of the crossing
+  Vec2 place;  // of the crossing
 };
 
 // Returns size - 2 triangles whose sides are those of the ring and diagonals. The ring runs
 // counter-clockwise, may be concave, and may pass twice through points and edges, as the bridge to
 // a hole does; neighbours and their next neighbours are different points. Uses the tessellator of
 // GLU; the fault is `unavailable` where that was not built.
-PolygonCutting cut_polygon(std::span<const Point2> ring);
+PolygonCutting cut_polygon(std::span<const Vec2> ring);
 
 }  // namespace vpm

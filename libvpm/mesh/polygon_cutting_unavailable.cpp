@@ -2,7 +2,7 @@
 
 namespace vpm {
 
-PolygonCutting cut_polygon(std::span<const Point2>) {
+PolygonCutting cut_polygon(std::span<const Vec2>) {
   return {.fault = CuttingFault::unavailable};
 }
 

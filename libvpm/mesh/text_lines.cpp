@@ -27,10 +27,6 @@ std::string_view without_trailing_blanks(std::string_view text) {
   return text;
 }
 
-std::string_view without_plus(std::string_view word) {
-  return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
-}
-
 std::string quoted(std::string_view word) {
   return "'" + file::shown(word, kLongestShown) + "'";
 }
@@ -89,7 +85,7 @@ void TextLines::pass(std::size_t count) {
 
 double TextLines::to_number(std::string_view given, const char* what) const {
   if (given.empty()) refuse_missing(what);
-  const std::string_view text = without_plus(given);
+  const std::string_view text = file::without_plus(given);
   double value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault == std::errc::invalid_argument) {
@@ -104,7 +100,7 @@ double TextLines::to_number(std::string_view given, const char* what) const {
 std::int64_t TextLines::integer(const char* what) {
   const std::string_view given = word();
   if (given.empty()) refuse_missing(what);
-  const std::string_view text = without_plus(given);
+  const std::string_view text = file::without_plus(given);
   std::int64_t value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault != std::errc()) {

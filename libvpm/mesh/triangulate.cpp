@@ -16,7 +16,7 @@ constexpr std::size_t kMostCorners = 8192;
 constexpr const char* kHint = "save triangles in the program that wrote it";
 
 // Returns twice the signed area of the triangle a, b, c.
-double turn(Point2 a, Point2 b, Point2 c) {
+double turn(Vec2 a, Vec2 b, Vec2 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -31,17 +31,17 @@ Vec3 newell_normal(const std::vector<Vec3>& corners) {
 }
 
 // Drops the axis along which the polygon's projection is largest, keeping its orientation.
-std::vector<Point2> project(const std::vector<Vec3>& corners, Vec3 normal) {
+std::vector<Vec2> project(const std::vector<Vec3>& corners, Vec3 normal) {
   const double ax = std::abs(normal.x), ay = std::abs(normal.y), az = std::abs(normal.z);
-  std::vector<Point2> flat(corners.size());
+  std::vector<Vec2> flat(corners.size());
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const Vec3 p = corners[k] - corners[0];
     if (ax >= ay && ax >= az) {
-      flat[k] = normal.x > 0 ? Point2{p.y, p.z} : Point2{p.z, p.y};
+      flat[k] = normal.x > 0 ? Vec2{p.y, p.z} : Vec2{p.z, p.y};
     } else if (ay >= az) {
-      flat[k] = normal.y > 0 ? Point2{p.z, p.x} : Point2{p.x, p.z};
+      flat[k] = normal.y > 0 ? Vec2{p.z, p.x} : Vec2{p.x, p.z};
     } else {
-      flat[k] = normal.z > 0 ? Point2{p.x, p.y} : Point2{p.y, p.x};
+      flat[k] = normal.z > 0 ? Vec2{p.x, p.y} : Vec2{p.y, p.x};
     }
   }
   return flat;
@@ -61,11 +61,11 @@ bool is_line(const std::vector<Vec3>& corners) {
 }
 
 // True if every corner turns left, and the polygon goes once around.
-bool is_convex(const std::vector<Point2>& flat) {
+bool is_convex(const std::vector<Vec2>& flat) {
   const std::size_t count = flat.size();
-  const Point2 last = flat[count - 1];
+  const Vec2 last = flat[count - 1];
   for (std::size_t k = 0; k < count; ++k) {
-    const Point2 here = flat[k], after = flat[(k + 1) % count];
+    const Vec2 here = flat[k], after = flat[(k + 1) % count];
     if (!(turn(flat[(k + count - 1) % count], here, after) > 0)) return false;
     if (k + 2 < count && !(turn(last, here, after) > 0)) return false;
   }
@@ -73,9 +73,9 @@ bool is_convex(const std::vector<Point2>& flat) {
 }
 
 // True if the corner of a polygon of four can be cut off.
-bool is_ear_of_four(const std::vector<Point2>& flat, std::size_t at) {
-  const Point2 before = flat[(at + 3) % 4], here = flat[at], after = flat[(at + 1) % 4],
-               other = flat[(at + 2) % 4];
+bool is_ear_of_four(const std::vector<Vec2>& flat, std::size_t at) {
+  const Vec2 before = flat[(at + 3) % 4], here = flat[at], after = flat[(at + 1) % 4],
+             other = flat[(at + 2) % 4];
   return turn(before, here, after) > 0 &&
          !(turn(before, here, other) >= 0 && turn(here, after, other) >= 0 &&
            turn(after, before, other) >= 0);
@@ -91,7 +91,7 @@ class Cutter {
   }
 
   void cut() {
-    const std::vector<Point2> flat = project(corners_, newell_normal(corners_));
+    const std::vector<Vec2> flat = project(corners_, newell_normal(corners_));
     if (corners_.size() == 4) {
       cut_four(flat);
     } else if (is_convex(flat)) {
@@ -104,7 +104,7 @@ class Cutter {
   }
 
  private:
-  void cut_four(const std::vector<Point2>& flat) {
+  void cut_four(const std::vector<Vec2>& flat) {
     for (std::size_t at = 0; at < 4; ++at) {
       if (!is_ear_of_four(flat, at)) continue;
       emit_((at + 3) % 4, at, (at + 1) % 4);
@@ -123,7 +123,7 @@ class Cutter {
     emit_(last - 2, last - 1, last);
   }
 
-  void cut_any(const std::vector<Point2>& flat) {
+  void cut_any(const std::vector<Vec2>& flat) {
     if (corners_.size() > kMostCorners) {
       refuse(text_of_polygon() + "is not convex; such polygons may have " +
                  std::to_string(kMostCorners) + " corners",
@@ -133,7 +133,7 @@ class Cutter {
     if (ring.size() == 3) emit_(ring[0], ring[1], ring[2]);
     if (ring.size() <= 3) return;
     const double unit = size_of(flat);
-    std::vector<Point2> points;
+    std::vector<Vec2> points;
     for (const std::size_t k : ring) points.push_back({flat[k].x / unit, flat[k].y / unit});
     const PolygonCutting cutting = cut_polygon(points);
     if (cutting.fault != CuttingFault::none) refuse_polygon(cutting.fault);
@@ -141,14 +141,14 @@ class Cutter {
   }
 
   // Returns the largest coordinate, rounded to a power of two, by which division is exact.
-  static double size_of(const std::vector<Point2>& flat) {
+  static double size_of(const std::vector<Vec2>& flat) {
     double size = 0;
-    for (const Point2& p : flat) size = std::max({size, std::abs(p.x), std::abs(p.y)});
+    for (const Vec2& p : flat) size = std::max({size, std::abs(p.x), std::abs(p.y)});
     return std::ldexp(1.0, std::ilogb(size));
   }
 
   // Cuts off corners that equal a neighbour, or whose neighbours are equal, and returns the others.
-  std::vector<std::size_t> without_spikes(const std::vector<Point2>& flat) {
+  std::vector<std::size_t> without_spikes(const std::vector<Vec2>& flat) {
     const auto equal = [&](std::size_t a, std::size_t b) {
       return flat[a].x == flat[b].x && flat[a].y == flat[b].y;
     };
