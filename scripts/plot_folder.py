@@ -1,5 +1,4 @@
 """Calls a script that draws the results in a folder, and says in a sentence what is wrong with them."""
-import json
 import pathlib
 import sys
 
@@ -17,7 +16,7 @@ def draw_folder(draw, files, made_by):
         raise SystemExit(f"{script}: {folder} has no {' and no '.join(missing)}; make them by {made_by}")
     try:
         draw(folder)
-    except (KeyError, IndexError, TypeError, ValueError, StopIteration, json.JSONDecodeError) as fault:
+    except (KeyError, IndexError, TypeError, ValueError, StopIteration) as fault:
         raise SystemExit(f"{script}: the results in {folder} cannot be drawn, since they lack or garble something "
                          f"({type(fault).__name__}: {fault}); make them again by {made_by}") from None
     except OSError as fault:
