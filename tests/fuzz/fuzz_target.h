@@ -27,6 +27,10 @@ struct Target {
 const Target* find_target(std::string_view name);
 std::span<const Target> all_targets();
 
+// Runs a target on an input, which may take five seconds of the processor's time: other work of the
+// machine does not count.
+void run_in_time(const Target& target, Bytes input);
+
 // Ends the process by SIGABRT: a promise is broken.
 [[noreturn]] void fail(const std::string& promise);
 
