@@ -17,7 +17,7 @@ namespace work {
 inline constexpr std::uint64_t kBoxes = 1;
 inline constexpr std::uint64_t kTriangles = 20;   // exact test of two triangles
 inline constexpr std::uint64_t kMiss = 3;         // triangle near a ray, dismissed by its box
-inline constexpr std::uint64_t kCrossing = 6;     // of a ray and a triangle
+inline constexpr std::uint64_t kCrossing = 6;     // crossing of a ray and a triangle
 inline constexpr std::uint64_t kSolidAngle = 15;  // one triangle about one point
 inline constexpr std::uint64_t kPairFound = 24;   // bounds memory: 2 million in the small limit
 inline constexpr std::uint64_t kPiece = 64;       // convex piece of a triangle; bounds memory too

@@ -1,4 +1,3 @@
-#include "libvpm/core/parallel_region.h"
 
 #include <gtest/gtest.h>
 

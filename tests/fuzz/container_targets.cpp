@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "libvpm/cloud/cloud_file.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/fuzz/container_mutator.h"
 #include "tests/fuzz/query_check.h"
 #include "tests/fuzz/targets.h"

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "libvpm/import/intrinsics_file.h"
-#include "libvpm/recording/camera_pose_file.h"
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/recording/timed_path.h"
 #include "tests/fuzz/targets.h"

@@ -1,6 +1,6 @@
-#include "libvpm/haptics/rotation_vector.h"
-
 #include <gtest/gtest.h>
+
+#include "libvpm/core/pose.h"
 
 namespace vpm {
 namespace {

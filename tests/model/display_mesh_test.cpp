@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/file/stream.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/formats/golden_content.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -1,9 +1,8 @@
-#include "libvpm/model/packing_file.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 
+#include "libvpm/model/packing.h"
 #include "tests/formats/golden_content.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

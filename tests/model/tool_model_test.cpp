@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"
-#include "libvpm/model/tool_model_file.h"
 #include "tests/formats/golden_content.h"
 #include "tests/refusal.h"
 

@@ -8,8 +8,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/file/checksum.h"
-#include "libvpm/haptics/rotation_vector.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/timed_path.h"

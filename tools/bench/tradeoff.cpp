@@ -12,7 +12,6 @@
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
 #include "libvpm/packing/packer.h"
-#include "libvpm/query/level_choice.h"
 #include "libvpm/query/level_tool_query.h"
 #include "libvpm/query/scene_scale.h"
 #include "libvpm/query/tool_query.h"

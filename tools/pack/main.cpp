@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
-#include "libvpm/model/packing_file.h"
+#include "libvpm/model/packing.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "libvpm/core/error.h"
-#include "libvpm/haptics/gyration.h"
+#include "libvpm/haptics/virtual_coupling.h"
 
 namespace vpm::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
 #include "tools/query/spheres_out.h"

@@ -1,10 +1,10 @@
-#include "libvpm/model/packing_file.h"
+#include "libvpm/model/packing.h"
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/file/container.h"
-#include "libvpm/model/sphere_check.h"
+#include "libvpm/model/sphere.h"
 
 namespace vpm {
 namespace {
