@@ -1,7 +1,8 @@
-// The option --coupling: parameters of the spring and damper by which a haptic device holds the
-// tool.
+// The spring and damper by which a haptic device holds the tool: the option --coupling, and lines
+// of results.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "libvpm/haptics/virtual_coupling.h"
@@ -19,5 +20,19 @@ CouplingParameters coupling_from_text(const std::string& text, const ToolModel& 
 // if it is unstable in a scene of this stiffness (N/m^3).
 void note_coupling(const Tool& tool, const CouplingParameters& parameters, const ToolModel& model,
                    double stiffness);
+
+// Step of a haptic device that holds the tool by a spring and a damper.
+struct CoupledStep {
+  std::size_t step = 0;
+  double time = 0;    // s since the first step
+  Pose device, tool;  // in the world
+  Result contact;     // answer for the tool at its pose
+  Wrench rendered;    // on the user, in N and N m
+  CouplingEnergy energy;
+};
+
+// Returns one line of results (formats/schemas/coupling-step.json). `frame` is the name of a
+// recorded frame; "" leaves the field out.
+std::string coupled_line(const CoupledStep& step, const std::string& frame);
 
 }  // namespace vpm::tools
