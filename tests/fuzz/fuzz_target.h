@@ -15,7 +15,7 @@ namespace vpm::fuzz {
 using Bytes = std::span<const std::byte>;
 
 struct Target {
-  const char* name;  // of its folders of seeds and findings too
+  const char* name;  // names its folders of seeds and findings too
   void (*run)(Bytes input);
   // Changes `size` bytes, at most to `most`, and returns the new size; null: bytes are changed
   // blindly.

@@ -10,7 +10,20 @@
 namespace vpm::fuzz {
 namespace {
 
-constexpr std::size_t kMostPixels = 4096;  // of images that are queried
+constexpr std::size_t kMostBytes = 64 * 1024;  // largest cloud that is queried
+
+void run_cloud(Bytes input, const std::string& name, bool has_intrinsics) {
+  if (input.size() > kMostBytes) return;
+  expect_error_at_most([&] {
+    ImportOptions options;
+    if (has_intrinsics) options.intrinsics = {20, 20, 7.5, 5.5};
+    const ImportedCloud imported = import_cloud(input, name, options);
+    validate(imported.cloud, "imported");
+    expect_sound_answers(imported.cloud);
+  });
+}
+
+constexpr std::size_t kMostPixels = 4096;  // largest image that is queried
 
 // Reads the image alone, whatever its size, and imports it if it is small.
 template <class Parser>
@@ -44,6 +57,14 @@ std::vector<std::byte> with_mended_chunks(Bytes input) {
 }
 
 }  // namespace
+
+// The length decides whether there are intrinsics, so that seeds are plain files.
+void run_pcd(Bytes input) {
+  run_cloud(input, "x.pcd", input.size() % 2 == 1);
+}
+void run_ply_points(Bytes input) {
+  run_cloud(input, "x.ply", false);
+}
 
 void run_png(Bytes input) {
   const std::vector<std::byte> mended = with_mended_chunks(input);
