@@ -15,7 +15,7 @@
 #include "libvpm/recording/timed_path.h"
 #include "tools/bench/peak_memory.h"
 #include "tools/bench/replay_parts.h"
-#include "tools/bench/thread_cap.h"
+#include "tools/bench/suite.h"
 
 namespace vpm::bench {
 namespace {

@@ -19,7 +19,6 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/suite.h"
-#include "tools/bench/thread_cap.h"
 #include "tools/bench/tradeoff_report.h"
 #include "tools/bench/view.h"
 
