@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/number_list.h"
 
 namespace vpm {
 namespace {
@@ -24,26 +25,6 @@ Rotation nearest_rotation(Rotation m) {
          0.5 * (m.row2 + inverse_transpose.row2)};
   }
   return m;
-}
-
-std::vector<double> parse_numbers(const std::string& text) {
-  std::vector<double> numbers;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    const char* begin = text.data() + at;
-    const char* end = text.data() + comma;
-    while (begin < end && *begin == ' ') ++begin;
-    while (end > begin && end[-1] == ' ') --end;
-    double value = 0;
-    const auto [stop, fault] = std::from_chars(begin, end, value);
-    if (fault != std::errc() || stop != end) {
-      throw Error(ErrorKind::invalid_argument,
-                  "'" + std::string(begin, end) + "' is not a number in '" + text + "'", "pose");
-    }
-    numbers.push_back(value);
-    at = comma + 1;
-  }
-  return numbers;
 }
 
 }  // namespace
@@ -105,7 +86,12 @@ Quaternion quaternion_from_rotation(const Rotation& r) {
 }
 
 Pose pose_from_text(const std::string& text, double* deviation) {
-  const std::vector<double> n = parse_numbers(text);
+  std::vector<double> n;
+  try {
+    n = numbers_from_text(text);
+  } catch (const Error& fault) {
+    throw Error(fault.kind(), fault.problem(), "pose", fault.hint());
+  }
   if (n.size() != 7) {
     throw Error(ErrorKind::invalid_argument,
                 "expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found " + std::to_string(n.size()) +

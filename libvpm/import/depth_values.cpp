@@ -36,7 +36,41 @@ std::string number_text(double value) {
   return text;
 }
 
-// True if 16-bit values are far smoother with their two bytes exchanged.
+// Returns the median of the measured values, which the two bytes of each are exchanged in first if
+// `swaps`; 0 if there is none.
+float median_of(std::span<const float> values, bool swaps) {
+  std::vector<float> measured;
+  for (const float value : values) {
+    if (!is_value(value) || value == 65535) continue;
+    measured.push_back(swaps ? swapped(static_cast<std::uint16_t>(value)) : value);
+  }
+  if (measured.empty()) return 0;
+  const auto middle = measured.begin() + static_cast<std::ptrdiff_t>(measured.size() / 2);
+  std::nth_element(measured.begin(), middle, measured.end());
+  return *middle;
+}
+
+// True if there are so many different values that the order of their bytes shows in how smooth
+// they are; few may stand closer by chance in the wrong order.
+bool has_many_values(std::span<const float> values) {
+  constexpr std::ptrdiff_t kMany = 32;
+  std::vector<bool> found(1U << 16);
+  for (const float value : values)
+    if (is_value(value)) found[static_cast<std::uint16_t>(value)] = true;
+  return std::count(found.begin(), found.end(), true) >= kMany;
+}
+
+// True if the exchanged bytes alone give values of depths: more than 8 bits, and millimetres that
+// sensors reach where the values themselves are beyond them.
+bool are_depths_if_swapped(std::span<const float> values) {
+  constexpr float kFewest = 256, kFarthest = 20000;
+  const float exchanged = median_of(values, true);
+  if (exchanged < kFewest) return false;
+  return has_many_values(values) ||
+         (median_of(values, false) > kFarthest && exchanged <= kFarthest);
+}
+
+// True if 16-bit values are far smoother with their two bytes exchanged, and surely so.
 bool look_swapped(std::span<const float> values, std::size_t width) {
   constexpr double kSmoother = 8;
   constexpr std::size_t kFewestPairs = 100;  // pairs of different values
@@ -52,7 +86,8 @@ bool look_swapped(std::span<const float> values, std::size_t width) {
                            swapped(static_cast<std::uint16_t>(left)));
     ++pairs;
   }
-  return pairs >= kFewestPairs && as_given > kSmoother * as_swapped;
+  return pairs >= kFewestPairs && as_given > kSmoother * as_swapped &&
+         are_depths_if_swapped(values);
 }
 
 // Returns warnings about 16-bit values that look rotated by three bits, or like a Kinect's raw
@@ -130,26 +165,40 @@ bool decodes(const DepthDecoding& decoding) {
   return decoding.swapped || decoding.rotated || decoding.disparity;
 }
 
+// Puts the bytes of values into their order, where that is not told.
+void find_byte_order(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
+                     Remarks& remarks) {
+  if (reading.decoding.swapped || reading.decoding.big_endian) return;
+  const bool is_looked_at = reading.looks_for_mistakes && !decodes(reading.decoding);
+  if (!(raw.may_be_swapped || is_looked_at) || !look_swapped(values, raw.width)) return;
+  if (!raw.may_be_swapped) {
+    remarks.push_back(
+        {true,
+         "neighbouring values differ as if the order of their two bytes were wrong; if so, give "
+         "`decode` swapped"});
+    return;
+  }
+  for (float& value : values) value = decoded(value, {.swapped = true});
+  remarks.push_back({false,
+                     "its values stand with the low byte first, and are read so; `decode` "
+                     "big-endian reads them as the standard of PGM says"});
+}
+
 // Replaces the values by what they code. Returns true if they look coded still.
 bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading& reading,
             const std::string& name, Remarks& remarks) {
-  if (decodes(reading.decoding)) {
-    if (!raw.are_16_bit)
+  if (!raw.are_16_bit) {
+    if (decodes(reading.decoding))
       throw Error(ErrorKind::invalid_argument,
                   "`decode` is for integers of 16 bits, which this image has not", name);
-    for (float& value : values) value = decoded(value, reading.decoding);
     return false;
   }
-  if (!raw.are_16_bit || !(reading.looks_for_mistakes || raw.may_be_swapped)) return false;
-  if (look_swapped(values, raw.width)) {
-    if (raw.may_be_swapped)
-      for (float& value : values) value = decoded(value, {.swapped = true});
-    remarks.push_back(
-        raw.may_be_swapped
-            ? Remark{false, "its values stand with the low byte first, and are read so"}
-            : Remark{true,
-                     "neighbouring values differ as if the order of their two bytes were wrong; if "
-                     "so, give `decode` swapped"});
+  if (reading.decoding.big_endian && !raw.may_be_swapped)
+    remarks.push_back({true, "`decode` big-endian is not used: it is no binary PGM"});
+  find_byte_order(values, raw, reading, remarks);
+  if (decodes(reading.decoding)) {
+    for (float& value : values) value = decoded(value, reading.decoding);
+    return false;
   }
   const Remarks suspicions = reading.looks_for_mistakes ? coding_suspicions(values) : Remarks{};
   append(remarks, suspicions);
@@ -202,16 +251,22 @@ DepthDecoding decoding_from_text(const std::string& text) {
     const std::string word = text.substr(at, end - at);
     if (word == "swapped") {
       decoding.swapped = true;
+    } else if (word == "big-endian") {
+      decoding.big_endian = true;
     } else if (word == "rotated") {
       decoding.rotated = true;
     } else if (word == "disparity") {
       decoding.disparity = true;
     } else {
       throw Error(ErrorKind::invalid_argument,
-                  "'" + file::shown(word) + "' is not swapped, rotated or disparity", "`decode`");
+                  "'" + file::shown(word) + "' is not swapped, big-endian, rotated or disparity",
+                  "`decode`");
     }
     at = end + 1;
   }
+  if (decoding.swapped && decoding.big_endian)
+    throw Error(ErrorKind::invalid_argument,
+                "swapped and big-endian exclude each other: leave one of them out", "`decode`");
   return decoding;
 }
 

@@ -13,13 +13,15 @@ namespace vpm {
 
 // How 16-bit values are coded, undone in this order.
 struct DepthDecoding {
-  bool swapped = false;  // the two bytes stand in the other order
-  bool rotated = false;  // rotated by three bits to the left (SUN3D, Princeton's APC data)
+  bool swapped = false;     // the two bytes stand in the other order than the format says
+  bool big_endian = false;  // those of a PGM stand as it says; otherwise they are looked at
+  bool rotated = false;     // rotated by three bits to the left (SUN3D, Princeton's APC data)
   bool disparity =
       false;  // raw disparity of a Kinect: 351.3 / (1092.5 - value) metres (NYU Depth V2)
 };
 
-// Parses "swapped", "rotated", "disparity", or several with commas. Throws Error(invalid_argument).
+// Parses "swapped", "big-endian", "rotated", "disparity", or several with commas. Throws
+// Error(invalid_argument), also for both orders of bytes.
 DepthDecoding decoding_from_text(const std::string& text);
 
 // Tells what the values of a depth image mean, where that differs from what is usual.

@@ -1,6 +1,7 @@
 #include "libvpm/import/import_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -40,8 +41,20 @@ constexpr Start kStarts[] = {
     {"# .PCD"sv, FileFormat::pcd},
     {"VERSION"sv, FileFormat::pcd},
     {"FIELDS"sv, FileFormat::pcd},
-    {"#"sv, FileFormat::pcd},
 };
+
+// True if comments come first, as in "# .PCD v0.7" in other words, and then an entry of a PCD's
+// header: other texts begin with comments too.
+bool is_commented_pcd(std::string_view text) {
+  if (!text.starts_with('#')) return false;
+  file::TextCursor cursor(text);
+  while (const auto line = cursor.line()) {
+    const std::vector<std::string_view> words = file::split_words(*line);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    return words[0] == "VERSION" || words[0] == "FIELDS" || words[0] == "COLUMNS";
+  }
+  return false;
+}
 
 bool is_netpbm(std::string_view text) {
   return text.size() > 2 && text[0] == 'P' && "23456fF"sv.find(text[1]) != std::string_view::npos &&
@@ -57,6 +70,7 @@ FileFormat format_of(std::span<const std::byte> bytes, const std::string& name) 
   for (const Start& start : kStarts)
     if (text.starts_with(start.bytes)) return start.format;
   if (is_netpbm(text)) return FileFormat::netpbm;
+  if (is_commented_pcd(text)) return FileFormat::pcd;
   refuse("neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY by its content", name,
          "give a depth image or a cloud");
 }
@@ -90,12 +104,22 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
   if (width == 0 || height == 0 || (width == image.width && height == image.height)) return;
   const Intrinsics& k = *options.intrinsics;
   const double across = image.width / width, down = image.height / height;
+  constexpr double kSameShape = 0.01;
   const Intrinsics scaled{across * k.fx, down * k.fy, across * (k.cx + 0.5) - 0.5,
                           down * (k.cy + 0.5) - 0.5};
+  const std::optional<ImageRegion>& region = options.calibrated_region;
+  std::string cure = "give the intrinsics of this image: it is of another shape, and so was cut";
+  if (region && region->width == image.width && region->height == image.height)
+    cure =
+        "it has the size of the region of interest in that file; if it is that, give "
+        "`intrinsics` " +
+        intrinsics_text({k.fx, k.fy, k.cx - region->left, k.cy - region->top});
+  else if (std::abs(across / down - 1) < kSameShape)
+    cure = "if it was scaled to that, give `intrinsics` " + intrinsics_text(scaled);
   refuse("the intrinsics are of an image of " + std::to_string(options.calibrated_width) + " x " +
              std::to_string(options.calibrated_height) + " pixels; this one has " +
              std::to_string(image.width) + " x " + std::to_string(image.height),
-         name, "if it was scaled to that, give `intrinsics` " + intrinsics_text(scaled));
+         name, cure);
 }
 
 ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,
@@ -109,9 +133,42 @@ ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,
   check_calibrated_size(raw, options, name);
   const Pose to_world = options.to_world ? with_own_axes(*options.to_world, options.axes) : Pose{};
   ImportedScan scan = scan_of_depth(raw, *options.intrinsics, to_world, name, options.depth);
-  if (!options.channel.empty() && format != FileFormat::exr)
-    scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
+  if (options.axes != CameraAxes::opencv && !options.to_world)
+    scan.remarks.push_back({true,
+                            "`axes` is not used: without `camera_pose` the world has the axes of "
+                            "the camera, x right, y down, z forward; `camera_pose` 0,0,0,0,0,0,1 "
+                            "gives it the others"});
   return scan;
+}
+
+}  // namespace
+
+namespace {
+
+// Returns why no value of an image counts as a depth.
+std::string why_nothing(const RawDepth& raw, const Intrinsics& k, const DepthReading& reading,
+                        const std::string& name) {
+  DepthReading everything = reading;
+  everything.nearest = 0;
+  everything.farthest = HUGE_VAL;
+  Remarks unsaid;
+  const DepthImage depth = depth_in_metres_of(raw, k, everything, name, unsaid);
+  if (const auto range = range_of(depth))
+    return "its depths are from " + metres_text(range->nearest) + " to " +
+           metres_text(range->farthest) + ", all outside of `range`, which is in metres";
+  const auto count = [&](auto is_so) {
+    return std::count_if(raw.values.begin(), raw.values.end(), is_so);
+  };
+  const auto all = static_cast<std::ptrdiff_t>(raw.values.size());
+  if (count([](float v) { return v == 0; }) == all) return "all are 0";
+  if (count([](float v) { return std::isnan(v); }) == all) return "none is a number";
+  if (count([](float v) { return v > 0 && v < HUGE_VALF; }) == 0 &&
+      count([](float v) { return v < 0; }) > 0)
+    return "all are negative, or 0; a camera that looks along -z writes such: change the sign";
+  if (count([](float v) { return v > 0 && v < HUGE_VALF; }) == 0)
+    return "all are 0, infinite, negative or not a number";
+  return "its values mean \"not measured\", or depths that no camera measures; `invalid`, `decode` "
+         "and `unit` tell what they mean";
 }
 
 }  // namespace
@@ -124,7 +181,8 @@ ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose&
   scan.height = depth.height;
   scan.invalid = count_invalid(depth);
   if (scan.invalid == depth.depth.size())
-    throw NothingMeasured("no pixel holds a measurement", name);
+    throw NothingMeasured("no pixel holds a measurement: " + why_nothing(raw, k, reading, name),
+                          name);
   const Camera camera{k, depth.width, depth.height, to_world};
   scan.image = CloudSensor{camera, std::move(depth)};
   return scan;
@@ -134,10 +192,14 @@ ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& na
                          const ImportOptions& options) {
   const FileFormat format = format_of(bytes, name);
   const bool holds_points = format == FileFormat::pcd || format == FileFormat::ply;
-  if (!holds_points) return scan_of_image(format, bytes, name, options);
-  return scan_of_points(
-      format == FileFormat::pcd ? parse_pcd(bytes, name) : parse_ply_points(bytes, name), name,
-      options);
+  ImportedScan scan =
+      holds_points ? scan_of_points(format == FileFormat::pcd ? parse_pcd(bytes, name)
+                                                              : parse_ply_points(bytes, name),
+                                    name, options)
+                   : scan_of_image(format, bytes, name, options);
+  if (!options.channel.empty() && format != FileFormat::exr)
+    scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
+  return scan;
 }
 
 NothingMeasured nothing_with_normal(const ImportedScan& scan, const std::string& name) {
@@ -169,7 +231,7 @@ ImportedCloud import_cloud(std::span<const std::byte> bytes, const std::string& 
   append(imported.remarks, scan.remarks);
   imported.facts =
       facts_of(imported.cloud, imported.invalid, std::size_t{imported.width} * imported.height);
-  append(imported.remarks, improbable_depths(imported.facts));
+  append(imported.remarks, improbable_depths(imported.facts, options.depth.units_per_metre));
   if (options.flip && scan.image)
     imported.remarks.push_back(
         {true, "`flip` is not used: normals estimated from depth face the camera"});

@@ -12,6 +12,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/import/depth_values.h"
+#include "libvpm/import/intrinsics_file.h"
 #include "libvpm/import/remark.h"
 #include "libvpm/import/scan_facts.h"
 
@@ -47,7 +48,8 @@ struct ImportOptions {
   std::optional<Intrinsics> intrinsics;
   std::uint32_t calibrated_width = 0,
                 calibrated_height = 0;  // image of the intrinsics, px; 0 if it is not known
-  DepthReading depth;                   // its unit holds for points too
+  std::optional<ImageRegion> calibrated_region;  // part of it that a driver cuts out
+  DepthReading depth;                            // its unit holds for points too
   std::string channel;  // depth channel of an OpenEXR image; if empty, its name tells
   // Axes of the frame that `to_world` takes to the world, and of points.
   CameraAxes axes = CameraAxes::opencv;

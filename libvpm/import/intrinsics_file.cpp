@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -75,22 +76,76 @@ std::optional<Intrinsics> from_matrices(const json& object, Remarks& remarks) {
   return std::nullopt;
 }
 
-void note_distortion(const json& object, Remarks& remarks) {
+// Returns true if the object has coefficients of a distortion that does something.
+bool has_distortion(const json& object) {
   for (const char* key :
        {"distortion_coefficients", "D", "d", "coeffs", "dist_coeffs", "distortion"}) {
     if (!object.contains(key)) continue;
     const std::vector<double> values = numbers_of(object[key]);
-    if (std::none_of(values.begin(), values.end(), [](double value) { return value != 0; }))
-      continue;
-    remarks.push_back(
-        {true, "the lens's distortion in it is not used: the depth image must be a rectified one"});
+    if (std::any_of(values.begin(), values.end(), [](double value) { return value != 0; }))
+      return true;
+  }
+  return false;
+}
+
+// Returns the intrinsics of the rectified image, the left 3x3 of ROS' projection matrix P, if it is
+// told.
+std::optional<Intrinsics> rectified(const json& object) {
+  for (const char* key : {"P", "p", "projection_matrix"}) {
+    if (!object.contains(key)) continue;
+    Remarks of_p;
+    const auto found = from_matrix(numbers_of(object[key]), of_p);
+    if (found && are_sound(*found)) return found;
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const Intrinsics& k) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g", k.fx, k.fy, k.cx, k.cy);
+  return text;
+}
+
+bool are_same(const Intrinsics& a, const Intrinsics& b) {
+  return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
+}
+
+// Takes the intrinsics of the rectified image where the lens distorts, and says which were taken.
+void choose_rectified(const json& object, IntrinsicsFile& file) {
+  const std::optional<Intrinsics> p = rectified(object);
+  const bool differs = p && !are_same(*p, file.intrinsics);
+  if (!has_distortion(object)) {
+    if (differs)
+      file.remarks.push_back({false, "its K is used, " + text_of(file.intrinsics) +
+                                         "; if the image is rectified, give `intrinsics` " +
+                                         text_of(*p) + ", its P"});
     return;
   }
+  if (differs) {
+    file.remarks.push_back({true,
+                            "the lens distorts, so that the depth image must be a rectified "
+                            "one: its P is used, " +
+                                text_of(*p) + ", which holds for that, and not its K, " +
+                                text_of(file.intrinsics)});
+    file.intrinsics = *p;
+    return;
+  }
+  file.remarks.push_back(
+      {true, "the lens's distortion in it is not used: the depth image must be a rectified one"});
 }
 
 std::uint32_t size_at(const json& object, std::initializer_list<const char*> keys) {
   const double size = number_at(object, keys).value_or(0);
   return size >= 1 && size <= 1e9 ? static_cast<std::uint32_t>(size) : 0;
+}
+
+// Returns the region of interest of ROS' camera_info; empty where it is the whole image.
+std::optional<ImageRegion> region_of(const json& object) {
+  const auto found = object.find("roi");
+  if (found == object.end() || !found->is_object()) return std::nullopt;
+  const ImageRegion region{size_at(*found, {"x_offset"}), size_at(*found, {"y_offset"}),
+                           size_at(*found, {"width"}), size_at(*found, {"height"})};
+  return region.width > 0 && region.height > 0 ? std::optional(region) : std::nullopt;
 }
 
 // Appends the objects in `value` that hold intrinsics. The parser has limited its depth.
@@ -106,7 +161,8 @@ void find_candidates(const json& value, const std::string& path, std::vector<Can
     candidate.file.width = size_at(value, {"width", "image_width", "xres", "w", "Camera.width"});
     candidate.file.height =
         size_at(value, {"height", "image_height", "yres", "h", "Camera.height"});
-    note_distortion(value, candidate.file.remarks);
+    candidate.file.region = region_of(value);
+    choose_rectified(value, candidate.file);
     found.push_back(std::move(candidate));
     return;
   }

@@ -14,10 +14,16 @@
 
 namespace vpm {
 
+// Part of a calibrated image that a driver cuts out, px.
+struct ImageRegion {
+  std::uint32_t left = 0, top = 0, width = 0, height = 0;
+};
+
 struct IntrinsicsFile {
   Intrinsics intrinsics;
   // Size of the calibrated image, px; 0 if the file does not tell.
   std::uint32_t width = 0, height = 0;
+  std::optional<ImageRegion> region;  // if the file tells one
   Remarks remarks;
 };
 
@@ -27,7 +33,8 @@ struct IntrinsicsFile {
 //   JSON   or YAML of which an object has fx, fy, cx, cy (RealSense: ppx, ppy; ORB-SLAM:
 //          Camera.fx; nerfstudio: fl_x, fl_y), or a matrix called K, camera_matrix or
 //          intrinsic_matrix (ROS camera_info, Open3D, OpenCV); of several objects the one under a
-//          key "depth"
+//          key "depth". Where the lens distorts, ROS' P is taken instead, which holds for the
+//          rectified image
 // Throws Error(refused), naming `name`, for anything else, Error(unavailable) for YAML in builds
 // without it.
 IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name);

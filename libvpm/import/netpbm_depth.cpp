@@ -34,6 +34,18 @@ class NetpbmReader {
   }
 
  private:
+  // Warns if something follows the pixels' `bytes`.
+  void look_behind(std::size_t bytes) {
+    const std::string_view rest = file::as_text(bytes_).substr(bytes);
+    const std::size_t first = rest.find_first_not_of(" \t\r\n");
+    if (first == rest.npos) return;
+    if (rest.substr(first).starts_with('P'))
+      image_.remarks.push_back({true, "it holds several images; the first is read"});
+    else
+      image_.remarks.push_back(
+          {true, "the " + std::to_string(rest.size()) + " bytes after its pixels are not read"});
+  }
+
   [[noreturn]] void fail(const std::string& defect) const {
     refuse("not a depth image in PGM or PFM: " + defect, name_);
   }
@@ -69,6 +81,7 @@ class NetpbmReader {
       fail("the file is truncated: " + std::to_string(needed) + " bytes of pixels promised, " +
            std::to_string(cursor_.remaining()) + " there");
     }
+    look_behind(cursor_.offset() + needed);
     return bytes_.data() + cursor_.offset();
   }
 
@@ -91,6 +104,7 @@ class NetpbmReader {
         fail("pixel " + std::to_string(i) + ": '" + file::shown(word) + "' is no value");
       image_.values.push_back(static_cast<float>(*value));
     }
+    look_behind(cursor_.offset());
   }
 
   // Reads rows from the bottom; the sign of `scale` tells the order of bytes.

@@ -103,7 +103,8 @@ RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& na
   PngReader png(bytes);
   if (!png.read_header()) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   if (!png.is_gray16()) {
-    refuse("a PNG with " + std::to_string(png.channels()) + " channels of " +
+    refuse("a PNG with " + std::to_string(png.channels()) +
+               (png.channels() == 1 ? " channel of " : " channels of ") +
                std::to_string(png.bit_depth()) + " bits is no depth image",
            name, "depth needs one gray channel of 16 bits");
   }

@@ -120,12 +120,6 @@ std::string percent_text(std::size_t part, std::size_t whole) {
   return text;
 }
 
-std::string metres_text(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
-}
-
 double median_radius(const Cloud& cloud) {
   std::vector<float> radii = cloud.radii;
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
@@ -145,8 +139,18 @@ void refuse_missing_normals(const PointSet& points, const std::string& name) {
   }
 }
 
-// Returns a warning if nearly all normals face away from the origin, where the sensor was.
-Remarks facing_away(const PointSet& points) {
+// True if all points lie before a camera at the origin, within 60 degrees of its axis.
+bool are_as_of_a_camera(const PointSet& points) {
+  constexpr double kSlowest = 0.5;
+  return std::all_of(points.positions.begin(), points.positions.end(),
+                     [](const Vec3& p) { return !is_finite(p) || p.z >= kSlowest * norm(p); });
+}
+
+// Returns a warning if nearly all normals face away from the origin, where the sensor was if the
+// file has a viewpoint, and may have been if all points lie before a camera there. Points of no
+// such view cannot be judged.
+Remarks facing_away(const PointSet& points, bool are_flipped) {
+  if (!points.viewpoint && !are_as_of_a_camera(points)) return {};
   std::size_t away = 0, all = 0;
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     const double along = dot(points.positions[i], points.normals[i]);
@@ -155,9 +159,12 @@ Remarks facing_away(const PointSet& points) {
   }
   constexpr double kNearlyAll = 0.9;
   if (all == 0 || static_cast<double>(away) < kNearlyAll * static_cast<double>(all)) return {};
-  return {{true, percent_text(away, all) + " of its normals face away from its VIEWPOINT, and so "
-                                           "from the sensor; normals must point into free "
-                                           "space: give `flip` to turn them"}};
+  const std::string sensor = points.viewpoint
+                                 ? "its VIEWPOINT, and so from the sensor"
+                                 : "the origin, before which all points lie as before a camera";
+  return {{true, percent_text(away, all) + " of its normals face away from " + sensor +
+                     "; normals must point into free space: " +
+                     (are_flipped ? "leave `flip` out" : "give `flip` to turn them")}};
 }
 
 // Returns a warning if many normals are opposite to others in the same small cube.
@@ -203,7 +210,7 @@ Remarks coarse_coordinates(const PointSet& points, const Cloud& cloud) {
 // Returns the cloud of points in metres. A file with a viewpoint has its sensor at the origin of
 // its frame, towards which normals must point. Throws Error(refused), naming `name`, for points
 // without normals.
-ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
+ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world, bool are_flipped,
                                 const std::string& name) {
   refuse_missing_normals(points, name);
   ScatteredScan scan;
@@ -215,7 +222,7 @@ ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
   if (scan.without_normal > 0)
     scan.remarks.push_back(
         {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
-  if (points.viewpoint) append(scan.remarks, facing_away(points));
+  append(scan.remarks, facing_away(points, are_flipped));
   append(scan.remarks, facing_each_other(scan.cloud));
   append(scan.remarks, coarse_coordinates(points, scan.cloud));
   return scan;
@@ -289,7 +296,7 @@ ImportedScan scan_without_camera(PointSet points, const ToldPose& told, const st
   for (Vec3& p : points.positions) p = p / units_per_metre;
   if (options.flip)
     for (Vec3& n : points.normals) n = -n;
-  ScatteredScan read = scan_of_scattered(points, to_world, name);
+  ScatteredScan read = scan_of_scattered(points, to_world, options.flip, name);
   ImportedScan scan;
   scan.width = points.width;
   scan.height = points.height;
@@ -313,6 +320,8 @@ Remarks unused_options(const ImportOptions& options) {
   say(!depth.invalid.empty() || !depth.has_usual_markers, "invalid");
   say(depth.nearest > 0 || depth.farthest < HUGE_VAL, "range");
   say(depth.along_ray, "along_ray");
+  const DepthDecoding& coding = depth.decoding;
+  say(coding.swapped || coding.big_endian || coding.rotated || coding.disparity, "decode");
   return remarks;
 }
 
@@ -344,6 +353,8 @@ ImportedScan scan_of_points(PointSet points, const std::string& name,
       view ? scan_of_view(*view, told, name, options)
            : scan_without_camera(std::move(points), told, name, options, units_per_metre);
   if (!view) append(remarks, unused_options(options));
+  if (view && options.depth.along_ray)
+    remarks.push_back({true, "`along_ray` is not used: points tell their depth themselves"});
   scan.remarks.insert(scan.remarks.begin(), remarks.begin(), remarks.end());
   return scan;
 }

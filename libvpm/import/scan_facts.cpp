@@ -57,10 +57,19 @@ ScanFacts facts_of(const Cloud& cloud, std::size_t invalid, std::size_t all) {
   return facts;
 }
 
-Remarks improbable_depths(const ScanFacts& facts) {
+std::string metres_text(double length) {
+  return text_of("%.3g m", length);
+}
+
+Remarks improbable_depths(const ScanFacts& facts, const std::optional<double>& units_per_metre) {
   constexpr double kNearest = 0.05, kFarthest = 50, kFewest = 0.05;
   Remarks remarks;
-  if (facts.depth && (facts.depth->median < kNearest || facts.depth->median > kFarthest)) {
+  const bool is_far = facts.depth && facts.depth->median > kFarthest;
+  if (is_far && units_per_metre && *units_per_metre < 1) {
+    remarks.push_back({true, text_of("half of its depths are above %.3g m: `depth_scale` is the "
+                                     "number of units per metre; if a unit is %.9g m, give %.9g",
+                                     facts.depth->median, *units_per_metre, 1 / *units_per_metre)});
+  } else if (facts.depth && (facts.depth->median < kNearest || facts.depth->median > kFarthest)) {
     remarks.push_back(
         {true, text_of("half of its depths are %s %.3g m, which is improbable: is its unit another "
                        "one? `unit` "

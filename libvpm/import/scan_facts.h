@@ -21,6 +21,9 @@ struct ScanFacts {
 // Returns the numbers as the parameter `intrinsics` takes them: "fx,fy,cx,cy".
 std::string intrinsics_text(const Intrinsics& intrinsics);
 
+// Returns for example "0.8 m".
+std::string metres_text(double length);
+
 // Returns the range of the measured pixels; empty if there is none.
 std::optional<DepthRange> range_of(const DepthImage& depth);
 
@@ -28,8 +31,10 @@ std::optional<DepthRange> range_of(const DepthImage& depth);
 // measured.
 ScanFacts facts_of(const Cloud& cloud, std::size_t invalid, std::size_t all);
 
-// Returns warnings about depths and shares that no sensor gives, usually for a wrong unit.
-Remarks improbable_depths(const ScanFacts& facts);
+// Returns warnings about depths and shares that no sensor gives, usually for a wrong unit. Names
+// the one that was told if it is less than one unit per metre.
+Remarks improbable_depths(const ScanFacts& facts,
+                          const std::optional<double>& units_per_metre = std::nullopt);
 // Returns warnings about intrinsics that no camera of this image has.
 Remarks improbable_intrinsics(const Camera& camera);
 

@@ -99,22 +99,29 @@ function colorByState(own, bits, colors) {
   };
 }
 
-// Lets the colours of spheres tell their radii, on a logarithmic scale.
-function colorByRadius(own) {
-  const {radii} = own, {array} = own.object.geometry.attributes.tint;
+// Returns the smallest and largest radius of all spheres that are coloured by it: levels share a
+// scale, so that a sphere keeps its colour.
+function rangeOfRadii(layers) {
   let low = Infinity, high = 0;
-  for (const r of radii) low = Math.min(low, r), high = Math.max(high, r);
+  for (const layer of layers.filter(l => l.type === 'spheres' && !l.states))
+    for (const r of decode(layer.radii)) low = Math.min(low, r), high = Math.max(high, r);
+  return {low, high};
+}
+
+// Lets the colours of spheres tell their radii, on a logarithmic scale.
+function colorByRadius(own, {low, high}) {
+  const {radii} = own, {array} = own.object.geometry.attributes.tint;
   radii.forEach((r, k) => array.set(viridis(high > low ? Math.log(r / low) / Math.log(high / low) : 1), 3 * k));
   own.key = {name: 'radius', unit: 'm', low, high};
   own.swatch = {shape: 'viridis ball'};
 }
 
-function sphereLayers(layer, colors) {
+function sphereLayers(layer, colors, range) {
   const centers = decodePositions(layer.centers), radii = decode(layer.radii), count = radii.length;
   const geometry = sphereGeometry(centers, radii), object = placed(new THREE.Mesh(geometry, sphereMaterial()), 0);
   const own = {name: layer.name, type: 'spheres', body: layer.body, count, on: layer.on, object, centers, radii, step: layer.step, cellsOf: layer.cells};
   if (layer.states) colorByState(own, decode(layer.states), colors);
-  else colorByRadius(own);
+  else colorByRadius(own, range);
   let most = count, prefix = count;  // spheres are sorted by radius, the largest first
   const restrict = () => { geometry.maxInstancedCount = Math.min(most, prefix); };
   own.setCoarse = on => { most = on ? COARSE_SPHERES : count; restrict(); };
@@ -191,11 +198,11 @@ function arrowLayers(layer, bodies, columns) {
 
 const MAKERS = {
   image: imageLayers, points: pointLayers, mesh: meshLayers, lines: lineLayers, dust: dustLayers,
-  spheres: (layer, context) => sphereLayers(layer, context.colors),
+  spheres: (layer, context) => sphereLayers(layer, context.colors, context.radii),
   path: (layer, context) => pathLayers(layer, context.bodies),
   arrow: (layer, context) => arrowLayers(layer, context.bodies, context.columns),
 };
 function makeLayers(doc, bodies, columns) {
-  const context = {colors: doc.colors, bodies, columns};
+  const context = {colors: doc.colors, bodies, columns, radii: rangeOfRadii(doc.layers)};
   return doc.layers.flatMap(layer => MAKERS[layer.type](layer, context));
 }

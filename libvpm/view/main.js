@@ -22,7 +22,7 @@ let step = 0, timer = null;
 function stepText() {
   if (steps.names) return steps.names[step] || '';
   if (steps.counts_up) return `${step + 1} of ${steps.count} ${steps.name}`;
-  return `${steps.name} ${stepNumbers ? stepNumbers[step] : step} of ${steps.last}`;
+  return `${steps.name} ${stepNumbers ? stepNumbers[step] : step} of 0 to ${steps.last}`;
 }
 function setStep(wanted) {
   step = Math.min(Math.max(wanted, 0), Math.max(steps.count - 1, 0));

@@ -100,6 +100,11 @@ std::string with_unit(double value, const char* unit) {
   return text;
 }
 
+std::string volume_text(double volume) {
+  if (volume >= 1) return with_unit(volume, "m³");
+  return volume >= 1e-6 ? with_unit(1e6 * volume, "cm³") : with_unit(1e9 * volume, "mm³");
+}
+
 Page::Page(std::string program, std::string title)
     : program_(std::move(program)), title_(std::move(title)) {}
 

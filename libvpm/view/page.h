@@ -39,6 +39,8 @@ inline constexpr std::size_t kMostTriangles = 60'000;
 std::string shown_name(const std::string& path);
 // Returns the value with four digits, and its unit.
 std::string with_unit(double value, const char* unit);
+// Returns a volume, m³, in m³, cm³ or mm³, as the pages' tables write those of columns.
+std::string volume_text(double volume);
 
 struct ImageView {
   const DepthImage* depth = nullptr;

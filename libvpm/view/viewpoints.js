@@ -61,8 +61,17 @@ function makeViewpoints(stage, layers, bodies, moves) {
   function between(from, right, down, ahead) {
     return new THREE.Vector3().addScaledVector(from.right, right).addScaledVector(from.down, down).addScaledVector(from.ahead, ahead);
   }
+  // Returns a ball about the bodies that reaches to the middle of what is scanned, so that both show.
+  function wide() {
+    const near = focus();
+    if (!bodies.length || !moves) return near;
+    const scene = surface ? ballOfImage(frame()) : extent;
+    const center = near.center.clone().lerp(scene.center, 0.5);
+    const apart = center.distanceTo(near.center);
+    return {center, radius: Math.max(2 * near.radius, apart + near.radius, apart + 0.5 * scene.radius)};
+  }
   const viewpoints = {
-    overview() { look(focus(), between(frame(), -0.85, 0.5, 1), bodies.length && moves ? 2 : 1); },
+    overview() { look(wide(), between(frame(), -0.85, 0.5, 1), 1); },
     camera() {
       if (!surface) return viewpoints.overview();
       const {eye, ahead, image} = frame(), {width, height, intrinsics} = image;

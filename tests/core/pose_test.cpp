@@ -147,11 +147,15 @@ TEST(PoseText, IsRead) {
   const Pose pose = pose_from_text("1.5, -2e-3,3,0,0,0,1");
   EXPECT_EQ(pose.translation, (Vec3{1.5, -2e-3, 3}));
   EXPECT_EQ(distance(pose.rotation, Rotation{}), 0);
+  for (const char* text :
+       {"1.5 -2e-3 3 0 0 0 1", "[1.5,-2e-3,3,0,0,0,1]", " [ 1.5, -2e-3 ,+3 0 0 0 1 ] "})
+    EXPECT_EQ(pose_from_text(text).translation, (Vec3{1.5, -2e-3, 3})) << text;
 }
 
 TEST(PoseText, WrongFormIsWrongUsage) {
-  for (const char* text : {"", "1,2,3", "1,2,3,0,0,0,1,", "1,2,3,0,0,0,one", "1,2,3,0,0,0,1,0",
-                           "1 2 3 0 0 0 1", "0x1,2,3,0,0,0,1", "1,,3,0,0,0,1"}) {
+  for (const char* text :
+       {"", "1,2,3", "1,2,3,0,0,0,1,", "1,2,3,0,0,0,one", "1,2,3,0,0,0,1,0", "[1 2 3 0 0 0 1",
+        "1,2,3,0,0,0,1]", "[]", "+-1,2,3,0,0,0,1", "0x1,2,3,0,0,0,1", "1,,3,0,0,0,1"}) {
     EXPECT_EQ(kind_of_fault([&] { pose_from_text(text); }), ErrorKind::invalid_argument) << text;
   }
 }

@@ -121,6 +121,18 @@ TEST(NetpbmDepth, ReadsPgmAndPfm) {
   EXPECT_FALSE(netpbm(pfm).are_integers);
 }
 
+TEST(NetpbmDepth, SaysWhatFollowsTheFirstImage) {
+  std::string pgm = "P5 3 2 65535\n";
+  for (std::uint16_t k = 1; k <= 6; ++k) append(pgm, in_other_order(k));
+  EXPECT_TRUE(netpbm(pgm + "\n").remarks.empty());
+  for (const std::string& two : {pgm + pgm, std::string("P2 1 1 4095 7\nP2 1 1 4095 8\n")}) {
+    const Remarks remarks = netpbm(two).remarks;
+    ASSERT_EQ(remarks.size(), 1U);
+    EXPECT_TRUE(says(remarks[0].text, "several images"));
+  }
+  EXPECT_TRUE(says(netpbm(pgm + "more").remarks.at(0).text, "4 bytes"));
+}
+
 TEST(NetpbmDepth, RefusesWhatIsNoDepth) {
   const auto refused = [](const std::string& file) { return test::refusal([&] { netpbm(file); }); };
   EXPECT_TRUE(says(refused("P5 3 2 255\n123456"), "16 bits"));

@@ -115,6 +115,42 @@ TEST(DepthValues, TheOrderOfBytesIsToldByNeighbours) {
   EXPECT_TRUE(metres(image_of(slope(400), 400, true)).remarks.empty());
 }
 
+TEST(DepthValues, BytesAreExchangedOnlyWhereThatIsSure) {
+  // Two depths stand closer with their bytes exchanged; either order may be meant.
+  const auto steps = [](float low, float high, bool swaps) {
+    std::vector<float> values;
+    for (int k = 0; k < 400; ++k) values.push_back(k % 2 == 0 ? low : high);
+    if (swaps)
+      for (float& value : values) value = swapped(value);
+    RawDepth raw = image_of(values, 400, true);
+    raw.may_be_swapped = true;
+    return raw;
+  };
+  EXPECT_EQ(metres(steps(1000, 1256, false)).depth[1], 1.256F);
+  EXPECT_EQ(metres(steps(1024, 768, false)).depth[1], 0.768F);
+  EXPECT_EQ(metres(steps(1000, 800, true)).depth[1], 0.8F);  // as they stand 8 and 59 m
+}
+
+TEST(DepthValues, TheOrderOfBytesIsFoundBesideOtherCodingsAndMayBeTold) {
+  std::vector<float> values;
+  for (int k = 0; k < 400; ++k) values.push_back(swapped(static_cast<float>(600 + k)));
+  RawDepth raw = image_of(values, 400, true);
+  raw.may_be_swapped = true;
+  const float metre = static_cast<float>(351.3 / (1092.5 - 607));
+  EXPECT_EQ(metres(raw, {.decoding = decoding_from_text("disparity")}).depth[7], metre);
+  EXPECT_EQ(metres(raw, {.decoding = decoding_from_text("swapped,disparity")}).depth[7], metre);
+  EXPECT_EQ(metres(raw, {.decoding = decoding_from_text("big-endian")}).depth[7],
+            swapped(607) / 1000);
+  EXPECT_EQ(metres(raw, {.decoding = decoding_from_text("swapped")}).depth[7], 0.607F);
+  raw.may_be_swapped = false;
+  const Metres unused =
+      metres(image_of(slope(3), 3, true), {.decoding = decoding_from_text("big-endian")});
+  ASSERT_EQ(unused.remarks.size(), 1U);
+  EXPECT_TRUE(says(unused.remarks[0].text, "not used"));
+  EXPECT_EQ(test::kind_of_fault([] { decoding_from_text("swapped,big-endian"); }),
+            ErrorKind::invalid_argument);
+}
+
 TEST(DepthValues, MarkersDoNotLookSwapped) {
   std::vector<float> values(400, 1000);
   for (std::size_t i = 0; i < values.size(); i += 2) values[i] = 65535;

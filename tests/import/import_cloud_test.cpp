@@ -98,6 +98,85 @@ TEST(ImportCloud, ScatteredPointsKeepTheirNormals) {
   EXPECT_EQ(imported.cloud.normals[1], (Vec3f{0, 0, 1}));
 }
 
+// Returns all that is said about the file.
+std::string said(const std::string& file, const ImportOptions& options = {}) {
+  std::string text;
+  for (const Remark& remark : import(file, options).remarks) text += remark.text + "\n";
+  return text;
+}
+
+TEST(ImportCloud, CommentsAloneMakeNoPcd) {
+  EXPECT_TRUE(says(refused("# made by hand\nmtllib a.mtl\nv 0 0 0\n"), "neither PNG"));
+  EXPECT_TRUE(says(refused("# made by hand\n\nVERSION 0.7\n"), "PCD header"));
+}
+
+TEST(ImportCloud, SaysWhichOptionsAreNotUsed) {
+  ImportOptions options;
+  options.intrinsics = kCamera;
+  options.axes = CameraAxes::opengl;
+  EXPECT_TRUE(says(said(depth_png(), options), "`axes` is not used"));
+  options.to_world = Pose{};
+  EXPECT_FALSE(says(said(depth_png(), options), "`axes`"));
+  ImportOptions of_points;
+  of_points.channel = "Z";
+  of_points.depth.decoding.swapped = true;
+  EXPECT_TRUE(says(said(kPly, of_points), "`channel` is not used"));
+  EXPECT_TRUE(says(said(kPly, of_points), "`decode` is not used"));
+}
+
+// Returns a wall at z = 1 with this normal, as points without a viewpoint.
+std::string wall_ply(const char* normal) {
+  std::string file =
+      "ply\nformat ascii 1.0\nelement vertex 25\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n";
+  for (int k = 0; k < 25; ++k)
+    file += std::to_string(0.1 * (k % 5 - 2)) + " " + std::to_string(0.1 * (k / 5 - 2)) + " 1 " +
+            normal + "\n";
+  return file;
+}
+
+TEST(ImportCloud, NormalsThatFaceAwayAreSaidWhereThatCanBeJudged) {
+  EXPECT_TRUE(says(said(wall_ply("0 0 1")), "give `flip` to turn them"));
+  EXPECT_EQ(said(wall_ply("0 0 -1")), "");
+  ImportOptions flips;
+  flips.flip = true;
+  EXPECT_EQ(said(wall_ply("0 0 1"), flips), "");
+  EXPECT_TRUE(says(said(wall_ply("0 0 -1"), flips), "leave `flip` out"));
+  EXPECT_FALSE(says(said(kPly), "face away"));  // points about the origin
+}
+
+TEST(ImportCloud, TheSizeOfACalibrationTellsWhatWasDone) {
+  ImportOptions options;
+  options.intrinsics = Intrinsics{100, 100, 19.5, 15.5};
+  options.calibrated_width = 40;
+  options.calibrated_height = 32;
+  EXPECT_TRUE(says(refused(depth_png(), options), "if it was scaled"));
+  options.calibrated_region = ImageRegion{10, 5, kWidth, kHeight};
+  EXPECT_TRUE(says(refused(depth_png(), options), "`intrinsics` 100,100,9.5,10.5"));
+  options.calibrated_region.reset();
+  options.calibrated_height = 20;
+  EXPECT_TRUE(says(refused(depth_png(), options), "another shape"));
+}
+
+TEST(ImportCloud, SaysWhyNothingIsMeasured) {
+  ImportOptions options;
+  options.intrinsics = kCamera;
+  EXPECT_TRUE(
+      says(refused(make_png(20, 16, 16, std::vector<std::uint16_t>(320)), options), "all are 0"));
+  options.depth.nearest = 100;
+  options.depth.farthest = 5000;
+  EXPECT_TRUE(says(refused(depth_png(), options), "its depths are from 2 m to 2 m"));
+  std::string negative = "Pf\n2 1\n-1.0\n";
+  append(negative, -1.F);
+  append(negative, -2.F);
+  EXPECT_TRUE(says(refused(negative, options), "all are negative"));
+  ImportOptions metres_per_unit;
+  metres_per_unit.intrinsics = kCamera;
+  metres_per_unit.depth.units_per_metre = 0.001;
+  std::vector<std::uint16_t> near(320, 500);
+  EXPECT_TRUE(says(said(make_png(20, 16, 16, near), metres_per_unit), "give 1000"));
+}
+
 TEST(ImportCloud, RefusesWhatHoldsNoCloud) {
   EXPECT_TRUE(says(refused(""), "empty"));
   EXPECT_TRUE(

@@ -63,6 +63,32 @@ TEST(IntrinsicsFile, SaysThatDistortionIsNotUsed) {
   EXPECT_TRUE(read.remarks[0].is_warning);
 }
 
+TEST(IntrinsicsFile, TakesTheRectifiedCameraWhereTheLensDistorts) {
+  const std::string k = R"("K": [500,0,300, 0,500,200, 0,0,1], )",
+                    p = R"("P": [525,0,319.5,-40, 0,526,239.5,0, 0,0,1,0])";
+  expect_camera("{" + k + R"("D": [0.1, 0, 0, 0, 0], )" + p + "}");
+  const IntrinsicsFile both = parse("{" + k + R"("D": [0.1, 0, 0, 0, 0], )" + p + "}");
+  ASSERT_EQ(both.remarks.size(), 1U);
+  EXPECT_TRUE(says(both.remarks[0].text, "its P is used, 525,526,319.5,239.5"));
+  const IntrinsicsFile plain = parse("{" + k + R"("D": [0, 0, 0, 0, 0], )" + p + "}");
+  EXPECT_EQ(plain.intrinsics.fx, 500);
+  ASSERT_EQ(plain.remarks.size(), 1U);
+  EXPECT_TRUE(says(plain.remarks[0].text, "its K is used"));
+  const IntrinsicsFile empty = parse("{" + k + R"("D": [0.1], "P": [0,0,0,0, 0,0,0,0, 0,0,0,0]})");
+  EXPECT_EQ(empty.intrinsics.fx, 500);
+}
+
+TEST(IntrinsicsFile, ReadsTheRegionOfInterest) {
+  const std::string k = R"({"K": [500,0,300, 0,500,200, 0,0,1], "roi": )";
+  const auto region =
+      parse(k + R"({"x_offset": 10, "y_offset": 0, "width": 140, "height": 110}})").region;
+  ASSERT_TRUE(region);
+  EXPECT_EQ(region->left, 10U);
+  EXPECT_EQ(region->top, 0U);
+  EXPECT_EQ(region->width, 140U);
+  EXPECT_FALSE(parse(k + R"({"x_offset": 0, "y_offset": 0, "width": 0, "height": 0}})").region);
+}
+
 #ifdef VPM_TESTS_YAML
 TEST(IntrinsicsFile, ReadsYaml) {
   expect_camera(

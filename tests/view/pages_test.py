@@ -152,7 +152,7 @@ class Query(PageTest):
         page.evaluate("slider = document.getElementById('slider'); slider.value = 3;"
                       "slider.dispatchEvent(new Event('input'))")
         report = page.report()
-        self.assertEqual((report["step"], report["where"]), (3, "pose 3 of 120"))
+        self.assertEqual((report["step"], report["where"]), (3, "pose 3 of 0 to 120"))
         self.assertNotEqual(report["texts"], before)
         self.assertIn("volume0 ", report["texts"][0])
         page.call("Input.dispatchKeyEvent", type="keyDown", key="ArrowRight")

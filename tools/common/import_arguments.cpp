@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/number_list.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/intrinsics_file.h"
@@ -27,25 +28,20 @@ constexpr std::array<std::pair<const char*, double>, 6> kUnitsPerMetre = {{
     {"ft", 1 / 0.3048},
 }};
 
-// Returns the numbers of "1,2,3"; empty if the text is none of that.
+// Returns the numbers of a list; empty if the text is none.
 std::vector<double> numbers_in(const std::string& text) {
-  std::vector<double> numbers;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(',', at), text.size());
-    const std::vector<std::string_view> words =
-        file::split_words(std::string_view(text).substr(at, end - at));
-    const std::optional<double> number =
-        words.size() == 1 ? file::to_number(words[0]) : std::nullopt;
-    if (!number) return {};
-    numbers.push_back(*number);
-    at = end + 1;
+  try {
+    return numbers_from_text(text);
+  } catch (const Error&) {
+    return {};
   }
-  return numbers;
 }
 
 // True if the text begins with a number, so that it names no file.
 bool begins_with_number(const std::string& text) {
-  return file::to_number(text.substr(0, text.find(','))).has_value();
+  const std::size_t first = std::min(text.find_first_not_of(" [\t"), text.size());
+  return file::to_number(text.substr(first, text.find_first_of(", ]\t", first) - first))
+      .has_value();
 }
 
 void declare_camera(CLI::App& app, ImportArguments& a) {
@@ -59,7 +55,10 @@ void declare_camera(CLI::App& app, ImportArguments& a) {
   app.add_option("--camera-pose", a.camera_pose,
                  "Pose of the camera, or of the cloud's frame, in the world: tx,ty,tz,qx,qy,qz,qw, "
                  "or a file with it (4x4, TUM, "
-                 "JSON)");
+                 "JSON)")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("TX,TY,TZ,QX,QY,QZ,QW or FILE");
   app.add_option("--axes", a.axes,
                  "Axes of that frame: opencv (x right, y down, z forward), opengl (x right, y up, "
                  "z backward) or ros (x forward, "
@@ -90,7 +89,8 @@ void declare_values(CLI::App& app, ImportArguments& a) {
       "The file holds distances along the ray; otherwise depth along the optical axis (z)");
   app.add_option("--decode", a.decode,
                  "Undo a coding of 16-bit values: rotated (SUN3D, APC), disparity (raw Kinect, "
-                 "NYU) or swapped (bytes)")
+                 "NYU), swapped bytes, or big-endian: a PGM's bytes as its standard says, which "
+                 "otherwise are looked at")
       ->join(',');
   app.add_option("--channel", a.channel,
                  "Channel of an OpenEXR image that holds depth, if its name does not tell");
@@ -158,6 +158,7 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& 
     options.intrinsics = read.intrinsics;
     options.calibrated_width = read.width;
     options.calibrated_height = read.height;
+    options.calibrated_region = read.region;
   }
   check_intrinsics(*options.intrinsics);
 }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace vpm::tools {
 namespace {
@@ -82,15 +83,25 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
 }
 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
+  const std::string text = whole_text(input);
+  std::set<std::string> keys;
+  const auto look = [&](int depth, json::parse_event_t event, const json& parsed) {
+    constexpr int kDeepest = 32;  // JSON values are copied recursively and could fill the stack
+    if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
+    const bool is_option = depth == 1 && event == json::parse_event_t::key;
+    if (is_option && !keys.insert(parsed.get<std::string>()).second)
+      throw CLI::FileError("the configuration gives '" + parsed.get<std::string>() +
+                           "' twice; leave one of them out");
+    return true;
+  };
   json config;
   try {
-    config = json::parse(whole_text(input), [](int depth, json::parse_event_t, const json&) {
-      constexpr int kDeepest = 32;  // JSON values are copied recursively and could fill the stack
-      if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
-      return true;
-    });
-  } catch (const json::exception& fault) {
-    throw CLI::FileError(std::string("the configuration is not JSON: ") + fault.what());
+    config = json::parse(text, look);
+  } catch (const json::parse_error& fault) {
+    const auto at = static_cast<std::ptrdiff_t>(std::min(fault.byte, text.size()));
+    throw CLI::FileError("the configuration is not JSON: it cannot be read from line " +
+                         std::to_string(1 + std::count(text.begin(), text.begin() + at, '\n')) +
+                         " on");
   }
   if (!config.is_object())
     throw CLI::FileError("the configuration must be a JSON object of options");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -89,9 +90,18 @@ void die_of_closed_pipe() {
   std::raise(SIGPIPE);
 }
 
-std::string message_of(const CLI::ParseError& fault) {
+std::string message_of(const CLI::ParseError& fault, const std::string& config) {
   constexpr std::string_view kUnknownKey = "INI was not able to parse ";
   std::string what = fault.what();
+  if (dynamic_cast<const CLI::FileError*>(&fault) != nullptr) {
+    if (what.ends_with("was not readable (missing?)")) {
+      errno = 0;
+      const bool opens = ::access(config.c_str(), R_OK) == 0;
+      return "--config: cannot read " + config + (opens ? "" : ": ") +
+             (opens ? "" : std::strerror(errno));
+    }
+    return "--config " + config + ": " + what;
+  }
   if (what.rfind(kUnknownKey, 0) != 0) return what;
   return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
 }
@@ -167,7 +177,8 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     if (errno == EPIPE && dies_of_closed_pipes) die_of_closed_pipe();
     return fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
-    return fail(ErrorKind::invalid_argument, message_of(fault) + " (see " + name_ + " --help)");
+    return fail(ErrorKind::invalid_argument,
+                message_of(fault, config_name()) + " (see " + name_ + " --help)");
   } catch (const file::ClosedPipe& fault) {
     if (dies_of_closed_pipes) die_of_closed_pipe();
     return fail(fault.kind(), fault.what());
@@ -178,6 +189,13 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   } catch (const std::exception& fault) {
     return fail(ErrorKind::refused, fault.what());
   }
+}
+
+// Returns the file of --config, as it was given.
+std::string Tool::config_name() const {
+  const CLI::Option* option = app_.get_config_ptr();
+  const std::string name = option->results().empty() ? "" : option->results().back();
+  return name == "-" ? "standard input" : name;
 }
 
 // Refuses --grow=1e999, of which CLI11 makes whatever it can.

@@ -48,15 +48,17 @@ class Tool {
   // Prints "vpm-pack: ..." to standard error with --verbose only.
   void detail(const std::string& text) const;
 
+  // Returns the text with options for the names in backquotes.
+  std::string in_words_of_options(const std::string& text) const;
+
   // Returns the options as parsed, for the provenance of an output. Leaves out file names, since
   // provenance names inputs by their hash, and options that never change a result.
   nlohmann::json parameters() const;
 
  private:
+  std::string config_name() const;
   void refuse_values_of_flags(int argc, char** argv) const;
   void refuse_senseless_values() const;
-  // Returns the text with options for the names in backquotes.
-  std::string in_words_of_options(const std::string& text) const;
   void print(const char* kind, const std::string& text) const;
 
   std::string name_;

@@ -97,7 +97,7 @@ void write_model_view(const std::string& path, const std::string& packing, const
     page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &mesh, .opacity = 0.15});
   add_numbers(page, model);
   page.add_fact("packing", view::shown_name(packing));
-  page.add_fact("volume", view::with_unit(1e6 * model.volume, "cm³"));
+  page.add_fact("volume", view::volume_text(model.volume));
   page.add_fact("cells", "click a sphere: the samples of its Voronoi cell");
   if (every > 1) page.add_fact("samples shown", "one in " + std::to_string(every));
   page.steps() = {{"name", "level"},

@@ -77,15 +77,10 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
   return report;
 }
 
-std::string text_of(const Intrinsics& k) {
-  return std::to_string(k.fx) + "," + std::to_string(k.fy) + "," + std::to_string(k.cx) + "," +
-         std::to_string(k.cy);
-}
-
 void say_facts(const Tool& tool, const std::string& name, const ImportedCloud& imported) {
   if (imported.intrinsics_recovered) {
     tool.note(name + ": intrinsics recovered from its points: " +
-              text_of(imported.cloud.sensor->camera.intrinsics));
+              intrinsics_text(imported.cloud.sensor->camera.intrinsics));
   }
   say(tool, name, imported.remarks);
   tool.detail(name + ": " + words_of(imported.facts));

@@ -175,7 +175,8 @@ CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& 
     return make_solid(mesh, solid_options(a), [&](double done) { progress.update(done); });
   } catch (const Error& fault) {
     if (!a.view.empty() && fault.kind() == ErrorKind::refused)
-      write_defects_view(a.view, mesh, solid_options(a), fault.what());
+      write_defects_view(a.view, mesh, solid_options(a), tool.in_words_of_options(fault.problem()),
+                         tool.in_words_of_options(fault.hint()));
     throw;
   }
 }

@@ -126,11 +126,12 @@ void add_coverage(view::Page& page, const std::vector<Sphere>& spheres, double s
 }  // namespace
 
 void write_defects_view(const std::string& path, const RawMesh& mesh, const SolidOptions& options,
-                        const std::string& why) {
+                        const std::string& why, const std::string& cure) {
   const Solid triangles = triangles_of(mesh, options);
   if (triangles.triangles.empty()) return;
   view::Page page("vpm-pack", view::shown_name(mesh.name) + ": refused");
   page.set_origin(triangles.vertices.front());
+  if (!cure.empty()) page.add_note(cure);  // first: a list of defects is longer than the box
   page.add_note(why);
   page.add_fact("vertices", std::to_string(triangles.vertices.size()));
   page.add_fact("triangles", std::to_string(triangles.triangles.size()));
@@ -149,7 +150,7 @@ void write_packing_view(const std::string& path, const std::string& mesh,
   for (const std::string& warning : checked.warnings) page.add_note(warning);
   page.add_fact("mesh", view::shown_name(mesh));
   page.add_fact("triangles", std::to_string(checked.facts.triangles));
-  page.add_fact("volume", view::with_unit(checked.facts.volume, "m³"));
+  page.add_fact("volume", view::volume_text(checked.facts.volume));
   page.add_mesh({.name = "solid", .color = kSolidColor, .solid = &checked.solid, .opacity = 0.25});
   page.add_spheres({.name = "spheres by radius", .spheres = spheres, .prefix = true});
   const Uncovered uncovered = find_uncovered(checked, spheres);

@@ -9,9 +9,10 @@
 
 namespace vpm::tools {
 
-// Writes a page with the mesh, the defects at their places and `why` it was refused.
+// Writes a page with the mesh, the defects at their places, how to mend them and `why` it was
+// refused.
 void write_defects_view(const std::string& path, const RawMesh& mesh, const SolidOptions& options,
-                        const std::string& why);
+                        const std::string& why, const std::string& cure);
 
 // Writes a page with the solid, its spheres largest first, what they do not cover, and the coverage
 // over their number. `mesh` is the mesh's name.

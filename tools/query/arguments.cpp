@@ -40,7 +40,10 @@ void declare_inputs(CLI::App& app, Arguments& a) {
          "then have the field tool, from 0")
       ->allow_extra_args(false);
   app.add_option("--cloud", a.cloud, "Point cloud (.vpmc)");
-  app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw");
+  app.add_option("--pose", a.pose, "One pose of the tool: tx,ty,tz,qx,qy,qz,qw")
+      ->join(',')
+      ->type_name("FLOAT")
+      ->option_text("TX,TY,TZ,QX,QY,QZ,QW");
   app.add_option("--poses", a.poses, "File of poses: JSON Lines, TUM text or 4x4 text");
 }
 

@@ -20,7 +20,8 @@ CloudScene::CloudScene(QuerySetup& setup) {
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   prepare_seconds_ = taken.count();
-  check_.emplace(setup.tool, cloud, setup.models);
+  check_.emplace(setup.tool, setup.models, cloud.positions, source_of(cloud),
+                 [scene = checked_scene(cloud)](std::size_t) { return scene; });
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 

@@ -19,6 +19,7 @@
 #include "tools/query/mode.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
+#include "tools/query/setup_check.h"
 
 namespace vpm::tools {
 namespace {
@@ -36,10 +37,14 @@ class Replay {
   // Returns the first frame that can be used, by which levels are chosen.
   const PreparedCloud& first_cloud() const { return *first_cloud_; }
 
-  // Queries step by step and writes a line of results for each. Prints notes and warnings about
-  // frames as they happen.
-  void run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-           file::Output& output, std::optional<PoseView>& view);
+  // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
+  // and warnings about frames as they happen.
+  void run(LevelToolQuery& query, SetupCheck& check, std::optional<VirtualCoupling> coupling,
+           Measure measure, file::Output& output, std::optional<PoseView>& view);
+
+  // Returns what a check of the setup compares poses with.
+  SceneSource source() const;
+  CheckedScene scene_of(std::size_t frame) const;
 
   // Returns the last pose of the tool. The values from here on need run().
   const Pose& last_pose() const { return last_pose_; }
@@ -173,6 +178,8 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
   if (!import_.intrinsics && recording_.intrinsics) {
     import_.intrinsics = recording_.intrinsics;
     check_intrinsics(*import_.intrinsics);
+    tool_.note("intrinsics " + intrinsics_text(*import_.intrinsics) +
+               " are read from camera-intrinsics.txt in " + arguments_.frames);
   }
   note_sources();
   schedule_ = {rate, path_.steps(), start_time(), arguments.frame_latency, arguments.repeat_frames};
@@ -241,8 +248,25 @@ CoupledStep Replay::ask(std::size_t k, LevelToolQuery& query,
   return step;
 }
 
-void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
-                 file::Output& output, std::optional<PoseView>& view) {
+SceneSource Replay::source() const {
+  return {.axes = import_.axes, .points_to_world = import_.to_world, .are_frames = true};
+}
+
+// Reads a frame again.
+CheckedScene Replay::scene_of(std::size_t frame) const {
+  const RecordedFrame& recorded = recording_.frames[frame];
+  ImportOptions options = import_;
+  options.depth.looks_for_mistakes = false;
+  if (recorded.camera) options.to_world = recorded.camera;
+  try {
+    return checked_scene(import_scan(file::read_all(recorded.path), recorded.path, options));
+  } catch (const Error&) {  // it has changed since, or came by a pipe
+    return {};
+  }
+}
+
+void Replay::run(LevelToolQuery& query, SetupCheck& check, std::optional<VirtualCoupling> coupling,
+                 Measure measure, file::Output& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
   feed_->wait_for_first();
@@ -259,6 +283,7 @@ void Replay::run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling,
     query_seconds_.push_back(query.seconds());
     if (view) view->see_frame(feed_->frame());
     if (view) view->add(0, step.tool, step.contact, query.query());
+    if (feed_->frame()) check.see(step.tool, 0, step.contact, *feed_->frame());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
     output.append(coupling ? coupled_line(step, frame_name())
@@ -346,8 +371,11 @@ void run_frames(QuerySetup& setup) {
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   file::Output output(a.output);
-  replay.run(query, coupling, setup.options.measure, output, setup.view);
+  SetupCheck check(setup.tool, setup.models, replay.first_cloud().positions(), replay.source(),
+                   [&](std::size_t frame) { return replay.scene_of(frame); });
+  replay.run(query, check, coupling, setup.options.measure, output, setup.view);
   output.finish();
+  check.warn_at_end();
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_cloud().positions().size();

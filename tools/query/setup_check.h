@@ -1,12 +1,16 @@
 // Finds tools that no pose brings to the scene, which mistakes of units and poses cause.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/import/import_cloud.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
 #include "tools/common/tool.h"
@@ -19,34 +23,64 @@ struct ToolBall {
   double radius = 0;  // m
 };
 
+// Points and camera that a pose is compared with.
+struct CheckedScene {
+  Vec3 origin;                   // world
+  std::vector<Vec3f> positions;  // about the origin
+  std::optional<Camera> camera;  // empty for points without one
+};
+
+// Return the scene of a cloud, and that of a scan: of an image some ten thousand pixels.
+CheckedScene checked_scene(const Cloud& cloud);
+CheckedScene checked_scene(const ImportedScan& scan);
+
+// Tells how the scene came to its place, which decides what else may be tried.
+struct SceneSource {
+  CameraAxes axes = CameraAxes::opencv;
+  // Pose that was given for the frame of points without a camera; images know their camera's.
+  std::optional<Pose> points_to_world;
+  bool are_frames = false;  // scenes are recorded frames, which this run reads itself
+};
+
+// Returns the source of a cloud that vpm-normals wrote, as far as its provenance tells it.
+SceneSource source_of(const Cloud& cloud);
+
+struct PlacedScene;
+struct PoseFit;
+struct Suspicion;
+
 class SetupCheck {
  public:
-  // Warns if a tool and the scene differ 100 times in size.
-  SetupCheck(const Tool& tool, const Cloud& cloud, std::span<const ToolModel> models);
+  // Returns the scene of this number. Called at the end, and only where no tool touched any.
+  using SceneOf = std::function<CheckedScene(std::size_t)>;
 
-  // Notes the answer at a pose of the k-th tool.
-  void see(const Pose& pose, std::size_t k, const Result& result);
+  // Warns if a tool and the scene, whose points are `positions`, differ 100 times in size.
+  SetupCheck(const Tool& tool, std::span<const ToolModel> models, std::span<const Vec3f> positions,
+             SceneSource source, SceneOf scene_of);
+
+  // Notes the answer at a pose of the k-th tool in a scene.
+  void see(const Pose& pose, std::size_t k, const Result& result, std::size_t scene = 0);
   // Warns if at no pose a tool was in the camera's view, or none came near the surface, and says
-  // whether inverse poses would be.
+  // what else would bring it there.
   void warn_at_end() const;
 
  private:
-  // Pose that is kept, of a tool.
+  // Pose that is kept, of a tool in a scene.
   struct Kept {
     Pose pose;
-    std::size_t tool = 0;
+    std::size_t tool = 0, scene = 0;
   };
 
-  ToolBall ball(const Pose& pose, std::size_t tool) const;
-  bool any_in_view(const Camera& camera, bool inverted) const;
-  bool all_behind() const;
-  double nearest_gap(bool inverted, const Pose& motion = {}) const;
-  std::string inversion_hint() const;
+  // Returns the scenes of the kept poses that have points, by number; of many every n-th.
+  std::map<std::size_t, PlacedScene> places() const;
+  // Counts the poses that are at the scene, as it is or if a mistake were put right.
+  PoseFit fit_of(const std::map<std::size_t, PlacedScene>& places,
+                 const std::optional<Suspicion>& suspicion) const;
+  std::string hint(const std::map<std::size_t, PlacedScene>& places) const;
 
   const Tool& tool_;
-  Vec3 origin_;
-  std::vector<Vec3f> positions_;  // about the origin
-  std::optional<Camera> camera_;
+  SceneSource source_;
+  SceneOf scene_of_;
   std::vector<ToolBall> tools_;  // in their own coordinates
   std::vector<Kept> kept_;       // every stride_-th pose
   std::size_t seen_ = 0, stride_ = 1;

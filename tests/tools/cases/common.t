@@ -55,16 +55,19 @@ $ echo '{"help": true}' | vpm-probe --config - in.off -o -
 2> vpm-probe: error: help: This option is not allowed in a configuration file (see vpm-probe --help)
 [2]
 $ echo '{"count": {"a": 1}}' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: the configuration's 'count' must be a number, a string, true, false or a list of these (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration's 'count' must be a number, a string, true, false or a list of these (see vpm-probe --help)
 [2]
 $ echo '[1]' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: the configuration must be a JSON object of options (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration must be a JSON object of options (see vpm-probe --help)
 [2]
 $ echo '{' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: the configuration is not JSON: [json.exception.parse_error.101] parse error at line 2, column 1: syntax error while parsing object key - unexpected end of input; expected string literal (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration is not JSON: it cannot be read from line 2 on (see vpm-probe --help)
 [2]
 $ vpm-probe --config missing.json in.off -o -
-2> vpm-probe: error: missing.json was not readable (missing?) (see vpm-probe --help)
+2> vpm-probe: error: --config: cannot read missing.json: No such file or directory (see vpm-probe --help)
+[2]
+$ echo '{"count": 5, "flag": true, "count": 6}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: --config standard input: the configuration gives 'count' twice; leave one of them out (see vpm-probe --help)
 [2]
 $ echo '{"flag": false, "count": 5}' | vpm-probe --config - in.off -o -
 in.off none 5 0.100000 []
@@ -75,13 +78,13 @@ $ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
 
 # No text of a configuration may end early for the system, and none is read without end.
 $ echo '{"output": "out.txt\u0000.vpmp"}' | vpm-probe --config - in.off
-2> vpm-probe: error: the configuration's 'output' has a character of code 0 in it (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration's 'output' has a character of code 0 in it (see vpm-probe --help)
 [2]
 $ echo '{"out\u0000put": "out.txt"}' | vpm-probe --config - in.off
-2> vpm-probe: error: a name in the configuration has a character of code 0 in it (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: a name in the configuration has a character of code 0 in it (see vpm-probe --help)
 [2]
 $ (echo '['; yes '"a",') | vpm-probe --config - in.off -o -
-2> vpm-probe: error: the configuration is longer than 1000000 bytes (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration is longer than 1000000 bytes (see vpm-probe --help)
 [2]
 
 # Flags take no value on the command line, and true or false in a configuration.

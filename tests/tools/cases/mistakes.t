@@ -194,8 +194,18 @@ $ vpm-normals wall.png --window 011 -o x.vpmc
 2> vpm-normals: error: --window: 011 begins with a zero; write it without (see vpm-normals --help)
 [2]
 $ python3 -c 'print("{\"spheres\": " + 100000 * "[" + 100000 * "]" + "}")' > deep.json; vpm-pack cube.off --config deep.json -o x.vpmp
-2> vpm-pack: error: the configuration is nested too deeply (see vpm-pack --help)
+2> vpm-pack: error: --config deep.json: the configuration is nested too deeply (see vpm-pack --help)
 [2]
 $ vpm-pack cube.off --repair flood --max-hole 50 -o x.vpmp
 2> vpm-pack: error: --max-hole 50 m is more than the mesh is across, 0.346 m: nothing of it would be reached from outside; is it in metres?
+[2]
+
+# Numbers of a pose, intrinsics or a range may stand between blanks and in brackets, in a configuration as lists.
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o commas.jsonl
+$ for p in '0 0 0.95 0 0 0 1' '[0, 0, 0.95, 0, 0, 0, 1]'; do vpm-query --tool cube.vpmg --cloud wall.vpmc --pose "$p" | cmp - commas.jsonl; done
+$ echo '{"pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --config - | cmp - commas.jsonl
+$ vpm-normals wall.png -o - --intrinsics '60 60 31.5 23.5' | cmp - wall.vpmc
+$ echo '{"intrinsics": [60, 60, 31.5, 23.5], "camera-pose": [1, 2, 3, 0, 0, 0, 1], "range": [0.1, 5]}' > lists.json; vpm-normals wall.png --export lists.ply --config lists.json && vpm-normals wall.png --export options.ply --intrinsics '[60, 60, 31.5, 23.5]' --camera-pose '1 2 3 0 0 0 1' --range '0.1 5' && cmp lists.ply options.ply
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose '0 0 0.95'
+2> vpm-query: error: pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0 0 0.95'
 [2]

@@ -14,7 +14,7 @@ $ vpm-normals wall.png -o pca.vpmc --intrinsics 60,60,31.5,23.5 --method pca --w
 # An organised PCD keeps the grid and tells its camera; points with normals need no camera.
 $ vpm-normals wall.png --export grid.pcd --intrinsics 60,60,31.5,23.5
 $ vpm-normals grid.pcd -o grid.vpmc
-2> vpm-normals: note: grid.pcd: intrinsics recovered from its points: 60.000000,60.000000,31.500000,23.500000
+2> vpm-normals: note: grid.pcd: intrinsics recovered from its points: 60,60,31.5,23.5
 $ vpm-normals grid.pcd -o grid.vpmc --intrinsics 60,60,31.5,23.5 --force && vpm-normals grid.pcd --report - --quiet | python3 -c 'import json, sys; print(json.load(sys.stdin)["points"])'
 3071
 $ vpm-normals wall.ply -o scattered.vpmc --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["method"], r["points"], r["invalid"])'

@@ -59,14 +59,14 @@ $ vpm-query --tool cube.vpmg --frames holes --trajectory still.txt --frame-rate 
 2> vpm-query: warning: holes/frame-000002.depth.png: * (glob)
 2> vpm-query: warning: holes/frame-000003.depth.png: the file is empty; give a depth image or a cloud; the loop goes on with frame-000000.depth.png
 2> vpm-query: warning: holes/frame-000005.depth.png: no pose of its camera; the loop goes on with frame-000004.depth.png
-2> vpm-query: warning: holes/frame-000006.depth.png: no pixel holds a measurement; the loop goes on with frame-000004.depth.png
+2> vpm-query: warning: holes/frame-000006.depth.png: no pixel holds a measurement: all are 0; the loop goes on with frame-000004.depth.png
 2> vpm-query: warning: 1 frames of holes are missing; the loop went on with those before
 $ python3 volumes.py < holes.jsonl
 [('frame-000000.depth.png', 0.25, 40), ('frame-000004.depth.png', 0.45, 30), ('frame-000007.depth.png', 0.6, 10), ('frame-000008.depth.png', 0.65, 121)]
 $ $VALIDATE query-stats stats.json && python3 -c 'import json; f = json.load(open("stats.json"))["replay"]["frames"]; print({k: f[k] for k in ("listed", "used", "missing", "late", "lost", "empty", "broken")})'
 {'listed': 8, 'used': 4, 'missing': 1, 'late': 0, 'lost': 1, 'empty': 1, 'broken': 2}
 $ mkdir none && cp dark/frame-000100.depth.png none/1.png && vpm-query --tool cube.vpmg --frames none --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet
-2> vpm-query: error: none: no frame can be used; the last one: none/1.png: no pixel holds a measurement
+2> vpm-query: error: none: no frame can be used; the last one: none/1.png: no pixel holds a measurement: all are 0
 [1]
 
 # Frames go with the other kinds of queries: coherent poses, deadlines, a virtual coupling.
@@ -98,3 +98,15 @@ $ mkdir bare && vpm-query --tool cube.vpmg --frames bare --trajectory still.txt
 $ vpm-query --tool cube.vpmg --frames gone --trajectory still.txt
 2> vpm-query: error: cannot read gone: No such file or directory
 [1]
+
+# A path that misses what the frames see is warned about like poses in a cloud, with the cure.
+$ printf '%s\n' '0 0 0 -0.95 0 0 0 1' '0.2 0 0 -0.95 0 0 0 1' > behind.txt && printf '%s\n' '0 0 0 0.3 0 0 0 1' '0.2 0 0 0.3 0 0 0 1' > before.txt && printf '%s\n' '0 9 0 0.95 0 0 0 1' '0.2 9 0 0.95 0 0 0 1' > beside.txt
+$ for t in behind before beside; do vpm-query --tool cube.vpmg --frames steps --trajectory $t.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null; done
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's
+2> vpm-query: warning: at no pose is the tool within its size of the surface; are poses and scene in the same frame and unit?
+2> vpm-query: warning: at no pose is the tool in the camera's view; are poses and scene in the same frame and unit?
+$ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph large.vpmp -o large.vpmg --quiet && vpm-query --tool large.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
+2> vpm-pack: warning: cube.off: the mesh is 200 m across: if its unit is the millimetre, give --scale 1
+2> vpm-query: warning: the tool is 346 m across and the scene 1.34 m: is one of them in other units than metres? vpm-pack --scale and --unit tell them
+$ cp -r steps moved && for f in moved/*.pose.txt; do printf '%s\n' '1 0 0 4' '0 1 0 0' '0 0 1 0' '0 0 0 1' > $f; done; vpm-query --tool cube.vpmg --frames moved --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
+2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there if the poses are in the camera's frame: they must be in the world's
