@@ -1,6 +1,7 @@
 // vpm-normals: turns a depth image, or another program's cloud, into a cloud with normals (.vpmc).
 
 #include <chrono>
+#include <cstdio>
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
@@ -77,10 +78,17 @@ nlohmann::json report_of(const ImportedCloud& imported, const Arguments& a, doub
   return report;
 }
 
+// Returns the numbers with as many digits as a fit gives.
+std::string text_of(const Intrinsics& k) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%.7g,%.7g,%.7g,%.7g", k.fx, k.fy, k.cx, k.cy);
+  return text;
+}
+
 void say_facts(const Tool& tool, const std::string& name, const ImportedCloud& imported) {
   if (imported.intrinsics_recovered) {
     tool.note(name + ": intrinsics recovered from its points: " +
-              intrinsics_text(imported.cloud.sensor->camera.intrinsics));
+              text_of(imported.cloud.sensor->camera.intrinsics));
   }
   say(tool, name, imported.remarks);
   tool.detail(name + ": " + words_of(imported.facts));
