@@ -277,7 +277,7 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
         refuse_usage(std::string(output.option) + " would overwrite the input " + input +
                      "; name another output, or give --force");
     }
-    file::check_output(output.path, output.kind);
+    output.is_page ? file::check_page(output.path) : file::check_output(output.path, output.kind);
   }
 }
 

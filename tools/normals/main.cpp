@@ -44,7 +44,7 @@ void check(const Arguments& a, const CommonOptions& common) {
               {{"--output", a.output, file::Kind::cloud},
                {"--report", a.report, std::nullopt},
                {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               common);
 }
 

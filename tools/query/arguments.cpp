@@ -110,7 +110,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
               {{"--output", a.output, std::nullopt},
                {"--spheres-out", a.spheres_out, std::nullopt},
                {"--stats", a.stats, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               common);
 }
 
