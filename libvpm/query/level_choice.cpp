@@ -1,6 +1,7 @@
 #include "libvpm/query/level_choice.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -14,6 +15,14 @@ std::string percent(double fraction) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g %%", 100 * fraction);
   return text;
+}
+
+// Returns the least number of per cent with three digits that is not below the fraction, so that
+// who asks for it gets it.
+std::string percent_from(double fraction) {
+  const double value = 100 * fraction * (1 + 1e-12);
+  const double digits = std::pow(10, 2 - std::floor(std::log10(value)));
+  return percent(std::ceil(value * digits) / digits / 100);
 }
 
 }  // namespace
@@ -34,7 +43,7 @@ std::size_t coarsest_level_within(const ToolModel& tool, double max_error) {
     best = std::min(best, tool.calibration[k].worst);
   }
   refuse("no level of the tool model keeps an error of " + percent(max_error), {},
-         "the best has " + percent(best) + ": allow more, or pack more spheres");
+         "the best has " + percent_from(best) + ": allow as much, or pack more spheres");
 }
 
 DeadlineLevel::DeadlineLevel(std::vector<double> probed, double deadline, std::size_t finest)
