@@ -118,6 +118,7 @@ DepthImage depth_in_metres_of(const RawDepth& raw, const Intrinsics& intrinsics,
                               const DepthReading& reading, const std::string& name,
                               Remarks& remarks) {
   append(remarks, raw.remarks);
+  if (!reading.units_per_metre) append(remarks, raw.unit_remarks);
   std::vector<float> values = raw.values;
   const bool look_coded = decode(values, raw, reading, name, remarks);
   remove_markers(values, reading, remarks);
