@@ -118,7 +118,8 @@ void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
   if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
   if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
-  if (text.starts_with("# .PCD")) refuse("this is a cloud of points (PCD)", name, hint);
+  for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})
+    if (text.starts_with(start)) refuse("this is a cloud of points (PCD)", name, hint);
 }
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
