@@ -13,7 +13,7 @@ enum class Holds { anything, mesh, scan };
 
 struct ForeignContent {
   std::string what;  // "a Git LFS pointer, not the file itself"
-  std::string next;  // what to do about it, for a program that takes what it holds
+  std::string next;  // advice that helps, for a program that takes what the file holds
   Holds holds = Holds::anything;
 };
 

@@ -1,7 +1,6 @@
 // Sums volume, force and torque over parts of a tool, with the same bits in any order.
 #pragma once
 
-#include "libvpm/core/atomic_add.h"
 #include "libvpm/core/fixed_sum.h"
 #include "libvpm/core/pose.h"
 #include "libvpm/include/vpm/query_types.h"

@@ -1,10 +1,9 @@
-#include "libvpm/query/level_choice.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
+#include "libvpm/query/level_tool_query.h"
 #include "tests/query/lattice_model.h"
 #include "tests/refusal.h"
 

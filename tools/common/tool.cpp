@@ -14,8 +14,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/core/printable.h"
-#include "libvpm/file/closed_pipe.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "tools/common/early_failure.h"

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "libvpm/backend/cpu/cut_cells.h"
-#include "libvpm/core/parallel_region.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/measure/flood_rules.h"
 #include "libvpm/temporal/pose_memory.h"
 

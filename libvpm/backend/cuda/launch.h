@@ -6,8 +6,7 @@
 #include <memory>
 
 #include "libvpm/backend/cuda/answer.h"
-#include "libvpm/device/cuda/launch.h"
-#include "libvpm/device/cuda/stream.h"
+#include "libvpm/device/cuda/runtime.h"
 
 namespace vpm::cuda {
 

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "libvpm/cloud/vector_tile.h"
+#include "libvpm/cloud/padded_image.h"
 #include "libvpm/core/lanes.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "libvpm/cloud/row_bands.h"
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "libvpm/cloud/row_bands.h"
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/core/vector_clones.h"
 #include "libvpm/scene/points/disk_surface.h"
 #include "libvpm/scene/points/point_tree_vectors.h"
 

@@ -1,6 +1,6 @@
 #include "libvpm/scene/points/point_list.h"
 
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 #include "libvpm/scene/points/point_tree_vectors.h"
 
 namespace vpm {

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 #include "libvpm/scene/points/point_tree_vectors.h"
 
 namespace vpm {

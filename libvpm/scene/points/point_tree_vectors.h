@@ -1,5 +1,5 @@
 // Computes squared distances of four boxes, and of up to four points, by vectors. For host files
-// that are compiled for several vector widths (core/vector_clones.h).
+// that are compiled for several vector widths (core/lanes.h).
 #pragma once
 
 #include <cstring>
