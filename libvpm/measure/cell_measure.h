@@ -6,10 +6,8 @@
 #pragma once
 
 #include "libvpm/measure/classify.h"
-#include "libvpm/measure/clip_plane.h"
-#include "libvpm/measure/contact_plane.h"
+#include "libvpm/measure/flood_rules.h"
 #include "libvpm/measure/tool_piece.h"
-#include "libvpm/measure/tool_sum.h"
 
 namespace vpm {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "libvpm/include/vpm/query_types.h"
-#include "libvpm/measure/contact_plane.h"
+#include "libvpm/measure/flood_rules.h"
 #include "libvpm/scene/body.h"
 
 namespace vpm {

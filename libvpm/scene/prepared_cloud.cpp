@@ -11,8 +11,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/image_steps.h"
-#include "libvpm/scene/points/leaf_order.h"
+#include "libvpm/scene/depth/denoised_image.h"
+#include "libvpm/scene/points/point_tree.h"
 
 namespace vpm {
 namespace {

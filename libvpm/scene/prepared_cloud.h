@@ -11,9 +11,8 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/depth/denoised_image.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 #include "libvpm/scene/depth/depth_surface.h"
-#include "libvpm/scene/pixel_rectangle.h"
-#include "libvpm/scene/points/denoised_disks.h"
 #include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm {

@@ -1,6 +1,4 @@
 // Surface samples by vectors have the bits of single samples.
-#include "libvpm/backend/cpu/depth_samples.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>

@@ -1,8 +1,7 @@
 #include <algorithm>
 
-#include "libvpm/backend/cuda/paper_measure.h"
-#include "libvpm/backend/cuda/refined_measure.h"
-#include "libvpm/backend/spread_measure.h"
+#include "libvpm/backend/cuda/measure_on_device.h"
+#include "libvpm/backend/device_measure.h"
 #include "libvpm/device/cuda/device_array.h"
 
 namespace vpm {

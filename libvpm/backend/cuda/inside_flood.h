@@ -1,17 +1,137 @@
-// Defines the second step of a query among points without a camera: the flood, and the sum of what
-// it reaches.
-//
-// In a block's own memory the flood goes from cell to cell until nothing changes. Otherwise cells
-// that the flood may pass are joined where the graph has an edge, and with the entry where a cut
-// cell lets the flood in. What is joined with the entry is inside. The team meets between joining
-// and adding up; where another surface may hide something, which is rare, more often.
+// Finishes a query after the first step: where a camera has seen the surface, by the planes of cut
+// cells; among points without a camera, by the flood.
 #pragma once
 
-#include "libvpm/backend/cuda/cut_cells.h"
-#include "libvpm/backend/cuda/noted_cells.h"
-#include "libvpm/backend/cuda/union_find.h"
+#include <cstdint>
+#include <cuda/atomic>
+
+#include "libvpm/backend/cuda/cell_notes.h"
 
 namespace vpm::cuda {
+
+class UnionFind {
+ public:
+  __device__ explicit UnionFind(std::uint32_t* parents) : parents_(parents) {}
+
+  __device__ std::uint32_t root(std::uint32_t node) const {
+    std::uint32_t at = node, parent = load(at);
+    while (parent != at) {
+      const std::uint32_t above = load(parent);
+      if (above != parent) store(at, above);  // halves the path; any ancestor will do
+      at = parent;
+      parent = above;
+    }
+    return at;
+  }
+
+  // Joins a[k] with b[k] for all k; equal pairs are allowed. All walk to their roots at once, since
+  // each step waits for memory.
+  template <unsigned kPairs>
+  __device__ void join(const std::uint32_t (&a)[kPairs], const std::uint32_t (&b)[kPairs]) const {
+    Walk walks[kPairs][2];
+#pragma unroll
+    for (unsigned k = 0; k < kPairs; ++k) {
+      walks[k][0] = {a[k], a[k]};
+      walks[k][1] = {b[k], b[k]};
+    }
+    bool changes = true;
+    while (changes) {
+      std::uint32_t parents[kPairs][2];
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        if (walks[k][0].at == walks[k][1].at) continue;
+        parents[k][0] = load(walks[k][0].at);
+        parents[k][1] = load(walks[k][1].at);
+      }
+      changes = false;
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        Walk &one = walks[k][0], &other = walks[k][1];
+        if (one.at == other.at) continue;
+        if (parents[k][0] == one.at && parents[k][1] == other.at) {
+          const std::uint32_t low = min(one.at, other.at), high = max(one.at, other.at);
+          if (atomicCAS(parents_ + high, high, low) == high) one.at = other.at;
+        } else {
+          go(one, parents[k][0]);
+          go(other, parents[k][1]);
+        }
+        changes |= one.at != other.at;
+      }
+    }
+  }
+
+ private:
+  struct Walk {
+    std::uint32_t last, at;
+  };
+  __device__ void go(Walk& walk, std::uint32_t parent) const {
+    if (parent == walk.at) return;
+    if (walk.last != walk.at) store(walk.last, parent);  // as in root()
+    walk = {walk.at, parent};
+  }
+
+  // Uses atomics, since other threads write meanwhile.
+  using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
+  __device__ std::uint32_t load(std::uint32_t node) const {
+    return Parent(parents_[node]).load(::cuda::memory_order_relaxed);
+  }
+  __device__ void store(std::uint32_t node, std::uint32_t parent) const {
+    Parent(parents_[node]).store(parent, ::cuda::memory_order_relaxed);
+  }
+
+  std::uint32_t* parents_;
+};
+
+template <class Team>
+class CameraVisibility {
+ public:
+  using Shared = NotedList;  // memory of a block
+
+  __device__ CameraVisibility(const LevelView& level, const Pose& to_surface,
+                              const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
+                              Team& team, Shared& shared, bool counts_points)
+      : notes_(space.notes[turn % 2]),
+        counters_(counters),
+        team_(team),
+        noted_(level, notes_, team, shared),
+        cut_(level, to_surface, space, notes_, counters, team),
+        counts_points_(counts_points) {}
+
+  // True if the first step has left `far` pieces, or points are to be counted.
+  __device__ static bool has_more(unsigned far, bool counts_points) {
+    return counts_points || far > 0;
+  }
+  // Returns what this thread adds to the first step's result. Call from all threads of the team.
+  __device__ RawResult run() {
+    RawResult result;
+    const unsigned far = read_for_block(counters_).far;
+    if (far > 0) {
+      cut_.list();
+      team_.sync();
+      cut_.add_far(
+          far, [](std::uint32_t) { return true; },
+          [&](std::uint32_t i, const ToolSum& sum) {
+            result.sum.add(sum);
+            if (sum.volume.value != 0)
+              count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
+          });
+    }
+    if (counts_points_) {
+      noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
+        if ((word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
+      });
+    }
+    return result;
+  }
+
+ private:
+  const CellNotes& notes_;
+  RefinedCounters& counters_;
+  Team& team_;
+  NotedCells<Team> noted_;
+  CutCells<Team> cut_;
+  bool counts_points_;
+};
 
 // Bounds the cells of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodCells = 3072;

@@ -84,4 +84,10 @@ class MeasureOnDevice : public DeviceMeasure {
   std::unique_ptr<Batch> batch_;
 };
 
+std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
+                                                    const QueryOptions& options, int device);
+
+std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
+                                                  int device);
+
 }  // namespace vpm::cuda

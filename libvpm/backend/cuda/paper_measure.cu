@@ -3,7 +3,6 @@
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/measure_on_device.h"
 #include "libvpm/backend/cuda/paper_flood.h"
-#include "libvpm/backend/cuda/paper_measure.h"
 
 namespace vpm::cuda {
 namespace {

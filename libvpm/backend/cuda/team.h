@@ -6,7 +6,7 @@
 #include <cuda/atomic>
 
 #include "libvpm/measure/cell_measure.h"
-#include "libvpm/scene/pixel_rectangle.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 
 namespace vpm::cuda {
 

@@ -1,5 +1,5 @@
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/cuda/cloud_denoise.h"
+#include "libvpm/scene/cuda/cloud_prepare.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace vpm::cuda {

@@ -4,9 +4,9 @@
 #include <mutex>
 
 #include "libvpm/device/cuda/stream.h"
-#include "libvpm/scene/cuda/cloud_take.h"
+#include "libvpm/scene/cuda/cloud_prepare.h"
 #include "libvpm/scene/cuda/device_cloud.h"
-#include "libvpm/scene/frame_slot.h"
+#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm::cuda {
 

@@ -1,14 +1,46 @@
-// Holds a cloud in the memory of a device.
+// Holds a cloud in the memory of a device, and describes it as kernels take it: plain pointers and
+// numbers.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
+#include "libvpm/cloud/camera.h"
 #include "libvpm/device/cuda/device_array.h"
-#include "libvpm/scene/cuda/cloud_room.h"
-#include "libvpm/scene/cuda/cloud_views.h"
+#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/points/point_tree.h"
 #include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm::cuda {
+
+// Points to the device memory for the cloud of an image, by pixel.
+struct CloudRoom {
+  Vec3f* positions = nullptr;      // about the camera, world axes; NaN without a point
+  Vec3f* normals = nullptr;        // world axes
+  Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
+  float* measured = nullptr;       // inverse depth, 1/m, holes closed
+  InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
+  std::int32_t levels = 0;
+};
+
+// Points to the points of a cloud, about its origin: for an image by pixel (NaN where there is
+// none), else in the order of the leaves of their tree.
+struct PointsView {
+  const Vec3f* positions = nullptr;
+  const Vec3f* normals = nullptr;
+  std::uint32_t count = 0;
+  std::int32_t width = 0;  // the image's, or 0
+  PointTree tree;          // only without an image
+};
+
+// Holds the parts of a cloud that poses are combined with.
+struct CloudFrame {
+  bool is_organised = false;
+  Vec3 origin;
+  Pose camera_to_world;
+  Intrinsics intrinsics;
+  std::int32_t width = 0, height = 0;
+};
 
 class DeviceCloud {
  public:

@@ -3,10 +3,9 @@
 
 #include <bit>
 
-#include "libvpm/scene/ball_fraction.h"
 #include "libvpm/scene/body.h"
 #include "libvpm/scene/depth/depth_nearest.h"
-#include "libvpm/scene/pixel_rectangle.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 
 namespace vpm {
 

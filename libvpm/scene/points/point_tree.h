@@ -3,13 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
-#include "libvpm/scene/surface.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm {
 
@@ -205,7 +206,7 @@ struct PointTree {
     return for_leaves_in_ball<OneByOne>(center, squared_radius, EachNode{}, visit);
   }
   // Calls visit(begin, end) likewise for leaves in nodes for which enters(node) is true.
-  // `Distances` is OneByOne or ByVectors (point_tree_vectors.h).
+  // `Distances` is OneByOne or ByVectors (point_tree.cpp).
   template <class Distances, class Enters, class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
                                  const Visit& visit) const;
@@ -381,10 +382,59 @@ VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, co
 // Returns the number of leaves for this many points; kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
-// Returns the boxes of a tree of points in the order of order_by_leaves() (leaf_order.h).
+// Returns the boxes of a tree of points in the order of order_by_leaves().
 std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points);
 
 // Returns PointNumbers::of_nodes for these radii.
 std::vector<float> largest_in_nodes(std::span<const float> radii);
+
+// Rearranges `order`, indices of points in a total order, for the leaves of a PointTree: each node
+// is split across the longest side of its box so that its first half is full. Equal coordinates,
+// and points in a leaf, keep the given order.
+void order_by_leaves(std::span<const Vec3f> points, std::vector<std::uint32_t>& order);
+
+// Lists a few points, which are faster to search than a tree. For host and device.
+class PointList {
+ public:
+  static constexpr int kMost = 256;
+
+  VPM_HD bool is_empty() const { return size_ == 0; }
+  VPM_HD void clear() { size_ = 0; }
+  // Adds a point; indices must ascend. Returns false if there is no room.
+  VPM_HD bool add(std::uint32_t index, Vec3f place) {
+    if (size_ == kMost) return false;
+    places_[0][size_] = place.x, places_[1][size_] = place.y, places_[2][size_] = place.z;
+    indices_[size_++] = index;
+    return true;
+  }
+
+  // Returns the index of the point nearest to x; ties go to the smaller index. Requires a point.
+  VPM_HD std::uint32_t nearest(Vec3 x) const {
+#ifdef __CUDA_ARCH__
+    return indices_[nearest_in_turn(x)];
+#else
+    return indices_[nearest_by_vectors(x)];
+#endif
+  }
+
+ private:
+  VPM_HD int nearest_in_turn(Vec3 x) const {
+    double least = HUGE_VAL;
+    int best = 0;
+    for (int k = 0; k < size_; ++k) {
+      const double squared =
+          squared_norm(widen(Vec3f{places_[0][k], places_[1][k], places_[2][k]}) - x);
+      if (!(squared < least)) continue;
+      least = squared;
+      best = k;
+    }
+    return best;
+  }
+  int nearest_by_vectors(Vec3 x) const;
+
+  int size_ = 0;
+  float places_[3][kMost];
+  std::uint32_t indices_[kMost];
+};
 
 }  // namespace vpm

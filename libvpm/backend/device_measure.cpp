@@ -1,4 +1,4 @@
-#include "libvpm/backend/spread_measure.h"
+#include "libvpm/backend/device_measure.h"
 
 #include <algorithm>
 #include <future>
