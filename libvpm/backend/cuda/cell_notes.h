@@ -116,6 +116,7 @@ __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters
   return found;
 }
 
+// Bundles what the threads that measure cells know of their pose.
 template <class Surface>
 struct PoseWork {
   const LevelView& level;
@@ -125,17 +126,6 @@ struct PoseWork {
   const CellNotes& notes;  // the pose's notes in `space`
   RefinedCounters& counters;
   BlockRange part;
-
-  __device__ PoseWork(const LevelView& of_level, const Surface& of_surface, const Pose& pose,
-                      const RefinedSpace& of_space, unsigned turn, RefinedCounters& of_counters,
-                      BlockRange of_part)
-      : level(of_level),
-        surface(of_surface),
-        to_surface(pose),
-        space(of_space),
-        notes(of_space.notes[turn % 2]),
-        counters(of_counters),
-        part(of_part) {}
 
   __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
     return {surface, to_surface, level.tool_reach, view};
@@ -168,6 +158,7 @@ struct NotedList {
   unsigned count;
 };
 
+// Visits the cells that the first step has noted, which are few in a large level.
 template <class Team>
 class NotedCells {
  public:
@@ -210,9 +201,7 @@ class NotedCells {
 #pragma unroll
         for (unsigned k = 0; k < kTogether; ++k) {
           const unsigned found = __ballot_sync(~0U, words[k] != 0);
-          unsigned slot = 0;
-          if (warp.leads() && found != 0) slot = atomicAdd(&list_.count, __popc(found));
-          slot = warp.from(slot, 0) + __popc(found & ((1U << warp.lane) - 1));
+          const unsigned slot = warp.take_slots(list_.count, found);
           if (words[k] == 0) continue;
           list_.cells[slot] = first + k * step + threadIdx.x;
           list_.words[slot] = words[k];
@@ -233,6 +222,7 @@ class NotedCells {
   bool lists_all_ = false;  // list_ holds all noted cells of this block
 };
 
+// Lists the cells that the surface cuts, whose planes support pieces far behind it.
 template <class Team>
 class CutCells {
  public:
@@ -256,7 +246,26 @@ class CutCells {
   }
   // Returns the nearest cut cell, or level.count if there is none; ties go to the smaller index.
   // Call from all lanes of a subwarp.
-  __device__ std::uint32_t nearest_to(const Subwarp& subwarp, std::uint32_t i) const;
+  __device__ std::uint32_t nearest_to(const Subwarp& subwarp, std::uint32_t i) const {
+    const Vec3 from = level_.spheres[i].center;
+    double best_squared = HUGE_VAL;
+    std::uint32_t best = level_.count;
+    const auto take = [&](double squared, std::uint32_t j) {
+      if (!is_nearer_cut(squared, j, best_squared, best)) return;
+      best_squared = squared;
+      best = j;
+    };
+    const unsigned count = read(counters_.cut);
+    for (unsigned k = subwarp.lane; k < count; k += subwarp.width) {
+      const std::uint32_t j = space_.cut[k];
+      take(squared_norm(level_.spheres[j].center - from), j);
+    }
+    for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
+      const double squared = __shfl_xor_sync(subwarp.mask, best_squared, other, subwarp.width);
+      take(squared, __shfl_xor_sync(subwarp.mask, best, other, subwarp.width));
+    }
+    return best;
+  }
 
   // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
   // add(cell, sum).
@@ -285,28 +294,6 @@ class CutCells {
   RefinedCounters& counters_;
   const Team& team_;
 };
-
-template <class Team>
-__device__ std::uint32_t CutCells<Team>::nearest_to(const Subwarp& subwarp, std::uint32_t i) const {
-  const Vec3 from = level_.spheres[i].center;
-  double best_squared = HUGE_VAL;
-  std::uint32_t best = level_.count;
-  const auto take = [&](double squared, std::uint32_t j) {
-    if (!is_nearer_cut(squared, j, best_squared, best)) return;
-    best_squared = squared;
-    best = j;
-  };
-  const unsigned count = read(counters_.cut);
-  for (unsigned k = subwarp.lane; k < count; k += subwarp.width) {
-    const std::uint32_t j = space_.cut[k];
-    take(squared_norm(level_.spheres[j].center - from), j);
-  }
-  for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
-    const double squared = __shfl_xor_sync(subwarp.mask, best_squared, other, subwarp.width);
-    take(squared, __shfl_xor_sync(subwarp.mask, best, other, subwarp.width));
-  }
-  return best;
-}
 
 // Holds the result of a block task.
 struct TaskSums {

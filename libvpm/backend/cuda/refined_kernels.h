@@ -92,8 +92,13 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
                    launch.space.notes[turn % 2].points);
     return {};
   }
-  const PoseWork<Surface> work(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                               *launch.counters, of_spheres);
+  const PoseWork<Surface> work{launch.level,
+                               launch.surface,
+                               frame.to_surface,
+                               launch.space,
+                               launch.space.notes[turn % 2],
+                               *launch.counters,
+                               of_spheres};
   if constexpr (Surface::kTellsInside) {
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
@@ -109,8 +114,13 @@ __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& laun
                                          BlockShared<DepthSurface>& shared) {
   const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
   if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
-  const PoseWork<DepthSurface> work(launch.level, launch.surface, frame.to_surface, launch.space,
-                                    turn, *launch.counters, of_spheres);
+  const PoseWork<DepthSurface> work{launch.level,
+                                    launch.surface,
+                                    frame.to_surface,
+                                    launch.space,
+                                    launch.space.notes[turn % 2],
+                                    *launch.counters,
+                                    of_spheres};
   ImageMeasure(work, launch.counts_points, shared.image).note_planes();
 }
 
@@ -233,8 +243,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     if (launch.counts_points)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
-    const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
-                                 {});
+    const PoseWork<Surface> work{
+        level, launch.surface, frame.to_surface, space, space.notes[turn % 2], counters, {}};
     found = RawResult{};
     GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
     if (Surface::kTellsInside) add_block(found, total);
@@ -255,33 +265,15 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
 class RefinedMemory {
  public:
   RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)
-      : words_(2 * room.cells * teams),
-        points_(2 * room.cells * teams),
-        sums_(2 * room.cells * teams),
-        planes_(2 * room.cells * teams),
-        gaps_(room.cells * teams),
-        parents_((room.cells + 1) * teams),
-        cut_(room.cells * teams),
-        far_(room.pieces * teams),
-        flats_(2 * TaskLists::kTasks * blocks),
-        planar_clusters_(threads * blocks) {
-    words_.clear();
-    points_.clear();
-    sums_.clear();
-    planes_.clear();
-  }
+      : space_{{notes(room.cells * teams), notes(room.cells * teams)},
+               memory_.room<double>(room.cells * teams),
+               memory_.room<std::uint32_t>((room.cells + 1) * teams),
+               memory_.room<std::uint32_t>(room.cells * teams),
+               memory_.room<FarPiece>(room.pieces * teams),
+               memory_.room<FlatBlock>(2 * TaskLists::kTasks * blocks),
+               memory_.room<PlanarCluster>(threads * blocks)} {}
 
-  RefinedSpace space() const {
-    const std::size_t half = words_.size() / 2;
-    return {{{words_.get(), points_.get(), sums_.get(), planes_.get()},
-             {words_.get() + half, points_.get() + half, sums_.get() + half, planes_.get() + half}},
-            gaps_.get(),
-            parents_.get(),
-            cut_.get(),
-            far_.get(),
-            flats_.get(),
-            planar_clusters_.get()};
-  }
+  const RefinedSpace& space() const { return space_; }
 
   // Returns the size of the memory of a team of one block, in bytes.
   static std::size_t bytes_of_team(const TeamRoom& room) {
@@ -293,14 +285,13 @@ class RefinedMemory {
   }
 
  private:
-  DeviceArray<std::uint32_t> words_, points_;
-  DeviceArray<ToolSum> sums_;
-  DeviceArray<ContactPlane> planes_;
-  DeviceArray<double> gaps_;
-  DeviceArray<std::uint32_t> parents_, cut_;
-  DeviceArray<FarPiece> far_;
-  DeviceArray<FlatBlock> flats_;
-  DeviceArray<PlanarCluster> planar_clusters_;
+  CellNotes notes(std::size_t cells) {
+    return {memory_.zeros<std::uint32_t>(cells), memory_.zeros<std::uint32_t>(cells),
+            memory_.zeros<ToolSum>(cells), memory_.zeros<ContactPlane>(cells)};
+  }
+
+  DeviceMemory memory_;
+  RefinedSpace space_;
 };
 
 }  // namespace vpm::cuda

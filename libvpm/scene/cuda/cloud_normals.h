@@ -47,6 +47,7 @@ struct Extent {
   }
 };
 
+// Accesses a tile in a block's shared memory about one of its pixels.
 class TileAround {
  public:
   __device__ TileAround(const float* centre, int pitch) : centre_(centre), pitch_(pitch) {}
@@ -232,7 +233,7 @@ class GatedWindow {
 template <class Frame>
 struct TileImage {
   Frame frame;
-  const float *inverse, *depth;  // with the margin (tile_around.h); depth only if kNeedsDepth
+  const float *inverse, *depth;  // with the margin; depth only if kNeedsDepth
   const double *ray_x, *ray_y;   // per column and per row of the tile
 
   __device__ TileAround inverse_around(int x, int y) const {

@@ -19,7 +19,7 @@ __device__ float4 four_depths(const DepthSource& source, std::size_t first) {
   return {metres(words.x), metres(words.x >> 16), metres(words.y), metres(words.y >> 16)};
 }
 
-__device__ void put(float4 d, const CloudRecipe& recipe, std::size_t first) {
+__device__ void store(float4 d, const CloudRecipe& recipe, std::size_t first) {
   d = {usable_depth(d.x), usable_depth(d.y), usable_depth(d.z), usable_depth(d.w)};
   *reinterpret_cast<float4*>(recipe.depth + first) = d;
   *reinterpret_cast<float4*>(recipe.inverse + first) = {
@@ -47,7 +47,7 @@ __global__ void __launch_bounds__(kTakeThreads)
 #pragma unroll
     for (unsigned k = 0; k < kPixelsAtOnce / 4; ++k) depth[k] = four_depths(source, first + 4 * k);
 #pragma unroll
-    for (unsigned k = 0; k < kPixelsAtOnce / 4; ++k) put(depth[k], recipe, first + 4 * k);
+    for (unsigned k = 0; k < kPixelsAtOnce / 4; ++k) store(depth[k], recipe, first + 4 * k);
   }
   clear_coarse_tiles(recipe.room, recipe.camera, thread, gridDim.x * kTakeThreads);
   if (thread == 0) counters->points = counters->doubtful = 0;
@@ -63,16 +63,19 @@ __global__ void __launch_bounds__(CloudTile::kPointThreads,
   if (threadIdx.x == 0) gated = points = doubtful = 0;
   work.find_rays();
   wait_for_last();
-  find_normals(work, gated);
+  work.find_normals(gated);
   work.place_points(points, doubtful);
   __syncthreads();
   work.write_points();
   if (threadIdx.x != 0) return;
-  count(points, doubtful, *counters);
+  if (points > 0) atomicAdd(&counters->points, points);
+  if (doubtful > 0) atomicAdd(&counters->doubtful, doubtful);
   __threadfence();
   if (atomicAdd(&counters->done, 1U) != gridDim.x - 1) return;
   __threadfence();
-  answer_with(*counters, answer, sequence);
+  const volatile CloudCounters& all = *counters;
+  put(numbered(sequence, all.doubtful), answer->doubtful);
+  put(numbered(sequence, all.points), answer->points);
   counters->done = 0;
 }
 

@@ -30,17 +30,6 @@ struct CloudCounters {
   unsigned done = 0;  // finished blocks of a launch; 0 between launches
 };
 
-// Adds a block's counts; call it from one thread of each block. At last one calls answer_with().
-__device__ inline void count(unsigned points, unsigned doubtful, CloudCounters& counters) {
-  if (points > 0) atomicAdd(&counters.points, points);
-  if (doubtful > 0) atomicAdd(&counters.doubtful, doubtful);
-}
-__device__ inline void answer_with(const volatile CloudCounters& counters, CloudAnswer* answer,
-                                   unsigned sequence) {
-  put(numbered(sequence, counters.doubtful), answer->doubtful);
-  put(numbered(sequence, counters.points), answer->points);
-}
-
 // Tells what the current device can do with windows of this size.
 struct Preparation {
   bool fits = false;      // shared memory holds them

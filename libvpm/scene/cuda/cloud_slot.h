@@ -40,7 +40,6 @@ class CloudSlot : public FrameSlot {
   void launch();
   void set_camera();
   bool is_answered() const;
-  void wait_for_answer() const;
 
   Stream stream_;
   MappedArray<std::byte> image_;
