@@ -46,6 +46,7 @@ class DeviceMeasure {
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    const QueryOptions& options);
 
+// Spreads the jobs of a batch over several devices.
 class SpreadMeasure : public DeviceMeasure {
  public:
   // Takes at least one measure, each on its own device.

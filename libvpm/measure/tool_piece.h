@@ -13,8 +13,9 @@
 
 namespace vpm {
 
-// Sums in units of the tool: volumes in parts of its volume, arms in parts of its radius. Parts of
-// a tool do not overlap, so every sum lies in [-1, 1]; 60 fractional bits hold up to 8.
+// Sums volume, force and torque over parts of a tool, with the same bits in any order. Sums in
+// units of the tool: volumes in parts of its volume, arms in parts of its radius. Parts of a tool
+// do not overlap, so every sum lies in [-1, 1]; 60 fractional bits hold up to 8.
 struct ToolSum {
   using Sum = FixedSum<60>;
   Sum volume, force[3], torque[3];
@@ -94,7 +95,8 @@ VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellView& cell) {
   return piece;
 }
 
-// Replaces a piece by the ball with its second moment. The fraction of a thin layer depends on the
+// Stands for a piece of the tool; only its two functions know which shape that is. Replaces a piece
+// by the ball with its second moment. The fraction of a thin layer depends on the
 // second moment only, so the ball is right to second order for any compact piece. Real is double,
 // or a vector of doubles.
 template <class Real>
@@ -138,7 +140,7 @@ inline constexpr std::uint32_t kSumRows = 16;
 
 // Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
 // the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
-// lanes would all wait for the slowest. Real is double or a vector; see piece_shape.h for Shape.
+// lanes would all wait for the slowest. Real is double or a vector; BallShape is a Shape.
 template <class Shape, class Real, class Mask>
 [[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
                                                         const Real& distance, const Real& weight,

@@ -86,6 +86,11 @@ struct SampleInTurn {
   }
 };
 
+// Returns a coordinate axis far from a direction.
+VPM_HD inline Vec3 axis_aside(Vec3 n) {
+  return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+}
+
 // Holds the plane of the surface in a ball.
 template <class Real>
 struct TangentPlaneOf {

@@ -36,6 +36,7 @@ class FramePreparation {
   std::vector<std::uint32_t> row_points_;  // number of points in each row
 };
 
+// Holds the memory of one depth frame: the image, and what is prepared from it.
 class FrameSlot {
  public:
   explicit FrameSlot(const DepthFrameOptions& options)

@@ -87,12 +87,12 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> p
 }
 
 VPM_VECTOR_CLONES
-ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples) {
+ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
+                               std::uint32_t count) {
   FourRows rows[kSumRows / kFour];
   Mask4 any_cut{};
-  const std::size_t count = samples.size();
-  for (std::size_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(samples, first);
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(std::span(samples, count), first);
     const Vec3x4 center(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const Double4 weight{a.weight, b.weight, c.weight, d.weight};
@@ -102,7 +102,7 @@ ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSampl
     Double4 inside =
         weight_behind(BallShape<Double4>{radius}, plane.normal, distance, weight, is_cut);
     any_cut |= is_cut;
-    for (std::size_t k = count - first; k < kFour; ++k) inside[k] = 0;
+    for (std::uint32_t k = count - first; k < kFour; ++k) inside[k] = 0;
     FourRows& row = rows[first / kFour % std::size(rows)];
     row = row + FourRows{inside, inside * center};
   }

@@ -37,7 +37,8 @@ void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> p
                      Vec3* normals);
 
 // Returns the bits of clipped_in_turn().
-ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples);
+ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
+                               std::uint32_t count);
 
 // True for a surface that vectors sample at several places at once.
 template <class Surface>
@@ -62,19 +63,14 @@ struct SampleTogether : SampleInTurn {
 
 // Adds samples one by one, for surfaces that vectors cannot sample.
 struct SamplesOneByOne : SamplesInTurn {
-  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
-                                std::uint32_t count) {
-    return clipped_moments(plane, {samples, count});
-  }
+  static constexpr auto* clipped = clipped_moments;
 };
 
 // Adds the samples of one cell before a camera, by vectors.
 class SamplesTogether {
  public:
-  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
-                                std::uint32_t count) {
-    return clipped_moments(plane, {samples, count});
-  }
+  static constexpr auto* clipped = clipped_moments;
+
   template <class Measure>
   void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
            const DepthSurface& surface, CellResult& result) {

@@ -123,16 +123,31 @@ struct CellStates {
   std::size_t part_count = 1;
 };
 
-// Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
-// sample at its centre.
+// Bundles what the steps of a query know of its pose.
 template <class Surface>
-void push_cluster(const Surface& surface, const Pose& to_surface, const CellCluster& cluster,
-                  std::uint32_t root, const SurfaceSample& middle, CellStates& states) {
-  states.set(cluster, CellClass::uniform, FloodState::near);
-  states.planes[root].normal =
-      transpose(to_surface.rotation) * surface.closest_normal(to_surface * cluster.center, middle);
-}
+struct PoseWork {
+  const ToolModel& tool;
+  ToolReach reach;
+  const SpatialLevel& level;
+  const Surface& surface;
+  const Pose& to_surface;  // maps coordinates about the tool's centre of mass
+  CellStates& states;
 
+  // Returns the centre of a cell's sphere in the surface's frame.
+  Vec3 center(std::uint32_t row) const { return to_surface * level.cell(row).center; }
+  CellMeasure<Surface> measure_of(const CellView& cell) const {
+    return {surface, to_surface, reach, cell};
+  }
+  // Notes a uniform cluster: all its cells are pushed along one normal. `middle` is the surface
+  // sample at its centre.
+  void push(const CellCluster& cluster, std::uint32_t root, const SurfaceSample& middle) const {
+    states.set(cluster, CellClass::uniform, FloodState::near);
+    states.planes[root].normal = transpose(to_surface.rotation) *
+                                 surface.closest_normal(to_surface * cluster.center, middle);
+  }
+};
+
+// Lists the cells that the surface cuts and finds the nearest one.
 class CutCells {
  public:
   CutCells(const ToolModel& tool, const SpatialLevel& level, const Pose& to_surface,
@@ -181,6 +196,18 @@ class CutCells {
     return at(last);
   }
 
+  // Returns a test of far places of one cell, true for a place x behind the surface's place `foot`,
+  // surface frame, that is inside: by the plane of the nearest cut cell, found when first needed,
+  // or, where nothing is cut, `where_nothing_is_cut`. `last` is as for nearest_to().
+  auto support(std::uint32_t row, double reach, bool where_nothing_is_cut,
+               std::uint32_t& last) const {
+    return [=, this, &last, nearest = std::optional<CutCell>()](Vec3 x, Vec3 foot) mutable {
+      if (are_none()) return where_nothing_is_cut;
+      if (!nearest) nearest = nearest_to(row, last);
+      return nearest->supports(x, foot, reach);
+    };
+  }
+
  private:
   static constexpr double kRounding = 1 + 1e-9;
 
@@ -206,34 +233,6 @@ class CutCells {
   // Bounds rounding: spheres lie about the tool's origin, clusters about its centre of mass.
   static constexpr double kUlps = 4;
   double rounding_;  // m
-};
-
-// Decides whether far places of one cell are inside: by the plane of the nearest cut cell or, where
-// nothing is cut, by `where_nothing_is_cut`.
-class PlaneSupport {
- public:
-  PlaneSupport(const CutCells& cut, std::uint32_t row, double reach, bool where_nothing_is_cut,
-               std::uint32_t& last_cut)
-      : cut_(cut),
-        row_(row),
-        reach_(reach),
-        where_nothing_is_cut_(where_nothing_is_cut),
-        last_cut_(last_cut) {}
-
-  // True if a place x behind the surface's place `foot` is inside; surface frame.
-  bool operator()(Vec3 x, Vec3 foot) {
-    if (cut_.are_none()) return where_nothing_is_cut_;
-    if (!nearest_) nearest_ = cut_.nearest_to(row_, last_cut_);
-    return nearest_->supports(x, foot, reach_);
-  }
-
- private:
-  const CutCells& cut_;
-  std::uint32_t row_;
-  double reach_;
-  bool where_nothing_is_cut_;
-  std::uint32_t& last_cut_;
-  std::optional<CutCell> nearest_;  // found when first needed
 };
 
 }  // namespace vpm

@@ -212,34 +212,6 @@ void close_holes(PaddedImage& inverse) {
   }
 }
 
-void InverseDepthPyramid::resize(std::uint32_t new_width, std::uint32_t new_height) {
-  width_ = new_width, height_ = new_height;
-  std::size_t count = 1;
-  for (std::size_t side = std::max(width_, height_); side > 1; side = (side + 1) / 2) ++count;
-  levels_.resize(count);
-  std::size_t width = width_, height = height_;
-  for (std::vector<InverseDepthRange>& level : levels_) {
-    level.resize(width * height);
-    width = (width + 1) / 2, height = (height + 1) / 2;
-  }
-}
-
-void InverseDepthPyramid::unite() {
-  std::size_t width = width_, height = height_;
-  for (std::size_t k = 1; k < levels_.size(); ++k) {
-    const InverseDepthRange* fine = levels_[k - 1].data();
-    const std::size_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-    for_bands(static_cast<int>(half_height), [&](int begin, int end) {
-      for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
-        const InverseDepthRange* above = fine + 2 * v * width;
-        unite_rows(above, 2 * v + 1 < height ? above + width : above, width,
-                   levels_[k].data() + v * half_width);
-      }
-    });
-    width = half_width, height = half_height;
-  }
-}
-
 void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
   static_assert(kDenoisedRadius <= kDenoisedReach, "the margin holds windows too");
   for (PaddedImage* image : {&inverse, &x, &y, &z, &marked})
@@ -256,18 +228,40 @@ void SeenImage::mark_rows(int begin, int end) {
   for (int v = begin; v < end; ++v) mark_row(*this, v, marked.at(0, v));
 }
 
-void DenoisedImage::resize(std::uint32_t width, std::uint32_t height) {
-  width_ = static_cast<int>(width), height_ = static_cast<int>(height);
+void DenoisedImage::resize(std::uint32_t new_width, std::uint32_t new_height) {
+  width_ = static_cast<int>(new_width), height_ = static_cast<int>(new_height);
   normals_.resize(first_of_row(height_));
   measured_.resize(first_of_row(height_));
-  tiles_.resize(width, height);
+  std::size_t width = new_width, height = new_height, levels = 1;
+  for (std::size_t side = std::max(width, height); side > 1; side = (side + 1) / 2) ++levels;
+  tiles_.resize(levels);
+  for (std::vector<InverseDepthRange>& level : tiles_) {
+    level.resize(width * height);
+    width = (width + 1) / 2, height = (height + 1) / 2;
+  }
 }
 
 void DenoisedImage::read_rows(const SeenImage& seen, Denoising points, int begin, int end) {
   const auto read_row = points == Denoising::on ? denoise_row : take_row;
   for (int v = begin; v < end; ++v) {
-    read_row(seen, v, tiles_.row(v), normals_.data() + first_of_row(v));
+    read_row(seen, v, tiles_[0].data() + first_of_row(v), normals_.data() + first_of_row(v));
     std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+  }
+}
+
+void DenoisedImage::unite() {
+  auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+  for (std::size_t k = 1; k < tiles_.size(); ++k) {
+    const InverseDepthRange* fine = tiles_[k - 1].data();
+    const std::size_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+    for_bands(static_cast<int>(half_height), [&](int begin, int end) {
+      for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+        const InverseDepthRange* above = fine + 2 * v * width;
+        unite_rows(above, 2 * v + 1 < height ? above + width : above, width,
+                   tiles_[k].data() + v * half_width);
+      }
+    });
+    width = half_width, height = half_height;
   }
 }
 
@@ -276,11 +270,11 @@ DepthSurface DenoisedImage::surface(const Intrinsics& k) const {
   surface.k = k;
   surface.width = width_;
   surface.height = height_;
-  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
+  surface.levels = std::min(static_cast<int>(tiles_.size()), DepthSurface::kMaxLevels);
   surface.normals = normals_.data();
   surface.measured = measured_.data();
   for (int level = 0; level < surface.levels; ++level)
-    surface.tiles[level] = tiles_.level(level).data();
+    surface.tiles[level] = tiles_[static_cast<std::size_t>(level)].data();
   return surface;
 }
 

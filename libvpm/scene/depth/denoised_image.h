@@ -20,25 +20,6 @@ namespace vpm {
 // Closes the holes of a whole image of inverse depth with a margin.
 void close_holes(PaddedImage& inverse);
 
-class InverseDepthPyramid {
- public:
-  // Prepares for an image of this size, without new memory where it has it.
-  void resize(std::uint32_t width, std::uint32_t height);
-  // Returns a row of pixels to be filled: inverse depth as both ends, 0 where unknown.
-  InverseDepthRange* row(int v) { return levels_[0].data() + static_cast<std::size_t>(v) * width_; }
-  // Unites the pixels to tiles.
-  void unite();
-
-  int levels() const { return static_cast<int>(levels_.size()); }
-  const std::vector<InverseDepthRange>& level(int k) const {
-    return levels_[static_cast<std::size_t>(k)];
-  }
-
- private:
-  std::size_t width_ = 0, height_ = 0;
-  std::vector<std::vector<InverseDepthRange>> levels_;
-};
-
 // Holds the measured image, and its marks.
 struct SeenImage {
   // Rows above and below a pixel that decide its mark.
@@ -64,8 +45,8 @@ class DenoisedImage {
   // Denoises rows [begin, end), whose neighbours must be marked, or copies them as measured.
   // Threads may take different rows.
   void read_rows(const SeenImage& seen, Denoising points, int begin, int end);
-  // Builds the pyramid. All rows must be read.
-  void finish() { tiles_.unite(); }
+  // Unites the pixels to tiles of 2, 4, ... pixels a side. All rows must be read.
+  void unite();
 
   DepthSurface surface(const Intrinsics& k) const;
 
@@ -77,10 +58,11 @@ class DenoisedImage {
   int width_ = 0, height_ = 0;
   std::vector<Vec3f> normals_;
   std::vector<float> measured_;
-  InverseDepthPyramid tiles_;
+  std::vector<std::vector<InverseDepthRange>> tiles_;  // of 2^l pixels a side in tiles_[l]
 };
 
-// Makes surfaces on the host; keeps its memory from image to image.
+// Makes surfaces on the host by the steps of a frame, whose normals are estimated on the way, and
+// of a cloud, which brings its own. Keeps its memory from image to image.
 class ImageSteps {
  public:
   // Sets the size; allocates nothing if it is the same.
@@ -109,7 +91,7 @@ class ImageSteps {
       denoising_.made(v, [&](int first, int last) { image.read_rows(seen_, points, first, last); });
     };
     for_bands(height, [&](int begin, int end) { find(begin, end, made); });
-    image.finish();
+    image.unite();
   }
 
  private:

@@ -3,8 +3,6 @@
 // or a vector of floats (core/lanes.h).
 #pragma once
 
-#include <type_traits>
-
 #include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {

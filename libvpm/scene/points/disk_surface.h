@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
@@ -282,11 +281,6 @@ struct DiskSurface {
     other.border.normal = normalized_or_zero(between);
     other.border.foot = x - away * other.border.normal;
     return true;
-  }
-
-  // Returns a coordinate axis far from a direction.
-  static VPM_HD Vec3 axis_aside(Vec3 n) {
-    return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   }
 
   // True if the points in a ball show this plane on all sides of a place of it.

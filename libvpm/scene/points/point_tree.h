@@ -209,7 +209,46 @@ struct PointTree {
   // `Distances` is OneByOne or ByVectors (point_tree.cpp).
   template <class Distances, class Enters, class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
-                                 const Visit& visit) const;
+                                 const Visit& visit) const {
+    if (count == 0) return true;
+    std::uint32_t stack[NodeStack::kRoom + 1];
+    int size = 0;
+    double squared[4];
+    const auto push = [&](const BoxQuad& quad, const auto& node_of, std::uint32_t first) {
+      Distances::to_boxes(quad, center, squared);
+      for (std::uint32_t k = 4; k-- > first;) {
+        const std::uint32_t node = node_of(k);
+        stack[size] = node;
+        size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
+      }
+    };
+    const auto push_children = [&](std::uint32_t node, std::uint32_t first) {
+      push(
+          boxes[node], [&](std::uint32_t k) { return 4 * node + k; }, first);
+    };
+#ifndef __CUDA_ARCH__
+    const bool enters_near = squared_radius <= entry.ball * entry.ball && entry.holds(center, 0);
+#else
+    constexpr bool enters_near = false;
+#endif
+    if (enters_near)
+      push(
+          entry.boxes, [&](std::uint32_t k) { return entry.nodes[k]; }, 0);
+    else if (begins_at_root())
+      stack[size++] = 1;
+    else
+      push_children(0, 2);
+    while (size > 0) {
+      const std::uint32_t node = stack[--size];
+      if (node < leaves) {
+        push_children(node, 0);
+        continue;
+      }
+      const std::uint32_t begin = (node - leaves) * kLeafSize;
+      if (!visit(begin, end_of_leaf(begin))) return false;
+    }
+    return true;
+  }
   // Calls visit(i) for the points in a ball, until it returns false. Returns the last value.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
@@ -335,49 +374,6 @@ struct PointTree {
   std::uint32_t list_by_vectors(Vec3 center, double squared_radius,
                                 std::uint32_t (&listed)[kMostListed]) const;
 };
-
-template <class Distances, class Enters, class Visit>
-VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
-                                          const Visit& visit) const {
-  if (count == 0) return true;
-  std::uint32_t stack[NodeStack::kRoom + 1];
-  int size = 0;
-  double squared[4];
-  const auto push = [&](const BoxQuad& quad, const auto& node_of, std::uint32_t first) {
-    Distances::to_boxes(quad, center, squared);
-    for (std::uint32_t k = 4; k-- > first;) {
-      const std::uint32_t node = node_of(k);
-      stack[size] = node;
-      size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
-    }
-  };
-  const auto push_children = [&](std::uint32_t node, std::uint32_t first) {
-    push(
-        boxes[node], [&](std::uint32_t k) { return 4 * node + k; }, first);
-  };
-#ifndef __CUDA_ARCH__
-  const bool enters_near = squared_radius <= entry.ball * entry.ball && entry.holds(center, 0);
-#else
-  constexpr bool enters_near = false;
-#endif
-  if (enters_near)
-    push(
-        entry.boxes, [&](std::uint32_t k) { return entry.nodes[k]; }, 0);
-  else if (begins_at_root())
-    stack[size++] = 1;
-  else
-    push_children(0, 2);
-  while (size > 0) {
-    const std::uint32_t node = stack[--size];
-    if (node < leaves) {
-      push_children(node, 0);
-      continue;
-    }
-    const std::uint32_t begin = (node - leaves) * kLeafSize;
-    if (!visit(begin, end_of_leaf(begin))) return false;
-  }
-  return true;
-}
 
 // Returns the number of leaves for this many points; kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
