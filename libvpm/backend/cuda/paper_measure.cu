@@ -168,7 +168,7 @@ class PaperOnDevice : public MeasureOnDevice {
   unsigned blocks_;  // blocks that answer one pose
   DeviceMemory memory_;
   PaperLevel level_;
-  PaperSpace space_;  // of two teams, which alternate
+  PaperSpace space_;  // two teams alternate in it
   DeviceArray<Totals> totals_;
   DeviceArray<PaperCounters> counters_;
   std::unique_ptr<Teams> teams_;

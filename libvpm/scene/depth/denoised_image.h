@@ -58,7 +58,7 @@ class DenoisedImage {
   int width_ = 0, height_ = 0;
   std::vector<Vec3f> normals_;
   std::vector<float> measured_;
-  std::vector<std::vector<InverseDepthRange>> tiles_;  // of 2^l pixels a side in tiles_[l]
+  std::vector<std::vector<InverseDepthRange>> tiles_;  // 2^l pixels a side in tiles_[l]
 };
 
 // Makes surfaces on the host by the steps of a frame, whose normals are estimated on the way, and
