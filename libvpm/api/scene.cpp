@@ -1,7 +1,7 @@
 #include "libvpm/include/vpm/scene.h"
 
 #include "libvpm/api/scene_body.h"
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"

@@ -5,7 +5,7 @@
 #include "libvpm/graph/calibration.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
-#include "libvpm/model/packing_file.h"
+#include "libvpm/model/packing.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"

@@ -1,7 +1,7 @@
 #include "libvpm/include/vpm/tool.h"
 
-#include "libvpm/haptics/gyration.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/haptics/virtual_coupling.h"
+#include "libvpm/model/tool_model.h"
 
 namespace vpm {
 

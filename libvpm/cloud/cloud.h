@@ -2,6 +2,7 @@
 // formats/cloud.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -43,5 +44,13 @@ void validate(const Cloud& cloud, const std::string& name);
 // Throws Error(refused) if the camera has unsound intrinsics, no pixels, or a rotation that is not
 // exact (kRotationExact), as those from pose.h are.
 void validate(const Camera& camera, const std::string& name);
+
+// Reads a cloud from a file, from standard input ("-"), or from bytes. Throws Error(refused) if it
+// breaks a rule of formats/cloud.md.
+Cloud read_cloud(const std::string& path);
+Cloud parse_cloud(std::vector<std::byte> bytes, const std::string& name);
+
+// Writes a cloud atomically, or to standard output ("-"). Throws Error(cannot_write).
+void write_cloud(const std::string& path, const Cloud& cloud);
 
 }  // namespace vpm

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "libvpm/cloud/normal_limits.h"
 #include "libvpm/core/host_device.h"
 
 namespace vpm {
+
+// Range of depths, m, whose inverse floats hold well; others get no normal.
+inline constexpr float kMinDepth = 0x1p-80F, kMaxDepth = 0x1p80F;
 
 // Depth along the optical axis in metres, row by row. Values that are not finite and positive are
 // unmeasured; files store 0 there.

@@ -3,7 +3,7 @@
 
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/normal_window.h"
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {

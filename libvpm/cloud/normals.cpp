@@ -5,8 +5,9 @@
 
 #include "libvpm/cloud/normal_rows.h"
 #include "libvpm/cloud/row_bands.h"
+#include "libvpm/cloud/window_span.h"
 #include "libvpm/core/error.h"
-#include "libvpm/core/vector_clones.h"
+#include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {

@@ -22,7 +22,6 @@
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/cloud/normal_limits.h"
 
 namespace vpm {
 
@@ -35,7 +34,7 @@ void check_normal_options(const NormalOptions& options);
 void check_intrinsics(const Intrinsics& intrinsics);
 
 // Returns one unit normal per pixel, row by row, in camera coordinates and towards the sensor; zero
-// where the pixel is unmeasured or too little of its window remains (normal_limits.h). Throws
+// where the pixel is unmeasured or too little of its window remains (window_span.h). Throws
 // Error(invalid_argument) for options out of range, Error(refused) for an image whose size does not
 // match.
 std::vector<Vec3f> estimate_normals(const DepthImage& depth, const Intrinsics& intrinsics,

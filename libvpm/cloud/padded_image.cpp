@@ -1,7 +1,6 @@
 #include "libvpm/cloud/padded_image.h"
 
 #include "libvpm/core/lanes.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 

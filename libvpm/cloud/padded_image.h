@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libvpm/cloud/depth_image.h"
+#include "libvpm/core/vec3.h"
 
 namespace vpm {
 
@@ -30,8 +31,22 @@ struct PaddedImage {
   }
 };
 
-// Copy these rows' depths, or their inverses; 0 where unmeasured or out of range (normal_limits.h).
+// Copy these rows' depths, or their inverses; 0 where unmeasured or out of range.
 void take_depth(const DepthImage& depth, int begin, int end, PaddedImage& padded);
 void take_inverse_depth(const DepthImage& depth, int begin, int end, PaddedImage& inverse);
+
+// Vectors of a tile's pixels, stored by coordinate so that loops vectorise.
+struct VectorTile {
+  float x[kTile], y[kTile], z[kTile];
+
+  // Stores the first `count` vectors.
+  [[gnu::always_inline]] void store(int count, Vec3f* to) const {
+    if (count == kTile) {
+      for (int i = 0; i < kTile; ++i) to[i] = {x[i], y[i], z[i]};
+    } else {
+      for (int i = 0; i < count; ++i) to[i] = {x[i], y[i], z[i]};
+    }
+  }
+};
 
 }  // namespace vpm

@@ -3,11 +3,18 @@
 // add nothing.
 #pragma once
 
-#include "libvpm/cloud/normal_limits.h"
 #include "libvpm/core/division.h"
 #include "libvpm/core/host_device.h"
 
 namespace vpm {
+
+// Limits of a window's side, px.
+inline constexpr int kMinWindow = 3, kMaxWindow = 31;
+
+// Fewest pixels of a window that determine a plane, and the least variance along their narrowest
+// direction, px^2; two neighbouring diagonals have 1/8.
+inline constexpr int kMinSupport = 6;
+inline constexpr float kMinSpread = 0.1F;
 
 // Number of pixels before and after the window's centre along one axis.
 struct Span {

@@ -1,11 +1,24 @@
 #include "libvpm/core/error.h"
 
+#include <cstdio>
 #include <utility>
-
-#include "libvpm/core/printable.h"
 
 namespace vpm {
 namespace {
+
+// Returns the bytes of the character at `at` if it is UTF-8 of more than one byte; 0 otherwise.
+std::size_t multibyte_length(const std::string& text, std::size_t at) {
+  const auto first = static_cast<unsigned char>(text[at]);
+  const std::size_t length = first >= 0xC2 && first < 0xE0   ? 2
+                             : first >= 0xE0 && first < 0xF0 ? 3
+                             : first >= 0xF0 && first < 0xF5 ? 4
+                                                             : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if ((static_cast<unsigned char>(text[at + k]) & 0xC0) != 0x80) return 0;
+  // The control characters U+0080 to U+009F steer terminals too.
+  return first == 0xC2 && static_cast<unsigned char>(text[at + 1]) < 0xA0 ? 0 : length;
+}
 
 constexpr std::size_t kLongest = 1000;  // bytes of a part
 
@@ -15,6 +28,23 @@ std::string message_of(const std::string& what, const std::string& where, const 
 }
 
 }  // namespace
+
+std::string printable(const std::string& text, std::size_t most) {
+  std::string line;
+  for (std::size_t at = 0; at < text.size();) {
+    if (line.size() > most) return line + "…";
+    const std::size_t length = multibyte_length(text, at);
+    if (length > 0 || (text[at] >= ' ' && text[at] <= '~')) {
+      line.append(text, at, length > 0 ? length : 1);
+    } else {
+      char code[5];
+      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(text[at]));
+      line += code;
+    }
+    at += length > 0 ? length : 1;
+  }
+  return line;
+}
 
 Error::Error(ErrorKind kind, const std::string& what, const std::string& where,
              const std::string& hint)

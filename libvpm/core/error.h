@@ -1,6 +1,8 @@
-// Errors (vpm/error.h), and the shortest way to throw the most frequent one.
+// Errors (vpm/error.h), the shortest way to throw the most frequent one, and texts fit for a
+// terminal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "libvpm/include/vpm/error.h"
@@ -12,5 +14,10 @@ namespace vpm {
                                 const std::string& hint = {}) {
   throw Error(ErrorKind::refused, what, where, hint);
 }
+
+// Returns the text on one line: control characters and bytes that are no UTF-8, which a file or a
+// name may hold to steer a terminal, become \xNN, and what is beyond `most` bytes is replaced by
+// "…", between two characters.
+std::string printable(const std::string& text, std::size_t most);
 
 }  // namespace vpm

@@ -5,6 +5,7 @@
 // why its sums stay below.
 #pragma once
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 
@@ -28,5 +29,11 @@ struct FixedSum {
   VPM_HD constexpr void add(const FixedSum& other) { value += other.value; }
   VPM_HD constexpr double real() const { return static_cast<double>(value) / kOne; }
 };
+
+// Adds to an integer sum that many CPU threads share. Takes no lock: a thread that waits for one
+// may fall asleep, and waking takes as long as a query.
+inline void add_atomically(std::int64_t& sum, std::int64_t term) {
+  if (term != 0) std::atomic_ref<std::int64_t>(sum).fetch_add(term, std::memory_order_relaxed);
+}
 
 }  // namespace vpm

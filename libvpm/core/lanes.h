@@ -1,4 +1,5 @@
-// SIMD vectors in the extension that GCC and Clang share. Each lane computes by IEEE 754, whatever
+// SIMD vectors in the extension that GCC and Clang share, and functions compiled for several CPUs.
+// Each lane computes by IEEE 754, whatever
 // vectors the CPU has, so results do not depend on it. They serve loops whose sums compilers do not
 // keep in registers. Not for device code.
 //
@@ -7,7 +8,18 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>  // defines __GLIBC__ where the loader can choose
 #include <cstring>
+
+// Marks functions that GCC compiles for AVX-512, for AVX2 and for baseline x86-64; the loader
+// chooses at start. All clones give the same bits: they run the same IEEE operations in the same
+// order, and contraction is off. `flatten` inlines callees, so that these are cloned too.
+#if defined(__x86_64__) && __GNUC__ >= 12 && !defined(__clang__) && defined(__GLIBC__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__CUDACC__)
+#define VPM_VECTOR_CLONES [[gnu::target_clones("arch=x86-64-v4", "avx2", "default"), gnu::flatten]]
+#else
+#define VPM_VECTOR_CLONES
+#endif
 
 namespace vpm {
 

@@ -4,9 +4,17 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <memory>
+#include <thread>
+#include <utility>
+
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
 
 namespace vpm {
 namespace {
@@ -15,6 +23,29 @@ std::unique_ptr<tbb::global_control>& thread_cap() {
   static std::unique_ptr<tbb::global_control> cap;
   return cap;
 }
+
+// Tells the thread sanitizer that what one thread does before give() is done before what another
+// does after take(). TBB sees to that, but its library is not instrumented. The bodies of a loop
+// stay unordered, so that their races are found.
+class Handover {
+ public:
+#ifdef __SANITIZE_THREAD__
+  void give() {
+    __tsan_release(&place_);
+  }
+  void take() {
+    __tsan_acquire(&place_);
+  }
+
+ private:
+  char place_ = 0;
+#else
+  void give() {}
+  void take() {}
+#endif
+};
+
+thread_local bool is_in_region = false;
 
 }  // namespace
 
@@ -40,10 +71,110 @@ void parallel_for(std::size_t count, std::size_t grain,
       body(begin, std::min(count, begin + grain));
     return;
   }
+  Handover begun, done;
+  begun.give();
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, count, grain),
-      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        begun.take();
+        body(range.begin(), range.end());
+        done.give();
+      },
       tbb::simple_partitioner());
+  done.take();
+}
+
+struct ParallelRegion::Helpers {
+  tbb::task_group tasks;
+};
+
+void ParallelRegion::Part::open(std::uint64_t begin, std::uint64_t end) {
+  open_.store(begin | end << kEndShift, std::memory_order_release);
+}
+
+bool ParallelRegion::Part::take(bool is_first, std::uint64_t& range) {
+  constexpr std::uint64_t kOneAtEnd = std::uint64_t{1} << kEndShift;
+  std::uint64_t seen = open_.load(std::memory_order_acquire);
+  for (;;) {
+    const std::uint64_t begin = seen % kOneAtEnd, end = seen >> kEndShift;
+    if (begin >= end) return false;
+    range = is_first ? begin : end - 1;
+    if (open_.compare_exchange_weak(seen, is_first ? seen + 1 : seen - kOneAtEnd,
+                                    std::memory_order_acq_rel, std::memory_order_acquire))
+      return true;
+  }
+}
+
+ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
+  if (threads_ == 1) return;
+  part_count_ = std::min<std::size_t>(static_cast<std::size_t>(threads_), kMaxParts);
+  helpers_ = std::make_unique<Helpers>();
+  // A thread that is new to the scheduler has no index yet (negative); it will get index 0.
+  first_thread_ = std::max(tbb::this_task_arena::current_thread_index(), 0);
+  is_in_region = true;
+  try {
+    for (int k = 1; k < threads_; ++k) helpers_->tasks.run([this] { help(); });
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+ParallelRegion::~ParallelRegion() {
+  if (helpers_) end();
+}
+
+void ParallelRegion::end() {
+  is_over_.store(true, std::memory_order_release);
+  helpers_->tasks.wait();
+  is_in_region = false;
+}
+
+void ParallelRegion::loop(std::size_t count, std::size_t grain, BodyView body) {
+  count_ = count;
+  grain_ = std::max<std::size_t>(grain, 1);
+  body_ = body;
+  const std::uint64_t ranges = (count + grain_ - 1) / grain_;
+  if (threads_ == 1 || ranges <= 1) {
+    for (std::uint64_t range = 0; range < ranges; ++range)
+      body.call(body.body, range * grain_, std::min(count, (range + 1) * grain_));
+    return;
+  }
+  done_.store(0, std::memory_order_relaxed);
+  for (std::size_t k = 0; k < part_count_; ++k)
+    parts_[k].open(k * ranges / part_count_, (k + 1) * ranges / part_count_);
+  run_ranges(0);
+  while (done_.load(std::memory_order_acquire) < ranges) std::this_thread::yield();
+  if (has_failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void ParallelRegion::run_ranges(std::size_t own) {
+  std::uint64_t range = 0;
+  for (std::size_t k = 0; k < part_count_; ++k) {
+    Part& part = parts_[(own + k) % part_count_];
+    while (part.take(k == 0, range)) run(range);
+  }
+}
+
+void ParallelRegion::run(std::uint64_t range) {
+  try {
+    body_.call(body_.body, range * grain_, std::min(count_, (range + 1) * grain_));
+  } catch (...) {
+    if (!has_failed_.exchange(true)) failure_ = std::current_exception();
+  }
+  done_.fetch_add(1, std::memory_order_release);
+}
+
+void ParallelRegion::help() {
+  if (is_in_region) return;
+  is_in_region = true;
+  const int after = tbb::this_task_arena::current_thread_index() - first_thread_;
+  const std::size_t own = static_cast<std::size_t>(after + threads_) % part_count_;
+  while (!is_over_.load(std::memory_order_acquire)) {
+    run_ranges(own);
+    std::this_thread::yield();
+  }
+  is_in_region = false;
 }
 
 }  // namespace vpm

@@ -58,4 +58,13 @@ inline constexpr double kRotationExact = 1e-13;
 // it unchanged if it is exact to kRotationExact.
 Rotation exact_rotation(const Rotation& rounded);
 
+// Returns the shortest rotation as a vector, axis times angle in [0, pi]. This and the next two use
+// the C library's functions, so their results may differ in the last bits between machines.
+Vec3 rotation_vector(const Rotation& r);
+// Returns the rotation about `v` by its length, radians.
+Rotation rotation_from_vector(Vec3 v);
+
+// Returns the rotation at `part`, 0 to 1, of the shortest rotation from `from` to `to`.
+Rotation interpolate(const Rotation& from, const Rotation& to, double part);
+
 }  // namespace vpm

@@ -64,9 +64,12 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
   if (bytes.size() < sizeof preamble) return std::nullopt;
   std::memcpy(&preamble, bytes.data(), sizeof preamble);
   if (std::memcmp(preamble.magic, kMagic, sizeof kMagic) != 0) return std::nullopt;
-  const bool is_cloud = preamble.kind == static_cast<std::uint32_t>(Kind::cloud);
-  return ForeignContent{names_of(static_cast<Kind>(preamble.kind)).what,
-                        is_cloud ? "it is ready for vpm-query" : "give the file that was meant"};
+  const Kind kind = static_cast<Kind>(preamble.kind);
+  const char* const next = kind == Kind::packing      ? "it is ready for vpm-graph"
+                           : kind == Kind::tool_model ? "it is ready for vpm-query"
+                           : kind == Kind::cloud      ? "it is ready for vpm-query"
+                                                      : "give the file that was meant";
+  return ForeignContent{names_of(kind).what, next};
 }
 
 }  // namespace

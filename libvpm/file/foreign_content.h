@@ -10,7 +10,7 @@ namespace vpm::file {
 
 struct ForeignContent {
   std::string what;  // "a Git LFS pointer, not the file itself"
-  std::string next;  // what to do about it
+  std::string next;  // advice that helps, such as the command to give
 };
 
 // Returns what the file is, if it is one of those that people give by mistake: Git LFS pointers,

@@ -58,24 +58,44 @@ void refuse_existing(const std::string& path) {
               "name another output, or give `force` to overwrite it");
 }
 
+[[noreturn]] void refuse_ending(const std::string& path, const std::string& what,
+                                const std::string& cure) {
+  throw Error(ErrorKind::invalid_argument,
+              path + ": this output is " + what + ", and " + ending_of(path) +
+                  " is the ending of another kind of file",
+              {}, cure + ", or give `force`");
+}
+
+bool is_ending_of_container(const std::string& ending) {
+  return is_one_of(ending, {".vpmp", ".vpmg", ".vpmc"});
+}
+
+// True for the endings of kinds of files that are read or written here.
+bool is_known(const std::string& ending) {
+  return is_ending_of_container(ending) ||
+         is_one_of(ending, {".stl", ".obj", ".off", ".ply", ".om", ".pcd", ".png", ".exr", ".tif",
+                            ".npy", ".json", ".jsonl", ".csv", ".html", ".urdf", ".yml", ".glb"});
+}
+
 // Throws if the name ends like that of another kind of file. Unknown endings, and none, pass.
 void refuse_other_ending(const std::string& path, std::optional<Kind> kind) {
   const std::string ending = ending_of(path);
-  const bool is_container = is_one_of(ending, {".vpmp", ".vpmg", ".vpmc"});
-  if (!kind && is_container)
-    throw Error(
-        ErrorKind::invalid_argument,
-        path + ": this output is a text, and " + ending + " is the ending of another kind of file",
-        {}, "name it .json, .jsonl or .txt, or give `force`");
-  const bool is_other =
-      is_container ||
-      is_one_of(ending, {".stl", ".obj", ".off", ".ply", ".om", ".pcd", ".png", ".exr", ".tif",
-                         ".npy", ".json", ".jsonl", ".csv", ".html", ".urdf", ".yml", ".glb"});
-  if (kind && is_other && ending != ending_of(*kind))
-    throw Error(ErrorKind::invalid_argument,
-                path + ": this output is " + names_of(*kind).what + ", and " + ending +
-                    " is the ending of another kind of file",
-                {}, std::string("let its name end in ") + ending_of(*kind) + ", or give `force`");
+  if (!kind && is_ending_of_container(ending))
+    refuse_ending(path, "a text", "name it .json, .jsonl or .txt");
+  if (kind && is_known(ending) && ending != ending_of(*kind))
+    refuse_ending(path, names_of(*kind).what,
+                  std::string("let its name end in ") + ending_of(*kind));
+}
+
+// Throws unless a file may be written to `path` that is nothing yet. Returns false for streams and
+// devices, whose names tell nothing.
+bool check_place(const std::string& path) {
+  check_folder_of(path);
+  if (path.empty() || descriptor_of(path)) return false;
+  std::error_code fault;
+  if (fs::exists(path, fault) && !fs::is_regular_file(path, fault)) return false;
+  refuse_existing(path);
+  return true;
 }
 
 }  // namespace
@@ -103,12 +123,14 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 void check_output(const std::string& path, std::optional<Kind> kind) {
-  check_folder_of(path);
-  if (path.empty() || descriptor_of(path)) return;
-  std::error_code fault;
-  if (fs::exists(path, fault) && !fs::is_regular_file(path, fault)) return;
-  refuse_existing(path);
-  refuse_other_ending(path, kind);
+  if (check_place(path)) refuse_other_ending(path, kind);
+}
+
+void check_page(const std::string& path) {
+  if (!check_place(path)) return;
+  const std::string ending = ending_of(path);
+  if (is_known(ending) && ending != ".html")
+    refuse_ending(path, "a page", "let its name end in .html");
 }
 
 }  // namespace vpm::file

@@ -14,6 +14,9 @@ namespace vpm::file {
 // Throws Error(cannot_write) if the folder does not exist.
 void check_output(const std::string& path, std::optional<Kind> kind);
 
+// Does the same for a page, whose name may not end like that of any other kind.
+void check_page(const std::string& path);
+
 // Checks only that the folder exists (--force). Throws Error(cannot_write).
 void check_folder_of(const std::string& path);
 

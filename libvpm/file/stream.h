@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "libvpm/core/error.h"
+
 namespace vpm::file {
 
 // Limits what is read from a pipe or device, which may go on for ever: 1 GiB.
@@ -22,13 +24,19 @@ std::vector<std::byte> read_all(const std::string& path, std::size_t most_of_a_p
 // for all other paths.
 std::optional<int> descriptor_of(std::string_view path);
 
+// Failure to write because the reader of a pipe has gone: it wants no more, which is no mistake.
+class ClosedPipe : public Error {
+ public:
+  explicit ClosedPipe(const std::string& what) : Error(ErrorKind::cannot_write, what) {}
+};
+
 // Output written in parts. Regular files are atomic: whatever interrupts the run leaves the old
 // file or the whole new one, since parts go to a temporary file beside it. Pipes, devices
 // (/dev/stdout, /dev/null) and "-" receive each part at once. Not thread-safe.
 class Output {
  public:
   // Opens the output; blocks on a named pipe until it has a reader. Throws Error(cannot_write), as
-  // do append() and finish().
+  // do append() and finish(); these throw ClosedPipe where it applies.
   explicit Output(const std::string& path);
   // Discards the output unless finish() was called: the old file stays.
   ~Output();

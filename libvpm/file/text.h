@@ -1,12 +1,10 @@
-// Reads lines, words and numbers of text, and of text headers before binary data, from a file in
-// memory.
-//
-// Lines end in LF, CRLF or CR, also mixed. In a file whose first line ends in CR alone, an LF after
-// a CR is not part of the line's end: it may be the first byte of binary data.
+// Reads lines, words and numbers of text, and of text headers before binary data. Lines end in LF,
+// CRLF or CR, also mixed.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <istream>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,7 +34,8 @@ std::string in_lower_case(std::string_view text);
 // what is beyond `most` characters is replaced by "…".
 std::string shown(std::string_view text, std::size_t most = 60);
 
-// Reads a file line by line or word by word.
+// Reads a file in memory line by line or word by word. In a file whose first line ends in CR alone,
+// an LF after a CR is not part of the line's end: it may be the first byte of binary data.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text);
@@ -57,6 +56,22 @@ class TextCursor {
   std::string_view text_;
   std::size_t at_ = 0;
   bool ends_in_cr_ = false;  // the first line ends in CR alone
+};
+
+// Reads the lines of a stream as they come: a line is returned as soon as its end is read, so that
+// a pipe is answered line by line.
+class LineStream {
+ public:
+  // The stream must outlive this.
+  explicit LineStream(std::istream& stream) : stream_(stream) {}
+
+  // Returns the next line without its end; empty at the end of the stream. Throws Error(refused)
+  // for a line of more than a million bytes, which no text has.
+  std::optional<std::string> next();
+
+ private:
+  std::istream& stream_;
+  bool passes_over_lf_ = false;  // the last line ended in CR
 };
 
 }  // namespace vpm::file

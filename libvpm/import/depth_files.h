@@ -22,6 +22,7 @@ struct RawDepth {
   bool are_16_bit = false;    // integers of 16 bits: values may be rotated, swapped or disparities
   bool may_be_swapped = false;  // writers of this format disagree about the order of bytes
   Remarks remarks;
+  Remarks unit_remarks;  // those that nobody needs who tells the unit
 
   double usual_units_per_metre() const { return are_integers ? 1000 : 1; }
 };

@@ -6,19 +6,214 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/exr_channels.h"
-#include "libvpm/import/exr_header.h"
 
 namespace vpm {
 namespace {
+
+// Returns the number of pixels from `low` to `high`, both included; 0 if there is none.
+std::uint64_t extent(std::int64_t low, std::int64_t high) {
+  return high < low ? 0 : static_cast<std::uint64_t>(high - low) + 1;
+}
+
+struct Window {
+  std::int32_t left = 0, top = 0, right = -1, bottom = -1;
+
+  std::uint64_t width() const { return extent(left, right); }
+  std::uint64_t height() const { return extent(top, bottom); }
+};
+
+// Holds what decides how much memory a part takes.
+struct Part {
+  Window data, display;
+  std::uint8_t compression = 0;
+  std::uint64_t bytes_per_pixel = 0;
+  std::uint64_t chunks = 0;                       // as declared; 0 if it is not
+  std::uint32_t tile_width = 0, tile_height = 0;  // 0: stored in rows
+
+  bool is_tiled() const { return tile_width > 0 && tile_height > 0; }
+};
+
+constexpr std::size_t kAfterChannelName = 16;  // type, flags, sampling
+
+// Lengths of values by the names of their types; those that are not here say their length.
+constexpr std::pair<std::string_view, std::uint64_t> kLengths[] = {
+    {"box2i", 16},    {"box2f", 16},   {"int", 4},      {"float", 4},
+    {"double", 8},    {"v2i", 8},      {"v2f", 8},      {"v2d", 16},
+    {"v3i", 12},      {"v3f", 12},     {"v3d", 24},     {"m33f", 36},
+    {"m33d", 72},     {"m44f", 64},    {"m44d", 128},   {"compression", 1},
+    {"lineOrder", 1}, {"envmap", 1},   {"tiledesc", 9}, {"deepImageState", 1},
+    {"keycode", 28},  {"rational", 8}, {"timecode", 8}, {"chromaticities", 32}};
+
+// Returns the rows that are compressed together.
+std::uint64_t rows_per_chunk(std::uint8_t compression) {
+  constexpr std::array<std::uint64_t, 10> kRows{1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+  return compression < kRows.size() ? kRows[compression] : 1;
+}
+
+// Checks the header of a file before OpenEXR sees it, which takes memory for what a header declares
+// before it reads it.
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(std::span<const std::byte> bytes) : text_(file::as_text(bytes)) {}
+
+  void run() {
+    constexpr std::size_t kMagicAndVersion = 8;
+    constexpr std::uint8_t kMultiPart = 0x10;  // in the second byte of the version
+    if (text_.size() < kMagicAndVersion) return;
+    const bool has_parts = (static_cast<std::uint8_t>(text_[5]) & kMultiPart) != 0;
+    at_ = kMagicAndVersion;
+    do {
+      Part part;
+      read_attributes(part);
+      check(part);
+    } while (has_parts && at_ < text_.size() && text_[at_] != 0);
+  }
+
+ private:
+  void read_attributes(Part& part) {
+    for (;;) {
+      const std::string_view name = next_string();
+      if (name.empty()) return;
+      const std::string_view type = next_string();
+      const std::uint32_t size = next<std::uint32_t>();
+      if (size > text_.size() - at_)
+        throw std::runtime_error("attribute " + file::shown(name) + " of " + std::to_string(size) +
+                                 " bytes is longer than the file; it is damaged");
+      const std::string_view value = text_.substr(at_, size);
+      check_length(name, type, value);
+      keep(part, name, value);
+      at_ += size;
+    }
+  }
+
+  // OpenEXR reads values of most types to an end that is not the declared one. All after it would
+  // be other attributes to OpenEXR than they are here.
+  static void check_length(std::string_view name, std::string_view type, std::string_view value) {
+    std::uint64_t length = value.size();
+    for (const auto& [known, bytes] : kLengths)
+      if (type == known) length = bytes;
+    if (type == "chlist") length = channels_of(value).length;
+    if (type == "preview")
+      length = 8 + 4 * std::uint64_t{as<std::uint32_t>(value)} *
+                       as<std::uint32_t>(value.substr(std::min<std::size_t>(value.size(), 4)));
+    if (length != value.size())
+      throw std::runtime_error("attribute " + file::shown(name) + " has " +
+                               std::to_string(value.size()) + " bytes, its value " +
+                               std::to_string(length) + "; it is damaged");
+  }
+
+  struct Channels {
+    std::uint64_t length = 0;  // bytes to the empty name that ends the list, which is a part of it
+    std::uint64_t bytes_per_pixel = 0;
+  };
+  static Channels channels_of(std::string_view list) {
+    Channels channels;
+    std::size_t at = 0;
+    while (at < list.size() && list[at] != 0) {
+      const std::size_t end = list.find('\0', at);
+      if (end == list.npos) return {list.size() + 1, channels.bytes_per_pixel};
+      const auto type = as<std::uint32_t>(list.substr(end + 1));
+      channels.bytes_per_pixel += type == 1 ? 2 : 4;  // 1 is HALF
+      at = end + 1 + kAfterChannelName;
+    }
+    channels.length = at + 1;
+    return channels;
+  }
+
+  static void keep(Part& part, std::string_view name, std::string_view value) {
+    if (name == "dataWindow") part.data = as<Window>(value);
+    if (name == "displayWindow") part.display = as<Window>(value);
+    if (name == "compression") part.compression = as<std::uint8_t>(value);
+    if (name == "chunkCount") part.chunks = as<std::uint32_t>(value);
+    if (name == "channels") part.bytes_per_pixel = channels_of(value).bytes_per_pixel;
+    if (name == "tiles") {
+      part.tile_width = as<std::uint32_t>(value);
+      part.tile_height = as<std::uint32_t>(value.substr(std::min<std::size_t>(value.size(), 4)));
+    }
+  }
+
+  void check(const Part& part) const {
+    const std::uint64_t width = part.data.width(), height = part.data.height();
+    // Sums with floating point, which no declared size overflows.
+    const auto as_double = [](std::uint64_t n) { return static_cast<double>(n); };
+    double chunks = as_double(part.chunks), pixels_at_once = 0;
+    if (part.is_tiled()) {
+      const double across = as_double((width + part.tile_width - 1) / part.tile_width),
+                   down = as_double((height + part.tile_height - 1) / part.tile_height);
+      chunks = std::max(chunks, across * down);
+      pixels_at_once = as_double(part.tile_width) * as_double(part.tile_height);
+    } else {
+      const std::uint64_t rows = rows_per_chunk(part.compression);
+      chunks = std::max(chunks, as_double((height + rows - 1) / rows));
+      pixels_at_once = as_double(width) * as_double(rows);
+    }
+    constexpr double kLeastBytesOfChunk = 16;  // its place in the table, its row and its size
+    if (chunks * kLeastBytesOfChunk > as_double(text_.size()))
+      throw std::runtime_error("an image of " + std::to_string(width) + " x " +
+                               std::to_string(height) +
+                               " pixels does not fit into the file; it is truncated or damaged");
+    constexpr double kBuffers = 2;  // compressed and not
+    const double memory =
+        sizeof(float) * (as_double(width) * as_double(height) +
+                         as_double(part.display.width()) * as_double(part.display.height())) +
+        kBuffers * pixels_at_once * as_double(part.bytes_per_pixel);
+    if (memory > as_double(most_memory(text_.size())))
+      throw std::runtime_error("it asks for " + std::to_string(std::uint64_t(memory / 1e6)) +
+                               " MB of memory, a file of its size for " +
+                               std::to_string(most_memory(text_.size()) / 1'000'000) +
+                               " at most; it is damaged, or store it with less compression");
+  }
+
+  std::string_view next_string() {
+    const std::size_t end = text_.find('\0', std::min(at_, text_.size()));
+    if (end == text_.npos) throw std::runtime_error("the file is truncated");
+    const std::string_view found = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    return found;
+  }
+
+  template <class Value>
+  Value next() {
+    if (text_.size() - at_ < sizeof(Value)) throw std::runtime_error("the file is truncated");
+    at_ += sizeof(Value);
+    return as<Value>(text_.substr(at_ - sizeof(Value)));
+  }
+
+  // Returns the first bytes as a value; zeros if there are not enough, which OpenEXR refuses.
+  template <class Value>
+  static Value as(std::string_view bytes) {
+    Value value{};
+    if (bytes.size() >= sizeof value) std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+// Throws std::runtime_error if an attribute is longer than the file or than its value, if the image
+// cannot have its rows or tiles in the file, or if reading it would take more memory than a file of
+// this size may ask for (most_memory). Passes over what OpenEXR itself refuses.
+void check_exr_header(std::span<const std::byte> bytes) {
+  HeaderCheck(bytes).run();
+}
 
 using Imath::Box2i;
 

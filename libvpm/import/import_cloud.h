@@ -10,12 +10,37 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/core/error.h"
-#include "libvpm/import/camera_axes.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/import/depth_values.h"
 #include "libvpm/import/remark.h"
 #include "libvpm/import/scan_facts.h"
 
 namespace vpm {
+
+// Axes of cameras that other programs use.
+enum class CameraAxes {
+  opencv,  // x right, y down, z forward: the axes of this library
+  opengl,  // x right, y up, z backward
+  ros      // x forward, y left, z up: a robot's body
+};
+
+// Returns the rotation from this library's axes to the others.
+constexpr Rotation to_axes(CameraAxes axes) {
+  switch (axes) {
+    case CameraAxes::opengl:
+      return {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    case CameraAxes::ros:
+      return {{0, 0, 1}, {-1, 0, 0}, {0, -1, 0}};
+    case CameraAxes::opencv:
+      break;
+  }
+  return {};
+}
+
+// Returns the pose that takes this library's axes to the world, of one that takes the others there.
+constexpr Pose with_own_axes(const Pose& pose, CameraAxes axes) {
+  return {pose.rotation * to_axes(axes), pose.translation};
+}
 
 struct ImportOptions {
   // If unset, an organised PCD gets its own by a fit.
@@ -23,9 +48,9 @@ struct ImportOptions {
   std::uint32_t calibrated_width = 0,
                 calibrated_height = 0;  // image of the intrinsics, px; 0 if it is not known
   DepthReading depth;                   // its unit holds for points too
-  std::string channel;                  // of an OpenEXR image; if empty, its name tells
-  CameraAxes axes =
-      CameraAxes::opencv;        // of the frame that `to_world` takes to the world, and of points
+  std::string channel;  // depth channel of an OpenEXR image; if empty, its name tells
+  // Axes of the frame that `to_world` takes to the world, and of points.
+  CameraAxes axes = CameraAxes::opencv;
   std::optional<Pose> to_world;  // if unset, a PCD's VIEWPOINT, or identity for this library's axes
   bool flip = false;             // turns the normals of points that have some and no camera
   NormalOptions normals;

@@ -9,7 +9,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
-#include "libvpm/import/yaml_text.h"
 
 namespace vpm {
 namespace {
@@ -49,7 +48,7 @@ std::vector<double> numbers_of(const json& value) {
 std::optional<Intrinsics> from_matrix(std::vector<double> m, Remarks& remarks) {
   if (m.size() == 12) m = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
   if (m.size() != 9 || m[8] != 1) return std::nullopt;
-  if (m[2] == 0 && m[5] == 0 && (m[6] != 0 || m[7] != 0)) {  // by columns
+  if (m[2] == 0 && m[5] == 0 && (m[6] != 0 || m[7] != 0)) {  // stored by columns
     std::swap(m[2], m[6]);
     std::swap(m[5], m[7]);
     std::swap(m[1], m[3]);

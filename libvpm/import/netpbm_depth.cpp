@@ -106,7 +106,7 @@ class NetpbmReader {
       }
     }
     if (std::abs(scale) != 1) {
-      image_.remarks.push_back(
+      image_.unit_remarks.push_back(
           {true,
            "the scale of " + std::to_string(std::abs(scale)) +
                " in its header multiplies nothing; give `depth_scale` if depths are not metres"});

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "libvpm/cloud/camera.h"
-#include "libvpm/import/point_set.h"
+#include "libvpm/import/point_files.h"
 
 namespace vpm {
 

@@ -1,5 +1,3 @@
-#include "libvpm/import/ply_points.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/import/point_files.h"
 #include "libvpm/import/scalar_type.h"
 
 namespace vpm {

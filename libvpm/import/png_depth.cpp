@@ -6,7 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/point_set.h"
+#include "libvpm/import/point_files.h"
 
 namespace vpm {
 namespace {

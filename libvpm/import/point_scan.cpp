@@ -2,14 +2,224 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
+#include <optional>
+#include <string>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
-#include "libvpm/import/organised_points.h"
-#include "libvpm/import/scattered_scan.h"
+#include "libvpm/import/import_cloud.h"
+#include "libvpm/import/pinhole_fit.h"
+#include "libvpm/import/point_files.h"
+#include "libvpm/import/remark.h"
 
 namespace vpm {
 namespace {
+
+// Holds what a file tells of the frame that its points are in.
+struct PointFrame {
+  CameraAxes axes = CameraAxes::opencv;  // axes of the points
+  std::optional<Pose> to_world;          // pose of those axes; translation in the file's unit
+};
+
+// Points of a grid in their camera's frame, and the camera.
+struct OrganisedView {
+  PointSet points;
+  PinholeFit fit;
+  bool were_in_world = false;  // the file's points were in the world's frame
+};
+
+struct AxesName {
+  CameraAxes axes;
+  const char* name;
+  const char* words;
+};
+
+constexpr AxesName kAxes[] = {
+    {CameraAxes::opencv, "opencv", "x right, y down, z forward"},
+    {CameraAxes::opengl, "opengl", "x right, y up, z backward"},
+    {CameraAxes::ros, "ros", "x forward, y left, z up"},
+};
+
+PointSet moved(PointSet points, const Pose& pose) {
+  for (Vec3& p : points.positions) p = pose * p;
+  for (Vec3& n : points.normals) n = pose.rotation * n;
+  return points;
+}
+
+// Returns the points turned to this library's axes.
+PointSet in_own_axes(PointSet points, CameraAxes axes) {
+  if (axes == CameraAxes::opencv) return points;
+  return moved(std::move(points), Pose{transpose(to_axes(axes)), {}});
+}
+
+PinholeFit fit(const PointSet& points, const std::optional<Intrinsics>& intrinsics) {
+  return intrinsics ? fit_of(points, *intrinsics) : fit_pinhole(points);
+}
+
+// Throws if the points fit a camera with other axes than those that are told.
+void refuse_other_axes(const PointSet& points, const PointFrame& frame,
+                       const std::optional<Intrinsics>& intrinsics, const std::string& name) {
+  for (const AxesName& other : kAxes) {
+    if (other.axes == frame.axes || !fit(in_own_axes(points, other.axes), intrinsics).fits())
+      continue;
+    refuse(std::string("its points are those of a camera with ") + other.words, name,
+           std::string("give `axes` ") + other.name);
+  }
+}
+
+[[noreturn]] void refuse_fit(const PinholeFit& failed, const PointSet& points,
+                             const PointFrame& frame, bool is_given, const std::string& name) {
+  if (is_given)
+    refuse("the organised cloud does not fit the intrinsics given: " + words_of(failed, points),
+           name, "leave `intrinsics` out to have them recovered");
+  refuse("the organised cloud fits no pinhole camera with x right, y down, z forward: " +
+             words_of(failed, points),
+         name,
+         frame.to_world ? "points of a lidar need normals"
+                        : "points in the world's frame need their camera's `camera_pose`, and "
+                          "those of a lidar normals");
+}
+
+// Returns the view of the camera with these intrinsics, or else of one that is fitted. Points that
+// fit only after `to_world` is undone were in the world's frame. Returns nothing if no camera fits
+// points that have normals, since these need none. Throws Error(refused), naming other axes that
+// fit or the residual, for other points that fit none.
+std::optional<OrganisedView> find_view(const PointSet& points, const PointFrame& frame,
+                                       const std::optional<Intrinsics>& intrinsics,
+                                       const std::string& name) {
+  OrganisedView view{in_own_axes(points, frame.axes), {}, false};
+  view.fit = fit(view.points, intrinsics);
+  if (view.fit.fits()) return view;
+  if (frame.to_world) {
+    OrganisedView back{
+        moved(points, inverse(with_own_axes(*frame.to_world, frame.axes))), {}, true};
+    back.fit = fit(back.points, intrinsics);
+    if (back.fit.fits()) return back;
+  }
+  refuse_other_axes(points, frame, intrinsics, name);
+  if (!points.normals.empty() && !intrinsics) return std::nullopt;
+  refuse_fit(view.fit, view.points, frame, intrinsics.has_value(), name);
+}
+
+struct ScatteredScan {
+  Cloud cloud;
+  std::size_t invalid = 0;         // points that are not finite
+  std::size_t without_normal = 0;  // finite, but not in the cloud
+  Remarks remarks;
+};
+
+std::string percent_text(std::size_t part, std::size_t whole) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.3g %%",
+                100 * static_cast<double>(part) / static_cast<double>(whole));
+  return text;
+}
+
+std::string metres_text(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g m", length);
+  return text;
+}
+
+double median_radius(const Cloud& cloud) {
+  std::vector<float> radii = cloud.radii;
+  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+  std::nth_element(radii.begin(), middle, radii.end());
+  return *middle;
+}
+
+void refuse_missing_normals(const PointSet& points, const std::string& name) {
+  if (points.normals.empty()) {
+    refuse("points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz)",
+           name, "estimate them first, or give the depth image");
+  }
+  if (std::all_of(points.normals.begin(), points.normals.end(),
+                  [](const Vec3& n) { return n == Vec3{}; })) {
+    refuse("all its normals are zero, as in files of 3D Gaussian splats", name,
+           "estimate them first, or give the depth image");
+  }
+}
+
+// Returns a warning if nearly all normals face away from the origin, where the sensor was.
+Remarks facing_away(const PointSet& points) {
+  std::size_t away = 0, all = 0;
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const double along = dot(points.positions[i], points.normals[i]);
+    away += along > 0;
+    all += along != 0 && std::abs(along) < HUGE_VAL;
+  }
+  constexpr double kNearlyAll = 0.9;
+  if (all == 0 || static_cast<double>(away) < kNearlyAll * static_cast<double>(all)) return {};
+  return {{true, percent_text(away, all) + " of its normals face away from its VIEWPOINT, and so "
+                                           "from the sensor; normals must point into free "
+                                           "space: give `flip` to turn them"}};
+}
+
+// Returns a warning if many normals are opposite to others in the same small cube.
+Remarks facing_each_other(const Cloud& cloud) {
+  constexpr double kCubeOfRadius = 2, kOpposite = -0.5, kMany = 0.1;
+  const double side = kCubeOfRadius * median_radius(cloud);
+  if (!(side > 0)) return {};
+  const auto key = [&](const Vec3f& p) {
+    std::size_t value = 0;
+    for (const float coordinate : {p.x, p.y, p.z})
+      value = value * 1'000'003 +
+              static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(coordinate / side)));
+    return value;
+  };
+  std::unordered_map<std::size_t, Vec3f> first_of_cube;
+  std::size_t opposite = 0;
+  for (std::size_t k = 0; k < cloud.size(); ++k) {
+    const Vec3f first =
+        first_of_cube.try_emplace(key(cloud.positions[k]), cloud.normals[k]).first->second;
+    opposite += dot(widen(first), widen(cloud.normals[k])) < kOpposite;
+  }
+  if (static_cast<double>(opposite) < kMany * static_cast<double>(cloud.size())) return {};
+  return {{true, "normals of neighbouring points face opposite ways (" +
+                     percent_text(opposite, cloud.size()) +
+                     " do), as if they were never oriented; all must point into free space"}};
+}
+
+// Returns a warning if float32 coordinates of the file are too coarse for the points' spacing.
+Remarks coarse_coordinates(const PointSet& points, const Cloud& cloud) {
+  constexpr double kMostRounding = 1.0 / 16;  // part of the sampling radius
+  if (!points.are_float32) return {};
+  double farthest = 0;
+  for (const Vec3& p : points.positions)
+    if (is_finite(p)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * farthest;
+  if (rounding <= kMostRounding * median_radius(cloud)) return {};
+  return {{true, "its coordinates are float32 up to " + metres_text(farthest) +
+                     " from the origin, rounded there by up to " + metres_text(rounding) +
+                     ", too much for the points' spacing: the shape is lost; write them as double, "
+                     "or nearer to the origin"}};
+}
+
+// Returns the cloud of points in metres. A file with a viewpoint has its sensor at the origin of
+// its frame, towards which normals must point. Throws Error(refused), naming `name`, for points
+// without normals.
+ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
+                                const std::string& name) {
+  refuse_missing_normals(points, name);
+  ScatteredScan scan;
+  scan.cloud = cloud_of_scattered_points(points.positions, points.normals, to_world, name);
+  scan.invalid =
+      static_cast<std::size_t>(std::count_if(points.positions.begin(), points.positions.end(),
+                                             [](const Vec3& p) { return !is_finite(p); }));
+  scan.without_normal = points.positions.size() - scan.invalid - scan.cloud.size();
+  if (scan.without_normal > 0)
+    scan.remarks.push_back(
+        {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
+  if (points.viewpoint) append(scan.remarks, facing_away(points));
+  append(scan.remarks, facing_each_other(scan.cloud));
+  append(scan.remarks, coarse_coordinates(points, scan.cloud));
+  return scan;
+}
 
 bool is_identity(const Pose& pose) {
   const Quaternion q = quaternion_from_rotation(pose.rotation);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "libvpm/import/import_cloud.h"
-#include "libvpm/import/point_set.h"
+#include "libvpm/import/point_files.h"
 
 namespace vpm {
 

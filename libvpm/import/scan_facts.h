@@ -13,7 +13,7 @@ struct DepthRange {
 };
 
 struct ScanFacts {
-  std::optional<DepthRange> depth;  // of images in which something was measured
+  std::optional<DepthRange> depth;  // set for images in which something was measured
   double measured = 0;              // share of pixels or points
   Vec3 low, high;                   // corners of the box about the cloud's points, world, m
 };

@@ -1,9 +1,8 @@
-#include "libvpm/import/yaml_text.h"
-
 #include <yaml-cpp/yaml.h>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/import/intrinsics_file.h"
 
 namespace vpm {
 namespace {
@@ -33,7 +32,7 @@ nlohmann::json json_of(const YAML::Node& node, int depth) {
 nlohmann::json parse_yaml(std::string_view text, const std::string& name) {
   std::string document(text);
   if (document.starts_with("%YAML:"))
-    document.erase(0, document.find('\n'));  // of OpenCV, not YAML's own
+    document.erase(0, document.find('\n'));  // OpenCV's first line, not YAML's own
   try {
     return json_of(YAML::Load(document), 0);
   } catch (const Error& fault) {

@@ -2,7 +2,6 @@
 // plane clips of it, and the sums of what parts add to an answer.
 #pragma once
 
-#include "libvpm/core/atomic_add.h"
 #include "libvpm/core/division.h"
 #include "libvpm/core/fixed_sum.h"
 #include "libvpm/core/pose.h"

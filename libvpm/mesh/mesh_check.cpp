@@ -6,7 +6,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/coarse_floats.h"
+#include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
@@ -429,7 +429,7 @@ class Check {
   Topology topology_;
   std::vector<TrianglePair> contacts_;
   double diagonal_ = 0;
-  double unit_ = 1;  // of the vertices, in the file's
+  double unit_ = 1;  // unit of the vertices, in the file's
 };
 
 }  // namespace

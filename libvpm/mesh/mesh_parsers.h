@@ -10,8 +10,6 @@ namespace vpm {
 
 RawMesh parse_obj(std::string_view text, const std::string& name);
 RawMesh parse_off(std::string_view text, const std::string& name);
-// Takes what follows the first line.
-RawMesh parse_off_binary(std::string_view body, const std::string& name);
 RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
 RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,

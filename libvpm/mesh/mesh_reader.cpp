@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 #include <optional>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
 #include "libvpm/file/stream.h"
@@ -118,7 +122,8 @@ void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
   if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
   if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
-  if (text.starts_with("# .PCD")) refuse("this is a cloud of points (PCD)", name, hint);
+  for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})
+    if (text.starts_with(start)) refuse("this is a cloud of points (PCD)", name, hint);
 }
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
@@ -167,6 +172,29 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name,
 
 RawMesh read_mesh(const std::string& path) {
   return parse_mesh(file::read_all(path), path == "-" ? "standard input" : path);
+}
+
+std::string coarse_floats(const RawMesh& mesh) {
+  constexpr double kCoarse = 1e-4;
+  Box box;
+  for (const Vec3& p : mesh.vertices) box.add(p);
+  if (mesh.vertices.empty()) return "";
+  double farthest = 0;
+  for (const double c : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
+    farthest = std::max(farthest, std::abs(c));
+  if (!(farthest <= std::numeric_limits<float>::max())) return "";
+  const auto last = static_cast<float>(farthest);
+  const double step = double{std::nextafter(last, std::numeric_limits<float>::infinity())} - last;
+  const double diagonal = norm(box.size());
+  if (!(step > kCoarse * diagonal) || farthest == 0) return "";
+  const auto is_float = [](const Vec3& p) { return widen(narrow(p)) == p; };
+  if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_float)) return "";
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "its coordinates lie up to %.3g from the origin, where floats of 32 bits are %.2g "
+                "apart, which is coarse for a mesh that is %.3g across",
+                farthest, step, diagonal);
+  return text;
 }
 
 }  // namespace vpm

@@ -28,7 +28,7 @@ struct RawMesh {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> corners;
   std::vector<std::size_t> polygon_end;  // end of each polygon in `corners`
-  std::size_t dropped_polygons = 0;      // of fewer than three corners
+  std::size_t dropped_polygons = 0;      // polygons of fewer than three corners
   std::vector<std::string> notes;        // how the file was taken where it could be taken otherwise
   std::string doubt;  // defect of the file that may have opened the mesh; empty if there is none
 
@@ -58,5 +58,11 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name,
 
 // Reads a mesh from a file, or from standard input ("-"); throws as parse_mesh does.
 RawMesh read_mesh(const std::string& path);
+
+// Returns what is wrong with a mesh so far from the origin that coordinates of 32 bits have lost
+// its shape, with lengths in the file's unit: all coordinates are floats of 32 bits, and neighbours
+// of the farthest one are more than 1/10 000 of the mesh's diagonal apart. Otherwise returns an
+// empty text.
+std::string coarse_floats(const RawMesh& mesh);
 
 }  // namespace vpm

@@ -27,7 +27,7 @@ struct OverlapTree::Build {
   struct Sorted {
     Vec3 middle;
     std::uint32_t item;            // the first one of a run
-    std::uint32_t begin, end = 0;  // of a run
+    std::uint32_t begin, end = 0;  // bounds of a run
   };
 
   OverlapTree& tree;

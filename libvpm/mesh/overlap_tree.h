@@ -74,7 +74,7 @@ class OverlapTree {
     Box box;
     std::uint32_t begin, end;           // places below
     std::uint32_t left = 0, right = 0;  // 0 in leaves
-    std::uint32_t family = kNone;       // of all items below, if they have the same
+    std::uint32_t family = kNone;       // family of all items below, if they have the same
     std::uint32_t oriented = kNone;
   };
   struct Build;

@@ -18,7 +18,7 @@ enum class CuttingFault { none, crosses_itself, not_cut, unavailable };
 struct PolygonCutting {
   std::vector<CornerTriangle> triangles;  // positions within the ring
   CuttingFault fault = CuttingFault::none;
-  Vec2 place;  // of the crossing
+  Vec2 place;  // place of the crossing
 };
 
 // Returns size - 2 triangles whose sides are those of the ring and diagonals. The ring runs

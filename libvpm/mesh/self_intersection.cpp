@@ -62,7 +62,7 @@ std::vector<std::uint32_t> fans_of(std::size_t vertex_count,
 // on the unit sphere, in the triangle of its ends and the point where the tangents there meet.
 // Triangles with a common apex meet beyond it only if their arcs do.
 OverlapTree::Item arc_of(Vec3 apex, Vec3 b, Vec3 c, double tolerance) {
-  constexpr double kRounding = 1e-14;  // of directions
+  constexpr double kRounding = 1e-14;  // rounding of directions
   constexpr double kFull = 2, kLongArc = -0.5;
   const Vec3 u = normalized_or_zero(b - apex), v = normalized_or_zero(c - apex);
   const double cosine = dot(u, v);

@@ -131,7 +131,7 @@ class EnclosureSearch {
   // Counts of what the samples of one shell, and the ray from one sample, meet of another shell.
   struct Tally {
     std::uint32_t inside = 0, undecided = 0;  // samples
-    int enclosures = 0;                       // of the present sample
+    int enclosures = 0;                       // enclosures of the present sample
     bool doubtful = false, passed = false, listed = false;
   };
   // Kept from shell to shell, so that each costs only what its rays pass.

@@ -17,9 +17,9 @@ namespace work {
 inline constexpr std::uint64_t kBoxes = 1;
 inline constexpr std::uint64_t kTriangles = 20;   // exact test of two triangles
 inline constexpr std::uint64_t kMiss = 3;         // triangle near a ray, dismissed by its box
-inline constexpr std::uint64_t kCrossing = 6;     // of a ray and a triangle
+inline constexpr std::uint64_t kCrossing = 6;     // crossing of a ray and a triangle
 inline constexpr std::uint64_t kSolidAngle = 15;  // one triangle about one point
-inline constexpr std::uint64_t kPairFound = 64;   // bounds memory: 2 million in the small limit
+inline constexpr std::uint64_t kPairFound = 24;   // bounds memory: 2 million in the small limit
 inline constexpr std::uint64_t kPiece = 64;       // convex piece of a triangle; bounds memory too
 }  // namespace work
 
@@ -36,9 +36,9 @@ class TooMuchWork : public Error {
 
 class WorkLimit {
  public:
-  // Small meshes may take about two seconds, large ones a second per megabyte of file: 20 000
-  // triangles.
-  static constexpr std::uint64_t kLeast = 150'000'000, kPerTriangle = 3'000;
+  // Half a second for each check of a mesh, and 10 microseconds more for each triangle: a megabyte
+  // of file has 20 000.
+  static constexpr std::uint64_t kLeast = 50'000'000, kPerTriangle = 1'000;
 
   explicit WorkLimit(std::size_t triangles) : most_(kLeast + kPerTriangle * triangles) {}
 

@@ -1,7 +1,9 @@
 // Packing: non-overlapping spheres inside a solid, largest first, with that solid. Metres.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "libvpm/model/solid.h"
@@ -17,5 +19,13 @@ struct Packing {
   // files.
   nlohmann::json provenance;
 };
+
+// Reads a packing from a file, from standard input ("-"), or from bytes. Throws Error(refused) if
+// it breaks a rule of formats/packing.md.
+Packing read_packing(const std::string& path);
+Packing parse_packing(std::vector<std::byte> bytes, const std::string& name);
+
+// Writes a packing atomically, or to standard output ("-"). Throws Error(cannot_write).
+void write_packing(const std::string& path, const Packing& packing);
 
 }  // namespace vpm

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
+
+#include "libvpm/file/checksum.h"
 
 namespace vpm {
 namespace {
@@ -38,6 +41,13 @@ double bounding_radius(const Solid& solid, Vec3 from) {
   double largest = 0;
   for (const Vec3& p : solid.vertices) largest = std::max(largest, squared_norm(p - from));
   return std::sqrt(largest);
+}
+
+std::string content_hash(const Solid& solid) {
+  const std::array<std::uint64_t, 2> counts{solid.vertices.size(), solid.triangles.size()};
+  return file::content_hash({std::as_bytes(std::span(counts)),
+                             std::as_bytes(std::span(solid.vertices)),
+                             std::as_bytes(std::span(solid.triangles))});
 }
 
 }  // namespace vpm

@@ -4,7 +4,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/model/sphere_check.h"
+#include "libvpm/model/sphere.h"
 #include "libvpm/model/tool_model.h"
 
 namespace vpm {

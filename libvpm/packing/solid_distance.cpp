@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/closest_point.h"
+#include "libvpm/mesh/triangle_bvh.h"
 
 namespace vpm {
 namespace {

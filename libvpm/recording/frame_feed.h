@@ -38,7 +38,7 @@ struct PreparedChange {
   std::size_t frame = 0;            // index in the recording, if there is a frame
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // time from the file to the prepared frame
-  Remarks remarks;     // what the reader said about the frame
+  Remarks remarks;     // remarks of the reader about the frame
 
   bool has_frame() const { return cloud != nullptr || depth.has_value(); }
 };

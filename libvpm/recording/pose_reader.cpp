@@ -5,17 +5,103 @@
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
-#include "libvpm/recording/json_numbers.h"
-#include "libvpm/recording/time_stamp.h"
 
 namespace vpm {
 namespace {
+
+// Returns the names in lower case; between commas if there are any.
+std::vector<std::string> names_of(std::string line) {
+  line.erase(0, line.find_first_not_of("# \t"));
+  const bool has_commas = line.find(',') != line.npos;
+  std::replace(line.begin(), line.end(), ',', '\n');
+  std::vector<std::string> names;
+  file::TextCursor cursor(line);
+  if (!has_commas) {
+    for (const std::string_view word : file::split_words(line))
+      names.push_back(file::in_lower_case(word));
+    return names;
+  }
+  while (const auto cell = cursor.line()) names.push_back(file::in_lower_case(*cell));
+  return names;
+}
+
+// Returns the name without its unit and blanks: "q_rs_w" of " q_rs_w []".
+std::string bare(const std::string& name) {
+  std::string text = name.substr(0, name.find_first_of("[("));
+  text.erase(0, std::min(text.find_first_not_of(" \t\""), text.size()));
+  text.erase(std::min(text.find_last_not_of(" \t\"") + 1, text.size()));
+  return text;
+}
+
+// True if the name ends in the axis, and what is before it is `letter`, or begins with it and ends
+// in a separator.
+bool is_axis_of(const std::string& name, char axis, const char* letters) {
+  if (name.empty() || name.back() != axis) return false;
+  const std::string before = name.substr(0, name.size() - 1);
+  if (before.empty()) return false;
+  const bool begins = std::string(letters).find(before.front()) != std::string::npos;
+  return begins && (before.size() == 1 || before.back() == '_' || before.back() == '.');
+}
+
+bool is_time(const std::string& name) {
+  return name.starts_with("time") || name.starts_with("stamp") || name == "t" || name == "sec";
+}
+
+// Returns the columns that a line names, such as "# timestamp tx ty tz qw qx qy qz" or the header
+// of EuRoC's ground truth; empty if it does not name all seven numbers of a pose.
+std::optional<PoseColumns> columns_of_header(const std::string& line) {
+  const std::vector<std::string> names = names_of(line);
+  PoseColumns columns;
+  columns.count = names.size();
+  int positions = 0, quaternions = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string name = bare(names[i]);
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      const char letter = "xyzw"[axis];
+      if (is_axis_of(name, letter, "qor")) {  // q, orientation, rotation
+        columns.quaternion[axis] = i;
+        ++quaternions;
+      } else if (axis < 3 && (name == std::string(1, letter) || is_axis_of(name, letter, "tp"))) {
+        columns.position[axis] = i;
+        ++positions;
+      }
+    }
+    if (!columns.time && is_time(name)) {
+      columns.time = i;
+      columns.has_nanoseconds = names[i].find("[ns]") != std::string::npos;
+    }
+  }
+  return positions == 3 && quaternions == 4 ? std::optional(columns) : std::nullopt;
+}
+
+// Returns time (if there is one), position and quaternion x, y, z, w of a line with these columns.
+// A line with one number more has its time in front. Throws Error(refused) for other counts.
+std::vector<double> in_usual_order(const std::vector<double>& numbers, const PoseColumns& columns) {
+  const bool has_time_before = !columns.time && numbers.size() == columns.count + 1;
+  if (numbers.size() != columns.count && !has_time_before)
+    refuse("found " + std::to_string(numbers.size()) + " numbers where the line of names has " +
+           std::to_string(columns.count));
+  std::vector<double> pose;
+  if (has_time_before) pose.push_back(numbers.front());
+  if (columns.time) {
+    const double time = numbers[*columns.time];
+    pose.push_back(columns.has_nanoseconds ? 1e-9 * time : time);
+  }
+  for (const std::size_t column : columns.position)
+    pose.push_back(numbers[column + has_time_before]);
+  for (const std::size_t column : columns.quaternion)
+    pose.push_back(numbers[column + has_time_before]);
+  return pose;
+}
 
 constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kMatrix = 16, kMatrixRow = 4;
 
@@ -52,6 +138,60 @@ std::vector<double> numbers_of(const std::string& line) {
     at = line.find_first_not_of(kBetween, end);
   }
   return numbers;
+}
+
+// Returns the numbers of a list, or of a list of lists, row by row. Throws a refusal at anything
+// else.
+std::vector<double> numbers_of(const nlohmann::json& value) {
+  if (!value.is_array()) refuse("a pose must be a list of numbers");
+  std::vector<double> numbers;
+  for (const nlohmann::json& item : value) {
+    for (const nlohmann::json& number : item.is_array() ? item : nlohmann::json::array({item})) {
+      if (!number.is_number()) refuse("a pose must be a list of numbers");
+      numbers.push_back(number.get<double>());
+    }
+  }
+  return numbers;
+}
+
+using nlohmann::json;
+
+Pose from_matrix(const std::vector<double>& m, double* deviation) {
+  if (m.size() != 16 || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1)
+    refuse("a camera's matrix has 4x4 numbers by rows, the last row 0 0 0 1");
+  return {rotation_from_matrix({m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, deviation),
+          {m[3], m[7], m[11]}};
+}
+
+std::vector<double> transposed(const std::vector<double>& m) {
+  if (m.size() != 16) return m;
+  std::vector<double> turned(16);
+  for (std::size_t i = 0; i < 16; ++i) turned[i] = m[4 * (i % 4) + i / 4];
+  return turned;
+}
+
+// Returns the pose of a JSON object; empty if it has none of the keys.
+std::optional<Pose> from_object(const json& object, double* deviation) {
+  if (object.contains("extrinsic"))
+    return inverse(from_matrix(transposed(numbers_of(object["extrinsic"])), deviation));
+  for (const char* key : {"matrix", "transform_matrix", "camera_pose", "pose"}) {
+    if (!object.contains(key)) continue;
+    const std::vector<double> n = numbers_of(object[key]);
+    if (n.size() != 7) return from_matrix(n, deviation);
+    return Pose{rotation_from_quaternion({n[3], n[4], n[5], n[6]}, deviation), {n[0], n[1], n[2]}};
+  }
+  return std::nullopt;
+}
+
+Pose only_pose(const std::string& path, double* deviation) {
+  PoseReader reader(path);
+  const std::optional<Pose> pose = reader.next();
+  if (!pose) reader.refuse_empty();
+  if (reader.next())
+    refuse("it holds several poses", path,
+           "give a file with the one of this image, or its numbers");
+  if (deviation != nullptr) *deviation = reader.largest_deviation();
+  return *pose;
 }
 
 }  // namespace
@@ -166,6 +306,21 @@ Pose PoseReader::from_numbers(std::vector<double> n) {
     refuse("the translation is not finite, or further than 2^100 m from the origin", "pose");
   largest_deviation_ = std::max(largest_deviation_, deviation);
   return pose;
+}
+
+Pose read_camera_pose(const std::string& path, double* deviation) {
+  const std::vector<std::byte> bytes = file::read_all(path);
+  const json object = json::parse(
+      file::as_text(bytes), [](int depth, json::parse_event_t, const json&) { return depth < 16; },
+      false);
+  if (object.is_object()) {
+    try {
+      if (const auto pose = from_object(object, deviation)) return *pose;
+    } catch (const Error& fault) {
+      refuse(fault.problem(), path, fault.hint());
+    }
+  }
+  return only_pose(path, deviation);
 }
 
 }  // namespace vpm

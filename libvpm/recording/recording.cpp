@@ -9,7 +9,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/intrinsics_file.h"
-#include "libvpm/recording/time_stamp.h"
+#include "libvpm/recording/pose_reader.h"
 #include "libvpm/recording/timed_path.h"
 
 namespace vpm {

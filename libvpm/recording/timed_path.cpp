@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
-#include "libvpm/haptics/rotation_vector.h"
+#include "libvpm/core/pose.h"
 
 namespace vpm {
 

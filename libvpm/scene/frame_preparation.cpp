@@ -5,9 +5,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "libvpm/cloud/vector_tile.h"
+#include "libvpm/cloud/padded_image.h"
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {

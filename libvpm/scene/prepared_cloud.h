@@ -24,7 +24,7 @@ class PreparedCloud {
 
   // Throws Error(refused) for more than kMaxPoints, an image of more than 2^31 - 1 pixels or 65536
   // a side, an origin, a camera or a point beyond kLargestLength, or what validate(cloud) refuses.
-  // Depths outside of [kMinDepth, kMaxDepth] (normal_limits.h) count as not measured.
+  // Depths outside of [kMinDepth, kMaxDepth] (depth_image.h) count as not measured.
   // FramePreparation is faster for depth images. Denoising 300 000 points takes a core a
   // millisecond for an image, otherwise a second or two.
   explicit PreparedCloud(const Cloud& cloud, Denoising points = Denoising::on);

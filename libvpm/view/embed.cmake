@@ -28,7 +28,7 @@ if(THREE)
   math(EXPR at "${at} + 6")
   string(SUBSTRING "${page}" ${at} -1 tail)
 endif()
-file(WRITE ${OUTPUT} "#include \"libvpm/view/page_text.h\"\n
+file(WRITE ${OUTPUT} "#include \"libvpm/view/page.h\"\n
 namespace vpm::view {\n
 constexpr char kHead[] = R\"vpm-page(${head})vpm-page\";
 constexpr char kTail[] = R\"vpm-page(${tail})vpm-page\";

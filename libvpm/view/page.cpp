@@ -8,9 +8,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/view/colors.h"
-#include "libvpm/view/page_text.h"
 #include "libvpm/view/simplify.h"
+#include "libvpm/view/sphere_files.h"
 
 namespace vpm::view {
 namespace {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
@@ -142,5 +143,9 @@ class Page {
   Json steps_{{"name", "step"}, {"count", 0}, {"start", 0}};
   std::vector<std::string> views_{"all"};
 };
+
+// The page's text before and after its data: page.html, the scripts and the drawing library, put
+// together when vpm is built (embed.cmake). Both are empty in a build without the drawing library.
+extern const std::string_view kPageHead, kPageTail;
 
 }  // namespace vpm::view

@@ -12,7 +12,6 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/synthetic/shapes.h"
-#include "libvpm/view/colors.h"
 #include "libvpm/view/packed.h"
 
 namespace vpm::view {

@@ -2,6 +2,7 @@
 // formats/spheres.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +11,18 @@
 #include "libvpm/model/sphere.h"
 
 namespace vpm::view {
+
+// Colours of the spheres' states, in views, exports and plots: they differ in lightness too, so
+// that the colour-blind can tell them apart.
+
+struct StateLook {
+  const char* name;
+  std::array<std::uint8_t, 3> rgb;
+};
+
+// Indexed by SphereState.
+inline constexpr std::array<StateLook, 3> kStateLooks{
+    {{"outside", {160, 160, 160}}, {"boundary", {255, 140, 0}}, {"inside", {200, 0, 0}}}};
 
 // .csv, .ply (balls), .points.ply, .glb
 enum class SphereFormat { csv, ply, points, glb };

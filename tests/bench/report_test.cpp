@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
+#include "tools/bench/statistics.h"
+#include "tools/bench/tradeoff_report.h"
 
 namespace vpm::bench {
 namespace {
@@ -50,6 +54,48 @@ TEST(Report, IsWrittenIntoANewFolder) {
 TEST(Report, FolderThatCannotBeMadeIsSaid) {
   EXPECT_EQ(test::kind_of_fault([] { write(Report{}, "", "/dev/null/folder"); }),
             ErrorKind::cannot_write);
+}
+
+TEST(Spread, OfOneSampleIsThatSample) {
+  const Spread s = spread_of({3});
+  EXPECT_EQ(s.median, 3);
+  EXPECT_EQ(s.min, 3);
+  EXPECT_EQ(s.max, 3);
+}
+
+TEST(Spread, QuartilesInterpolate) {
+  const Spread s = spread_of({4, 1, 3, 2});
+  EXPECT_DOUBLE_EQ(s.quartile1, 1.75);
+  EXPECT_DOUBLE_EQ(s.median, 2.5);
+  EXPECT_DOUBLE_EQ(s.quartile3, 3.25);
+  EXPECT_EQ(s.min, 1);
+  EXPECT_EQ(s.max, 4);
+}
+
+TEST(MeanAndWorst, OfNothingIsZero) {
+  EXPECT_EQ(MeanAndWorst().mean(), 0);
+  EXPECT_EQ(MeanAndWorst().worst(), 0);
+}
+
+TEST(MeanAndWorst, NotANumberIsTheWorst) {
+  MeanAndWorst errors;
+  errors.add(1);
+  errors.add(NAN);
+  errors.add(0.5);
+  EXPECT_FALSE(errors.worst() <= 1);
+  EXPECT_TRUE(std::isnan(errors.mean()));
+}
+
+TEST(ParetoFront, KeepsWhatNothingBeats) {
+  const std::vector<double> time{3, 1, 2, 2.5, 4}, error{1, 9, 5, 6, 1};
+  EXPECT_EQ(pareto_front(time, error), (std::vector<std::size_t>{1, 2, 0}));
+  EXPECT_TRUE(pareto_front({}, {}).empty());
+}
+
+TEST(Knee, IsWhereTheCurveTurns) {
+  EXPECT_EQ(knee({1, 10, 100, 1000}, {100, 1, 0.9, 0.8}), 1u);
+  EXPECT_EQ(knee({1, 10, 100, 1000}, {100, 10, 1, 0.99}), 2u);
+  EXPECT_EQ(knee({5}, {1}), 0u);
 }
 
 }  // namespace

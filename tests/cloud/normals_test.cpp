@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "libvpm/cloud/window_span.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/synthetic/render.h"

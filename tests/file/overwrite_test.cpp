@@ -50,6 +50,16 @@ TEST_F(Overwrite, NamesMustNotEndLikeOtherKinds) {
   EXPECT_EQ(text("new.vpmp"), ErrorKind::invalid_argument);
 }
 
+TEST_F(Overwrite, PagesEndInHtml) {
+  const auto refused = [&](const char* name) {
+    return test::refusal([&] { check_page(path(name)); });
+  };
+  for (const char* name : {"new.html", "new.HTML", "new.htm", "new"}) EXPECT_EQ(refused(name), "");
+  for (const char* name : {"new.vpmc", "new.json", "new.ply"})
+    EXPECT_NE(refused(name).find("let its name end in .html"), std::string::npos) << name;
+  EXPECT_NE(refused("text").find("exists"), std::string::npos);
+}
+
 TEST_F(Overwrite, KnowsOneFileByManyNames) {
   std::filesystem::create_symlink(path("text"), path("link"));
   EXPECT_TRUE(is_same_file(path("text"), path("text")));

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "libvpm/file/foreign_content.h"
-#include "libvpm/file/line_stream.h"
 
 namespace vpm::file {
 namespace {

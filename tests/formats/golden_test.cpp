@@ -1,9 +1,9 @@
 // Golden files give the content listed beside them, and are written again byte by byte.
 #include <gtest/gtest.h>
 
-#include "libvpm/cloud/cloud_file.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/formats/content_dump.h"
 #include "tests/formats/golden_content.h"
 #include "tests/temporary_folder.h"

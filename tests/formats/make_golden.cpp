@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/formats/content_dump.h"
 #include "tests/formats/golden_content.h"
 #include "tests/formats/refused_files.h"

@@ -1,11 +1,11 @@
 // Damaged files are refused with a message, wherever the damage is.
 #include <gtest/gtest.h>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/formats/refused_files.h"
 #include "tests/refusal.h"
 #include "tests/test_name.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "libvpm/cloud/cloud_file.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/fuzz/container_mutator.h"
 #include "tests/fuzz/query_check.h"
 #include "tests/fuzz/targets.h"
@@ -14,7 +14,8 @@ namespace vpm::fuzz {
 
 #ifdef VPM_FUZZ_SOLID
 void run_vpmp(Bytes input) {
-  constexpr std::size_t kMostSpheres = 12, kMostTriangles = 40;  // of which a tool model is made
+  // Size of the largest packing of which a tool model is made.
+  constexpr std::size_t kMostSpheres = 12, kMostTriangles = 40;
   expect_error_at_most([&] {
     const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
     if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 
 #include "libvpm/core/error.h"
 #include "tests/fuzz/targets.h"
@@ -58,6 +59,14 @@ const Target* find_target(std::string_view name) {
   for (const Target& target : kTargets)
     if (target.name == name) return &target;
   return nullptr;
+}
+
+void run_in_time(const Target& target, Bytes input) {
+  constexpr double kMostSeconds = 5;
+  const std::clock_t start = std::clock();
+  target.run(input);
+  const double taken = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  if (taken > kMostSeconds) fail("it takes " + std::to_string(taken) + " s");
 }
 
 void fail(const std::string& promise) {

@@ -15,7 +15,7 @@ namespace vpm::fuzz {
 using Bytes = std::span<const std::byte>;
 
 struct Target {
-  const char* name;  // of its folders of seeds and findings too
+  const char* name;  // names its folders of seeds and findings too
   void (*run)(Bytes input);
   // Changes `size` bytes, at most to `most`, and returns the new size; null: bytes are changed
   // blindly.
@@ -26,6 +26,10 @@ struct Target {
 // Returns the target of this name, or null.
 const Target* find_target(std::string_view name);
 std::span<const Target> all_targets();
+
+// Runs a target on an input, which may take five seconds of the processor's time: other work of the
+// machine does not count.
+void run_in_time(const Target& target, Bytes input);
 
 // Ends the process by SIGABRT: a promise is broken.
 [[noreturn]] void fail(const std::string& promise);

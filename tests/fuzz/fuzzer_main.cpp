@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  target->run(std::as_bytes(std::span(data, size)));
+  vpm::fuzz::run_in_time(*target, std::as_bytes(std::span(data, size)));
   return 0;
 }
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "libvpm/cloud/cloud_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
 #include "tests/fuzz/fuzz_target.h"
 

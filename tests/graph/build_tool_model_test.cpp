@@ -6,7 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 #include "tests/graph/test_packing.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 #include "libvpm/scene/body.h"
 #include "tests/graph/test_packing.h"
 

@@ -7,8 +7,7 @@
 #include <random>
 
 #include "libvpm/core/error.h"
-#include "libvpm/haptics/gyration.h"
-#include "libvpm/haptics/rotation_vector.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/scenes.h"
 #include "tests/query/lattice_model.h"

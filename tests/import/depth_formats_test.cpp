@@ -1,4 +1,4 @@
-// NPY, PGM, PFM and TIFF.
+// PNG, NPY, PGM, PFM and TIFF.
 #include <gtest/gtest.h>
 #ifdef VPM_TESTS_TIFF
 #include <tiffio.h>
@@ -15,6 +15,42 @@
 
 namespace vpm {
 namespace {
+
+const std::vector<std::uint16_t> kPngValues{0, 1, 255, 256, 1000, 65535};
+
+std::string png_refusal(const std::string& file) {
+  return test::refusal([&] { parse_png_depth(bytes_of(file), "file"); });
+}
+
+TEST(PngDepth, GivesTheValues) {
+  for (const bool interlaced : {false, true}) {
+    const std::string file = make_png(3, 2, 16, kPngValues, interlaced);
+    const RawDepth image = parse_png_depth(bytes_of(file), "file");
+    EXPECT_EQ(image.width, 3U);
+    EXPECT_EQ(image.height, 2U);
+    EXPECT_EQ(image.values, (std::vector<float>{0, 1, 255, 256, 1000, 65535}));
+    EXPECT_EQ(image.usual_units_per_metre(), 1000);
+  }
+}
+
+TEST(PngDepth, RefusesOtherImages) {
+  EXPECT_TRUE(says(png_refusal(make_png(3, 2, 8, kPngValues)), "16 bits"));
+  EXPECT_TRUE(says(png_refusal("\x89PNG\r\n\x1a\n and then nothing"), "file: not a sound PNG"));
+}
+
+TEST(PngDepth, RefusesSizesThatTheFileCannotHold) {
+  std::string file = make_png(3, 2, 16, kPngValues);
+  file.replace(16, 8, std::string("\x00\x00\x20\x00\x00\x00\x20\x00", 8));  // 8192 x 8192
+  // Refuses without taking memory; libpng notices the wrong checksum of the header.
+  EXPECT_NE(png_refusal(file), "");
+  const std::vector<std::uint16_t> row(100000);
+  EXPECT_EQ(png_refusal(make_png(100000, 1, 16, row)), "");
+}
+
+TEST(PngDepth, DamageIsRefused) {
+  expect_damage_is_png_refusal(make_png(3, 2, 16, kPngValues), 1000,
+                               [](auto bytes) { parse_png_depth(bytes, "file"); });
+}
 
 const std::vector<float> kRows{1, 2, 3, 4, 5, 6};
 

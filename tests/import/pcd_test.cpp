@@ -1,10 +1,8 @@
-#include "libvpm/import/pcd.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "libvpm/import/lzf.h"
+#include "libvpm/import/point_files.h"
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 

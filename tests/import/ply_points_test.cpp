@@ -1,9 +1,8 @@
-#include "libvpm/import/ply_points.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "libvpm/import/point_files.h"
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "libvpm/core/error.h"
-#include "libvpm/mesh/closest_point.h"
 #include "libvpm/synthetic/shapes.h"
 
 namespace vpm {

@@ -1,9 +1,9 @@
-#include "libvpm/query/level_choice.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include "libvpm/query/level_tool_query.h"
 #include "tests/query/lattice_model.h"
 #include "tests/refusal.h"
 
@@ -39,6 +39,17 @@ TEST(MaxError, SaysWhyItCannotBeKept) {
   EXPECT_NE(refusal(tool, 0.1).find("`calibrate`"), std::string::npos);
   for (const double error : {0.0, -1.0, 1.0, std::nan("")})
     EXPECT_NE(refusal(calibrated({0.03, 0.004}), error), "");
+}
+
+// The number that a refusal names is rounded up, so that whoever asks for it gets it.
+TEST(MaxError, TheNumberOfItsAdviceIsKept) {
+  for (const double best : {0.0123456, 0.00627341, 0.09995, 0.004, 1e-7}) {
+    const ToolModel tool = calibrated({0.3, best});
+    const std::string said = refusal(tool, best / 100);
+    const double advised = std::stod(said.substr(said.find("has ") + 4)) / 100;
+    EXPECT_EQ(coarsest_level_within(tool, advised), 1u) << said;
+    EXPECT_LT(advised, 1.01 * best) << said;
+  }
 }
 
 TEST(Deadline, TakesTheFinestLevelWithAMargin) {

@@ -4,7 +4,6 @@
 
 #include "libvpm/file/stream.h"
 #include "libvpm/file/temporary_folder.h"
-#include "libvpm/recording/camera_pose_file.h"
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 

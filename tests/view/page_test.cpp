@@ -6,7 +6,6 @@
 #include "libvpm/synthetic/render.h"
 #include "libvpm/synthetic/scenes.h"
 #include "libvpm/synthetic/shapes.h"
-#include "libvpm/view/page_text.h"
 #include "tests/refusal.h"
 
 namespace vpm::view {

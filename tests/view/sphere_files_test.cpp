@@ -6,8 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "libvpm/view/colors.h"
-
 namespace vpm::view {
 namespace {
 

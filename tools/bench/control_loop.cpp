@@ -23,9 +23,9 @@
 #include <iostream>
 #include <map>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/scene/depth_frames.h"
 

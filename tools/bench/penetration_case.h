@@ -13,7 +13,7 @@
 namespace vpm::bench {
 
 // Returns a solid of about 0.2 m: cube, tetrahedron, octahedron, torus or twisted-torus. Throws
-// Error(usage) for other names.
+// Error(invalid_argument) for other names.
 Solid make_shape(const std::string& name);
 
 // Packs the solid with as many spheres as the largest level has, and makes its tool model.

@@ -19,8 +19,8 @@ struct RecordedImage {
   Cloud cloud;
 };
 
-// Throws Error(usage) if `folder`/depth holds none of the images known by name. Suites call it at
-// their start, before minutes have passed.
+// Throws Error(invalid_argument) if `folder`/depth holds none of the images known by name. Suites
+// call it at their start, before minutes have passed.
 void require_recorded_images(const std::string& folder);
 
 // Reads the images that are there and that this build can read. Throws what import_cloud throws for

@@ -14,7 +14,7 @@
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/replay_parts.h"
 #include "tools/bench/replay_peers.h"
-#include "tools/bench/thread_cap.h"
+#include "tools/bench/suite.h"
 
 namespace vpm::bench {
 namespace {

@@ -8,14 +8,14 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/file/checksum.h"
-#include "libvpm/haptics/rotation_vector.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/recording/frame_feed.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/bench/peak_memory.h"
 #include "tools/bench/replay_parts.h"
-#include "tools/bench/thread_cap.h"
+#include "tools/bench/suite.h"
 
 namespace vpm::bench {
 namespace {

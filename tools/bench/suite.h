@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
+#include "libvpm/core/parallel.h"
 #include "libvpm/device/device.h"
+#include "libvpm/include/vpm/device.h"
 #include "libvpm/include/vpm/query_types.h"
 #include "tools/bench/report.h"
 
@@ -33,8 +36,8 @@ std::string suite_names(bool on_device = false);
 bool is_suite(const std::string& name);
 bool needs_device(const std::string& name);
 
-// Runs the suite. Throws Error(usage) listing the suites if `name` is none, or listing those that
-// take an option which this one does not; Error(unavailable) if it takes no device.
+// Runs the suite. Throws Error(invalid_argument) listing the suites if `name` is none, or listing
+// those that take an option which this one does not; Error(unavailable) if it takes no device.
 Report run_suite(const std::string& name, const SuiteOptions& options);
 
 // Measures errors of volume, force and torque against the truth, for both measures.
@@ -63,7 +66,29 @@ Report run_packing(const SuiteOptions& options);
 Report run_replay(const SuiteOptions& options);
 
 // Times queries on a CUDA device against the number of spheres and along a path. Throws
-// Error(unavailable) if there is no device, Error(usage) for the CPU and for several devices.
+// Error(unavailable) if there is no device, Error(invalid_argument) for the CPU and for several
+// devices.
 Report run_scaling(const SuiteOptions& options);
+
+// Returns the numbers of threads that a suite compares: what --threads gives, or else 1 and 2, but
+// only 1 beside a device, which computes whatever the host's threads are.
+inline std::vector<int> compared_threads(const SuiteOptions& options) {
+  if (options.threads > 0) return {options.threads};
+  return options.device.is_cuda() ? std::vector{1} : std::vector{1, 2};
+}
+
+// Caps the threads of the library while it lives: at what --threads gives, else at `usual`.
+class ThreadCap {
+ public:
+  ThreadCap(const SuiteOptions& options, int usual) : before_(thread_count()) {
+    set_thread_count(options.threads > 0 ? options.threads : usual);
+  }
+  ~ThreadCap() { set_thread_count(before_); }
+  ThreadCap(const ThreadCap&) = delete;
+  ThreadCap& operator=(const ThreadCap&) = delete;
+
+ private:
+  int before_;
+};
 
 }  // namespace vpm::bench

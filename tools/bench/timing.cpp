@@ -21,7 +21,6 @@
 #include "tools/bench/recorded_images.h"
 #include "tools/bench/statistics.h"
 #include "tools/bench/suite.h"
-#include "tools/bench/thread_cap.h"
 
 namespace vpm::bench {
 namespace {

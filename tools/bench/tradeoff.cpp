@@ -12,7 +12,6 @@
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
 #include "libvpm/packing/packer.h"
-#include "libvpm/query/level_choice.h"
 #include "libvpm/query/level_tool_query.h"
 #include "libvpm/query/scene_scale.h"
 #include "libvpm/query/tool_query.h"
@@ -20,7 +19,6 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/penetration_case.h"
 #include "tools/bench/suite.h"
-#include "tools/bench/thread_cap.h"
 #include "tools/bench/tradeoff_report.h"
 #include "tools/bench/view.h"
 

@@ -11,7 +11,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/intrinsics_file.h"
-#include "libvpm/recording/camera_pose_file.h"
+#include "libvpm/recording/pose_reader.h"
 #include "tools/common/error_text.h"
 #include "tools/common/number_checks.h"
 

@@ -14,8 +14,6 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/core/printable.h"
-#include "libvpm/file/closed_pipe.h"
 #include "libvpm/file/overwrite.h"
 #include "libvpm/file/stream.h"
 #include "tools/common/early_failure.h"
@@ -277,7 +275,7 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
         refuse_usage(std::string(output.option) + " would overwrite the input " + input +
                      "; name another output, or give --force");
     }
-    file::check_output(output.path, output.kind);
+    output.is_page ? file::check_page(output.path) : file::check_output(output.path, output.kind);
   }
 }
 

@@ -71,6 +71,7 @@ struct OutputFile {
   const char* option;
   std::string path;
   std::optional<file::Kind> kind;
+  bool is_page = false;  // for browsers
 };
 
 // Throws Error(invalid_argument) if two outputs would be one file, or an output an input, and

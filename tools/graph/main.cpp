@@ -10,8 +10,8 @@
 #include "libvpm/graph/calibration.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
-#include "libvpm/model/packing_file.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/packing.h"
+#include "libvpm/model/tool_model.h"
 #include "libvpm/view/page.h"
 #include "libvpm/view/simplify.h"
 #include "tools/common/number_checks.h"
@@ -97,7 +97,7 @@ void run(const Tool& tool, Arguments& a) {
   check_files({a.packing, a.mesh},
               {{"--output", a.output, file::Kind::tool_model},
                {"--report", a.report, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               tool.common());
   if (!a.view.empty()) view::check_available();
   const Packing packing = read_packing(a.packing);

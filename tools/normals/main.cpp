@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
@@ -44,7 +44,7 @@ void check(const Arguments& a, const CommonOptions& common) {
               {{"--output", a.output, file::Kind::cloud},
                {"--report", a.report, std::nullopt},
                {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               common);
 }
 

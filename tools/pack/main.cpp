@@ -10,13 +10,13 @@
 #include <string_view>
 #include <vector>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
-#include "libvpm/model/packing_file.h"
+#include "libvpm/model/packing.h"
 #include "libvpm/packing/certificate.h"
 #include "libvpm/packing/grow.h"
 #include "libvpm/packing/packer.h"
@@ -45,11 +45,8 @@ struct Arguments {
   bool grow = false, validate = false;
 };
 
-void declare(CLI::App& app, Arguments& a) {
-  app.add_option(
-      "mesh", a.mesh,
-      "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard input");
-  app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
+// Adds the options that say which spheres are wanted.
+void declare_spheres(CLI::App& app, Arguments& a) {
   app.add_option("--spheres", a.spheres, "Stop after this many spheres")
       ->check(whole_number_in(1, kMostSpheres))
       ->capture_default_str();
@@ -68,6 +65,10 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--for-scene", a.for_scene,
                  "Cloud (.vpmc): place no spheres smaller than its points resolve, and none larger "
                  "than its curvature allows");
+}
+
+// Adds the options that say what is told of the spheres, and where.
+void declare_reports(CLI::App& app, Arguments& a) {
   app.add_flag("--validate", a.validate,
                "Measure coverage, protrusion and overlap again by counting voxels (OpenVDB)");
   app.add_option("--report", a.report, "Write facts about mesh and packing here (JSON)");
@@ -81,6 +82,10 @@ void declare(CLI::App& app, Arguments& a) {
       "(cuRobo), .urdf or .srdf");
   app.add_option("--link", a.link,
                  "Name of the link in .yml, .urdf and .srdf; the mesh's name if not given");
+}
+
+// Adds the options that say how the mesh is taken.
+void declare_mesh(CLI::App& app, Arguments& a) {
   app.add_option("--node", a.node,
                  "Read only this node of a COLLADA, glTF, 3MF or FBX file, with those below it");
   app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
@@ -100,6 +105,16 @@ void declare(CLI::App& app, Arguments& a) {
          "Refuse meshes with wider holes, metres; with --repair voxel or flood, where flood "
          "takes 1/16 of the longest side if it is not given")
       ->check(positive_number());
+}
+
+void declare(CLI::App& app, Arguments& a) {
+  app.add_option(
+      "mesh", a.mesh,
+      "Closed mesh: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX; - is standard input");
+  app.add_option("-o,--output", a.output, "Packing to write (.vpmp); - is standard output");
+  declare_spheres(app, a);
+  declare_reports(app, a);
+  declare_mesh(app, a);
 }
 
 SolidOptions solid_options(const Arguments& a) {
@@ -141,7 +156,7 @@ void check(const Arguments& a, const CommonOptions& common) {
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt},
                {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               common);
 }
 

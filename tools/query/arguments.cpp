@@ -4,12 +4,34 @@
 #include <limits>
 
 #include "libvpm/core/error.h"
+#include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
-#include "tools/query/gone_options.h"
-#include "tools/query/spheres_out.h"
+#include "tools/common/tool.h"
 
 namespace vpm::tools {
 namespace {
+
+struct GoneOption {
+  const char* name;
+  const char* reason;
+};
+
+constexpr GoneOption kGone[] = {
+    {"--reuse", "a coarser --level trades accuracy for speed"},
+    {"--standby-us", "a device no longer stands by between poses, and results are the same"},
+};
+
+// Adds the options that earlier versions had; --help does not show them. Parsing one of them throws
+// Error(invalid_argument) that says what to do instead.
+void declare_gone_options(CLI::App& app) {
+  for (const GoneOption& gone : kGone) {
+    const auto refuse_it = [gone](const std::string&) {
+      throw Error(ErrorKind::invalid_argument,
+                  std::string(gone.name) + " is gone: leave it out; " + gone.reason);
+    };
+    app.add_option_function<std::string>(gone.name, refuse_it)->group("");
+  }
+}
 
 void declare_inputs(CLI::App& app, Arguments& a) {
   app.add_option(
@@ -69,6 +91,35 @@ void declare_motion(CLI::App& app, Arguments& a) {
                  "damper: stiffness=N/m,damping=N s/m[,mass=kg][,rate=Hz]; needs --stiffness");
 }
 
+void declare_frames(CLI::App& app, ReplayArguments& a) {
+  app.add_option("--frames", a.frames,
+                 "Instead of --cloud: folder of depth images with their "
+                 "times (TUM RGB-D, 7-Scenes), or a list "
+                 "of \"time file\" lines; goes with --trajectory");
+  app.add_option("--trajectory", a.trajectory,
+                 "Path of the tool through the frames, as for --poses");
+  app.add_option("--rate", a.rate, "Steps per second along --trajectory (1000)")
+      ->check(number_in(1, 1e6));
+  app.add_option("--camera-poses", a.camera_poses,
+                 "Path of the camera: TUM text or a pose per frame; else NAME.pose.txt beside the "
+                 "frames, or groundtruth.txt");
+  app.add_option("--frame-rate", a.frame_rate,
+                 "Frames per second, where their names have numbers but no times")
+      ->check(number_in(1e-3, 1e6))
+      ->capture_default_str();
+  app.add_option("--frame-latency", a.frame_latency,
+                 "Seconds from the time of a frame until a step can see it")
+      ->check(number_in(0, 3600))
+      ->capture_default_str();
+  app.add_flag("--align-starts", a.align_starts,
+               "Path and frames begin together, whatever their times say");
+  app.add_flag("--repeat-frames", a.repeat_frames,
+               "Frames go back and forth as long as the path lasts; otherwise the last one stays");
+  app.add_flag("--realtime", a.realtime,
+               "Steps wait for the clock; otherwise as fast as it goes, with the same results");
+  declare(app, a.import);
+}
+
 void declare_outputs(CLI::App& app, Arguments& a) {
   app.add_option("-o,--output", a.output, "Results, JSON Lines")->capture_default_str();
   app.add_option("--spheres-out", a.spheres_out,
@@ -76,6 +127,16 @@ void declare_outputs(CLI::App& app, Arguments& a) {
   app.add_option("--stats", a.stats, "Timings and device (JSON)");
   app.add_option("--view", a.view,
                  "A page (.html) that shows scene, tool, answers and path in any browser");
+}
+
+// Throws Error(invalid_argument) if the path has none of the suffixes of formats/spheres.md.
+void check_spheres_path(const std::string& path) {
+  if (!view::sphere_format(path)) {
+    throw Error(ErrorKind::invalid_argument,
+                "--spheres-out " + path +
+                    ": the name must end in .csv, .ply (balls), .points.ply or "
+                    ".glb");
+  }
 }
 
 }  // namespace
@@ -90,7 +151,7 @@ void declare(CLI::App& app, Arguments& a) {
          "Poses that a device takes at once; answers come in their order. Changes no result")
       ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str();
-  declare(app, a.replay);
+  declare_frames(app, a.replay);
   declare_outputs(app, a);
   declare_gone_options(app);
 }
@@ -110,7 +171,7 @@ void check_names(const Arguments& a, const CommonOptions& common) {
               {{"--output", a.output, std::nullopt},
                {"--spheres-out", a.spheres_out, std::nullopt},
                {"--stats", a.stats, std::nullopt},
-               {"--view", a.view, std::nullopt}},
+               {"--view", a.view, std::nullopt, true}},
               common);
 }
 

@@ -6,10 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/import_arguments.h"
 #include "tools/common/tool.h"
-#include "tools/query/replay_arguments.h"
 
 namespace vpm::tools {
+
+// Values of the options of recorded frames.
+struct ReplayArguments {
+  std::string frames, trajectory, camera_poses;
+  std::optional<double> rate;  // steps per second; kRate if not given
+  double frame_rate = 30;      // frames per second, for frames that have numbers but no times
+  double frame_latency = 0;    // s
+  bool align_starts = false, repeat_frames = false, realtime = false;
+  ImportArguments import;
+
+  static constexpr double kRate = 1000;
+};
 
 // Values of the options, in the units that --help names.
 struct Arguments {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
 
 namespace vpm::tools {

@@ -2,8 +2,6 @@
 
 #include "tools/query/arguments.h"
 #include "tools/query/mode.h"
-#include "tools/query/option_rules.h"
-#include "tools/query/run_mode.h"
 
 namespace vpm::tools {
 namespace {

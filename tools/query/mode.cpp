@@ -1,6 +1,159 @@
 #include "tools/query/mode.h"
 
+#include <array>
+
+#include "tools/common/error_text.h"
+
 namespace vpm::tools {
+namespace {
+
+enum Cell : unsigned char {
+  no,
+  yes,
+  either,  // one of the options that the column marks so is required
+  required
+};
+
+struct Row {
+  const char* option;
+  std::array<Cell, kModes> in_mode;
+  const char* advice = "";  // follows "--option is missing: "
+};
+
+// Options that are not in this table go with all modes.
+constexpr Row kTable[] = {
+    // poses, batches, coupling, frames, several tools
+    {"--tool",
+     {required, required, required, required, required},
+     "give the .vpmg that vpm-graph wrote"},
+    {"--cloud",
+     {required, required, required, no, required},
+     "give the .vpmc that vpm-normals wrote, or --frames"},
+    {"--pose", {either, either, no, no, either}},
+    {"--poses", {either, either, required, no, either}, "give the path of the haptic device"},
+    {"--batch", {yes, yes, no, no, yes}},
+    {"--coupling", {yes, no, yes, yes, no}},
+    {"--deadline-us", {yes, no, yes, yes, no}},
+    {"--coherent", {yes, no, yes, yes, no}},
+    {"--spheres-out", {yes, yes, yes, yes, no}},
+    {"--frames", {no, no, no, yes, no}},
+    {"--trajectory", {no, no, no, required, no}, "give the path of the tool through the frames"},
+    {"--rate", {no, no, no, yes, no}},
+    {"--camera-poses", {no, no, no, yes, no}},
+    {"--frame-rate", {no, no, no, yes, no}},
+    {"--frame-latency", {no, no, no, yes, no}},
+    {"--align-starts", {no, no, no, yes, no}},
+    {"--repeat-frames", {no, no, no, yes, no}},
+    {"--realtime", {no, no, no, yes, no}},
+    {"--intrinsics", {no, no, no, yes, no}},
+    {"--depth-scale", {no, no, no, yes, no}},
+    {"--unit", {no, no, no, yes, no}},
+    {"--invalid", {no, no, no, yes, no}},
+    {"--range", {no, no, no, yes, no}},
+    {"--along-ray", {no, no, no, yes, no}},
+    {"--decode", {no, no, no, yes, no}},
+    {"--channel", {no, no, no, yes, no}},
+    {"--flip", {no, no, no, yes, no}},
+    {"--camera-pose", {no, no, no, yes, no}},
+    {"--axes", {no, no, no, yes, no}},
+    {"--method", {no, no, no, yes, no}},
+    {"--window", {no, no, no, yes, no}},
+    {"--edge-gate", {no, no, no, yes, no}},
+};
+
+struct Pair {
+  const char* first;
+  const char* second;
+};
+
+constexpr Pair kExclusive[] = {
+    {"--pose", "--poses"},
+    {"--level", "--max-error"},
+    {"--level", "--for-scene"},
+    {"--max-error", "--for-scene"},
+    {"--level", "--deadline-us"},
+    {"--coherent", "--deadline-us"},
+    {"--camera-pose", "--camera-poses"},
+    {"--depth-scale", "--unit"},
+};
+
+struct Need {
+  const char* option;
+  const char* needed;
+  const char* advice;  // follows "--option needs --needed: "
+};
+
+constexpr Need kNeeds[] = {
+    {"--coupling", "--stiffness", "give the scene's stiffness in N/m^3"},
+};
+
+struct Words {
+  const char* mode;
+  const char* choice;  // tells which options choose the mode
+};
+
+constexpr Words kWords[kModes] = {
+    {"poses in a cloud", "chosen because --frames is not given"},
+    {"poses in batches", "chosen by --batch"},
+    {"a haptic device's path in a cloud", "chosen by --coupling without --frames"},
+    {"recorded frames", "chosen by --frames"},
+    {"several tools in a cloud", "chosen by more than one --tool"},
+};
+
+// True if both are the same text or the same number.
+bool is_same_value(const std::string& a, const std::string& b) {
+  double x = 0, y = 0;
+  if (CLI::detail::lexical_cast(a, x) && CLI::detail::lexical_cast(b, y)) return x == y;
+  return a == b;
+}
+
+// True if the option has a value other than its default.
+bool is_given(const CLI::App& app, const char* name) {
+  const CLI::Option& option = *app.get_option(name);
+  if (option.count() == 0) return false;
+  if (option.get_expected_max() == 0) return option.as<bool>();
+  return !is_same_value(option.results().back(), option.get_default_str());
+}
+
+// Returns the items as "a, b and c" if `last` is "and".
+std::string list_of(const std::vector<std::string>& items, const std::string& last) {
+  std::string list;
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (k > 0) list += k + 1 < items.size() ? ", " : " " + last + " ";
+    list += items[k];
+  }
+  return list;
+}
+
+void refuse_options_of_other_modes(const CLI::App& app, Mode mode) {
+  const std::size_t column = static_cast<std::size_t>(mode);
+  std::vector<std::string> misplaced;
+  for (const Row& row : kTable)
+    if (row.in_mode[column] == no && is_given(app, row.option)) misplaced.push_back(row.option);
+  if (misplaced.empty()) return;
+  const bool is_one = misplaced.size() == 1;
+  refuse_usage(list_of(misplaced, "and") + (is_one ? " does" : " do") + " not go with " +
+               kWords[column].mode + ", " + kWords[column].choice + ": leave " +
+               (is_one ? "it" : "them") + " out");
+}
+
+void refuse_missing_options(const CLI::App& app, Mode mode) {
+  const std::size_t column = static_cast<std::size_t>(mode);
+  std::vector<std::string> alternatives;
+  bool has_one = false;
+  for (const Row& row : kTable) {
+    const bool given = is_given(app, row.option);
+    if (row.in_mode[column] == required && !given)
+      refuse_usage(std::string(row.option) + " is missing: " + row.advice);
+    if (row.in_mode[column] != either) continue;
+    alternatives.push_back(row.option);
+    has_one = has_one || given;
+  }
+  if (!alternatives.empty() && !has_one)
+    refuse_usage(list_of(alternatives, "or") + " is missing: give one of them");
+}
+
+}  // namespace
 
 Mode mode_of(const Arguments& a) {
   if (a.tools.size() > 1) return Mode::several_tools;
@@ -8,6 +161,18 @@ Mode mode_of(const Arguments& a) {
   if (!a.coupling.empty()) return Mode::coupling;
   if (a.batch > 1) return Mode::batches;
   return Mode::poses;
+}
+
+void check_options(const CLI::App& app, Mode mode) {
+  refuse_options_of_other_modes(app, mode);
+  for (const auto& [first, second] : kExclusive)
+    if (is_given(app, first) && is_given(app, second))
+      refuse_usage(std::string(first) + " and " + second +
+                   " exclude each other: leave one of them out");
+  refuse_missing_options(app, mode);
+  for (const auto& [option, needed, advice] : kNeeds)
+    if (is_given(app, option) && !is_given(app, needed))
+      refuse_usage(std::string(option) + " needs " + needed + ": " + advice);
 }
 
 }  // namespace vpm::tools

@@ -6,7 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
 
 namespace vpm::tools {
 namespace {

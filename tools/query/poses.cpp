@@ -1,8 +1,8 @@
 // Modes of vpm-query that ask one tool at poses in a cloud, one by one or in batches.
 #include "libvpm/file/stream.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/mode.h"
 #include "tools/query/query_report.h"
-#include "tools/query/run_mode.h"
 
 namespace vpm::tools {
 namespace {

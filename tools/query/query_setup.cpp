@@ -3,10 +3,10 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/file/stream.h"
-#include "libvpm/model/tool_model_file.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/view/sphere_files.h"
 #include "tools/common/number_checks.h"
 #include "tools/common/scene_report.h"
-#include "tools/query/spheres_out.h"
 
 namespace vpm::tools {
 namespace {
@@ -50,6 +50,19 @@ QueryOptions query_options(const Tool& tool, const Arguments& a) {
 // Returns how points are read: as they are for the measure as printed.
 Denoising denoising_of(const Arguments& a) {
   return a.raw_points || a.measure == "paper" ? Denoising::off : Denoising::on;
+}
+
+// Writes the spheres, which are in the tool's coordinates, at the pose in world coordinates, each
+// with its state. The suffix chooses the format (formats/spheres.md).
+void write_spheres(const std::string& path, std::span<const Sphere> spheres,
+                   std::span<const SphereState> states, const Pose& pose) {
+  std::vector<Sphere> placed;
+  std::vector<std::uint8_t> numbers;
+  for (std::size_t k = 0; k < spheres.size(); ++k) {
+    placed.push_back({pose * spheres[k].center, spheres[k].radius});
+    numbers.push_back(static_cast<std::uint8_t>(states[k]));
+  }
+  file::write_all(path, view::spheres_as(*view::sphere_format(path), placed, numbers));
 }
 
 }  // namespace

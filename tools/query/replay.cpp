@@ -1,14 +1,146 @@
-#include "tools/query/replay.h"
-
+// Mode of vpm-query that moves the tool, or a haptic device that holds it, through recorded frames,
+// step by step.
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
+#include "libvpm/haptics/virtual_coupling.h"
+#include "libvpm/query/level_tool_query.h"
+#include "libvpm/recording/frame_feed.h"
+#include "libvpm/recording/loop_clock.h"
+#include "libvpm/recording/timed_path.h"
+#include "tools/query/arguments.h"
+#include "tools/query/coupling.h"
+#include "tools/query/mode.h"
+#include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
-#include "tools/query/replay_report.h"
 
 namespace vpm::tools {
 namespace {
+
+// Path of the tool through a recording.
+class Replay {
+ public:
+  // Reads the recording and the path, which has `rate` steps per second. Prepares depth images on
+  // the device of the queries, and reads frames without a camera as `points` says. Throws what the
+  // readers throw, and Error(refused) if recording and path share no time or no frame can be used.
+  Replay(const Tool& tool, const ReplayArguments& arguments, double rate, const Device& device,
+         Denoising points);
+
+  const SampledPath& path() const { return path_; }
+  // Returns the first frame that can be used, by which levels are chosen.
+  const PreparedCloud& first_cloud() const { return *first_cloud_; }
+
+  // Queries step by step and writes a line of results for each. Prints notes and warnings about
+  // frames as they happen.
+  void run(LevelToolQuery& query, std::optional<VirtualCoupling> coupling, Measure measure,
+           file::Output& output, std::optional<PoseView>& view);
+
+  // Returns the last pose of the tool. The values from here on need run().
+  const Pose& last_pose() const { return last_pose_; }
+  const PreparedCloud& last_cloud() const { return feed_->cloud(); }
+  // Returns the time of each query, s.
+  const std::vector<double>& query_seconds() const { return query_seconds_; }
+  // Returns the median time of preparing a frame, s.
+  double prepare_seconds() const;
+  // Returns the field "replay" of --stats. `deadline` is in seconds.
+  nlohmann::json report(double deadline) const;
+
+ private:
+  void note_sources() const;
+  double start_time() const;
+  void find_first_cloud();
+  void say(const PreparedChange& change);
+  void say_at_end() const;
+  std::string frame_name() const;
+  // Returns step k, without rendered wrench and energy if there is no coupling.
+  CoupledStep ask(std::size_t k, LevelToolQuery& query,
+                  std::optional<VirtualCoupling>& coupling) const;
+
+  const Tool& tool_;
+  const ReplayArguments& arguments_;
+  double rate_;
+  Recording recording_;
+  SampledPath path_;
+  ImportOptions import_;
+  Device device_;
+  Denoising points_;
+  ScheduleOptions schedule_;
+  std::unique_ptr<const PreparedCloud> first_cloud_;
+  std::unique_ptr<FrameFeed> feed_;
+  std::optional<LoopClock> clock_;
+  Pose last_pose_;
+  std::vector<double> query_seconds_;
+  std::size_t said_ = 0, steps_without_frame_ = 0;
+  double wall_seconds_ = 0;
+};
+
+constexpr double kMicro = 1e6, kMilli = 1e3;
+
+nlohmann::json quantiles(const Durations& d) {
+  return {{"p50", kMicro * d.quantile(0.5)},
+          {"p99", kMicro * d.quantile(0.99)},
+          {"p99.9", kMicro * d.quantile(0.999)},
+          {"max", kMicro * d.quantile(1)}};
+}
+
+// Returns the number of steps up to 1, 2, 5, 10, ... microseconds, until all are counted.
+nlohmann::json histogram(const Durations& latency) {
+  nlohmann::json bins = nlohmann::json::array();
+  std::size_t left = latency.size();
+  for (double decade = 1; left > 0; decade *= 10) {
+    for (const double factor : {1, 2, 5}) {
+      const std::size_t longer = latency.longer_than(factor * decade / kMicro);
+      bins.push_back({{"up_to_us", factor * decade}, {"steps", left - longer}});
+      left = longer;
+      if (left == 0) break;
+    }
+  }
+  return bins;
+}
+
+// Returns the parts of the field "replay" (formats/schemas/query-stats.json) that the clock knows.
+// `wall` is the time that the loop took and `deadline` that of a step, both in seconds.
+nlohmann::json replay_report(const LoopClock& clock, double rate, double wall, double deadline) {
+  const Durations latency(clock.latencies());
+  const double lasts = static_cast<double>(latency.size()) / rate;
+  nlohmann::json report{{"steps", latency.size()},
+                        {"rate", rate},
+                        {"path_seconds", lasts},
+                        {"wall_seconds", wall},
+                        {"real_time_factor", lasts / wall},
+                        {"load", latency.mean() * rate},
+                        {"deadline_us", kMicro * deadline},
+                        {"deadline_misses", latency.longer_than(deadline)},
+                        {"latency_us", quantiles(latency)},
+                        {"latency_histogram", histogram(latency)},
+                        {"jitter_us", kMicro * latency.deviation()}};
+  if (!clock.delays().empty()) report["start_delay_us"] = quantiles(Durations(clock.delays()));
+  return report;
+}
+
+// Returns the field "frames" of the field "replay".
+nlohmann::json frames_report(const Recording& recording, const FrameCounts& counts) {
+  const Durations preparation(counts.seconds);
+  return {
+      {"listed", recording.frames.size()},
+      {"used", counts.used},
+      {"unseen", counts.unseen},
+      {"missing", recording.missing},
+      {"late", counts.late},
+      {"lost", counts.lost},
+      {"empty", counts.empty},
+      {"broken", counts.broken},
+      {"prepare_ms",
+       {{"median", kMilli * preparation.quantile(0.5)}, {"max", kMilli * preparation.quantile(1)}}},
+      {"waits", counts.waits},
+      {"longest_wait_ms", kMilli * counts.longest_wait}};
+}
 
 // Most warnings about frames that are printed; the report counts all.
 constexpr std::size_t kMostWarnings = 5;
@@ -27,8 +159,6 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
 RecordingOptions recording_options(const ReplayArguments& a, const ImportOptions& import) {
   return {a.frame_rate, a.camera_poses, import.to_world};
 }
-
-}  // namespace
 
 Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
                const Device& device, Denoising points)
@@ -185,6 +315,46 @@ nlohmann::json Replay::report(double deadline) const {
   report["steps_without_frame"] = steps_without_frame_;
   report["frames"] = frames_report(recording_, feed_->counts());
   return report;
+}
+
+// Returns the parameters of --coupling, if it is given.
+std::optional<CouplingParameters> coupling_of(const Arguments& a, const ToolModel& model) {
+  if (a.coupling.empty()) return std::nullopt;
+  const double rate = a.replay.rate.value_or(ReplayArguments::kRate);
+  const CouplingParameters parameters = coupling_from_text(a.coupling, model, rate);
+  if (a.replay.rate && rate != parameters.rate)
+    throw Error(ErrorKind::invalid_argument,
+                "--rate and the rate of --coupling differ; give one of them");
+  return parameters;
+}
+
+}  // namespace
+
+void run_frames(QuerySetup& setup) {
+  const Arguments& a = setup.arguments;
+  const ToolModel& model = setup.models.front();
+  const std::optional<CouplingParameters> parameters = coupling_of(a, model);
+  const double rate =
+      parameters ? parameters->rate : a.replay.rate.value_or(ReplayArguments::kRate);
+  Replay replay(setup.tool, a.replay, rate, setup.options.device, setup.points);
+  const Pose first = replay.path().pose(0);
+  LevelToolQuery query(model, setup.options, setup.level, replay.first_cloud(), first);
+  note_scale(setup.tool, query);
+  std::optional<VirtualCoupling> coupling;
+  if (parameters) {
+    note_coupling(setup.tool, *parameters, model, setup.options.stiffness);
+    coupling.emplace(*parameters, model.center_of_mass, first);
+  }
+  file::Output output(a.output);
+  replay.run(query, coupling, setup.options.measure, output, setup.view);
+  output.finish();
+  nlohmann::json stats =
+      query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
+  stats["cloud_points"] = replay.last_cloud().positions().size();
+  stats["replay"] = replay.report(a.deadline_us ? 1e-6 * *a.deadline_us : 1 / rate);
+  add_level(stats, query);
+  write_last_spheres(setup, query, replay.last_pose());
+  write_stats_and_view(setup, std::move(stats));
 }
 
 }  // namespace vpm::tools

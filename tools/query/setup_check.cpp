@@ -89,14 +89,15 @@ bool SetupCheck::all_behind() const {
   });
 }
 
-// Returns the smallest distance of a tool's ball from the points, in units of its diameter;
-// negative where they overlap.
-double SetupCheck::nearest_gap(bool inverted) const {
+// Returns the smallest distance of a tool's ball, moved by `motion`, from the points, in units of
+// its diameter; negative where they overlap.
+double SetupCheck::nearest_gap(bool inverted, const Pose& motion) const {
   const KdTree tree(positions_);
   double nearest = HUGE_VAL;
   for (const Kept& kept : kept_) {
     const ToolBall tool = ball(inverted ? inverse(kept.pose) : kept.pose, kept.tool);
-    const double distance = std::sqrt(tree.squared_distance(narrow(tool.center - origin_), 1));
+    const Vec3 center = motion * tool.center;
+    const double distance = std::sqrt(tree.squared_distance(narrow(center - origin_), 1));
     nearest = std::min(nearest, (distance - tool.radius) / (2 * tool.radius));
   }
   return nearest;
@@ -107,13 +108,16 @@ std::string SetupCheck::inversion_hint() const {
   if (inverse_is_near && (!camera_ || any_in_view(*camera_, true)))
     return "; with the poses inverted it would be there: a pose must map the tool's coordinates to "
            "the world's";
-  if (camera_ && !any_in_view(*camera_, false)) {
+  if (camera_) {
     Camera turned = *camera_;
     turned.to_world = inverse(turned.to_world);
-    if (any_in_view(turned, false))
+    // Moves the tool instead of the points: from where the turned camera sees it, to where this one
+    // has what the other one saw.
+    const Pose motion = camera_->to_world * camera_->to_world;
+    if (any_in_view(turned, false) &&
+        (!any_in_view(*camera_, false) || nearest_gap(false, motion) <= 1))
       return "; with the camera's pose inverted it would be: vpm-normals --camera-pose must map "
-             "the camera's coordinates to the "
-             "world's";
+             "the camera's coordinates to the world's";
   }
   return "; are poses and scene in the same frame and unit?";
 }

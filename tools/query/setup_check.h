@@ -40,7 +40,7 @@ class SetupCheck {
   ToolBall ball(const Pose& pose, std::size_t tool) const;
   bool any_in_view(const Camera& camera, bool inverted) const;
   bool all_behind() const;
-  double nearest_gap(bool inverted) const;
+  double nearest_gap(bool inverted, const Pose& motion = {}) const;
   std::string inversion_hint() const;
 
   const Tool& tool_;

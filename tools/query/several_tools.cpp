@@ -5,8 +5,8 @@
 
 #include "libvpm/file/stream.h"
 #include "tools/query/cloud_scene.h"
+#include "tools/query/mode.h"
 #include "tools/query/query_report.h"
-#include "tools/query/run_mode.h"
 
 namespace vpm::tools {
 namespace {

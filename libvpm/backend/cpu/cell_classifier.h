@@ -7,7 +7,7 @@
 #include "libvpm/backend/cpu/cell_samples.h"
 #include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/backend/cpu/points_inside.h"
-#include "libvpm/core/parallel_region.h"
+#include "libvpm/core/parallel.h"
 
 namespace vpm {
 

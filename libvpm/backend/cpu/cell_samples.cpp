@@ -2,8 +2,8 @@
 
 #include <iterator>
 
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/vec3x4.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "libvpm/backend/cpu/cell_states.h"
-#include "libvpm/core/parallel_region.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/measure/flood_rules.h"
 #include "libvpm/temporal/pose_memory.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "libvpm/core/atomic_add.h"
+#include "libvpm/core/fixed_sum.h"
 
 namespace vpm {
 

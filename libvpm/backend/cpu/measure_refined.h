@@ -11,7 +11,7 @@
 #include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/backend/cpu/spatial_level.h"
-#include "libvpm/core/parallel_region.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/include/vpm/query_types.h"
 #include "libvpm/scene/prepared_cloud.h"
 #include "libvpm/temporal/pose_memory.h"

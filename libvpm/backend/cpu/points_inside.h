@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libvpm/backend/sphere_location.h"
-#include "libvpm/core/parallel_region.h"
+#include "libvpm/core/parallel.h"
 #include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm {

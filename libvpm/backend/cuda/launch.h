@@ -9,9 +9,8 @@
 
 #include "libvpm/backend/cuda/team.h"
 #include "libvpm/backend/cuda/views.h"
-#include "libvpm/device/cuda/launch.h"
 #include "libvpm/device/cuda/numbered_word.h"
-#include "libvpm/device/cuda/stream.h"
+#include "libvpm/device/cuda/runtime.h"
 
 namespace vpm::cuda {
 

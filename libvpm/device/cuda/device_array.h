@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "libvpm/device/cuda/current_device.h"
+#include "libvpm/device/cuda/runtime.h"
 
 namespace vpm::cuda {
 
 // Waits for what copies and clears have only begun: they belong to the default stream, for which
-// other streams (stream.h) do not wait.
+// other streams (runtime.h) do not wait.
 inline void finish_transfers() {
   check(cudaStreamSynchronize(cudaStreamLegacy));
 }

@@ -1,4 +1,4 @@
-#include "libvpm/device/cuda/current_device.h"
+#include "libvpm/device/cuda/runtime.h"
 #include "libvpm/device/device.h"
 
 namespace vpm {

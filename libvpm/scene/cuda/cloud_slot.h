@@ -3,7 +3,7 @@
 
 #include <mutex>
 
-#include "libvpm/device/cuda/stream.h"
+#include "libvpm/device/cuda/runtime.h"
 #include "libvpm/scene/cuda/cloud_prepare.h"
 #include "libvpm/scene/cuda/device_cloud.h"
 #include "libvpm/scene/frame_preparation.h"

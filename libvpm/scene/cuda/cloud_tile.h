@@ -5,7 +5,7 @@
 #include "libvpm/cloud/depth_image.h"
 #include "libvpm/cloud/normal_window.h"
 #include "libvpm/device/cuda/device_array.h"
-#include "libvpm/device/cuda/launch.h"
+#include "libvpm/device/cuda/runtime.h"
 #include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/cuda/device_cloud.h"
 #include "libvpm/scene/depth/denoised_image.h"

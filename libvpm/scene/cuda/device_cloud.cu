@@ -3,7 +3,7 @@
 #include <map>
 #include <mutex>
 
-#include "libvpm/device/cuda/current_device.h"
+#include "libvpm/device/cuda/runtime.h"
 #include "libvpm/scene/cuda/device_cloud.h"
 
 namespace vpm::cuda {

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "libvpm/cloud/padded_image.h"
 #include "libvpm/cloud/row_bands.h"
-#include "libvpm/cloud/vector_tile.h"
 #include "libvpm/core/lanes.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {

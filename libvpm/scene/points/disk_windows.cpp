@@ -1,7 +1,7 @@
 #include "libvpm/scene/points/disk_windows.h"
 
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/vec3x4.h"
-#include "libvpm/core/vector_clones.h"
 
 namespace vpm {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "libvpm/core/box.h"
+#include "libvpm/core/lanes.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/core/vec3x4.h"
-#include "libvpm/core/vector_clones.h"
 #include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm {

@@ -71,7 +71,7 @@ $ vpm-query --tool single.vpmg --cloud wall.vpmc --poses path.txt --deadline-us 
 2> vpm-query: error: the tool model has one level only, so that a deadline cannot choose; make it again with vpm-graph --levels
 [1]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 0.0001%
-2> vpm-query: error: no level of the tool model keeps an error of 0.0001 %; the best has * %: allow more, or pack more spheres (glob)
+2> vpm-query: error: no level of the tool model keeps an error of 0.0001 %; the best has * %: allow as much, or pack more spheres (glob)
 [1]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error 5%%
 2> vpm-query: error: --max-error 5%%: give a share of the tool's volume like 0.5% or 0.005

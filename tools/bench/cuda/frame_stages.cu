@@ -7,7 +7,7 @@
 #include <iostream>
 #include <memory>
 
-#include "libvpm/cloud/cloud_file.h"
+#include "libvpm/cloud/cloud.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace {
