@@ -4,7 +4,7 @@
 #include <variant>
 
 #include "libvpm/include/vpm/scene.h"
-#include "libvpm/scene/scene_view.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm {
 

@@ -7,7 +7,7 @@
 
 #include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/scene_view.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm {
 
@@ -45,5 +45,26 @@ class DeviceMeasure {
 // Throws Error(unavailable) in builds without CUDA, or if the device has too little memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    const QueryOptions& options);
+
+// Spreads the jobs of a batch over several devices.
+class SpreadMeasure : public DeviceMeasure {
+ public:
+  // Takes at least one measure, each on its own device.
+  explicit SpreadMeasure(std::vector<std::unique_ptr<DeviceMeasure>> measures)
+      : measures_(std::move(measures)) {}
+
+  // Leaves a single job to the first device. A batch is prepared on the CPU, and a thread for each
+  // device takes jobs as long as any are left. All `measures` must spread over the same devices.
+  void run(const SceneView& scene, std::span<DeviceMeasure* const> measures,
+           std::span<const Job> jobs, std::span<Result> results) override;
+
+  void read_states(std::vector<SphereState>& states) override {
+    measures_.front()->read_states(states);
+  }
+  double flood_microseconds() const override { return measures_.front()->flood_microseconds(); }
+
+ private:
+  std::vector<std::unique_ptr<DeviceMeasure>> measures_;
+};
 
 }  // namespace vpm

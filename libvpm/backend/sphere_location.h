@@ -1,7 +1,6 @@
 // Finds the spheres of a packing that hold a point strictly inside, by the grid of the tool model.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "libvpm/model/tool_model.h"

@@ -16,6 +16,7 @@ struct Start {
   std::string_view bytes;  // in lower case if they are letters
   const char* what;
   const char* next;
+  Holds holds = Holds::anything;
 };
 
 constexpr Start kStarts[] = {
@@ -23,26 +24,28 @@ constexpr Start kStarts[] = {
      "fetch it with: git lfs pull"},
     {"<!doctype html"sv, "a web page", "download the file itself"},
     {"<html"sv, "a web page", "download the file itself"},
-    {"<mujoco"sv, "a robot description (MJCF)", "give one of the files that it names"},
-    {"<robot"sv, "a robot description (URDF)", "give one of the files that it names"},
+    {"<mujoco"sv, "a robot description (MJCF)", "give one of the files that it names", Holds::mesh},
+    {"<robot"sv, "a robot description (URDF)", "give one of the files that it names", Holds::mesh},
     {"\x1f\x8b"sv, "compressed by gzip", "unpack it first: gunzip"},
     {"pk\x03\x04"sv, "an archive (zip, npz)", "unpack it first, or save one array as .npy"},
     {"bzh"sv, "compressed by bzip2", "unpack it first: bunzip2"},
     {"\xfd\x37zxz"sv, "compressed by xz", "unpack it first: unxz"},
     {"\xff\xd8\xff"sv, "a JPEG picture, which holds no exact values",
-     "give the 16-bit or float image"},
-    {"gif8"sv, "a GIF picture", "give the 16-bit or float image"},
+     "give the 16-bit or float image", Holds::scan},
+    {"gif8"sv, "a GIF picture", "give the 16-bit or float image", Holds::scan},
     {"%pdf"sv, "a PDF document", "give the file that was meant"},
-    {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG"},
-    {"matlab 5.0"sv, "a MATLAB file", "save one of its arrays as 16-bit PNG"},
-    {"#rosbag"sv, "a ROS bag", "extract its images or clouds first"},
-    {"\x89mcap"sv, "an MCAP recording", "extract its images or clouds first"},
-    {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL"},
-    {"astm-e57"sv, "an E57 cloud", "convert it to PLY with normals, for example by PDAL"},
-    {"iso-10303-21"sv, "a STEP file of CAD", "export a mesh from it"},
-    {"blender"sv, "a Blender file", "export a mesh from it"},
+    {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG", Holds::scan},
+    {"matlab 5.0"sv, "a MATLAB file", "save one of its arrays as 16-bit PNG", Holds::scan},
+    {"#rosbag"sv, "a ROS bag", "extract its images or clouds first", Holds::scan},
+    {"\x89mcap"sv, "an MCAP recording", "extract its images or clouds first", Holds::scan},
+    {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL", Holds::scan},
+    {"astm-e57"sv, "an E57 cloud", "convert it to PLY with normals, for example by PDAL",
+     Holds::scan},
+    {"iso-10303-21"sv, "a STEP file of CAD", "export a mesh from it", Holds::mesh},
+    {"blender"sv, "a Blender file", "export a mesh from it", Holds::mesh},
     {"7z\xbc\xaf"sv, "compressed by 7-Zip", "unpack it first: 7z x"},
-    {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", "export a mesh from it"},
+    {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", "export a mesh from it",
+     Holds::mesh},
 };
 
 // Tells the kinds of XML by what stands behind the declaration and comments.
@@ -54,7 +57,7 @@ std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
   for (const char* const robot : {"<robot", "<mujoco", "<sdf"}) {
     if (text.find(robot) != text.npos)
       return ForeignContent{"a robot description (URDF, MJCF, SDF)",
-                            "give one of the files that it names"};
+                            "give one of the files that it names", Holds::mesh};
   }
   return ForeignContent{"an XML file", "give the file that was meant"};
 }
@@ -81,7 +84,7 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   const std::string start = in_lower_case(text.substr(begin));
   for (const Start& known : kStarts)
-    if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next};
+    if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next, known.holds};
   if (const auto xml = xml_kind(bytes)) return xml;
   return own_kind(bytes);
 }

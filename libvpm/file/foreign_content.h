@@ -8,9 +8,13 @@
 
 namespace vpm::file {
 
+// Kind of input that a file leads to.
+enum class Holds { anything, mesh, scan };
+
 struct ForeignContent {
   std::string what;  // "a Git LFS pointer, not the file itself"
-  std::string next;  // advice that helps, such as the command to give
+  std::string next;  // advice that helps, for a program that takes what the file holds
+  Holds holds = Holds::anything;
 };
 
 // Returns what the file is, if it is one of those that people give by mistake: Git LFS pointers,

@@ -9,7 +9,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/mesh/cut_volume.h"
 #include "libvpm/mesh/outer_surface.h"
-#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/body.h"
 #include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {

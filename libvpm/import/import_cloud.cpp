@@ -66,7 +66,10 @@ FileFormat format_of(std::span<const std::byte> bytes, const std::string& name) 
   const std::string_view text = file::as_text(bytes);
   if (text.empty()) refuse("the file is empty", name, "give a depth image or a cloud");
   if (const auto other = file::foreign_content(bytes))
-    refuse("this is " + other->what, name, other->next);
+    refuse("this is " + other->what, name,
+           other->holds == file::Holds::mesh
+               ? "give a depth image or a cloud, or the mesh to vpm-pack"
+               : other->next);
   for (const Start& start : kStarts)
     if (text.starts_with(start.bytes)) return start.format;
   if (is_netpbm(text)) return FileFormat::netpbm;

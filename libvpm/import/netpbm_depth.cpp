@@ -4,6 +4,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
+#include "libvpm/import/depth_suspicions.h"
 #include "libvpm/import/scalar_type.h"
 
 namespace vpm {
@@ -26,7 +27,7 @@ class NetpbmReader {
       read_floats(range);
     } else {
       if (!(range > 255 && range <= 65535))
-        fail("its largest value is " + std::to_string(range) + ": depth needs 16 bits");
+        fail("its largest value is " + number_text(range) + ": depth needs 16 bits");
       image_.are_integers = image_.are_16_bit = true;
       magic == "P2" ? read_text() : read_binary();
     }
@@ -122,7 +123,7 @@ class NetpbmReader {
     if (std::abs(scale) != 1) {
       image_.unit_remarks.push_back(
           {true,
-           "the scale of " + std::to_string(std::abs(scale)) +
+           "the scale of " + number_text(std::abs(scale)) +
                " in its header multiplies nothing; give `depth_scale` if depths are not metres"});
     }
   }

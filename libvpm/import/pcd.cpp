@@ -193,7 +193,8 @@ void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
   try {
     viewpoint.rotation = rotation_from_quaternion({n[4], n[5], n[6], n[3]});
   } catch (const Error& fault) {
-    refuse("PCD header: VIEWPOINT: " + fault.problem(), name_, fault.hint());
+    refuse("PCD header: VIEWPOINT: " + fault.problem(), name_,
+           "give tx ty tz qw qx qy qz of a unit quaternion");
   }
   header_.viewpoint = viewpoint;
 }
@@ -215,11 +216,11 @@ void PcdParser::check_header() {
   if (h.width == 0 && h.height == 1) h.width = h.points;
   if (h.points == 0 && h.width <= kMaxPoints && h.height <= kMaxPoints)
     h.points = h.width * h.height;
-  if (h.points == 0) fail("holds no points");
   if (h.points > kMaxPoints || h.width > kMaxPoints || h.height > kMaxPoints) {
     fail("header promises " + std::to_string(std::max({h.points, h.width, h.height})) +
          " points; at most " + std::to_string(kMaxPoints) + " are read");
   }
+  if (h.points == 0) fail("holds no points");
   if (h.width * h.height != h.points) {
     fail("header: WIDTH " + std::to_string(h.width) + " times HEIGHT " + std::to_string(h.height) +
          " is not POINTS " + std::to_string(h.points));

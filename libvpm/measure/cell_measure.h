@@ -6,10 +6,8 @@
 #pragma once
 
 #include "libvpm/measure/classify.h"
-#include "libvpm/measure/clip_plane.h"
-#include "libvpm/measure/contact_plane.h"
+#include "libvpm/measure/flood_rules.h"
 #include "libvpm/measure/tool_piece.h"
-#include "libvpm/measure/tool_sum.h"
 
 namespace vpm {
 
@@ -76,7 +74,8 @@ class CellMeasure {
   VPM_HD void add_far(const Supports& supports, ToolSum& sum) const {
     const auto add_if_far = [&](const ToolPiece& piece) {
       const PieceSample sampled = sample_piece(piece);
-      if (sampled.is_far && supports(sampled.x, sampled.on_surface.foot)) add(piece, sampled, sum);
+      if (sampled.is_far && supports(sampled.x, sampled.on_surface.foot))
+        add(piece, sampled, surface_, sum);
     };
     for (std::uint32_t b = cell_.begin; b < cell_.end; ++b) {
       const CellBlock& block = cell_.blocks[b];
@@ -103,7 +102,7 @@ class CellMeasure {
                               ToolSum& sum) const {
     const PieceSample sampled = sample_piece(piece);
     if (sampled.is_inside && (!sampled.is_far || supports(sampled.x, sampled.on_surface.foot)))
-      add(piece, sampled, sum);
+      add(piece, sampled, surface_, sum);
   }
 
   // Holds the class of one block of the cell.
@@ -149,14 +148,8 @@ class CellMeasure {
     bool is_far = false;
   };
   VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point = kNoPoint) const {
-    return sample_piece(piece, point, surface_);
-  }
-  // Samples the surface by `near`, a sampler about the piece.
-  template <class Near>
-  VPM_HD PieceSample sample_piece(const ToolPiece& piece, std::uint32_t point,
-                                  const Near& near) const {
     const Vec3 x = to_surface_ * piece.at;
-    return sample_of(piece, x, near.sample(x, point));
+    return sample_of(piece, x, surface_.sample(x, point));
   }
   // Returns the decisions for a piece at x, surface frame, from a known surface sample.
   VPM_HD PieceSample sample_of(const ToolPiece& piece, Vec3 x,
@@ -171,10 +164,7 @@ class CellMeasure {
   VPM_HD static bool is_cut(const ToolPiece& piece, const PieceSample& sampled) {
     return side_of_plane(sampled.on_surface.distance, piece.radius) == PlaneSide::cut;
   }
-  // Adds a piece that is inside.
-  VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, ToolSum& sum) const {
-    add(piece, sampled, surface_, sum);
-  }
+  // Adds a piece that is inside; `near` samples the surface about it.
   template <class Near>
   VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, const Near& near,
                   ToolSum& sum) const {
@@ -185,25 +175,20 @@ class CellMeasure {
   VPM_HD void add(const ToolPiece& piece, const PieceSample& sampled, Vec3 way_out,
                   const Near& near, ToolSum& sum) const {
     const bool cut = is_cut(piece, sampled);
-    add_behind(cut ? part_behind(piece, sampled) : piece, sampled,
-               cut ? sampled.on_surface.normal : way_out, near, sum);
+    const ToolPiece part = cut ? part_behind(piece, sampled) : piece;
+    const Vec3 normal = cut ? sampled.on_surface.normal : way_out;
+    OtherWall other;
+    if (is_divisible(part.extent, tool_reach_) &&
+        finds_other_wall(near, sampled.x, {normal, sampled.on_surface.foot},
+                         sampled.on_surface.point, part.extent, kTwoWalls, other))
+      add_divided(part, sampled.x, normal, other, sum);
+    else
+      add_pushed(part, normal, sum);
   }
   // Returns the part of a cut piece behind the surface, with the piece's centroid.
   VPM_HD ToolPiece part_behind(ToolPiece piece, const PieceSample& sampled) const {
     piece.weight *= surface_.fraction_inside(sampled.on_surface, sampled.x, piece.radius);
     return piece;
-  }
-  // Adds a piece behind the surface; `normal` is the way out of its middle.
-  template <class Near>
-  VPM_HD void add_behind(const ToolPiece& piece, const PieceSample& sampled, Vec3 normal,
-                         const Near& near, ToolSum& sum) const {
-    OtherWall other;
-    if (is_divisible(piece.extent, tool_reach_) &&
-        finds_other_wall(near, sampled.x, {normal, sampled.on_surface.foot},
-                         sampled.on_surface.point, piece.extent, kTwoWalls, other))
-      add_divided(piece, sampled.x, normal, other, sum);
-    else
-      add_pushed(piece, normal, sum);
   }
   VPM_HD Vec3 closest_normal(const PieceSample& sampled) const {
     return surface_.closest_normal(sampled.x, sampled.on_surface);
@@ -249,7 +234,7 @@ class CellMeasure {
   VPM_HD void add_piece(const ToolPiece& piece, CellResult& result) const {
     const PieceSample sampled = sample_piece(piece, result.point);
     result.point = sampled.on_surface.point;
-    if (note(piece, sampled, result)) add(piece, sampled, result.sum);
+    if (note(piece, sampled, result)) add(piece, sampled, surface_, result.sum);
   }
   // Holds the direction found for a run of neighbouring samples.
   struct SharedDirection {
@@ -259,7 +244,8 @@ class CellMeasure {
   template <class Near>
   VPM_HD void add_sample(std::uint32_t k, const ToolPiece& piece, SharedDirection& shared,
                          CellResult& result, const Near& near) const {
-    const PieceSample sampled = sample_piece(piece, result.point, near);
+    const Vec3 x = to_surface_ * piece.at;
+    const PieceSample sampled = sample_of(piece, x, near.sample(x, result.point));
     result.point = sampled.on_surface.point;
     if (!note(piece, sampled, result)) return;
     if (!shares_direction(piece, sampled)) {

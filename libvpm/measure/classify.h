@@ -4,7 +4,7 @@
 #pragma once
 
 #include "libvpm/include/vpm/query_types.h"
-#include "libvpm/measure/contact_plane.h"
+#include "libvpm/measure/flood_rules.h"
 #include "libvpm/scene/body.h"
 
 namespace vpm {
@@ -107,17 +107,6 @@ VPM_HD ClusterClass class_by_middle(const Surface& surface, const SurfaceSample&
              : ClusterClass::uniform;
 }
 
-// True if a plane found for a cluster may stand for the surface in it: the plane passes within
-// kSheetReach of its radii, and no second surface is near.
-template <MeasuredBody Surface>
-VPM_HD bool is_plane_of_cluster(const Surface& surface, const typename Surface::BallClass& in_ball,
-                                Vec3 center, double radius, const TangentPlane& plane) {
-  const double near = kSheetReach * radius;
-  OtherWall other;
-  return squared_norm(plane.foot - center) <= near * near &&
-         !finds_other_wall(surface, center, plane, in_ball.point, radius, kOneDirection, other);
-}
-
 // True if the surface may pass through an ambiguous cluster as one plane, so that the sample at its
 // middle is needed.
 template <MeasuredBody Surface>
@@ -127,14 +116,18 @@ VPM_HD bool may_have_plane(const Surface& surface, const typename Surface::BallC
 }
 
 // True if the surface passes through an ambiguous cluster as one plane, which is returned in
-// `plane`. `sample_all` is SampleInTurn, or samples the same places side by side.
+// `plane`: it passes within kSheetReach of the cluster's radii, and no second surface is near.
+// `sample_all` is SampleInTurn, or samples the same places side by side.
 template <MeasuredBody Surface, class ReadAll>
 VPM_HD bool finds_cluster_plane(const Surface& surface, const typename Surface::BallClass& in_ball,
                                 Vec3 center, double radius, double tool_radius,
                                 const ReadAll& sample_all, TangentPlane& plane) {
+  const double near = kSheetReach * radius;
+  OtherWall other;
   return may_have_plane(surface, in_ball, radius, tool_radius) &&
          surface.mean_plane(in_ball, center, radius, radius, sample_all, plane) &&
-         is_plane_of_cluster(surface, in_ball, center, radius, plane);
+         squared_norm(plane.foot - center) <= near * near &&
+         !finds_other_wall(surface, center, plane, in_ball.point, radius, kOneDirection, other);
 }
 
 // Returns the side of a cell in a cluster that is cut by a plane. What the cell's own pixels show

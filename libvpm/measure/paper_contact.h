@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "libvpm/measure/tool_sum.h"
+#include "libvpm/measure/tool_piece.h"
 #include "libvpm/model/sphere.h"
 
 namespace vpm {

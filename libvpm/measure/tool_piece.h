@@ -1,9 +1,61 @@
-// Defines the parts of a cell: blocks, samples, and pieces as the measure adds them.
+// Defines the parts of a cell (blocks, samples, pieces), the shape that stands for a piece, what a
+// plane clips of it, and the sums of what parts add to an answer.
 #pragma once
 
+#include "libvpm/core/division.h"
+#include "libvpm/core/fixed_sum.h"
+#include "libvpm/core/pose.h"
+#include "libvpm/core/vec3.h"
+#include "libvpm/include/vpm/query_types.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm {
+
+// Sums volume, force and torque over parts of a tool, with the same bits in any order. Sums in
+// units of the tool: volumes in parts of its volume, arms in parts of its radius. Parts of a tool
+// do not overlap, so every sum lies in [-1, 1]; 60 fractional bits hold up to 8.
+struct ToolSum {
+  using Sum = FixedSum<60>;
+  Sum volume, force[3], torque[3];
+
+  VPM_HD void add(double part, Vec3 normal, Vec3 arm) { add_moment(part, part * arm, normal); }
+  // Adds parts that are pushed along one normal: the sum of their volumes, and the sum of each
+  // volume times its arm. Skips what rounds to no volume, so that such parts change no sum.
+  VPM_HD void add_moment(double part, Vec3 moment, Vec3 normal) {
+    Sum resolved;
+    resolved.add(part);
+    if (resolved.value == 0) return;
+    const Vec3 f = part * normal, t = cross(moment, normal);
+    volume.add(resolved);
+    force[0].add(f.x), force[1].add(f.y), force[2].add(f.z);
+    torque[0].add(t.x), torque[1].add(t.y), torque[2].add(t.z);
+  }
+  VPM_HD void add(const ToolSum& other) {
+    volume.add(other.volume);
+    for (int k = 0; k < 3; ++k) force[k].add(other.force[k]), torque[k].add(other.torque[k]);
+  }
+
+  // Adds `other`; many threads may do so at once.
+  void add_atomically(const ToolSum& other) {
+    vpm::add_atomically(volume.value, other.volume.value);
+    for (int k = 0; k < 3; ++k) {
+      vpm::add_atomically(force[k].value, other.force[k].value);
+      vpm::add_atomically(torque[k].value, other.torque[k].value);
+    }
+  }
+
+  // Writes the sums in SI units and world axes; `rotation` maps tool axes to the world's.
+  VPM_HD void write(const ToolModel& tool, const Rotation& rotation, Result& result) const {
+    result.volume_fraction = volume.real() < 1 ? volume.real() : 1;  // rounding may pass 1
+    result.volume = tool.volume * result.volume_fraction;
+    result.wrench.force =
+        tool.volume * (rotation * Vec3{force[0].real(), force[1].real(), force[2].real()});
+    result.wrench.torque =
+        tool.volume *
+        (tool.reach * (rotation * Vec3{torque[0].real(), torque[1].real(), torque[2].real()}));
+  }
+};
 
 // Holds volume and centroid of a block's samples together, which the file does not store.
 struct BlockMass {
@@ -40,6 +92,88 @@ VPM_HD inline ToolPiece piece_of(const BlockMass& mass, const CellView& cell) {
     piece.end = cell.blocks[cell.end - 1].end;
   }
   return piece;
+}
+
+// Stands for a piece of the tool; only its two functions know which shape that is. Replaces a piece
+// by the ball with its second moment. The fraction of a thin layer depends on the
+// second moment only, so the ball is right to second order for any compact piece. Real is double,
+// or a vector of doubles.
+template <class Real>
+struct BallShape {
+  Real radius;
+
+  // Returns the extent of the piece from its middle toward a plane with this normal, m.
+  [[gnu::always_inline]] VPM_HD Real reach_toward(const Vec3& /*normal*/) const { return radius; }
+  // Returns the fraction of the piece behind a plane that cuts it at this signed distance, m.
+  [[gnu::always_inline]] VPM_HD Real fraction_behind(const Real& distance,
+                                                     const Vec3& /*normal*/) const {
+    return fraction_of_cut_ball(quotient(distance, radius));
+  }
+};
+
+// Describes a plane that cuts the tool, in the surface's frame and about the tool's centre of mass.
+struct ClipPlane {
+  TangentPlane seen;
+  Vec3 normal;
+  double height = 0;  // signed distance of the centre of mass from the plane, m
+
+  ClipPlane() = default;
+  VPM_HD ClipPlane(const TangentPlane& plane, const Pose& to_surface)
+      : seen(plane),
+        normal(transpose(to_surface.rotation) * plane.normal),
+        height(plane.distance(to_surface.translation)) {}
+  VPM_HD double distance(Vec3 about_center_of_mass) const {
+    return dot(normal, about_center_of_mass) + height;
+  }
+};
+
+// Holds volume and first moment of the parts of samples behind a plane.
+struct ClippedMoments {
+  double weight = 0;
+  Vec3 moment;  // sum of each weight times its sample's centre
+  bool is_cut = false;
+};
+// Counts the partial sums of ClippedMoments: sample k goes to row k % kSumRows, and rows are added
+// pairwise by halves. Vector lanes or threads can each add a row and get the same bits.
+inline constexpr std::uint32_t kSumRows = 16;
+
+// Returns the weight of a piece behind a plane with this normal, at these signed distances, m, from
+// the piece's middle, and in `is_cut` whether the plane cuts it. It has no branches, since vector
+// lanes would all wait for the slowest. Real is double or a vector; BallShape is a Shape.
+template <class Shape, class Real, class Mask>
+[[gnu::always_inline]] VPM_HD inline Real weight_behind(const Shape& shape, const Vec3& normal,
+                                                        const Real& distance, const Real& weight,
+                                                        Mask& is_cut) {
+  const Real reach = shape.reach_toward(normal);
+  const Mask reached = distance < reach;
+  is_cut = reached & (distance > -reach);
+  const Real part = weight * shape.fraction_behind(distance, normal);
+  return reached ? (is_cut ? part : weight) : Real{};
+}
+// Adds the part of a sample behind a plane to its row. Adds zeros too, so that no row is ever -0.
+VPM_HD inline void add_to_row(const CellSample& sample, const ClipPlane& plane, ClippedMoments& row,
+                              bool& is_cut) {
+  bool cut = false;
+  const double inside =
+      weight_behind(BallShape<double>{sample.radius}, plane.normal,
+                    plane.distance(widen(sample.center)), double{sample.weight}, cut);
+  is_cut |= cut;
+  row.weight += inside;
+  row.moment += inside * widen(sample.center);
+}
+// Returns the clipped moments of samples, one after another.
+VPM_HD inline ClippedMoments clipped_in_turn(const ClipPlane& plane, const CellSample* samples,
+                                             std::uint32_t count) {
+  ClippedMoments rows[kSumRows];
+  for (std::uint32_t k = 0; k < count; ++k)
+    add_to_row(samples[k], plane, rows[k % kSumRows], rows[0].is_cut);
+  for (std::uint32_t half = kSumRows / 2; half > 0; half /= 2) {
+    for (std::uint32_t r = 0; r < half; ++r) {
+      rows[r].weight += rows[r + half].weight;
+      rows[r].moment += rows[r + half].moment;
+    }
+  }
+  return rows[0];
 }
 
 }  // namespace vpm

@@ -404,9 +404,11 @@ class Check {
                     static_cast<std::int64_t>(triangles().size() / 2);
     facts().area = area_of(result_.solid);
     if (!(facts().volume > kFlat * facts().area * norm(box.high - box.low))) {
-      refuse("the mesh is degenerate: it is closed, but encloses no volume (" +
-                 std::to_string(facts().volume) + " m^3)",
-             mesh_.name);
+      char text[96];
+      std::snprintf(text, sizeof text,
+                    "the mesh is degenerate: it is closed, but encloses no volume (%.3g m^3)",
+                    facts().volume);
+      refuse(text, mesh_.name);
     }
   }
 

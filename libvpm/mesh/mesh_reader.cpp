@@ -117,9 +117,9 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
 // Refuses what is known to be something else than a mesh, by name.
 void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
                     const std::string& name) {
-  if (const auto other = file::foreign_content(bytes))
-    refuse("this is " + other->what, name, other->next);
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
+  if (const auto other = file::foreign_content(bytes))
+    refuse("this is " + other->what, name, other->holds == file::Holds::scan ? hint : other->next);
   if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
   if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
   for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})

@@ -17,7 +17,7 @@ constexpr double kSumTolerance = 1e-6;
 // Relative tolerance for spheres that touch the tool's bounding ball.
 constexpr double kReachTolerance = 1e-6;
 // Largest distance of blocks and samples from the centre of mass, in tool radii. The fixed-point
-// sums of a query (tool_sum.h) allow lever arms of up to 8.
+// sums of a query (ToolSum) allow lever arms of up to 8.
 constexpr double kFarthestPart = 2;
 // Largest distance of a cell's blocks and samples from its sphere's centre, in bounding radii of
 // the cell.

@@ -1,9 +1,9 @@
 #include "libvpm/query/level_tool_query.h"
 
 #include <algorithm>
-#include <cmath>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -22,9 +22,10 @@ std::string percent(double fraction) {
 // Returns the least number of per cent with three digits that is not below the fraction, so that
 // who asks for it gets it.
 std::string percent_from(double fraction) {
-  const double value = 100 * fraction * (1 + 1e-12);
-  const double digits = std::pow(10, 2 - std::floor(std::log10(value)));
-  return percent(std::ceil(value * digits) / digits / 100);
+  const double digits = std::pow(10, 2 - std::floor(std::log10(100 * fraction)));
+  double steps = std::round(100 * fraction * digits);
+  if (steps / digits / 100 < fraction) ++steps;
+  return percent(steps / digits / 100);
 }
 
 }  // namespace

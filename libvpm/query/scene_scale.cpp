@@ -6,7 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/scene/points/quadric_fit.h"
+#include "libvpm/query/quadric_fit.h"
 
 namespace vpm {
 namespace {

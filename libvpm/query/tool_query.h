@@ -10,7 +10,7 @@
 #include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/backend/device_measure.h"
 #include "libvpm/include/vpm/query_types.h"
-#include "libvpm/scene/scene_view.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm {
 

@@ -32,7 +32,8 @@ FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& 
   if (is_over_) return;
   const double lasts = recording.frames.back().time - recording.frames.front().time;
   if (options.repeat && !(lasts * options.rate >= 1))
-    refuse("frames that all come within one step cannot be repeated");
+    refuse("frames that all come within one step cannot be repeated", {},
+           "leave `repeat_frames` out, or give more frames");
   time_ = turn_time_ = recording.frames.front().time;
   if (!options.repeat) return;
   // Skips whole rounds that end before the first step.

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "libvpm/core/error.h"
-#include "libvpm/scene/frame_slot.h"
+#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm {
 namespace {

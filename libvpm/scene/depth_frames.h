@@ -36,7 +36,7 @@ struct DepthFrameOptions {
   Denoising points = Denoising::on;
 };
 
-class FrameSlot;  // frame_slot.h
+class FrameSlot;  // frame_preparation.h
 
 class DepthFrame {
  public:
@@ -76,6 +76,22 @@ class DepthFrames {
   DepthFrameOptions options_;
   std::vector<std::shared_ptr<FrameSlot>> slots_;
   std::shared_ptr<FrameSlot> next_;
+};
+
+// Points to a cloud or a frame, which must outlive it.
+class SceneView {
+ public:
+  SceneView(const PreparedCloud& cloud) : cloud_(&cloud) {}
+  SceneView(const DepthFrame& frame) : frame_(&frame) {}
+
+  // Returns the frame, or null if the scene is a cloud.
+  const DepthFrame* frame() const { return frame_; }
+  // Returns the cloud; a frame's is prepared by the CPU when first asked for.
+  const PreparedCloud& cloud() const { return frame_ != nullptr ? frame_->cloud() : *cloud_; }
+
+ private:
+  const PreparedCloud* cloud_ = nullptr;
+  const DepthFrame* frame_ = nullptr;
 };
 
 }  // namespace vpm

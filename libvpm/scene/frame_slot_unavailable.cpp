@@ -1,5 +1,5 @@
 #include "libvpm/core/error.h"
-#include "libvpm/scene/frame_slot.h"
+#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm {
 

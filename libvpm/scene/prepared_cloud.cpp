@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -11,8 +10,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/image_steps.h"
-#include "libvpm/scene/points/leaf_order.h"
+#include "libvpm/scene/depth/denoised_image.h"
+#include "libvpm/scene/points/point_tree.h"
 
 namespace vpm {
 namespace {
@@ -132,17 +131,15 @@ void PreparedCloud::order_by_pixel(const Cloud& cloud, SeenImage& seen) {
   pixel_begin_.assign(pixels + 1, 0);
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t pixel = cloud.pixels[order[i]];
-    if (i > 0 && pixel == cloud.pixels[order[i - 1]]) {
-      refuse("the cloud has two different points at pixel " +
-             std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
-    }
-    const Vec3 at = to_camera * widen(positions_[i]);
     const std::uint32_t u = pixel % camera_->width, v = pixel / camera_->width;
+    const auto name = [&] { return std::to_string(u) + "," + std::to_string(v); };
+    if (i > 0 && pixel == cloud.pixels[order[i - 1]])
+      refuse("the cloud has two different points at pixel " + name());
+    const Vec3 at = to_camera * widen(positions_[i]);
     if (!(at.z > 0 && std::abs(k.fx * at.x / at.z + k.cx - u) <= kPixelTolerance &&
           std::abs(k.fy * at.y / at.z + k.cy - v) <= kPixelTolerance)) {
       refuse("point " + std::to_string(order[i]) +
-             " of the cloud does not lie on the ray of its pixel " +
-             std::to_string(pixel % camera_->width) + "," + std::to_string(pixel / camera_->width));
+             " of the cloud does not lie on the ray of its pixel " + name());
     }
     pixel_begin_[pixel + 1] = 1;
     seen.set_normal(static_cast<int>(u), static_cast<int>(v),
@@ -204,12 +201,6 @@ DiskSurface PreparedCloud::disk_surface() const {
           disks_.seconds.data(),
           {disks_.radii.data(), largest_radii_.data()},
           {cones_.data()}};
-}
-
-PixelRectangle PreparedCloud::pixels_of_ball(Vec3 center, double radius) const {
-  const Vec3 at = relative_to(camera_->to_world, {{}, origin_}) * center;
-  return rectangle_of_ball(camera_->intrinsics, static_cast<std::int32_t>(camera_->width),
-                           static_cast<std::int32_t>(camera_->height), at, radius);
 }
 
 }  // namespace vpm

@@ -11,9 +11,8 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/include/vpm/camera.h"
 #include "libvpm/scene/depth/denoised_image.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 #include "libvpm/scene/depth/depth_surface.h"
-#include "libvpm/scene/pixel_rectangle.h"
-#include "libvpm/scene/points/denoised_disks.h"
 #include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm {
@@ -51,10 +50,31 @@ class PreparedCloud {
 
   // Calls visit(begin, end) for ranges that hold all points in the ball, and others.
   template <class Visit>
-  void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const;
+  void for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const {
+    if (is_organised()) {
+      const Vec3 at = relative_to(camera_->to_world, {{}, origin_}) * center;
+      for_ranges_in_pixels(
+          rectangle_of_ball(camera_->intrinsics, static_cast<std::int32_t>(camera_->width),
+                            static_cast<std::int32_t>(camera_->height), at, radius),
+          visit);
+      return;
+    }
+    point_tree().for_leaves_in_ball(center, radius * radius,
+                                    [&](std::uint32_t begin, std::uint32_t end) {
+                                      visit(begin, end);
+                                      return true;
+                                    });
+  }
   // Calls visit(begin, end) for the points of these pixels. Requires is_organised().
   template <class Visit>
-  void for_ranges_in_pixels(const PixelRectangle& pixels, const Visit& visit) const;
+  void for_ranges_in_pixels(const PixelRectangle& r, const Visit& visit) const {
+    for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
+      const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
+      const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];
+      const std::uint32_t end = pixel_begin_[row + static_cast<std::size_t>(r.u1) + 1];
+      if (begin < end) visit(begin, end);
+    }
+  }
   // Returns a bound of the number of ranges in a ball.
   std::size_t most_ranges() const {
     return is_organised() ? camera_->height : leaves_for(positions_.size());
@@ -68,8 +88,6 @@ class PreparedCloud {
   void order_by_pixel(const Cloud& cloud, SeenImage& seen);
   std::vector<float> order_in_space(const Cloud& cloud);  // returns the sampling radii
   void take_in_order(const Cloud& cloud, const std::vector<std::uint32_t>& order);
-
-  PixelRectangle pixels_of_ball(Vec3 center, double radius) const;
 
   static std::uint64_t next_serial();
 
@@ -93,28 +111,5 @@ class PreparedCloud {
 // more than a PreparedCloud takes. With rays `longest` times as long as deep, a position errs by
 // less than 2^-22 of its length. Cameras beyond that are not used.
 bool is_usual(const Camera& camera);
-
-template <class Visit>
-void PreparedCloud::for_ranges_in_pixels(const PixelRectangle& r, const Visit& visit) const {
-  for (std::int32_t v = r.v0; v <= r.v1 && r.u0 <= r.u1; ++v) {
-    const std::size_t row = std::size_t{camera_->width} * static_cast<std::size_t>(v);
-    const std::uint32_t begin = pixel_begin_[row + static_cast<std::size_t>(r.u0)];
-    const std::uint32_t end = pixel_begin_[row + static_cast<std::size_t>(r.u1) + 1];
-    if (begin < end) visit(begin, end);
-  }
-}
-
-template <class Visit>
-void PreparedCloud::for_ranges_in_ball(Vec3 center, double radius, const Visit& visit) const {
-  if (is_organised()) {
-    for_ranges_in_pixels(pixels_of_ball(center, radius), visit);
-    return;
-  }
-  point_tree().for_leaves_in_ball(center, radius * radius,
-                                  [&](std::uint32_t begin, std::uint32_t end) {
-                                    visit(begin, end);
-                                    return true;
-                                  });
-}
 
 }  // namespace vpm

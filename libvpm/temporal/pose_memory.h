@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "libvpm/backend/cell_clusters.h"
-#include "libvpm/scene/surface.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm {
 

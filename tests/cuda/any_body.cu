@@ -1,7 +1,6 @@
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/launch.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
-#include "libvpm/backend/cuda/refined_memory.h"
 #include "tests/cuda/any_body.h"
 
 namespace vpm::testing {

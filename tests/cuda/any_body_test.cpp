@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "libvpm/backend/cpu/measure_refined_run.h"
+#include "libvpm/backend/cpu/measure_refined.h"
 #include "libvpm/device/device.h"
 #include "tests/query/expect_equal.h"
 #include "tests/query/lattice_model.h"

@@ -6,7 +6,7 @@
 #include "libvpm/core/parallel.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/body.h"
 #include "tests/graph/test_packing.h"
 
 namespace vpm {

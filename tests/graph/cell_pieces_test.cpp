@@ -6,7 +6,7 @@
 #include <span>
 
 #include "libvpm/graph/build_tool_model.h"
-#include "libvpm/scene/ball_fraction.h"
+#include "libvpm/scene/body.h"
 #include "libvpm/synthetic/truth.h"
 #include "tests/graph/test_packing.h"
 

@@ -48,8 +48,8 @@ TEST(PngDepth, RefusesSizesThatTheFileCannotHold) {
 }
 
 TEST(PngDepth, DamageIsRefused) {
-  expect_damage_is_png_refusal(make_png(3, 2, 16, kPngValues), 1000,
-                               [](auto bytes) { parse_png_depth(bytes, "file"); });
+  expect_damage_is_refused(make_png(3, 2, 16, kPngValues), 1000,
+                           [](auto bytes) { parse_png_depth(bytes, "file"); });
 }
 
 const std::vector<float> kRows{1, 2, 3, 4, 5, 6};

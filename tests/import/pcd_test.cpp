@@ -157,7 +157,9 @@ TEST(Pcd, CountsAreCheckedBeforeMemoryIsTaken) {
     }
   }
   EXPECT_TRUE(says(refused(fields + "WIDTH 4294967296\nHEIGHT 4294967296\nPOINTS 0\nDATA ascii\n"),
-                   "holds no points"));
+                   "promises 4294967296 points"));
+  EXPECT_TRUE(
+      says(refused(fields + "WIDTH 0\nHEIGHT 0\nPOINTS 0\nDATA ascii\n"), "holds no points"));
   EXPECT_TRUE(says(refused(fields + "WIDTH 3\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3 4 5 6\n"),
                    "is not POINTS 2"));
   // A compression beyond what LZF can do is refused before memory is taken.

@@ -1,7 +1,6 @@
 // Defines bodies of the scene whose truth is analytic.
 #pragma once
 
-#include "libvpm/scene/ball_fraction.h"
 #include "libvpm/scene/body.h"
 
 namespace vpm::testing {

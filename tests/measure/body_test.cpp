@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "libvpm/backend/cpu/measure_refined_run.h"
+#include "libvpm/backend/cpu/measure_refined.h"
 #include "tests/measure/analytic_bodies.h"
 #include "tests/query/lattice_model.h"
 

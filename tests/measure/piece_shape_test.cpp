@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "libvpm/measure/clip_plane.h"
+#include "libvpm/measure/tool_piece.h"
 
 namespace vpm {
 namespace {

@@ -1,12 +1,11 @@
 // Tests the search for the nearest of the cells that a surface cuts.
-#include "libvpm/backend/cpu/cut_cells.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <utility>
 
+#include "libvpm/backend/cpu/cell_states.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {

@@ -1,6 +1,4 @@
 // Surface samples by vectors have the bits of single samples.
-#include "libvpm/backend/cpu/depth_samples.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -242,7 +240,7 @@ TEST_P(DepthReadings, PushNeighborsTogetherWhereEachGoesAlone) {
         const ToolPiece piece = piece_of(level.samples[s]);
         const auto in_ball = measure.sample_piece(piece);
         any_far |= in_ball.is_inside && in_ball.is_far;
-        if (in_ball.is_inside) measure.add(piece, in_ball, of_each.sum);
+        if (in_ball.is_inside) measure.add(piece, in_ball, measure.surface(), of_each.sum);
       }
       if (any_far) continue;
       const CellResult result = measure.run(SamplesTogether{});
@@ -329,9 +327,9 @@ TEST(ClippedSamples, AddUpTogetherAsInTurn) {
       plane.height = side * double{sample.radius} - double{sample.center.x};
       touched += std::abs(plane.distance(widen(sample.center))) == sample.radius ? 1 : 0;
     }
-    const ClippedMoments together = clipped_moments(plane, samples),
-                         in_turn = SamplesInTurn::clipped(
-                             plane, samples.data(), static_cast<std::uint32_t>(samples.size()));
+    const auto count = static_cast<std::uint32_t>(samples.size());
+    const ClippedMoments together = clipped_moments(plane, samples.data(), count),
+                         in_turn = SamplesInTurn::clipped(plane, samples.data(), count);
     expect_same(together.weight, in_turn.weight);
     expect_same(together.moment, in_turn.moment);
     EXPECT_EQ(together.is_cut, in_turn.is_cut);

@@ -1,12 +1,11 @@
 // Batches spread over several devices: each pose is answered once, in its place, and a device's
 // exception is passed on. These devices are fakes; tests/cuda uses real ones.
 
-#include "libvpm/backend/spread_measure.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 
+#include "libvpm/backend/device_measure.h"
 #include "libvpm/core/error.h"
 
 namespace vpm {

@@ -1,6 +1,4 @@
 // Tests points without a camera after denoising, at edges and thin plates.
-#include "libvpm/scene/points/denoised_disks.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <random>
 
 #include "libvpm/core/parallel.h"
+#include "libvpm/scene/points/disk_surface.h"
 #include "libvpm/scene/prepared_cloud.h"
 #include "tests/query/lattice_model.h"
 

@@ -8,9 +8,6 @@
 #include <random>
 #include <string>
 
-#include "libvpm/scene/points/leaf_order.h"
-#include "libvpm/scene/points/point_list.h"
-
 namespace vpm {
 namespace {
 

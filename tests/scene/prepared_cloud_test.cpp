@@ -57,7 +57,7 @@ TEST(PreparedCloud, BallInFrontOfAllThatItsPixelsShowIsFree) {
       for (std::int32_t u = in_ball.pixels.u0; u <= in_ball.pixels.u1; ++u)
         in_front &= (center.z + radius) * surface.measured_at(u, v) < 1;
     }
-    EXPECT_EQ(surface.side_of_ball(center, radius) == Side::free, in_front);
+    EXPECT_EQ(surface.side_of(in_ball, center, radius) == Side::free, in_front);
     free += in_front;
     beside_the_step += in_front && in_ball.side == Side::ambiguous;
   }
@@ -82,7 +82,7 @@ TEST(PreparedCloud, NearestIsTheNearest) {
   }
 }
 
-// A side that side_of_ball returns for a ball must be true of every place in it.
+// The side of a ball must be true of every place in it.
 TEST(DepthSurface, SideOfBallIsConservative) {
   for (const char* name : {"wall", "groove", "block", "inverted-ball"}) {
     const PreparedCloud cloud(see(synthetic::make_scene(name)));
@@ -92,7 +92,7 @@ TEST(DepthSurface, SideOfBallIsConservative) {
       const Vec3 center{0.4 * std::sin(12.9 * k), 0.3 * std::sin(78.2 * k),
                         1 + 0.5 * std::sin(37.7 * k)};
       const double radius = 0.002 + 0.05 * std::abs(std::sin(4.1 * k));
-      const Side side = surface.side_of_ball(center, radius);
+      const Side side = surface.side_of(surface.classify_ball(center, radius), center, radius);
       if (side == Side::ambiguous) continue;
       ++decided;
       for (int s = 0; s < 30; ++s) {

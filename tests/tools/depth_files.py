@@ -57,9 +57,7 @@ distortion_coefficients: {rows: 1, cols: 5, data: [0.0, 0.0, 0.0, 0.0, 0.0]}
 """
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
-    folder.mkdir(exist_ok=True)
+def write_all(folder):
     metres = [value / 1000 for value in MILLIMETRES]
     marked = [65535 if k % WIDTH == 63 else value for k, value in enumerate(MILLIMETRES)]
     files = {
@@ -74,6 +72,12 @@ def main():
     }
     for name, data in files.items():
         (folder / name).write_bytes(data)
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    folder.mkdir(exist_ok=True)
+    write_all(folder)
 
 
 if __name__ == "__main__":

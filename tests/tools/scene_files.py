@@ -124,8 +124,7 @@ Connections:  {{
 """
 
 
-def main():
-    folder = pathlib.Path(sys.argv[1])
+def write_all(folder):
     same = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
     half = [1, 0, 0, 3000, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
     (folder / "cube.dae").write_text(dae([("body", same)], 500, 0.001, "Z_UP"))
@@ -143,4 +142,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    write_all(pathlib.Path(sys.argv[1]))

@@ -17,6 +17,16 @@ int exit_code(ErrorKind kind);
   throw Error(ErrorKind::invalid_argument, message);
 }
 
+// Returns what the action returns. Errors that it throws are about the value of `option`.
+template <class Action>
+auto naming(const std::string& option, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& fault) {
+    throw Error(fault.kind(), fault.problem(), option, fault.hint());
+  }
+}
+
 // Returns the library's text with the user's words for parameters and functions in backquotes:
 // `max_hole` becomes --max-hole where has_option("--max-hole"), else the tool that has it is named.
 std::string in_words_of_tools(const std::string& text,

@@ -169,9 +169,10 @@ void read_pose(const Tool& tool, const ImportArguments& a, ImportOptions& option
                                     : CameraAxes::opencv;
   if (a.camera_pose.empty()) return;
   double deviation = 0;
-  options.to_world = begins_with_number(a.camera_pose)
-                         ? pose_from_text(a.camera_pose, &deviation)
-                         : read_camera_pose(a.camera_pose, &deviation);
+  options.to_world =
+      begins_with_number(a.camera_pose)
+          ? naming("--camera-pose", [&] { return pose_from_text(a.camera_pose, &deviation); })
+          : read_camera_pose(a.camera_pose, &deviation);
   if (deviation > kRotationRounding)
     tool.note("--camera-pose: its rotation is not exact and has been normalised");
 }

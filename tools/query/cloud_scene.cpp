@@ -5,6 +5,7 @@
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/core/error.h"
+#include "tools/common/error_text.h"
 
 namespace vpm::tools {
 
@@ -26,7 +27,8 @@ CloudScene::CloudScene(QuerySetup& setup) {
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {
-  if (!arguments.pose.empty()) pending_ = pose_from_text(arguments.pose, &deviation_);
+  if (!arguments.pose.empty())
+    pending_ = naming("--pose", [&] { return pose_from_text(arguments.pose, &deviation_); });
 }
 
 Pose PoseSource::first() {

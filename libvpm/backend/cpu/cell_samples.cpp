@@ -8,6 +8,29 @@
 namespace vpm {
 namespace {
 
+using FourSamples = SurfaceSampleOf<Double4>;
+
+[[gnu::always_inline]] inline FourSamples read_at(const DepthSurface& surface, const Vec3x4& x) {
+  return surface.sample_and(x, [](const Int4&, const Int4&) {});
+}
+// Joins four known samples into lanes.
+[[gnu::always_inline]] inline FourSamples joined(const SurfaceSample& a, const SurfaceSample& b,
+                                                 const SurfaceSample& c, const SurfaceSample& d) {
+  FourSamples four;
+  four.known = ~Mask4{};
+  four.distance = Double4{a.distance, b.distance, c.distance, d.distance};
+  four.normal = {a.normal, b.normal, c.normal, d.normal};
+  four.foot = {a.foot, b.foot, c.foot, d.foot};
+  four.point = Int4{static_cast<std::int32_t>(a.point), static_cast<std::int32_t>(b.point),
+                    static_cast<std::int32_t>(c.point), static_cast<std::int32_t>(d.point)};
+  return four;
+}
+[[gnu::always_inline]] inline SurfaceSample of_lane(const FourSamples& four, int lane) {
+  if (four.known[lane] == 0) return {};
+  return {true, four.distance[lane], four.normal.of(lane), four.foot.of(lane),
+          static_cast<std::uint32_t>(four.point[lane])};
+}
+
 // Holds four rows of partial sums, one in each lane.
 struct FourRows {
   Double4 weight{};
@@ -25,12 +48,51 @@ struct FourRows {
 }  // namespace
 
 VPM_VECTOR_CLONES
-ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples) {
+void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]) {
+  const FourSamples four = read_at(surface, {places[0], places[1], places[2], places[3]});
+  for (int k = 0; k < kFour; ++k) on_surface_at[k] = of_lane(four, k);
+}
+
+VPM_VECTOR_CLONES
+std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
+                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at) {
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  std::uint32_t found = 0;
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(samples, first);
+    const Vec3x4 x = to_surface * Vec3x4(a.center, b.center, c.center, d.center);
+    const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
+    const FourSamples four = read_at(surface, x);
+    const Mask4 reached = four.known & (four.distance < radius);
+    if (!any(reached)) continue;
+    for (int k = 0; k < kFour && first + k < count; ++k) {
+      if (reached[k] != 0) on_surface_at[found++] = {first + k, {x.of(k), of_lane(four, k)}};
+    }
+  }
+  return found;
+}
+
+VPM_VECTOR_CLONES
+void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
+                     Vec3* normals) {
+  const std::size_t count = places.size();
+  for (std::size_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(places, first);
+    const Vec3x4 normal =
+        search_normal(surface, Vec3x4(a.x, b.x, c.x, d.x),
+                      joined(a.on_surface, b.on_surface, c.on_surface, d.on_surface));
+    for (int k = 0; k < kFour && first + k < count; ++k) normals[first + k] = normal.of(k);
+  }
+}
+
+VPM_VECTOR_CLONES
+ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
+                               std::uint32_t count) {
   FourRows rows[kSumRows / kFour];
   Mask4 any_cut{};
-  const std::size_t count = samples.size();
-  for (std::size_t first = 0; first < count; first += kFour) {
-    const auto [a, b, c, d] = four_of(samples, first);
+  for (std::uint32_t first = 0; first < count; first += kFour) {
+    const auto [a, b, c, d] = four_of(std::span(samples, count), first);
     const Vec3x4 center(a.center, b.center, c.center, d.center);
     const Double4 radius = widen(Float4{a.radius, b.radius, c.radius, d.radius});
     const Double4 weight{a.weight, b.weight, c.weight, d.weight};
@@ -40,7 +102,7 @@ ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSampl
     Double4 inside =
         weight_behind(BallShape<Double4>{radius}, plane.normal, distance, weight, is_cut);
     any_cut |= is_cut;
-    for (std::size_t k = count - first; k < kFour; ++k) inside[k] = 0;
+    for (std::uint32_t k = count - first; k < kFour; ++k) inside[k] = 0;
     FourRows& row = rows[first / kFour % std::size(rows)];
     row = row + FourRows{inside, inside * center};
   }

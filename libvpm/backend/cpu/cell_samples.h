@@ -1,4 +1,5 @@
-// Adds many samples of a cell's blocks by vectors, with the bits of SamplesInTurn. Host only.
+// Samples a camera's surface, and adds samples of a cell's blocks, at many places at once by
+// vectors, with the bits of DepthSurface and SamplesInTurn. Host only.
 #pragma once
 
 #include <algorithm>
@@ -6,13 +7,38 @@
 #include <span>
 #include <type_traits>
 
-#include "libvpm/backend/cpu/depth_samples.h"
 #include "libvpm/measure/cell_measure.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm {
 
+// Holds a place and its surface sample, surface frame.
+struct PlaceSample {
+  Vec3 x;
+  SurfaceSample on_surface;
+};
+
+struct SurfaceOfSample {
+  std::uint32_t sample = 0;  // index
+  PlaceSample at;
+};
+
+void sample_four(const DepthSurface& surface, const Vec3 (&places)[4],
+                 SurfaceSample (&on_surface_at)[4]);
+
+// Samples the surface for those tool samples that it reaches: whose distance is less than their
+// radius. Writes them in order to `on_surface_at` and returns their number.
+std::uint32_t sample_surface(const DepthSurface& surface, const Pose& to_surface,
+                             std::span<const CellSample> samples, SurfaceOfSample* on_surface_at);
+
+// Writes DepthSurface::closest_normal of each sampled place.
+void closest_normals(const DepthSurface& surface, std::span<const PlaceSample> places,
+                     Vec3* normals);
+
 // Returns the bits of clipped_in_turn().
-ClippedMoments clipped_moments(const ClipPlane& plane, std::span<const CellSample> samples);
+ClippedMoments clipped_moments(const ClipPlane& plane, const CellSample* samples,
+                               std::uint32_t count);
 
 // True for a surface that vectors sample at several places at once.
 template <class Surface>
@@ -37,19 +63,14 @@ struct SampleTogether : SampleInTurn {
 
 // Adds samples one by one, for surfaces that vectors cannot sample.
 struct SamplesOneByOne : SamplesInTurn {
-  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
-                                std::uint32_t count) {
-    return clipped_moments(plane, {samples, count});
-  }
+  static constexpr auto* clipped = clipped_moments;
 };
 
 // Adds the samples of one cell before a camera, by vectors.
 class SamplesTogether {
  public:
-  static ClippedMoments clipped(const ClipPlane& plane, const CellSample* samples,
-                                std::uint32_t count) {
-    return clipped_moments(plane, {samples, count});
-  }
+  static constexpr auto* clipped = clipped_moments;
+
   template <class Measure>
   void add(const Measure& measure, const CellSample* samples, std::uint32_t count,
            const DepthSurface& surface, CellResult& result) {

@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "libvpm/backend/cpu/measure_refined.h"
 
-#include "libvpm/backend/cpu/measure_refined_run.h"
+#include <algorithm>
 
 namespace vpm {
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,

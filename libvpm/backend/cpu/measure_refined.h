@@ -2,10 +2,13 @@
 // (measure/README.md).
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <vector>
 
+#include "libvpm/backend/cpu/cell_classifier.h"
 #include "libvpm/backend/cpu/cell_states.h"
+#include "libvpm/backend/cpu/inside_cells.h"
 #include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/core/parallel.h"
@@ -14,6 +17,11 @@
 #include "libvpm/temporal/pose_memory.h"
 
 namespace vpm {
+
+// Decides which cells behind a surface are inside.
+template <class Surface>
+using InsideOf =
+    std::conditional_t<Surface::kTellsInside, CameraVisibility<Surface>, InsideFlood<Surface>>;
 
 class RefinedMeasure {
  public:
@@ -24,10 +32,31 @@ class RefinedMeasure {
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
   // Returns the answer for one body. `to_world` maps its frame to the world's; `points` counts the
-  // points in spheres, or is null. Defined in measure_refined_run.h.
+  // points in spheres, or is null.
   template <MeasuredBody Surface>
   Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
-                const PointsOfSphere* points);
+                const PointsOfSphere* points) {
+    ToolSum sum;
+    Result result;
+    const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
+    const PoseWork<Surface> work{tool_, reach_, level_, surface, to_surface, cells_};
+    ParallelRegion region;
+    result.points = CellClassifier(work, points).run(region);
+    CutCells cut(tool_, level_, to_surface, cells_);
+    cut.list();
+    InsideOf<Surface> inside(work, cut);
+    inside.run(region);
+    if (memory_ && cut.are_none()) inside.run_from(*memory_, to_world);
+    result.boundary = static_cast<std::uint32_t>(cells_.cut.size());
+    result.inside = add_up(work, inside, region, sum);
+    sum.write(tool_, pose.rotation, result);
+    if (!memory_) return result;
+    if (result.boundary + result.inside > 0)
+      remember(work, to_world, inside);
+    else
+      memory_->turn();  // in free space there is nothing to look for
+    return result;
+  }
 
   // Reads the states of the spheres at the last run, one per sphere.
   void read_states(std::vector<SphereState>& states) const;
@@ -40,19 +69,96 @@ class RefinedMeasure {
  private:
   // Adds cut cells and those that `inside` has taken; returns how many of the latter count. The
   // others become free: they were hidden, not inside.
-  template <class Surface, class Inside>
-  std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       ParallelRegion& region, ToolSum& sum);
+  template <class Surface>
+  std::uint32_t add_up(const PoseWork<Surface>& work, const InsideOf<Surface>& inside,
+                       ParallelRegion& region, ToolSum& sum) {
+    constexpr std::size_t kGrain = 8;
+    const auto first_row = [&](std::size_t root) {
+      return root < level_.roots().size() ? level_.cluster(static_cast<std::uint32_t>(root)).begin
+                                          : level_.size();
+    };
+    std::atomic<std::uint32_t> all{0};
+    region.loop(level_.roots().size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      ToolSum of_all;
+      const std::uint32_t count = add_up(work, inside, first_row(begin), first_row(end), of_all);
+      sum.add_atomically(of_all);
+      if (count > 0) all.fetch_add(count, std::memory_order_relaxed);
+    });
+    return all;
+  }
+
   // Adds those in rows [begin, end).
-  template <class Surface, class Inside>
-  std::uint32_t add_up(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                       std::uint32_t begin, std::uint32_t end, ToolSum& sum);
-  template <class Surface, class Inside>
-  ToolSum sum_of(const Surface& surface, const Pose& to_surface, const Inside& inside,
-                 std::uint32_t row, std::uint32_t& last_cut) const;
-  template <class Surface, class Inside>
-  void remember(const Surface& surface, const Pose& to_surface, const Pose& to_world,
-                Inside& inside);
+  template <class Surface>
+  std::uint32_t add_up(const PoseWork<Surface>& work, const InsideOf<Surface>& inside,
+                       std::uint32_t begin, std::uint32_t end, ToolSum& sum) {
+    std::uint32_t last_cut = kNoRow, count = 0;
+    for_rows_in(CellClass::cut, cells_.cells, begin, end,
+                [&](std::uint32_t i) { sum.add(cells_.results[i].sum); });
+    for_rows_in(FloodState::reached, cells_.flood_states, begin, end, [&](std::uint32_t i) {
+      const ToolSum part = sum_of(work, inside, i, last_cut);
+      sum.add(part);
+      if (part.volume.value != 0)
+        ++count;
+      else
+        cells_.cells[i] = CellClass::free;  // hidden, not inside
+    });
+    return count;
+  }
+
+  template <class Surface>
+  ToolSum sum_of(const PoseWork<Surface>& work, const InsideOf<Surface>& inside, std::uint32_t row,
+                 std::uint32_t& last_cut) const {
+    ToolSum sum;
+    if (cells_.cells[row] == CellClass::uniform) {
+      add_whole(reach_, level_.mass(row), cells_.planes[level_.root(row)].normal, sum);
+      return sum;
+    }
+    const bool partial = cells_.cells[row] == CellClass::partial;
+    if (partial && !cells_.results[row].is_far) return cells_.results[row].sum;
+    const CellView view = level_.cell(row);
+    const CellMeasure measure = work.measure_of(view);
+    auto support = inside.support(row, last_cut);
+    const auto supports = [&](Vec3 x, Vec3 foot) { return support(x, foot); };
+    if (partial) {
+      sum = cells_.results[row].sum;
+      measure.add_far(supports, sum);
+    } else if (is_compact(level_.reach(row), reach_.length)) {
+      measure.add_whole_piece(supports, piece_of(level_.mass(row), view), sum);
+    } else {
+      sum = measure.whole(supports);
+    }
+    return sum;
+  }
+
+  // Remembers the cells that are cut and inside for the next pose.
+  template <class Surface>
+  void remember(const PoseWork<Surface>& work, const Pose& to_world, InsideOf<Surface>& inside) {
+    inside.begin_to_remember(to_world, *memory_);
+    const auto keep_cluster = [&](std::uint32_t root) {
+      const CellCluster& cluster = level_.cluster(root);
+      for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+        if (!cells_.counts(i)) continue;
+        const bool is_known = memory_->is_known(root);
+        if (!is_known || !inside.follows(i)) {
+          const SurfaceSample on_surface = work.surface.sample(work.center(i));
+          const Vec3 foot = to_world * on_surface.foot;
+          if (!on_surface.known || !inside.is_sure(i, foot)) continue;
+          if (!is_known) memory_->remember(root, cluster, foot);
+        }
+        if (inside.all_follow()) {
+          memory_->remember_if(cluster, [&](std::uint32_t k) { return cells_.counts(k); });
+          return;
+        }
+        memory_->remember(i);
+      }
+    };
+    for (std::uint32_t i = next_busy(cells_.cells, 0, level_.size()); i < level_.size();) {
+      const std::uint32_t root = level_.root(i);
+      keep_cluster(root);
+      i = next_busy(cells_.cells, level_.cluster(root).end, level_.size());
+    }
+    memory_->turn();
+  }
 
   const ToolModel& tool_;
   ToolReach reach_;

@@ -1,5 +1,5 @@
-// Defines what a query notes of cells on a device: a word of bits each, sums, and what later steps
-// need.
+// Defines what a query notes of cells on a device (a word of bits each, sums, and what later steps
+// need), visits the noted cells, and finds those that the surface cuts.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include "libvpm/backend/cuda/team.h"
 #include "libvpm/backend/cuda/views.h"
 #include "libvpm/measure/flood_rules.h"
-#include "libvpm/measure/flood_state.h"
 
 namespace vpm::cuda {
 
@@ -116,5 +115,220 @@ __device__ inline RefinedCounters read_for_block(const RefinedCounters& counters
   __syncthreads();
   return found;
 }
+
+// Bundles what the threads that measure cells know of their pose.
+template <class Surface>
+struct PoseWork {
+  const LevelView& level;
+  const Surface& surface;
+  const Pose& to_surface;
+  const RefinedSpace& space;
+  const CellNotes& notes;  // the pose's notes in `space`
+  RefinedCounters& counters;
+  BlockRange part;
+
+  __device__ CellMeasure<Surface> measure_of(const CellView& view) const {
+    return {surface, to_surface, level.tool_reach, view};
+  }
+
+  // Adds a piece that is inside or cut; lists a far one. `normal` is the way out of an uncut one.
+  __device__ void add_inside(const CellMeasure<Surface>& measure, const ToolPiece& piece,
+                             const typename CellMeasure<Surface>::PieceSample& sampled, Vec3 normal,
+                             std::uint32_t cell, ToolSum& total) const {
+    ToolSum sum;
+    measure.add(piece, sampled, normal, surface, sum);
+    if (!sampled.is_far) {
+      total.add(sum);
+      return;
+    }
+    // Assigns member by member, since nvcc would store the whole byte by byte.
+    FarPiece& far = space.far[atomicAdd(&counters.far, 1U)];
+    far.at = sampled.x;
+    far.foot = sampled.on_surface.foot;
+    far.sum = sum;
+    far.cell = cell;
+  }
+};
+
+// Lays out a block's shared memory.
+struct NotedList {
+  static constexpr unsigned kRoom = 4096;
+
+  std::uint32_t cells[kRoom], words[kRoom];
+  unsigned count;
+};
+
+// Visits the cells that the first step has noted, which are few in a large level.
+template <class Team>
+class NotedCells {
+ public:
+  __device__ NotedCells(const LevelView& level, const CellNotes& notes, const Team& team,
+                        NotedList& list)
+      : level_(level), notes_(notes), team_(team), list_(list) {}
+
+  // Calls visit(i, word) for the cells with a word, spread over the threads of the team. Blocks
+  // list such cells in turns of neighbouring ones. A list that holds all serves again.
+  template <class Visit>
+  __device__ void for_each(const Visit& visit) {
+    constexpr unsigned kTogether = 8;  // loads in flight
+    const BlockRange part = team_.block();
+    const unsigned step = part.parts * blockDim.x, begin = part.part * blockDim.x;
+    const Subwarp warp(32);
+    const auto visit_all = [&] {
+      for (unsigned k = threadIdx.x; k < list_.count; k += blockDim.x)
+        visit(list_.cells[k], list_.words[k]);
+    };
+    if (lists_all_) {
+      visit_all();
+      return;
+    }
+    lists_all_ = true;
+    __syncthreads();
+    if (threadIdx.x == 0) list_.count = 0;
+    for (std::uint32_t first = begin; first < level_.count;) {
+      lists_all_ &= first == begin;
+      __syncthreads();
+      if (threadIdx.x == 0) list_.count = 0;
+      __syncthreads();
+      bool has_room = true;
+      for (; has_room && first < level_.count; first += kTogether * step) {
+        std::uint32_t words[kTogether];
+#pragma unroll
+        for (unsigned k = 0; k < kTogether; ++k) {
+          const std::uint32_t i = first + k * step + threadIdx.x;
+          words[k] = i < level_.count ? notes_.words[i] : 0;
+        }
+#pragma unroll
+        for (unsigned k = 0; k < kTogether; ++k) {
+          const unsigned found = __ballot_sync(~0U, words[k] != 0);
+          const unsigned slot = warp.take_slots(list_.count, found);
+          if (words[k] == 0) continue;
+          list_.cells[slot] = first + k * step + threadIdx.x;
+          list_.words[slot] = words[k];
+        }
+        __syncthreads();
+        has_room = list_.count + kTogether * blockDim.x <= NotedList::kRoom;
+        __syncthreads();
+      }
+      visit_all();
+    }
+  }
+
+ private:
+  const LevelView& level_;
+  const CellNotes& notes_;
+  const Team& team_;
+  NotedList& list_;
+  bool lists_all_ = false;  // list_ holds all noted cells of this block
+};
+
+// Lists the cells that the surface cuts, whose planes support pieces far behind it.
+template <class Team>
+class CutCells {
+ public:
+  __device__ CutCells(const LevelView& level, const Pose& to_surface, const RefinedSpace& space,
+                      const CellNotes& notes, RefinedCounters& counters, const Team& team)
+      : level_(level),
+        to_surface_(to_surface),
+        space_(space),
+        notes_(notes),
+        counters_(counters),
+        team_(team) {}
+
+  // Lists the cut cells. Synchronise the team before calling other members.
+  __device__ __noinline__ void list() {
+    for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads()) {
+      if ((notes_.words[i] & cell_bit::cut) != 0) space_.cut[atomicAdd(&counters_.cut, 1U)] = i;
+    }
+  }
+  __device__ CutCell at(std::uint32_t cut) const {
+    return {notes_.planes[cut], to_surface_ * level_.centers[cut], level_.reach[cut]};
+  }
+  // Returns the nearest cut cell, or level.count if there is none; ties go to the smaller index.
+  // Call from all lanes of a subwarp.
+  __device__ std::uint32_t nearest_to(const Subwarp& subwarp, std::uint32_t i) const {
+    const Vec3 from = level_.spheres[i].center;
+    double best_squared = HUGE_VAL;
+    std::uint32_t best = level_.count;
+    const auto take = [&](double squared, std::uint32_t j) {
+      if (!is_nearer_cut(squared, j, best_squared, best)) return;
+      best_squared = squared;
+      best = j;
+    };
+    const unsigned count = read(counters_.cut);
+    for (unsigned k = subwarp.lane; k < count; k += subwarp.width) {
+      const std::uint32_t j = space_.cut[k];
+      take(squared_norm(level_.spheres[j].center - from), j);
+    }
+    for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
+      const double squared = __shfl_xor_sync(subwarp.mask, best_squared, other, subwarp.width);
+      take(squared, __shfl_xor_sync(subwarp.mask, best, other, subwarp.width));
+    }
+    return best;
+  }
+
+  // Adds the far pieces that count. Asks may_count(cell) for uncut cells; one thread calls
+  // add(cell, sum).
+  template <class MayCount, class Add>
+  __device__ __noinline__ void add_far(unsigned count, const MayCount& may_count,
+                                       const Add& add) const {
+    const Subwarp warp(32);
+    if (read(counters_.cut) == 0) return;
+    for (unsigned k = team_.thread() / 32; k < count; k += team_.threads() / 32) {
+      const FarPiece& far = space_.far[k];
+      const std::uint32_t i = far.cell, word = notes_.words[i];
+      const bool cut = (word & cell_bit::cut) != 0;
+      if (!cut && !may_count(i)) continue;
+      const std::uint32_t by = cut ? i : nearest_to(warp, i);
+      if (by < level_.count && warp.leads() &&
+          at(by).supports(far.at, far.foot, level_.tool_reach.length))
+        add(i, far.sum);
+    }
+  }
+
+ private:
+  const LevelView& level_;
+  const Pose& to_surface_;
+  const RefinedSpace& space_;
+  const CellNotes& notes_;
+  RefinedCounters& counters_;
+  const Team& team_;
+};
+
+// Holds the result of a block task.
+struct TaskSums {
+  ToolSum sum;
+  bool is_cut = false;
+};
+
+// Sums of one thread in an image's query, and its notes about cells.
+class ImageSums {
+ public:
+  __device__ explicit ImageSums(const CellNotes& notes) : notes_(notes) {}
+
+  // Notes the result of a task's cell, once per thread; others may note the same cell.
+  __device__ void note(const BlockTask& task, const TaskSums& found) {
+    found_.sum.add(found.sum);
+    if (!found.is_cut && found.sum.volume.value == 0) return;
+    bits_added_ = cell_bit::counted | (found.is_cut ? cell_bit::cut : 0);
+    word_before_ = atomicOr(&notes_.words[task.cell], bits_added_);
+  }
+  // Notes the plane of a cut cell.
+  __device__ void note(const BlockTask& task, const ContactPlane& found) const {
+    if (found.count > 0) add_atomically(found, notes_.planes[task.cell]);
+  }
+  __device__ void note_points(const BlockTask& task) const {
+    atomicOr(&notes_.words[task.cell], cell_bit::counts_points);
+  }
+  __device__ RawResult found() {
+    count_cell(word_before_, bits_added_, found_);
+    return found_;
+  }
+
+ private:
+  const CellNotes& notes_;
+  RawResult found_;
+  std::uint32_t word_before_ = 0, bits_added_ = 0;  // word of the noted cell
+};
 
 }  // namespace vpm::cuda

@@ -1,4 +1,5 @@
-// Holds a tool's level in the memory of a device.
+// Holds a tool's level in the memory of a device: its block tasks in groups, and all that they
+// need.
 #pragma once
 
 #include "libvpm/backend/cuda/views.h"
@@ -11,26 +12,14 @@ double reach_of_spheres(const ToolModel& tool, const Level& level);
 
 class DeviceLevel {
  public:
-  DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded)
-      : DeviceLevel(tool, level, {tool.reach, occluded}, cluster_cells(tool, level)) {}
+  DeviceLevel(const ToolModel& tool, const Level& level, OccludedSpace occluded);
   const LevelView& view() const { return view_; }
 
  private:
-  DeviceLevel(const ToolModel& tool, const Level& level, ToolReach reach,
-              const CellClusters& clusters);
+  void add_edges(const SphereGraph& graph);
+  void add_tasks(const ToolModel& tool, const Level& level);
 
-  DeviceArray<Sphere> spheres_;
-  DeviceArray<Vec3> centers_;
-  DeviceArray<double> reach_;
-  DeviceArray<std::uint32_t> block_begin_, grid_begin_, grid_spheres_;
-  DeviceArray<CellBlock> blocks_;
-  DeviceArray<BlockMass> block_masses_, cell_masses_;
-  DeviceArray<CellSample> samples_;
-  DeviceArray<BlockTask> units_;
-  DeviceArray<WarpTask> units_of_warps_;
-  DeviceArray<TaskGroup> chunks_, chunks_of_warps_;
-  DeviceArray<Edge> edges_;
-  DeviceArray<std::uint32_t> edge_begin_;
+  DeviceMemory memory_;
   LevelView view_;
 };
 

@@ -14,21 +14,16 @@ namespace vpm::cuda {
 
 // Samples a surface at four places by the lanes of a subwarp, four at most.
 struct SampleByLanes : SampleInTurn {
-  static constexpr unsigned kPlaces = 4;
   Subwarp lanes;
 
   template <class Surface, class Take>
-  __device__ bool operator()(const Surface& surface, const Vec3 (&places)[kPlaces],
+  __device__ bool operator()(const Surface& surface, const Vec3 (&places)[kPlacesAround],
                              const Take& take) const {
     SurfaceSample mine;
 #pragma unroll 1
-    for (unsigned k = 0; k < kPlaces; ++k) {
+    for (unsigned k = 0; k < kPlacesAround; ++k) {
       const unsigned from = k % lanes.width, at = k + lanes.lane;
-      if (from == 0)
-        mine = surface.sample(at == 0   ? places[0]
-                              : at == 1 ? places[1]
-                              : at == 2 ? places[2]
-                                        : places[3]);
+      if (from == 0) mine = surface.sample(place_of(places, at));
       SurfaceSample on_surface;
       on_surface.known = lanes.from(static_cast<int>(mine.known), from) != 0;
       on_surface.normal = lanes.from(mine.normal, from);
@@ -87,10 +82,10 @@ class GroupMeasure {
   // Returns the lanes per task group. More finish a group sooner, fewer take more groups at once.
   __device__ unsigned lanes_of_chunk() const {
     unsigned best = 1, least = UINT_MAX;
-    for (unsigned lanes = SampleByLanes::kPlaces; lanes > 0; lanes /= 2) {
+    for (unsigned lanes = kPlacesAround; lanes > 0; lanes /= 2) {
       const unsigned at_once = blockDim.x / lanes * work_.part.parts;
       const unsigned rounds = (work_.level.task_group_count + at_once - 1) / at_once;
-      const unsigned reads = rounds * (kSamplesOfBall + SampleByLanes::kPlaces / lanes);
+      const unsigned reads = rounds * (kSamplesOfBall + kPlacesAround / lanes);
       if (reads < least) best = lanes, least = reads;
     }
     return best;
@@ -203,228 +198,199 @@ class GroupMeasure {
     const unsigned spare = warps - min(warps, clipped + warps_of(others, kLanes));
     return min(clipped + spare / 2, warps - 1);
   }
-  __device__ void classify(SeenTask seen, bool active);
-  __device__ void classify_clipped(SeenTask seen, const Subwarp& lanes);
+
+  // Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
+  __device__ void classify(SeenTask seen, bool active) {
+    const Subwarp lanes(kLanes);
+    const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+    const TaskBall ball = task.balls[min(lanes.lane, BlockTask::kBalls - 1U)];
+    const std::uint32_t flags = task.flags;
+    const bool head = (flags & BlockTask::is_head) != 0;
+    const Vec3 at = work_.to_surface * ball.center;
+    decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
+    Side own = in_ball.side;
+    if (seen.side() == Side::ambiguous) {
+      if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres matter for points only
+        in_ball = work_.surface.classify_ball(at, ball.radius);
+      own = in_ball.side;
+      if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
+    }
+    const auto side_of = [&](unsigned lane) {
+      return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
+    };
+    const Side of_cell = side_of(BlockTask::of_cell), of_sphere = side_of(BlockTask::of_sphere);
+    const Side side = seen.side() == Side::ambiguous ? of_cell : seen.side();
+
+    const bool samples_cell = kFloods && lanes.lane == BlockTask::of_cell && side != Side::free;
+    const bool samples_block = lanes.lane == BlockTask::of_block && side == Side::ambiguous &&
+                               (flags & BlockTask::has_block) != 0 &&
+                               in_ball.side == Side::ambiguous &&
+                               work_.surface.may_be_flat(in_ball);
+    SurfaceSample on_surface;
+    if (samples_cell || samples_block) on_surface = work_.surface.sample(at, in_ball.point);
+
+    double gap = 0;
+    bool hidden = false, whole = side == Side::behind;
+    if (kFloods) {
+      gap = squared_gap(on_surface);
+      hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
+                              is_hidden_cell(gap, work_.level.tool_reach.length),
+                          BlockTask::of_cell);
+      const bool behind = lanes.from(is_behind_surface(on_surface), BlockTask::of_cell);
+      whole |= side == Side::no_surface && behind;
+    }
+    if (!active) return;
+    if (lanes.lane == BlockTask::of_cell && head)
+      note_cell(task, word_of_cell(side, of_sphere, whole, hidden), gap);
+    if (lanes.lane != BlockTask::of_block) return;
+    if (side == Side::ambiguous)
+      add_ambiguous(task, in_ball, at, ball.radius, on_surface);
+    else if (whole)
+      add_whole(task);
+  }
+
+  // Classifies one block task of a cut cluster by all lanes of a subwarp.
+  __device__ void classify_clipped(SeenTask seen, const Subwarp& lanes) {
+    const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
+    const PlanarCluster& planar = planar_cluster_of(seen.slot());
+    const ClipPlane plane = planar.plane;
+    const TaskBall cell = task.balls[BlockTask::of_cell];
+    const bool head = (task.flags & BlockTask::is_head) != 0;
+    const double distance = plane.distance(cell.center);
+    const Vec3 at = work_.to_surface * cell.center;
+    const PlaneSide side = side_in_cut_cluster(distance, cell.radius, [&] {
+      return may_be_free(work_.surface, planar.least_inverse_depth, at, cell.radius) &&
+             is_free(lanes, at, cell.radius);
+    });
+    if (!lanes.leads()) return;
+    if (head) {
+      std::uint32_t word = 0;
+      if (side == PlaneSide::behind) {
+        tasks_.note_behind(task, plane.normal);
+        if (kFloods) word = cell_bit::partial;
+      }
+      if (counts_points_) {
+        const TaskBall& sphere = task.balls[BlockTask::of_sphere];
+        if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
+            Side::ambiguous)
+          word |= cell_bit::counts_points;
+      }
+      note_cell(task, word, distance * distance);
+    }
+    if ((task.flags & BlockTask::has_block) != 0 && side == PlaneSide::cut)
+      tasks_.add_clipped(task, plane);
+  }
+
+  // True in the cell's lane if its ball, whose pixels all lanes read, was seen to be free.
   template <class BallClass>
   __device__ bool is_cell_seen_past(const Subwarp& lanes, const BallClass& in_ball,
-                                    double depth) const;
+                                    double depth) const {
+    if constexpr (SeesFreeSpace<Surface>) {
+      constexpr unsigned kCell = BlockTask::of_cell;
+      if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
+      const PixelRectangle pixels = lanes.from(Surface::pixels_of(in_ball), kCell);
+      const double farthest = lanes.from(depth, kCell);
+      return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
+    } else {
+      return false;
+    }
+  }
   __device__ bool is_seen_past(const Subwarp& lanes, const PixelRectangle& pixels,
                                double depth) const {
     return !lanes.any(!work_.surface.is_seen_past(pixels, depth, lanes.lane, lanes.width));
   }
-  __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const;
-  __device__ void note_pushed(const BlockTask& task, Vec3 normal);
-  __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap);
-  __device__ std::uint32_t word_of_cell(Side side, Side of_sphere, bool whole, bool hidden) const;
+
+  // True if a ball was seen to be free; all lanes read its pixels.
+  __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const {
+    const auto in_ball = work_.surface.classify_ball(center, radius);
+    const double farthest = center.z + radius;
+    if constexpr (SeesFreeSpace<Surface>) {
+      if (work_.surface.may_be_seen_past(in_ball, farthest))
+        return is_seen_past(lanes, Surface::pixels_of(in_ball), farthest);
+    }
+    return in_ball.side == Side::free;
+  }
+
+  // Notes a cell of a uniform cluster.
+  __device__ void note_pushed(const BlockTask& task, Vec3 normal) {
+    tasks_.note_behind(task, normal);
+    if (!kFloods) return;
+    const Vec3 at = work_.to_surface * task.balls[BlockTask::of_cell].center;
+    note_cell(task, cell_bit::whole, squared_gap(work_.surface.sample(at)));
+  }
+
+  __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap) {
+    const std::uint32_t i = task.cell;
+    if (!kFloods) word &= cell_bit::counts_points;
+    if (word != 0) atomicOr(&work_.notes.words[i], word);
+    if (!kFloods) return;
+    work_.space.gaps[i] = gap;
+    work_.space.parents[i + 1] = i + 1;
+  }
+
+  // Returns the word to note of a cell that is `whole` behind the surface or ambiguous; counts a
+  // hidden one.
+  __device__ std::uint32_t word_of_cell(Side side, Side of_sphere, bool whole, bool hidden) const {
+    std::uint32_t word = whole ? cell_bit::whole : 0;
+    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
+    if ((whole || side == Side::ambiguous) && hidden) {
+      word |= cell_bit::hidden;
+      atomicAdd(&work_.counters.hidden, 1U);
+    }
+    return word;
+  }
+
+  // Lists the block of an ambiguous cell; its ball was classified and, where that is ambiguous,
+  // sampled.
   template <class BallClass>
   __device__ void add_ambiguous(const BlockTask& task, const BallClass& in_ball, Vec3 at,
-                                double radius, const SurfaceSample& on_surface);
-  __device__ void add_whole(const BlockTask& task);
-  __device__ void list_block(const BlockTask& task, BlockClass found);
+                                double radius, const SurfaceSample& on_surface) {
+    if ((task.flags & BlockTask::has_block) == 0) return;
+    TangentPlane tangent;
+    const BlockClass found = class_of_block(
+        work_.surface, in_ball, at, radius, work_.level.tool_reach, [&] { return on_surface; },
+        tangent);
+    if (found == BlockClass::cut)
+      tasks_.add_clipped(task, {tangent, work_.to_surface});
+    else
+      list_block(task, found);
+  }
+
+  // Lists the block of a cell that counts whole, or the cell itself where it is compact.
+  __device__ void add_whole(const BlockTask& task) {
+    if ((task.flags & BlockTask::is_compact) != 0) {
+      if ((task.flags & BlockTask::is_head) != 0)
+        tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
+    } else if ((task.flags & BlockTask::has_block) != 0) {
+      tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
+    }
+  }
+
+  // Lists a block of an ambiguous cell.
+  __device__ void list_block(const BlockTask& task, BlockClass found) {
+    if (found == BlockClass::free) return;
+    if (found == BlockClass::uncut) {
+      tasks_.add(TaskLists::pieces, {task.cell, Task::block, task.block, 1});
+      return;
+    }
+    const std::uint32_t begin = task.begin, count = task.end - begin;
+    if (count <= TaskLists::kNarrow) {
+      tasks_.add(TaskLists::samples_narrow, {task.cell, Task::samples, begin, count});
+      return;
+    }
+    // Halves at a whole number of neighbours.
+    constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
+    const std::uint32_t half =
+        count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;
+    tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin, half});
+    if (half < count)
+      tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin + half, count - half});
+  }
 
   const PoseWork<Surface>& work_;
   bool counts_points_;
   MeasureShared& shared_;
   TaskMeasure<Surface> tasks_;
 };
-
-// Classifies one block task per kLanes lanes, with all threads of a warp. Notes `active` ones.
-template <class Surface>
-__device__ void GroupMeasure<Surface>::classify(SeenTask seen, bool active) {
-  const Subwarp lanes(kLanes);
-  const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
-  const TaskBall ball = task.balls[min(lanes.lane, BlockTask::kBalls - 1U)];
-  const std::uint32_t flags = task.flags;
-  const bool head = (flags & BlockTask::is_head) != 0;
-  const Vec3 at = work_.to_surface * ball.center;
-  decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
-  Side own = in_ball.side;
-  if (seen.side() == Side::ambiguous) {
-    if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres matter for points only
-      in_ball = work_.surface.classify_ball(at, ball.radius);
-    own = in_ball.side;
-    if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
-  }
-  const auto side_of = [&](unsigned lane) {
-    return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
-  };
-  const Side of_cell = side_of(BlockTask::of_cell), of_sphere = side_of(BlockTask::of_sphere);
-  const Side side = seen.side() == Side::ambiguous ? of_cell : seen.side();
-
-  const bool samples_cell = kFloods && lanes.lane == BlockTask::of_cell && side != Side::free;
-  const bool samples_block = lanes.lane == BlockTask::of_block && side == Side::ambiguous &&
-                             (flags & BlockTask::has_block) != 0 &&
-                             in_ball.side == Side::ambiguous && work_.surface.may_be_flat(in_ball);
-  SurfaceSample on_surface;
-  if (samples_cell || samples_block) on_surface = work_.surface.sample(at, in_ball.point);
-
-  double gap = 0;
-  bool hidden = false, whole = side == Side::behind;
-  if (kFloods) {
-    gap = squared_gap(on_surface);
-    hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
-                            is_hidden_cell(gap, work_.level.tool_reach.length),
-                        BlockTask::of_cell);
-    const bool behind = lanes.from(is_behind_surface(on_surface), BlockTask::of_cell);
-    whole |= side == Side::no_surface && behind;
-  }
-  if (!active) return;
-  if (lanes.lane == BlockTask::of_cell && head)
-    note_cell(task, word_of_cell(side, of_sphere, whole, hidden), gap);
-  if (lanes.lane != BlockTask::of_block) return;
-  if (side == Side::ambiguous)
-    add_ambiguous(task, in_ball, at, ball.radius, on_surface);
-  else if (whole)
-    add_whole(task);
-}
-
-// Returns the word to note of a cell that is `whole` behind the surface or ambiguous; counts a
-// hidden one.
-template <class Surface>
-__device__ std::uint32_t GroupMeasure<Surface>::word_of_cell(Side side, Side of_sphere, bool whole,
-                                                             bool hidden) const {
-  std::uint32_t word = whole ? cell_bit::whole : 0;
-  if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
-  if ((whole || side == Side::ambiguous) && hidden) {
-    word |= cell_bit::hidden;
-    atomicAdd(&work_.counters.hidden, 1U);
-  }
-  return word;
-}
-
-// Lists the block of an ambiguous cell; its ball was classified and, where that is ambiguous,
-// sampled.
-template <class Surface>
-template <class BallClass>
-__device__ void GroupMeasure<Surface>::add_ambiguous(const BlockTask& task,
-                                                     const BallClass& in_ball, Vec3 at,
-                                                     double radius,
-                                                     const SurfaceSample& on_surface) {
-  if ((task.flags & BlockTask::has_block) == 0) return;
-  TangentPlane tangent;
-  const BlockClass found = class_of_block(
-      work_.surface, in_ball, at, radius, work_.level.tool_reach, [&] { return on_surface; },
-      tangent);
-  if (found == BlockClass::cut)
-    tasks_.add_clipped(task, {tangent, work_.to_surface});
-  else
-    list_block(task, found);
-}
-
-// Lists the block of a cell that counts whole, or the cell itself where it is compact.
-template <class Surface>
-__device__ void GroupMeasure<Surface>::add_whole(const BlockTask& task) {
-  if ((task.flags & BlockTask::is_compact) != 0) {
-    if ((task.flags & BlockTask::is_head) != 0)
-      tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
-  } else if ((task.flags & BlockTask::has_block) != 0) {
-    tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
-  }
-}
-
-// True in the cell's lane if its ball, whose pixels all lanes read, was seen to be free.
-template <class Surface>
-template <class BallClass>
-__device__ bool GroupMeasure<Surface>::is_cell_seen_past(const Subwarp& lanes,
-                                                         const BallClass& in_ball,
-                                                         double depth) const {
-  if constexpr (SeesFreeSpace<Surface>) {
-    constexpr unsigned kCell = BlockTask::of_cell;
-    if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
-    const PixelRectangle pixels = lanes.from(Surface::pixels_of(in_ball), kCell);
-    const double farthest = lanes.from(depth, kCell);
-    return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
-  } else {
-    return false;
-  }
-}
-
-template <class Surface>
-__device__ void GroupMeasure<Surface>::note_cell(const BlockTask& task, std::uint32_t word,
-                                                 double gap) {
-  const std::uint32_t i = task.cell;
-  if (!kFloods) word &= cell_bit::counts_points;
-  if (word != 0) atomicOr(&work_.notes.words[i], word);
-  if (!kFloods) return;
-  work_.space.gaps[i] = gap;
-  work_.space.parents[i + 1] = i + 1;
-}
-
-// True if a ball was seen to be free; all lanes read its pixels.
-template <class Surface>
-__device__ bool GroupMeasure<Surface>::is_free(const Subwarp& lanes, Vec3 center,
-                                               double radius) const {
-  const auto in_ball = work_.surface.classify_ball(center, radius);
-  const double farthest = center.z + radius;
-  if constexpr (SeesFreeSpace<Surface>) {
-    if (work_.surface.may_be_seen_past(in_ball, farthest))
-      return is_seen_past(lanes, Surface::pixels_of(in_ball), farthest);
-  }
-  return in_ball.side == Side::free;
-}
-
-// Classifies one block task of a cut cluster by all lanes of a subwarp.
-template <class Surface>
-__device__ void GroupMeasure<Surface>::classify_clipped(SeenTask seen, const Subwarp& lanes) {
-  const BlockTask& task = work_.level.units[shared_.first_units[seen.slot()] + seen.task()];
-  const PlanarCluster& planar = planar_cluster_of(seen.slot());
-  const ClipPlane plane = planar.plane;
-  const TaskBall cell = task.balls[BlockTask::of_cell];
-  const bool head = (task.flags & BlockTask::is_head) != 0;
-  const double distance = plane.distance(cell.center);
-  const Vec3 at = work_.to_surface * cell.center;
-  const PlaneSide side = side_in_cut_cluster(distance, cell.radius, [&] {
-    return may_be_free(work_.surface, planar.least_inverse_depth, at, cell.radius) &&
-           is_free(lanes, at, cell.radius);
-  });
-  if (!lanes.leads()) return;
-  if (head) {
-    std::uint32_t word = 0;
-    if (side == PlaneSide::behind) {
-      tasks_.note_behind(task, plane.normal);
-      if (kFloods) word = cell_bit::partial;
-    }
-    if (counts_points_) {
-      const TaskBall& sphere = task.balls[BlockTask::of_sphere];
-      if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
-          Side::ambiguous)
-        word |= cell_bit::counts_points;
-    }
-    note_cell(task, word, distance * distance);
-  }
-  if ((task.flags & BlockTask::has_block) != 0 && side == PlaneSide::cut)
-    tasks_.add_clipped(task, plane);
-}
-
-// Notes a cell of a uniform cluster.
-template <class Surface>
-__device__ void GroupMeasure<Surface>::note_pushed(const BlockTask& task, Vec3 normal) {
-  tasks_.note_behind(task, normal);
-  if (!kFloods) return;
-  const Vec3 at = work_.to_surface * task.balls[BlockTask::of_cell].center;
-  note_cell(task, cell_bit::whole, squared_gap(work_.surface.sample(at)));
-}
-
-// Lists a block of an ambiguous cell.
-template <class Surface>
-__device__ void GroupMeasure<Surface>::list_block(const BlockTask& task, BlockClass found) {
-  if (found == BlockClass::free) return;
-  if (found == BlockClass::uncut) {
-    tasks_.add(TaskLists::pieces, {task.cell, Task::block, task.block, 1});
-    return;
-  }
-  const std::uint32_t begin = task.begin, count = task.end - begin;
-  if (count <= TaskLists::kNarrow) {
-    tasks_.add(TaskLists::samples_narrow, {task.cell, Task::samples, begin, count});
-    return;
-  }
-  // Halves at a whole number of neighbours.
-  constexpr std::uint32_t kTwice = 2 * kNeighborSamples;
-  const std::uint32_t half =
-      count > TaskLists::kWide ? (count + kTwice - 1) / kTwice * kNeighborSamples : count;
-  tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin, half});
-  if (half < count)
-    tasks_.add(TaskLists::samples_wide, {task.cell, Task::samples, begin + half, count - half});
-}
 
 }  // namespace vpm::cuda

@@ -1,10 +1,422 @@
 // Runs the first step of a query where a camera has seen the surface, for a level with no more task
-// groups than a launch has warps: each warp takes one group and waits for no other.
+// groups than a launch has warps: each warp takes one group and waits for no other. It classifies
+// the group's cells and sums what is behind the surface by no more than the tool's radius.
+//
+// Some lanes work for each block task. A launch takes as long as its slowest warp, so what may be
+// needed is computed side by side before it is known to be. Loading instructions comes first, so
+// each step stands here once, and all lanes go through it together.
 #pragma once
 
-#include "libvpm/backend/cuda/image_task_group.h"
+#include <type_traits>
+
+#include "libvpm/backend/cuda/cell_notes.h"
+#include "libvpm/scene/depth/depth_surface.h"
 
 namespace vpm::cuda {
+
+// Lays out a warp's shared memory for the task group at hand.
+struct alignas(16) ImageShared {
+  struct OfTask {
+    Side cell = Side::free;
+    BlockClass block = BlockClass::free;
+    bool asks_pixels = false;  // its pixels may show the cell to be free
+    bool may_be_free = false;
+    ClipPlane plane;        // set for a cut block
+    PixelRectangle pixels;  // the cell's
+    double farthest = 0;
+  };
+  // Describes the cluster from here on.
+  DepthSurface::BallClass in_ball;
+  Vec3 middle;
+  SurfaceSample on_surface, around[kPlacesAround];
+  Vec3 normal;  // along which a uniform cluster is pushed
+  OfTask units[TaskGroup::kTasks];
+};
+
+// Samples the surface about the middle of a cluster, which has been sampled, by four lanes of a
+// warp.
+struct SampleByWarp {
+  ImageShared& shared;
+
+  __device__ SurfaceSample middle(const DepthSurface&, const Vec3&) const {
+    return shared.on_surface;
+  }
+  template <class Take>
+  __device__ bool operator()(const DepthSurface& surface, const Vec3 (&places)[kPlacesAround],
+                             const Take& take) const {
+    const unsigned lane = threadIdx.x % 32;
+    if (lane < kPlacesAround) shared.around[lane] = surface.sample(place_of(places, lane));
+    __syncwarp();
+    for (const SurfaceSample& around : shared.around)
+      if (!take(around)) return false;
+    return true;
+  }
+};
+
+// Measures one task group by all lanes of a warp. `Found` is what is computed per block task:
+// TaskSums or, in a second pass that few queries need, ContactPlane.
+template <class Found>
+class ImageTaskGroup {
+ public:
+  // Takes the number of `lanes` per block task.
+  __device__ ImageTaskGroup(const PoseWork<DepthSurface>& work, bool counts_points,
+                            const TaskBall& cluster, const WarpTask* units, unsigned lanes,
+                            ImageShared& shared, ImageSums& sums)
+      : work_(work),
+        counts_points_(counts_points),
+        cluster_(cluster),
+        lanes_(lanes),
+        lane_(threadIdx.x % lanes),
+        unit_(units[threadIdx.x % 32 / lanes]),
+        flags_(unit_.flags),
+        begin_(unit_.begin),
+        end_(unit_.end),
+        shared_(shared),
+        seen_(shared.units[threadIdx.x % 32 / lanes]),
+        sums_(sums) {}
+
+  __device__ void measure() {
+    see_ball();
+    if (shared_.in_ball.side == Side::free) return;
+    Found found;
+    const Counts counts = classify();
+    measure_pieces(counts, found);
+    measure_by_plane(counts, found);
+    if (counts != Counts::not_at_all && lane_ == 0) sums_.note(unit_, found);
+  }
+
+ private:
+  static constexpr bool kFindsPlanes = std::is_same_v<Found, ContactPlane>;
+  using Measure = CellMeasure<DepthSurface>;
+  using PieceSample = Measure::PieceSample;
+
+  // Names the lanes of a task that classify its balls, and the warp's lane for the cluster's ball.
+  static constexpr unsigned kOfCell = BlockTask::of_cell, kOfBlock = BlockTask::of_block,
+                            kOfSphere = BlockTask::of_sphere, kOfCluster = BlockTask::kBalls;
+
+  // Tells how a block task counts.
+  enum class Counts {
+    not_at_all,
+    pushed,      // its cell is behind the surface of a planar cluster
+    by_plane,    // a plane cuts its block
+    whole_cell,  // its cell is behind the surface
+    whole_block,
+    by_samples,  // sample by sample
+  };
+
+  __device__ bool is_of_cluster() const { return threadIdx.x % 32 == kOfCluster; }
+  __device__ bool is(BlockTask::Flag flag) const { return (flags_ & flag) != 0; }
+  __device__ Measure measure_of_cell() const {
+    const TaskBall& cell = unit_.balls[kOfCell];
+    return work_.measure_of({.center = cell.center, .reach = cell.radius});
+  }
+  // True for all lanes of a task if `value` is true for any of them.
+  __device__ bool any(bool value) const {
+    const unsigned mask = (1U << lanes_) - 1;
+    return (__ballot_sync(~0U, value) >> (threadIdx.x % 32 - lane_) & mask) != 0;
+  }
+
+  __device__ static double from(double value, unsigned lane) {
+    return __shfl_sync(~0U, value, static_cast<int>(lane));
+  }
+  // Returns the value of the lane `lanes` further on, within the task.
+  __device__ static double from_next(double value, unsigned lanes) {
+    return __shfl_down_sync(~0U, value, lanes);
+  }
+  // Adds up over the lanes of a task; all of them receive the sum.
+  template <class Sum>
+  __device__ void add_up(Sum& sum) const {
+    std::int64_t* const terms = terms_of(sum);
+#pragma unroll 1
+    for (unsigned half = lanes_ / 2; half > 0; half /= 2) {
+#pragma unroll
+      for (int k = 0; k < kTerms; ++k) terms[k] += __shfl_xor_sync(~0U, terms[k], half);
+    }
+  }
+
+  // Classifies all balls.
+  __device__ void see_ball() {
+    const bool is_of_unit = lane_ < (counts_points_ ? kOfSphere : kOfBlock) + 1;
+    const TaskBall ball = is_of_unit ? unit_.balls[lane_] : cluster_;
+    radius_ = ball.radius;
+    middle_ = work_.to_surface * ball.center;
+    look_ = work_.surface.classify_ball(middle_, radius_);
+    __syncwarp();  // all lanes are done with the last group
+    if (is_of_cluster()) {
+      shared_.in_ball = look_;
+      shared_.middle = middle_;
+    }
+    if (lane_ == kOfCell) {
+      seen_.cell = look_.side;
+      seen_.farthest = middle_.z + radius_;
+      seen_.asks_pixels = work_.surface.may_be_seen_past(look_, seen_.farthest);
+      seen_.pixels = look_.pixels;
+    }
+    __syncwarp();
+  }
+
+  __device__ Counts classify() {
+    switch (class_of_cluster(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
+                             work_.level.tool_reach.length)) {
+      case ClusterClass::ambiguous:
+        return sees_plane() ? classify_clipped() : classify_alone(Side::ambiguous);
+      case ClusterClass::uniform:
+        return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+      default:
+        return classify_alone(Side::behind);
+    }
+  }
+
+  // True if the surface passes through the cluster as one plane, plane_. Samples it in the middles
+  // of the cluster and of the blocks together, then at four places about the cluster's middle.
+  __device__ bool sees_plane() {
+    const double tool_radius = work_.level.tool_reach.length;
+    const bool may_be =
+        may_have_plane(work_.surface, shared_.in_ball, cluster_.radius, tool_radius);
+    if (is_of_cluster() ? may_be : lane_ == kOfBlock && is(BlockTask::has_block))
+      on_surface_ = work_.surface.sample(middle_);
+    if (is_of_cluster()) shared_.on_surface = on_surface_;
+    __syncwarp();
+    TangentPlane tangent;
+    if (!finds_cluster_plane(work_.surface, shared_.in_ball, shared_.middle, cluster_.radius,
+                             tool_radius, SampleByWarp{shared_}, tangent))
+      return false;
+    plane_ = {tangent, work_.to_surface};
+    return true;
+  }
+
+  // Classifies a task of a cluster that is cut by plane_.
+  __device__ Counts classify_clipped() {
+    const TaskBall& cell = unit_.balls[kOfCell];
+    const PlaneSide side = side_of_plane(plane_.distance(cell.center), cell.radius);
+    if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) &&
+        look_.side == Side::ambiguous)
+      sums_.note_points(unit_);
+    const bool is_reached = side != PlaneSide::before;
+    const bool may_be_free = is_reached && (seen_.cell == Side::free || seen_.asks_pixels);
+    if (__any_sync(~0U, may_be_free) != 0 && is_free_in_cluster(may_be_free))
+      return Counts::not_at_all;
+    if (!is_reached) return Counts::not_at_all;
+    if (side == PlaneSide::behind)
+      return is(BlockTask::is_head) ? Counts::pushed : Counts::not_at_all;
+    return is(BlockTask::has_block) ? Counts::by_plane : Counts::not_at_all;
+  }
+
+  // True if the cell's own pixels show it free though it is behind the plane. Call from all lanes.
+  __device__ bool is_free_in_cluster(bool may_be_free) {
+    if (lane_ == kOfCell)
+      seen_.may_be_free =
+          may_be_free && work_.surface.may_be_free(
+                             DepthSurface::least_inverse_depth(shared_.in_ball), middle_, radius_);
+    __syncwarp();
+    return side_of_cell(seen_.may_be_free) == Side::free && seen_.may_be_free;
+  }
+
+  // Classifies a task of a cluster that is not planar.
+  __device__ Counts classify_alone(Side side) {
+    if (side == Side::ambiguous) {
+      side = side_of_cell(true);
+      if (counts_points_ && lane_ == kOfSphere && is(BlockTask::is_head) &&
+          side == Side::ambiguous && look_.side == Side::ambiguous)
+        sums_.note_points(unit_);
+      const bool asks_block = side == Side::ambiguous && is(BlockTask::has_block);
+      if (lane_ == kOfBlock && asks_block) see_block();
+      __syncwarp();
+      if (asks_block) {
+        plane_ = seen_.plane;
+        switch (seen_.block) {
+          case BlockClass::free:
+            return Counts::not_at_all;
+          case BlockClass::uncut:
+            return Counts::whole_block;
+          case BlockClass::cut:
+            return Counts::by_plane;
+          case BlockClass::ambiguous:
+            return Counts::by_samples;
+        }
+      }
+      if (side == Side::ambiguous) return Counts::not_at_all;
+    }
+    if (side == Side::free) return Counts::not_at_all;
+    if (is(BlockTask::is_compact))
+      return is(BlockTask::is_head) ? Counts::whole_cell : Counts::not_at_all;
+    return is(BlockTask::has_block) ? Counts::whole_block : Counts::not_at_all;
+  }
+
+  // Returns the side of the cell; if `asks`, its pixels may show it to be free.
+  __device__ Side side_of_cell(bool asks) {
+    asks = asks && seen_.asks_pixels;
+    if (__any_sync(~0U, asks) == 0) return seen_.cell;
+    const bool is_past =
+        asks && work_.surface.is_seen_past(seen_.pixels, seen_.farthest, lane_, lanes_);
+    const bool is_near = any(asks && !is_past);
+    return asks && !is_near ? Side::free : seen_.cell;
+  }
+
+  // Classifies the block in its lane: the surface may pass through it as one plane.
+  __device__ void see_block() {
+    TangentPlane tangent;
+    seen_.block = class_of_block(
+        work_.surface, look_, middle_, radius_, work_.level.tool_reach, [&] { return on_surface_; },
+        tangent);
+    if (seen_.block == BlockClass::cut) seen_.plane = {tangent, work_.to_surface};
+  }
+
+  // Returns false if this lane has no piece in this turn. Otherwise gives a sample, or a block or
+  // cell taken whole, and its place x in the surface's frame.
+  __device__ bool take_piece(Counts counts, unsigned turn, ToolPiece& piece, Vec3& x) const {
+    if (counts == Counts::by_samples) {
+      const std::uint32_t k = begin_ + turn * lanes_ + lane_;
+      if (k >= end_) return false;
+      piece = piece_of(work_.level.samples[k]);
+    } else {
+      if (counts != Counts::whole_cell && counts != Counts::whole_block) return false;
+      if (turn > 0 || lane_ != 0) return false;
+      const BlockMass& mass = counts == Counts::whole_cell ? unit_.cell_mass : unit_.block_mass;
+      piece = {mass.centroid, 0, mass.weight};
+    }
+    x = work_.to_surface * piece.at;
+    return true;
+  }
+
+  // Measures pieces one by one, and finds the way out of the middle of a uniform cluster.
+  __device__ void measure_pieces(Counts counts, Found& found) {
+    const bool finds_way =
+        __any_sync(~0U, counts == Counts::pushed) != 0 && shared_.in_ball.side == Side::behind;
+    const bool adds_up = __any_sync(~0U, counts == Counts::by_samples) != 0;
+    for (unsigned turn = 0;; ++turn) {
+      ToolPiece piece;
+      Vec3 x = shared_.middle;
+      const bool exists =
+          finds_way ? turn == 0 && is_of_cluster() : take_piece(counts, turn, piece, x);
+      if (__any_sync(~0U, exists) == 0) break;
+      const Vec3 way = measure_piece(piece, x, exists, counts == Counts::by_samples, found);
+      if (finds_way && exists) shared_.normal = transpose(work_.to_surface.rotation) * way;
+    }
+    if (finds_way) {
+      __syncwarp();
+      plane_.normal = shared_.normal;
+    }
+    if (!adds_up) return;
+    if constexpr (kFindsPlanes) {
+      add_up(found);
+    } else {
+      add_up(found.sum);
+      found.is_cut = any(found.is_cut);
+    }
+  }
+
+  // Measures a piece; lanes without one take part with weight 0. Neighbouring samples are pushed in
+  // one direction. Returns the way out of a piece that is wholly inside.
+  __device__ Vec3 measure_piece(const ToolPiece& piece, Vec3 x, bool exists, bool is_sample,
+                                Found& found) {
+    const Measure measure = measure_of_cell();
+    const unsigned lane = threadIdx.x % 32;
+    unsigned leader = lane;
+    bool is_inside = false, searches = false, wants = exists;
+    Vec3 place = x;
+    PieceSample sampled;
+    FootSearch<double> search;
+#pragma unroll 1
+    for (bool is_first = true;; is_first = false) {
+      SurfaceSample on_surface;
+      FootSearch<double>::Neighbors beside;
+      if (wants) {
+        on_surface = work_.surface.sample_and(place, [&](std::int32_t u, std::int32_t v) {
+          beside = FootSearch<double>::neighbors_of(work_.surface, u, v);
+        });
+      }
+      if (is_first) {
+        sampled = measure.sample_of(piece, x, on_surface);
+        is_inside = exists && sampled.is_inside;
+        const bool cells_it = is_inside && is_sample && Measure::shares_direction(piece, sampled);
+        const unsigned sharing = __ballot_sync(~0U, cells_it);
+        if (cells_it) leader = direction_leader(lane, sharing);
+        searches = wants = is_inside && !Measure::is_cut(piece, sampled) && leader == lane;
+        if (wants) search = FootSearch<double>(work_.surface, x, on_surface, beside);
+      } else if (wants) {
+        search.take(work_.surface, on_surface, beside);
+      }
+      wants = wants && search.goes_on();
+      if (__any_sync(~0U, wants) == 0) break;
+      place = search.target();
+    }
+    Vec3 normal;
+    if (searches) normal = search.normal();
+    normal = {from(normal.x, leader), from(normal.y, leader), from(normal.z, leader)};
+    if (is_inside && piece.weight > 0) add_piece(measure, piece, sampled, normal, found);
+    return normal;
+  }
+
+  // Adds a piece that is inside.
+  __device__ void add_piece(const Measure& measure, const ToolPiece& piece,
+                            const PieceSample& sampled, Vec3 normal, Found& found) {
+    const bool is_cut = Measure::is_cut(piece, sampled);
+    if constexpr (kFindsPlanes) {
+      if (is_cut) measure.add_to_plane(sampled, found);
+    } else {
+      found.is_cut |= is_cut;
+      work_.add_inside(measure, piece, sampled, normal, unit_.cell, found.sum);
+    }
+  }
+
+  // Adds the part of a task behind a plane, in its first lane.
+  __device__ void measure_by_plane(Counts counts, Found& found) {
+    const TaskBall& block = unit_.balls[kOfBlock];
+    const PlaneSide side = counts == Counts::pushed ? PlaneSide::behind
+                           : counts != Counts::by_plane
+                               ? PlaneSide::before
+                               : side_of_plane(plane_.distance(block.center), block.radius);
+    const bool is_crossed = side == PlaneSide::cut;
+    ClippedMoments sums;
+    if (__any_sync(~0U, is_crossed) != 0) sums = clipped_moments(is_crossed ? end_ - begin_ : 0);
+    if (lane_ != 0 || side == PlaneSide::before) return;
+    if constexpr (kFindsPlanes) {
+      if (sums.is_cut) measure_of_cell().add_to_plane(block.center, plane_, found);
+    } else {
+      found.is_cut |= sums.is_cut;
+      add_by_plane(side, counts == Counts::pushed ? unit_.cell_mass : unit_.block_mass, sums,
+                   plane_.normal, work_.level.tool_reach, found.sum);
+    }
+  }
+
+  // Returns, in the first lane, the clipped moments of the block's first `count` samples, with the
+  // bits of clipped_in_turn(): a row per lane, added by halves. (With fewer lanes than rows, no
+  // lane has more than two samples, and the rows left out are 0.)
+  __device__ ClippedMoments clipped_moments(std::uint32_t count) const {
+    static_assert(WarpTaskGroups::kNarrow == 2 * (32 / TaskGroup::kTasks) &&
+                  kSumRows == 32 / WarpTaskGroups::kWideTasks);
+    ClippedMoments row;
+#pragma unroll 4
+    for (std::uint32_t k = lane_; k < count; k += lanes_)
+      add_to_row(work_.level.samples[begin_ + k], plane_, row, row.is_cut);
+    __syncwarp();
+#pragma unroll 1
+    for (unsigned half = lanes_ / 2; half > 0; half /= 2) {
+      row.weight += from_next(row.weight, half);
+      row.moment += Vec3{from_next(row.moment.x, half), from_next(row.moment.y, half),
+                         from_next(row.moment.z, half)};
+    }
+    row.is_cut = any(row.is_cut);
+    return row;
+  }
+
+  const PoseWork<DepthSurface>& work_;
+  bool counts_points_;
+  const TaskBall& cluster_;
+  unsigned lanes_, lane_;
+  const WarpTask& unit_;
+  std::uint32_t flags_, begin_, end_;  // loaded together with the task's balls
+  ImageShared& shared_;
+  ImageShared::OfTask& seen_;
+  ImageSums& sums_;
+
+  Vec3 middle_;  // the ball that this lane classified
+  double radius_ = 0;
+  DepthSurface::BallClass look_;
+  SurfaceSample on_surface_;  // sample at the block's middle
+  ClipPlane plane_;           // set for a task that is cut by a plane or pushed
+};
 
 // Measures a small level by all warps of a launch, one task group each.
 class ImageMeasure {

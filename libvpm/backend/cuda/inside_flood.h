@@ -1,17 +1,142 @@
-// Defines the second step of a query among points without a camera: the flood, and the sum of what
-// it reaches.
-//
-// In a block's own memory the flood goes from cell to cell until nothing changes. Otherwise cells
-// that the flood may pass are joined where the graph has an edge, and with the entry where a cut
-// cell lets the flood in. What is joined with the entry is inside. The team meets between joining
-// and adding up; where another surface may hide something, which is rare, more often.
+// Finishes a query after the first step: where a camera has seen the surface, by the planes of cut
+// cells; among points without a camera, by the flood.
 #pragma once
 
-#include "libvpm/backend/cuda/cut_cells.h"
-#include "libvpm/backend/cuda/noted_cells.h"
-#include "libvpm/backend/cuda/union_find.h"
+#include <cstdint>
+#include <cuda/atomic>
+
+#include "libvpm/backend/cuda/cell_notes.h"
 
 namespace vpm::cuda {
+
+// Finds connected components with many threads at once, as a forest in which every root is the
+// smallest member of its tree. Roots are hooked below smaller ones with compare-and-swap, so the
+// components do not depend on the order of threads.
+class UnionFind {
+ public:
+  __device__ explicit UnionFind(std::uint32_t* parents) : parents_(parents) {}
+
+  __device__ std::uint32_t root(std::uint32_t node) const {
+    std::uint32_t at = node, parent = load(at);
+    while (parent != at) {
+      const std::uint32_t above = load(parent);
+      if (above != parent) store(at, above);  // halves the path; any ancestor will do
+      at = parent;
+      parent = above;
+    }
+    return at;
+  }
+
+  // Joins a[k] with b[k] for all k; equal pairs are allowed. All walk to their roots at once, since
+  // each step waits for memory.
+  template <unsigned kPairs>
+  __device__ void join(const std::uint32_t (&a)[kPairs], const std::uint32_t (&b)[kPairs]) const {
+    Walk walks[kPairs][2];
+#pragma unroll
+    for (unsigned k = 0; k < kPairs; ++k) {
+      walks[k][0] = {a[k], a[k]};
+      walks[k][1] = {b[k], b[k]};
+    }
+    bool changes = true;
+    while (changes) {
+      std::uint32_t parents[kPairs][2];
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        if (walks[k][0].at == walks[k][1].at) continue;
+        parents[k][0] = load(walks[k][0].at);
+        parents[k][1] = load(walks[k][1].at);
+      }
+      changes = false;
+#pragma unroll
+      for (unsigned k = 0; k < kPairs; ++k) {
+        Walk &one = walks[k][0], &other = walks[k][1];
+        if (one.at == other.at) continue;
+        if (parents[k][0] == one.at && parents[k][1] == other.at) {
+          const std::uint32_t low = min(one.at, other.at), high = max(one.at, other.at);
+          if (atomicCAS(parents_ + high, high, low) == high) one.at = other.at;
+        } else {
+          go(one, parents[k][0]);
+          go(other, parents[k][1]);
+        }
+        changes |= one.at != other.at;
+      }
+    }
+  }
+
+ private:
+  struct Walk {
+    std::uint32_t last, at;
+  };
+  __device__ void go(Walk& walk, std::uint32_t parent) const {
+    if (parent == walk.at) return;
+    if (walk.last != walk.at) store(walk.last, parent);  // as in root()
+    walk = {walk.at, parent};
+  }
+
+  // Uses atomics, since other threads write meanwhile.
+  using Parent = ::cuda::atomic_ref<std::uint32_t, ::cuda::thread_scope_device>;
+  __device__ std::uint32_t load(std::uint32_t node) const {
+    return Parent(parents_[node]).load(::cuda::memory_order_relaxed);
+  }
+  __device__ void store(std::uint32_t node, std::uint32_t parent) const {
+    Parent(parents_[node]).store(parent, ::cuda::memory_order_relaxed);
+  }
+
+  std::uint32_t* parents_;
+};
+
+// Finishes a query where a camera has seen the surface. The first step has added what is behind it
+// by no more than the tool's radius; pieces further behind need the support of cut cells' planes.
+template <class Team>
+class CameraVisibility {
+ public:
+  using Shared = NotedList;  // memory of a block
+
+  __device__ CameraVisibility(const LevelView& level, const Pose& to_surface,
+                              const RefinedSpace& space, unsigned turn, RefinedCounters& counters,
+                              Team& team, Shared& shared, bool counts_points)
+      : notes_(space.notes[turn % 2]),
+        counters_(counters),
+        team_(team),
+        noted_(level, notes_, team, shared),
+        cut_(level, to_surface, space, notes_, counters, team),
+        counts_points_(counts_points) {}
+
+  // True if the first step has left `far` pieces, or points are to be counted.
+  __device__ static bool has_more(unsigned far, bool counts_points) {
+    return counts_points || far > 0;
+  }
+  // Returns what this thread adds to the first step's result. Call from all threads of the team.
+  __device__ RawResult run() {
+    RawResult result;
+    const unsigned far = read_for_block(counters_).far;
+    if (far > 0) {
+      cut_.list();
+      team_.sync();
+      cut_.add_far(
+          far, [](std::uint32_t) { return true; },
+          [&](std::uint32_t i, const ToolSum& sum) {
+            result.sum.add(sum);
+            if (sum.volume.value != 0)
+              count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
+          });
+    }
+    if (counts_points_) {
+      noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
+        if ((word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
+      });
+    }
+    return result;
+  }
+
+ private:
+  const CellNotes& notes_;
+  RefinedCounters& counters_;
+  Team& team_;
+  NotedCells<Team> noted_;
+  CutCells<Team> cut_;
+  bool counts_points_;
+};
 
 // Bounds the cells of a level that one block floods in its own memory.
 inline constexpr std::uint32_t kFloodCells = 3072;
@@ -31,6 +156,12 @@ union FloodBlock {
   NotedList noted;
 };
 
+// Floods among points without a camera, and sums what the flood reaches.
+//
+// In a block's own memory the flood goes from cell to cell until nothing changes. Otherwise cells
+// that the flood may pass are joined where the graph has an edge, and with the entry where a cut
+// cell lets the flood in. What is joined with the entry is inside. The team meets between joining
+// and adding up; where another surface may hide something, which is rare, more often.
 template <class Team>
 class Flood {
  public:
@@ -104,18 +235,167 @@ class Flood {
   };
   // Calls visit(edges) for all edges of the level.
   template <class Visit>
-  __device__ void for_edges(const Visit& visit) const;
+  __device__ void for_edges(const Visit& visit) const {
+    for (std::uint32_t first = team_.thread(); first < level_.edge_count;
+         first += kEdges * team_.threads()) {
+      Edges together;
+#pragma unroll
+      for (unsigned k = 0; k < kEdges; ++k) {
+        const std::uint32_t e = first + k * team_.threads();
+        together.edges[k] = level_.edges[e < level_.edge_count ? e : first];
+      }
+#pragma unroll
+      for (unsigned k = 0; k < kEdges; ++k) {
+        const bool is_one = first + k * team_.threads() < level_.edge_count;
+        together.words[k][0] = is_one ? words_[together.edges[k].larger] : 0;
+        together.words[k][1] = is_one ? words_[together.edges[k].smaller] : 0;
+      }
+      visit(together);
+    }
+  }
   // Calls join(k, i, j) for edges between cells that the flood may pass, enter(k, cut, i) for edges
   // by which it may enter.
   template <class Join, class Enter>
-  __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter);
-  __device__ void join_cells();
-  __device__ void flood_in_shared();
-  __device__ bool enters(std::uint32_t cut, std::uint32_t sphere) const;
-  __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t sphere) const;
-  __device__ __noinline__ void decide_hidden();
-  __device__ RawResult add_up_cells();
-  __device__ void add_cell(std::uint32_t sphere, std::uint32_t word, RawResult& result) const;
+  __device__ static void look_at(const Edges& together, const Join& join, const Enter& enter) {
+#pragma unroll
+    for (unsigned k = 0; k < kEdges; ++k) {
+      const std::uint32_t i = together.edges[k].larger, j = together.edges[k].smaller;
+      const std::uint32_t word_of_i = together.words[k][0], word_of_j = together.words[k][1];
+      if (is_passable(word_of_i) && is_passable(word_of_j))
+        join(k, i, j);
+      else if ((word_of_i & cell_bit::cut) != 0 && is_passable(word_of_j))
+        enter(k, i, j);
+      else if ((word_of_j & cell_bit::cut) != 0 && is_passable(word_of_i))
+        enter(k, j, i);
+    }
+  }
+
+  // Joins the cells of a large level. Visits edges from the cells that have a word, each edge from
+  // its larger cell, which has few.
+  __device__ void join_cells() {
+    const auto join_ends = [&](const Edges& together) {
+      std::uint32_t one[kEdges] = {}, other[kEdges] = {};
+      look_at(
+          together,
+          [&](unsigned k, std::uint32_t i, std::uint32_t j) { one[k] = i + 1, other[k] = j + 1; },
+          [&](unsigned k, std::uint32_t cut, std::uint32_t i) {
+            if (enters(cut, i)) one[k] = i + 1;
+          });
+      flood_.join(one, other);
+    };
+    if (level_.edge_count <= kEdges * team_.threads()) {
+      for_edges(join_ends);
+      return;
+    }
+    noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
+      if (!is_passable(word) && (word & cell_bit::cut) == 0) return;
+      const std::uint32_t end = level_.edge_begin[i + 1];
+      for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kEdges) {
+        Edges together;
+#pragma unroll
+        for (unsigned k = 0; k < kEdges; ++k)
+          together.edges[k] = {i, level_.edges[e + k < end ? e + k : e].smaller};
+#pragma unroll
+        for (unsigned k = 0; k < kEdges; ++k) {
+          together.words[k][0] = word;
+          together.words[k][1] = e + k < end ? words_[together.edges[k].smaller] : 0;
+        }
+        join_ends(together);
+      }
+    });
+  }
+
+  // Floods in the block's memory: lists the edges that matter, then passes all of them in each
+  // round.
+  __device__ void flood_in_shared() {
+    for_edges([&](const Edges& together) {
+      look_at(
+          together,
+          [&](unsigned, std::uint32_t i, std::uint32_t j) {
+            shared_.edges[atomicAdd(&shared_.flood_states, 1U)] = {i, j};
+          },
+          [&](unsigned, std::uint32_t cut, std::uint32_t i) {
+            shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
+          });
+    });
+    __syncthreads();
+    const unsigned entries = shared_.entries, flood_states = shared_.flood_states;
+    for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
+      const Edge entry = shared_.edges[kFloodEdges - 1 - k];
+      if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], cell_bit::reached);
+    }
+    bool changes = true;
+    while (__syncthreads_or(changes) != 0) {
+      constexpr unsigned kMost = kFloodEdges / kThreads;
+      static_assert(kMost <= 32);
+      unsigned clipped = 0;  // one bit per edge of this thread
+#pragma unroll 4
+      for (unsigned n = 0; n < kMost; ++n) {
+        const unsigned k = threadIdx.x + n * blockDim.x;
+        if (k >= flood_states) break;
+        const Edge edge = shared_.edges[k];
+        clipped |=
+            ((words_[edge.larger] ^ words_[edge.smaller]) & cell_bit::reached) != 0 ? 1U << n : 0U;
+      }
+      __syncthreads();
+      changes = clipped != 0;
+      for (; clipped != 0; clipped &= clipped - 1) {
+        const Edge edge =
+            shared_.edges[threadIdx.x + (__ffs(static_cast<int>(clipped)) - 1) * blockDim.x];
+        atomicOr(&words_[edge.larger], cell_bit::reached);
+        atomicOr(&words_[edge.smaller], cell_bit::reached);
+      }
+    }
+  }
+
+  __device__ bool enters(std::uint32_t cut, std::uint32_t i) const {
+    return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) ||
+           lies_behind(cut, i);
+  }
+
+  __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t i) const {
+    return cut_.at(cut).is_behind(center(i));
+  }
+
+  // Closes to the flood those cells that another surface may hide and that lie before the plane of
+  // the nearest cut cell.
+  __device__ __noinline__ void decide_hidden() {
+    const Subwarp warp(32);
+    for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
+      const std::uint32_t word = words_[i];
+      if (!may_be_inside(word) || (word & cell_bit::hidden) == 0) continue;
+      const std::uint32_t cut = cut_.nearest_to(warp, i);
+      if (cut < level_.count && warp.leads() && lies_behind(cut, i))
+        words_[i] = word & ~cell_bit::hidden;
+    }
+  }
+
+  __device__ RawResult add_up_cells() {
+    RawResult result;
+    const auto add = [&](std::uint32_t i, std::uint32_t word) {
+      if (counts_points_ && (word & cell_bit::counts_points) != 0)
+        result.points += notes_.points[i];
+      if ((word & cell_bit::cut) != 0 || may_be_inside(word)) add_cell(i, word, result);
+    };
+    if (in_shared_ || level_.count <= team_.threads()) {
+      for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
+        add(i, words_[i]);
+    } else {
+      noted_.for_each(add);
+    }
+    return result;
+  }
+
+  // Adds a cell that counts: a cut one, or one that the flood reaches. The flood also passes hidden
+  // ones.
+  __device__ void add_cell(std::uint32_t i, std::uint32_t word, RawResult& result) const {
+    const bool cut = (word & cell_bit::cut) != 0;
+    const ToolSum sum = notes_.sums[i];
+    if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
+    notes_.words[i] = word | cell_bit::counted;
+    result.sum.add(sum);
+    ++(cut ? result.boundary : result.inside);
+  }
 
   const LevelView& level_;
   const Pose& to_surface_;
@@ -131,174 +411,5 @@ class Flood {
   NotedCells<Team> noted_;
   CutCells<Team> cut_;
 };
-
-template <class Team>
-template <class Visit>
-__device__ void Flood<Team>::for_edges(const Visit& visit) const {
-  for (std::uint32_t first = team_.thread(); first < level_.edge_count;
-       first += kEdges * team_.threads()) {
-    Edges together;
-#pragma unroll
-    for (unsigned k = 0; k < kEdges; ++k) {
-      const std::uint32_t e = first + k * team_.threads();
-      together.edges[k] = level_.edges[e < level_.edge_count ? e : first];
-    }
-#pragma unroll
-    for (unsigned k = 0; k < kEdges; ++k) {
-      const bool is_one = first + k * team_.threads() < level_.edge_count;
-      together.words[k][0] = is_one ? words_[together.edges[k].larger] : 0;
-      together.words[k][1] = is_one ? words_[together.edges[k].smaller] : 0;
-    }
-    visit(together);
-  }
-}
-
-template <class Team>
-template <class Join, class Enter>
-__device__ void Flood<Team>::look_at(const Edges& together, const Join& join, const Enter& enter) {
-#pragma unroll
-  for (unsigned k = 0; k < kEdges; ++k) {
-    const std::uint32_t i = together.edges[k].larger, j = together.edges[k].smaller;
-    const std::uint32_t word_of_i = together.words[k][0], word_of_j = together.words[k][1];
-    if (is_passable(word_of_i) && is_passable(word_of_j))
-      join(k, i, j);
-    else if ((word_of_i & cell_bit::cut) != 0 && is_passable(word_of_j))
-      enter(k, i, j);
-    else if ((word_of_j & cell_bit::cut) != 0 && is_passable(word_of_i))
-      enter(k, j, i);
-  }
-}
-
-// Joins the cells of a large level. Visits edges from the cells that have a word, each edge from
-// its larger cell, which has few.
-template <class Team>
-__device__ void Flood<Team>::join_cells() {
-  const auto join_ends = [&](const Edges& together) {
-    std::uint32_t one[kEdges] = {}, other[kEdges] = {};
-    look_at(
-        together,
-        [&](unsigned k, std::uint32_t i, std::uint32_t j) { one[k] = i + 1, other[k] = j + 1; },
-        [&](unsigned k, std::uint32_t cut, std::uint32_t i) {
-          if (enters(cut, i)) one[k] = i + 1;
-        });
-    flood_.join(one, other);
-  };
-  if (level_.edge_count <= kEdges * team_.threads()) {
-    for_edges(join_ends);
-    return;
-  }
-  noted_.for_each([&](std::uint32_t i, std::uint32_t word) {
-    if (!is_passable(word) && (word & cell_bit::cut) == 0) return;
-    const std::uint32_t end = level_.edge_begin[i + 1];
-    for (std::uint32_t e = level_.edge_begin[i]; e < end; e += kEdges) {
-      Edges together;
-#pragma unroll
-      for (unsigned k = 0; k < kEdges; ++k)
-        together.edges[k] = {i, level_.edges[e + k < end ? e + k : e].smaller};
-#pragma unroll
-      for (unsigned k = 0; k < kEdges; ++k) {
-        together.words[k][0] = word;
-        together.words[k][1] = e + k < end ? words_[together.edges[k].smaller] : 0;
-      }
-      join_ends(together);
-    }
-  });
-}
-
-// Floods in the block's memory: lists the edges that matter, then passes all of them in each round.
-template <class Team>
-__device__ void Flood<Team>::flood_in_shared() {
-  for_edges([&](const Edges& together) {
-    look_at(
-        together,
-        [&](unsigned, std::uint32_t i, std::uint32_t j) {
-          shared_.edges[atomicAdd(&shared_.flood_states, 1U)] = {i, j};
-        },
-        [&](unsigned, std::uint32_t cut, std::uint32_t i) {
-          shared_.edges[kFloodEdges - 1 - atomicAdd(&shared_.entries, 1U)] = {cut, i};
-        });
-  });
-  __syncthreads();
-  const unsigned entries = shared_.entries, flood_states = shared_.flood_states;
-  for (unsigned k = threadIdx.x; k < entries; k += blockDim.x) {
-    const Edge entry = shared_.edges[kFloodEdges - 1 - k];
-    if (enters(entry.larger, entry.smaller)) atomicOr(&words_[entry.smaller], cell_bit::reached);
-  }
-  bool changes = true;
-  while (__syncthreads_or(changes) != 0) {
-    constexpr unsigned kMost = kFloodEdges / kThreads;
-    static_assert(kMost <= 32);
-    unsigned clipped = 0;  // one bit per edge of this thread
-#pragma unroll 4
-    for (unsigned n = 0; n < kMost; ++n) {
-      const unsigned k = threadIdx.x + n * blockDim.x;
-      if (k >= flood_states) break;
-      const Edge edge = shared_.edges[k];
-      clipped |=
-          ((words_[edge.larger] ^ words_[edge.smaller]) & cell_bit::reached) != 0 ? 1U << n : 0U;
-    }
-    __syncthreads();
-    changes = clipped != 0;
-    for (; clipped != 0; clipped &= clipped - 1) {
-      const Edge edge =
-          shared_.edges[threadIdx.x + (__ffs(static_cast<int>(clipped)) - 1) * blockDim.x];
-      atomicOr(&words_[edge.larger], cell_bit::reached);
-      atomicOr(&words_[edge.smaller], cell_bit::reached);
-    }
-  }
-}
-
-template <class Team>
-__device__ bool Flood<Team>::enters(std::uint32_t cut, std::uint32_t i) const {
-  return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) || lies_behind(cut, i);
-}
-
-template <class Team>
-__device__ bool Flood<Team>::lies_behind(std::uint32_t cut, std::uint32_t i) const {
-  return cut_.at(cut).is_behind(center(i));
-}
-
-// Closes to the flood those cells that another surface may hide and that lie before the plane of
-// the nearest cut cell.
-template <class Team>
-__device__ void Flood<Team>::decide_hidden() {
-  const Subwarp warp(32);
-  for (std::uint32_t i = team_.thread() / 32; i < level_.count; i += team_.threads() / 32) {
-    const std::uint32_t word = words_[i];
-    if (!may_be_inside(word) || (word & cell_bit::hidden) == 0) continue;
-    const std::uint32_t cut = cut_.nearest_to(warp, i);
-    if (cut < level_.count && warp.leads() && lies_behind(cut, i))
-      words_[i] = word & ~cell_bit::hidden;
-  }
-}
-
-template <class Team>
-__device__ RawResult Flood<Team>::add_up_cells() {
-  RawResult result;
-  const auto add = [&](std::uint32_t i, std::uint32_t word) {
-    if (counts_points_ && (word & cell_bit::counts_points) != 0) result.points += notes_.points[i];
-    if ((word & cell_bit::cut) != 0 || may_be_inside(word)) add_cell(i, word, result);
-  };
-  if (in_shared_ || level_.count <= team_.threads()) {
-    for (std::uint32_t i = team_.thread(); i < level_.count; i += team_.threads())
-      add(i, words_[i]);
-  } else {
-    noted_.for_each(add);
-  }
-  return result;
-}
-
-// Adds a cell that counts: a cut one, or one that the flood reaches. The flood also passes hidden
-// ones.
-template <class Team>
-__device__ void Flood<Team>::add_cell(std::uint32_t i, std::uint32_t word,
-                                      RawResult& result) const {
-  const bool cut = (word & cell_bit::cut) != 0;
-  const ToolSum sum = notes_.sums[i];
-  if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
-  notes_.words[i] = word | cell_bit::counted;
-  result.sum.add(sum);
-  ++(cut ? result.boundary : result.inside);
-}
 
 }  // namespace vpm::cuda

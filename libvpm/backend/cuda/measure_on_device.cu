@@ -18,27 +18,12 @@ void MeasureOnDevice::run(const SceneView& scene, std::span<DeviceMeasure* const
 
 Result MeasureOnDevice::ask(const Pose& pose) {
   const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
-  const RawResult raw = answer(frame);
+  const CurrentDevice current(device_);
+  if (frame_ != nullptr) frame_->require(stream());
+  launch(frame, answer_.device(), sequence_ + 1);
+  const RawResult raw = wait_for(*answer_.host(), ++sequence_, stream_.get());
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
-}
-
-RawResult MeasureOnDevice::answer(const PoseFrame& frame) {
-  const unsigned sequence = sequence_ + 1;
-  const CurrentDevice current(device_);
-  if (frame_ != nullptr) frame_->require(stream());
-  launch(frame, answer_.device(), sequence);
-  sequence_ = sequence;
-  return wait_for(*answer_.host(), sequence, stream_.get());
-}
-
-template <class AnswerPart>
-void MeasureOnDevice::in_launches(std::size_t poses, const AnswerPart& answer_part) {
-  const CurrentDevice current(device_);
-  if (!batch_) batch_ = std::make_unique<Batch>();
-  if (frame_ != nullptr) frame_->require(stream());
-  for (std::size_t begin = 0; begin < poses; begin += Batch::kPoses)
-    answer_part(begin, std::min(Batch::kPoses, poses - begin));
 }
 
 std::span<const RawResult> MeasureOnDevice::answers_of(std::span<const ToolPart> tools,
@@ -58,7 +43,11 @@ void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<co
     results.front() = ask(jobs.front().pose);
     return;
   }
-  in_launches(jobs.size(), [&](std::size_t begin, std::size_t count) {
+  const CurrentDevice current(device_);
+  if (!batch_) batch_ = std::make_unique<Batch>();
+  if (frame_ != nullptr) frame_->require(stream());
+  for (std::size_t begin = 0; begin < jobs.size(); begin += Batch::kPoses) {
+    const std::size_t count = std::min(Batch::kPoses, jobs.size() - begin);
     order_by_tool(measures, jobs.subspan(begin, count));
     const std::span<const RawResult> answers = answers_of(batch_->tools, batch_->ordered);
     std::size_t k = 0;
@@ -66,7 +55,7 @@ void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<co
       for (; k < part.end; ++k)
         results[begin + batch_->places[k]] =
             result_of(answers[k], part.measure->tool_, batch_->ordered[k].rotation);
-  });
+  }
 }
 
 // A counting sort: tools that have poses, in their order, and of each the poses in theirs.
@@ -120,3 +109,20 @@ const CloudSlot* MeasureOnDevice::bring(const DepthFrame& frame) {
 }
 
 }  // namespace vpm::cuda
+
+namespace vpm {
+
+std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
+                                                   const QueryOptions& options) {
+  const Device& device = options.device;
+  const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
+  std::vector<std::unique_ptr<DeviceMeasure>> measures;
+  for (int k = 0; k < count; ++k)
+    measures.push_back(options.measure == Measure::paper
+                           ? cuda::make_paper_measure(tool, level, device.first() + k)
+                           : cuda::make_refined_measure(tool, level, options, device.first() + k));
+  if (measures.size() == 1) return std::move(measures.front());
+  return std::make_unique<SpreadMeasure>(std::move(measures));
+}
+
+}  // namespace vpm

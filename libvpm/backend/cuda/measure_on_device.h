@@ -36,8 +36,6 @@ class MeasureOnDevice : public DeviceMeasure {
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
 
-  int device() const { return device_; }
-  const ToolModel& tool() const { return tool_; }
   const DeviceCloud& cloud() const { return *cloud_; }
   cudaStream_t stream() const { return stream_.get(); }
 
@@ -60,12 +58,8 @@ class MeasureOnDevice : public DeviceMeasure {
   // Returns null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
-  RawResult answer(const PoseFrame& frame);
   void ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
            std::span<Result> results);
-  // Calls answer_part(begin, count) for parts of so many poses that fit a launch.
-  template <class AnswerPart>
-  void in_launches(std::size_t poses, const AnswerPart& answer_part);
   // Returns the answers to the poses of one launch.
   std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
                                         std::span<const Pose> poses);
@@ -83,5 +77,11 @@ class MeasureOnDevice : public DeviceMeasure {
   const DeviceCloud* cloud_ = nullptr;  // cloud of the queries under way
   std::unique_ptr<Batch> batch_;
 };
+
+std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
+                                                    const QueryOptions& options, int device);
+
+std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
+                                                  int device);
 
 }  // namespace vpm::cuda

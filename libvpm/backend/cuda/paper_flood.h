@@ -123,9 +123,6 @@ class PaperFlood {
   __device__ static unsigned ballot(const Subwarp& subwarp, bool value) {
     return (__ballot_sync(subwarp.mask, value) & subwarp.mask) >> (threadIdx.x % 32 - subwarp.lane);
   }
-  __device__ static unsigned before(const Subwarp& subwarp, unsigned ballot) {
-    return __popc(ballot & ((1U << subwarp.lane) - 1));
-  }
   // Returns the sum of the values in a warp's lanes up to this one.
   __device__ static unsigned sum_upto(const Subwarp& warp, unsigned value) {
     for (unsigned step = 1; step < 32; step *= 2) {
@@ -135,16 +132,169 @@ class PaperFlood {
     return value;
   }
 
-  __device__ void enter();
-  __device__ void pass_front(unsigned size);
-  __device__ Vec3 pass(const Subwarp& subwarp, std::uint32_t j);
-  __device__ void claim(const Subwarp& subwarp, bool wants, std::uint32_t i);
-  __device__ bool gives_normal(std::uint32_t word, std::uint32_t i, std::uint32_t j) const;
+  // Runs steps 3 and 4 with a subwarp for each boundary sphere, or a block if it is a hub.
+  __device__ void enter() {
+    const Subwarp subwarp(kWidth);
+    const unsigned count = read(counters_.boundary);
+    for (unsigned k = team_.thread() / kWidth; k < count; k += team_.threads() / kWidth) {
+      const std::uint32_t i = space_.boundary[k];
+      const Vec3 normal = space_.contacts[i].mean_normal();
+      if (subwarp.leads()) {
+        space_.normals[i] = normal;
+        add_boundary(level_.tool, level_.spheres[i], space_.contacts[i], normal, result_.sum);
+        ++result_.boundary;
+      }
+      const std::uint32_t end = level_.graph_begin[i + 1];
+      if (degree(i) > PaperLevel::kMostNeighbors) continue;
+      for (std::uint32_t n = level_.graph_begin[i] + subwarp.lane; n - subwarp.lane < end;
+           n += kWidth) {
+        const std::uint32_t j = n < end ? level_.neighbors[n] : i;
+        claim(subwarp,
+              read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]),
+              j);
+      }
+    }
+    for_hubs(PaperSpace::kBoundary, [&](std::uint32_t i) { enter_from_hub(i); });
+  }
+
+  // Runs step 5 for one front with a subwarp for each sphere, or a block if it is a hub.
+  __device__ void pass_front(unsigned size) {
+    if (team_.thread() == 0) counters_.fronts[(front_ + 2) % 3] = 0;
+    next_ = begin_ + size;
+    const Subwarp subwarp(kWidth);
+    for (unsigned k = team_.thread() / kWidth; k < size; k += team_.threads() / kWidth) {
+      const std::uint32_t j = space_.inside[begin_ + k];
+      if (degree(j) > PaperLevel::kMostNeighbors) continue;
+      const Vec3 normal = pass(subwarp, j);
+      if (subwarp.leads()) space_.normals[j] = normal;
+    }
+    for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
+  }
+
+  // Claims the sphere's neighbours and returns its normal, summed in the order of neighbours.
+  __device__ Vec3 pass(const Subwarp& subwarp, std::uint32_t j) {
+    const std::uint32_t end = level_.graph_begin[j + 1];
+    Vec3 normal;
+    for (std::uint32_t n = level_.graph_begin[j] + subwarp.lane; n - subwarp.lane < end;
+         n += kWidth) {
+      const std::uint32_t i = n < end ? level_.neighbors[n] : j;  // itself: neither 0 nor before
+      const std::uint32_t word = read(space_.words[i]);
+      const bool gives = gives_normal(word, i, j);
+      const Vec3 theirs = gives ? space_.normals[i] : Vec3{};
+      claim(subwarp, word == 0, i);
+      for (unsigned rest = ballot(subwarp, gives); rest != 0; rest &= rest - 1) {
+        const unsigned from = __ffs(static_cast<int>(rest)) - 1;
+        normal += subwarp.from(theirs, from);
+      }
+    }
+    return normalized_or_zero(normal);
+  }
+
+  // Adds to the next front those spheres of a subwarp that nobody has claimed yet.
+  __device__ void claim(const Subwarp& subwarp, bool wants, std::uint32_t i) {
+    const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
+    const unsigned all = ballot(subwarp, claimed);
+    if (all == 0) return;
+    const unsigned slot = subwarp.take_slots(counters_.fronts[(front_ + 1) % 3], all);
+    if (claimed) space_.inside[next_ + slot] = i;
+  }
+
+  // True if sphere i gives its normal to sphere j: a boundary sphere to those that it lets in, a
+  // sphere of the front before to later ones.
+  __device__ bool gives_normal(std::uint32_t word, std::uint32_t i, std::uint32_t j) const {
+    if (front_ > 1) return word == front_ - 1;
+    return word == PaperSpace::kBoundary &&
+           lets_in(level_.spheres[i], space_.normals[i], level_.spheres[j]);
+  }
+
+  // Calls pass(hub) for the hubs with this word, each from all threads of one block.
   template <class Pass>
-  __device__ void for_hubs(std::uint32_t word, const Pass& pass);
-  __device__ void enter_from_hub(std::uint32_t i);
-  __device__ void pass_hub(std::uint32_t j);
-  __device__ void add_up();
+  __device__ void for_hubs(std::uint32_t word, const Pass& pass) {
+    const BlockRange part = team_.block();
+    for (std::uint32_t first = part.part; first < level_.hub_count;
+         first += part.parts * blockDim.x) {
+      const std::uint32_t h = first + threadIdx.x * part.parts;
+      const std::uint32_t hub = h < level_.hub_count ? level_.hubs[h] : 0;
+      const bool found = h < level_.hub_count && read(space_.words[hub]) == word;
+      if (__syncthreads_or(found) == 0) continue;
+      if (threadIdx.x == 0) shared_.hub_count = 0;
+      __syncthreads();
+      if (found) shared_.hubs[atomicAdd(&shared_.hub_count, 1U)] = hub;
+      __syncthreads();
+      for (unsigned k = 0; k < shared_.hub_count; ++k) pass(shared_.hubs[k]);
+      __syncthreads();
+    }
+  }
+
+  __device__ void enter_from_hub(std::uint32_t i) {
+    const Subwarp warp(32);
+    const Vec3 normal = space_.contacts[i].mean_normal();
+    const std::uint32_t end = level_.graph_begin[i + 1];
+    for (std::uint32_t n = level_.graph_begin[i] + threadIdx.x; n - warp.lane < end;
+         n += blockDim.x) {
+      const std::uint32_t j = n < end ? level_.neighbors[n] : i;
+      claim(warp,
+            read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]), j);
+    }
+  }
+
+  // Does what pass() does for many neighbours at once. Normals to be added are put side by side in
+  // order, and a thread for each axis adds them.
+  __device__ void pass_hub(std::uint32_t j) {
+    const Subwarp warp(32);
+    const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // in groups of 32 neighbours
+    const std::uint32_t end = level_.graph_begin[j + 1];
+    double sum = 0;
+    for (std::uint32_t first = level_.graph_begin[j]; first < end; first += HubShared::kAtOnce) {
+      Vec3 theirs[HubShared::kOfThread];
+      unsigned givers[HubShared::kOfThread];
+      std::uint32_t spheres[HubShared::kOfThread], words[HubShared::kOfThread];
+#pragma unroll
+      for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+        const std::uint32_t n = first + 32 * (group + k) + warp.lane;
+        spheres[k] = n < end ? level_.neighbors[n] : j;
+        words[k] = read(space_.words[spheres[k]]);
+      }
+#pragma unroll
+      for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+        const bool gives = gives_normal(words[k], spheres[k], j);
+        if (gives) theirs[k] = space_.normals[spheres[k]];
+        givers[k] = ballot(warp, gives);
+        if (warp.leads()) shared_.counts[group + k] = __popc(givers[k]);
+        claim(warp, words[k] == 0, spheres[k]);
+      }
+      __syncthreads();
+      const unsigned upto = sum_upto(warp, shared_.counts[warp.lane]);
+#pragma unroll
+      for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
+        const unsigned slot =
+            warp.from(upto, group + k) - __popc(givers[k]) + warp.before(givers[k]);
+        if ((givers[k] >> warp.lane & 1) == 0) continue;
+        shared_.terms[0][slot] = theirs[k].x;
+        shared_.terms[1][slot] = theirs[k].y;
+        shared_.terms[2][slot] = theirs[k].z;
+      }
+      const unsigned count = warp.from(upto, 31);
+      __syncthreads();
+      if (threadIdx.x < 3) {
+#pragma unroll 8
+        for (unsigned t = 0; t < count; ++t) sum += shared_.terms[threadIdx.x][t];
+      }
+    }
+    if (threadIdx.x < 3) shared_.sums[threadIdx.x] = sum;
+    __syncthreads();
+    if (threadIdx.x == 0)
+      space_.normals[j] = normalized_or_zero({shared_.sums[0], shared_.sums[1], shared_.sums[2]});
+  }
+
+  // Runs step 6 for inside spheres; boundary spheres were added in enter().
+  __device__ void add_up() {
+    for (unsigned k = team_.thread(); k < begin_; k += team_.threads()) {
+      const std::uint32_t j = space_.inside[k];
+      add_inside(level_.tool, level_.spheres[j], space_.normals[j], result_.sum);
+      ++result_.inside;
+    }
+  }
 
   const PaperLevel& level_;
   const PaperSpace& space_;
@@ -155,181 +305,5 @@ class PaperFlood {
   std::uint32_t front_ = 0, begin_ = 0, next_ = 0;
   RawResult result_;
 };
-
-// Adds to the next front those spheres of a subwarp that nobody has claimed yet.
-template <class Team>
-__device__ void PaperFlood<Team>::claim(const Subwarp& subwarp, bool wants, std::uint32_t i) {
-  const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
-  const unsigned all = ballot(subwarp, claimed);
-  if (all == 0) return;
-  unsigned slot = 0;
-  if (subwarp.leads()) slot = atomicAdd(&counters_.fronts[(front_ + 1) % 3], __popc(all));
-  slot = subwarp.from(slot, 0) + before(subwarp, all);
-  if (claimed) space_.inside[next_ + slot] = i;
-}
-
-// Runs steps 3 and 4 with a subwarp for each boundary sphere, or a block if it is a hub.
-template <class Team>
-__device__ void PaperFlood<Team>::enter() {
-  const Subwarp subwarp(kWidth);
-  const unsigned count = read(counters_.boundary);
-  for (unsigned k = team_.thread() / kWidth; k < count; k += team_.threads() / kWidth) {
-    const std::uint32_t i = space_.boundary[k];
-    const Vec3 normal = space_.contacts[i].mean_normal();
-    if (subwarp.leads()) {
-      space_.normals[i] = normal;
-      add_boundary(level_.tool, level_.spheres[i], space_.contacts[i], normal, result_.sum);
-      ++result_.boundary;
-    }
-    const std::uint32_t end = level_.graph_begin[i + 1];
-    if (degree(i) > PaperLevel::kMostNeighbors) continue;
-    for (std::uint32_t n = level_.graph_begin[i] + subwarp.lane; n - subwarp.lane < end;
-         n += kWidth) {
-      const std::uint32_t j = n < end ? level_.neighbors[n] : i;
-      claim(subwarp,
-            read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]), j);
-    }
-  }
-  for_hubs(PaperSpace::kBoundary, [&](std::uint32_t i) { enter_from_hub(i); });
-}
-
-// Runs step 5 for one front with a subwarp for each sphere, or a block if it is a hub.
-template <class Team>
-__device__ void PaperFlood<Team>::pass_front(unsigned size) {
-  if (team_.thread() == 0) counters_.fronts[(front_ + 2) % 3] = 0;
-  next_ = begin_ + size;
-  const Subwarp subwarp(kWidth);
-  for (unsigned k = team_.thread() / kWidth; k < size; k += team_.threads() / kWidth) {
-    const std::uint32_t j = space_.inside[begin_ + k];
-    if (degree(j) > PaperLevel::kMostNeighbors) continue;
-    const Vec3 normal = pass(subwarp, j);
-    if (subwarp.leads()) space_.normals[j] = normal;
-  }
-  for_hubs(front_, [&](std::uint32_t j) { pass_hub(j); });
-}
-
-// Claims the sphere's neighbours and returns its normal, summed in the order of neighbours.
-template <class Team>
-__device__ Vec3 PaperFlood<Team>::pass(const Subwarp& subwarp, std::uint32_t j) {
-  const std::uint32_t end = level_.graph_begin[j + 1];
-  Vec3 normal;
-  for (std::uint32_t n = level_.graph_begin[j] + subwarp.lane; n - subwarp.lane < end;
-       n += kWidth) {
-    const std::uint32_t i = n < end ? level_.neighbors[n] : j;  // itself: neither 0 nor before
-    const std::uint32_t word = read(space_.words[i]);
-    const bool gives = gives_normal(word, i, j);
-    const Vec3 theirs = gives ? space_.normals[i] : Vec3{};
-    claim(subwarp, word == 0, i);
-    for (unsigned rest = ballot(subwarp, gives); rest != 0; rest &= rest - 1) {
-      const unsigned from = __ffs(static_cast<int>(rest)) - 1;
-      normal += Vec3{subwarp.from(theirs.x, from), subwarp.from(theirs.y, from),
-                     subwarp.from(theirs.z, from)};
-    }
-  }
-  return normalized_or_zero(normal);
-}
-
-// True if sphere i gives its normal to sphere j: a boundary sphere to those that it lets in, a
-// sphere of the front before to later ones.
-template <class Team>
-__device__ bool PaperFlood<Team>::gives_normal(std::uint32_t word, std::uint32_t i,
-                                               std::uint32_t j) const {
-  if (front_ > 1) return word == front_ - 1;
-  return word == PaperSpace::kBoundary &&
-         lets_in(level_.spheres[i], space_.normals[i], level_.spheres[j]);
-}
-
-// Calls pass(hub) for the hubs with this word, each from all threads of one block.
-template <class Team>
-template <class Pass>
-__device__ void PaperFlood<Team>::for_hubs(std::uint32_t word, const Pass& pass) {
-  const BlockRange part = team_.block();
-  for (std::uint32_t first = part.part; first < level_.hub_count;
-       first += part.parts * blockDim.x) {
-    const std::uint32_t h = first + threadIdx.x * part.parts;
-    const std::uint32_t hub = h < level_.hub_count ? level_.hubs[h] : 0;
-    const bool found = h < level_.hub_count && read(space_.words[hub]) == word;
-    if (__syncthreads_or(found) == 0) continue;
-    if (threadIdx.x == 0) shared_.hub_count = 0;
-    __syncthreads();
-    if (found) shared_.hubs[atomicAdd(&shared_.hub_count, 1U)] = hub;
-    __syncthreads();
-    for (unsigned k = 0; k < shared_.hub_count; ++k) pass(shared_.hubs[k]);
-    __syncthreads();
-  }
-}
-
-template <class Team>
-__device__ void PaperFlood<Team>::enter_from_hub(std::uint32_t i) {
-  const Subwarp warp(32);
-  const Vec3 normal = space_.contacts[i].mean_normal();
-  const std::uint32_t end = level_.graph_begin[i + 1];
-  for (std::uint32_t n = level_.graph_begin[i] + threadIdx.x; n - warp.lane < end;
-       n += blockDim.x) {
-    const std::uint32_t j = n < end ? level_.neighbors[n] : i;
-    claim(warp, read(space_.words[j]) == 0 && lets_in(level_.spheres[i], normal, level_.spheres[j]),
-          j);
-  }
-}
-
-// Does what pass() does for many neighbours at once. Normals to be added are put side by side in
-// order, and a thread for each axis adds them.
-template <class Team>
-__device__ void PaperFlood<Team>::pass_hub(std::uint32_t j) {
-  const Subwarp warp(32);
-  const unsigned group = threadIdx.x / 32 * HubShared::kOfThread;  // in groups of 32 neighbours
-  const std::uint32_t end = level_.graph_begin[j + 1];
-  double sum = 0;
-  for (std::uint32_t first = level_.graph_begin[j]; first < end; first += HubShared::kAtOnce) {
-    Vec3 theirs[HubShared::kOfThread];
-    unsigned givers[HubShared::kOfThread];
-    std::uint32_t spheres[HubShared::kOfThread], words[HubShared::kOfThread];
-#pragma unroll
-    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
-      const std::uint32_t n = first + 32 * (group + k) + warp.lane;
-      spheres[k] = n < end ? level_.neighbors[n] : j;
-      words[k] = read(space_.words[spheres[k]]);
-    }
-#pragma unroll
-    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
-      const bool gives = gives_normal(words[k], spheres[k], j);
-      if (gives) theirs[k] = space_.normals[spheres[k]];
-      givers[k] = ballot(warp, gives);
-      if (warp.leads()) shared_.counts[group + k] = __popc(givers[k]);
-      claim(warp, words[k] == 0, spheres[k]);
-    }
-    __syncthreads();
-    const unsigned upto = sum_upto(warp, shared_.counts[warp.lane]);
-#pragma unroll
-    for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
-      const unsigned slot =
-          warp.from(upto, group + k) - __popc(givers[k]) + before(warp, givers[k]);
-      if ((givers[k] >> warp.lane & 1) == 0) continue;
-      shared_.terms[0][slot] = theirs[k].x;
-      shared_.terms[1][slot] = theirs[k].y;
-      shared_.terms[2][slot] = theirs[k].z;
-    }
-    const unsigned count = warp.from(upto, 31);
-    __syncthreads();
-    if (threadIdx.x < 3) {
-#pragma unroll 8
-      for (unsigned t = 0; t < count; ++t) sum += shared_.terms[threadIdx.x][t];
-    }
-  }
-  if (threadIdx.x < 3) shared_.sums[threadIdx.x] = sum;
-  __syncthreads();
-  if (threadIdx.x == 0)
-    space_.normals[j] = normalized_or_zero({shared_.sums[0], shared_.sums[1], shared_.sums[2]});
-}
-
-// Runs step 6 for inside spheres; boundary spheres were added in enter().
-template <class Team>
-__device__ void PaperFlood<Team>::add_up() {
-  for (unsigned k = team_.thread(); k < begin_; k += team_.threads()) {
-    const std::uint32_t j = space_.inside[k];
-    add_inside(level_.tool, level_.spheres[j], space_.normals[j], result_.sum);
-    ++result_.inside;
-  }
-}
 
 }  // namespace vpm::cuda

@@ -3,7 +3,6 @@
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/measure_on_device.h"
 #include "libvpm/backend/cuda/paper_flood.h"
-#include "libvpm/backend/cuda/paper_measure.h"
 
 namespace vpm::cuda {
 namespace {
@@ -80,30 +79,15 @@ __global__ void __launch_bounds__(kPaperThreads, kPaperBlocksPerProcessor)
   }
 }
 
-// Holds the device memory of a number of teams.
-class PaperMemory {
- public:
-  PaperMemory(std::size_t spheres, std::size_t teams)
-      : words_(spheres * teams),
-        boundary_(spheres * teams),
-        inside_(spheres * teams),
-        contacts_(spheres * teams),
-        normals_(spheres * teams) {
-    words_.clear();
-    contacts_.clear();
-  }
-
-  PaperSpace space() const {
-    return {words_.get(), contacts_.get(), normals_.get(), boundary_.get(), inside_.get()};
-  }
-  static constexpr std::size_t kBytesOfSphere =
-      3 * sizeof(std::uint32_t) + sizeof(PaperContact) + sizeof(Vec3);
-
- private:
-  DeviceArray<std::uint32_t> words_, boundary_, inside_;
-  DeviceArray<PaperContact> contacts_;
-  DeviceArray<Vec3> normals_;
-};
+constexpr std::size_t kBytesOfSphere =
+    3 * sizeof(std::uint32_t) + sizeof(PaperContact) + sizeof(Vec3);
+// Returns the space of a number of teams.
+PaperSpace space_in(DeviceMemory& memory, std::size_t spheres, std::size_t teams) {
+  const std::size_t count = spheres * teams;
+  return {memory.zeros<std::uint32_t>(count), memory.zeros<PaperContact>(count),
+          memory.room<Vec3>(count), memory.room<std::uint32_t>(count),
+          memory.room<std::uint32_t>(count)};
+}
 
 std::vector<std::uint32_t> hubs_of(const SphereGraph& graph) {
   std::vector<std::uint32_t> hubs;
@@ -117,20 +101,21 @@ class PaperOnDevice : public MeasureOnDevice {
   PaperOnDevice(const ToolModel& tool, const Level& level, int device)
       : MeasureOnDevice(tool, device),
         blocks_(blocks_that_fit(one_pose, kPaperThreads, kPaperBlocksPerProcessor)),
-        spheres_(tool.spheres.data(), level.sphere_count),
-        graph_begin_(level.graph.begin),
-        neighbors_(level.graph.neighbors),
-        hubs_(hubs_of(level.graph)),
-        grid_begin_(level.grid.begin),
-        grid_spheres_(level.grid.spheres),
-        level_{level.sphere_count,  spheres_.get(),    graph_begin_.get(),
-               neighbors_.get(),    hubs_.get(),       static_cast<std::uint32_t>(hubs_.size()),
-               view_of(level.grid), measures_of(tool), reach_of_spheres(tool, level)},
-        memory_(level.sphere_count, 2),
         totals_(1),
         counters_(2) {
-    level_.grid.begin = grid_begin_.get();
-    level_.grid.spheres = grid_spheres_.get();
+    const std::vector<std::uint32_t> hubs = hubs_of(level.graph);
+    level_ = {level.sphere_count,
+              memory_.copy(tool.spheres.data(), level.sphere_count),
+              memory_.copy(level.graph.begin),
+              memory_.copy(level.graph.neighbors),
+              memory_.copy(hubs),
+              static_cast<std::uint32_t>(hubs.size()),
+              view_of(level.grid),
+              measures_of(tool),
+              reach_of_spheres(tool, level)};
+    level_.grid.begin = memory_.copy(level.grid.begin);
+    level_.grid.spheres = memory_.copy(level.grid.spheres);
+    space_ = space_in(memory_, level.sphere_count, 2);
     totals_.clear();
     counters_.clear();
   }
@@ -138,13 +123,15 @@ class PaperOnDevice : public MeasureOnDevice {
  private:
   // Holds the teams that deal with a batch.
   struct Teams {
-    Teams(unsigned teams, std::size_t spheres) : count(teams), memory(spheres, count) {}
+    Teams(unsigned teams, std::size_t spheres)
+        : count(teams), space(space_in(memory, spheres, count)) {}
     unsigned count;
-    PaperMemory memory;
+    DeviceMemory memory;
+    PaperSpace space;
   };
 
   void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
-    const PaperLaunch arguments{level_, cloud().points(), memory_.space()};
+    const PaperLaunch arguments{level_, cloud().points(), space_};
     launch_kernel(one_pose, {blocks_, kPaperThreads}, LaunchKind::cooperative, stream(), arguments,
                   frame, totals_.get(), counters_.get(), answer, sequence);
   }
@@ -157,11 +144,10 @@ class PaperOnDevice : public MeasureOnDevice {
       if (!of_tool.teams_) {
         const std::size_t spheres = of_tool.level_.count;
         of_tool.teams_ = make_teams<Teams>(
-            teams_that_fit(spheres * PaperMemory::kBytesOfSphere, kPaperBlocksPerProcessor),
-            spheres);
+            teams_that_fit(spheres * kBytesOfSphere, kPaperBlocksPerProcessor), spheres);
       }
       const Teams& teams = *of_tool.teams_;
-      const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.memory.space()};
+      const PaperLaunch arguments{of_tool.level_, cloud().points(), teams.space};
       launch_kernel(many_poses, {std::min(teams.count, count), kPaperThreads},
                     LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
                     count, results + begin);
@@ -171,7 +157,7 @@ class PaperOnDevice : public MeasureOnDevice {
   // Returns the CPU's radius, so that the same pixels of an image are tested.
   double reach() const override { return level_.tool.reach; }
   const std::uint32_t* state_words(unsigned sequence) const override {
-    return memory_.space().words + sequence % 2 * level_.count;
+    return space_.words + sequence % 2 * level_.count;
   }
   SphereState state_of(std::uint32_t word) const override {
     return word == 0                       ? SphereState::outside
@@ -180,10 +166,9 @@ class PaperOnDevice : public MeasureOnDevice {
   }
 
   unsigned blocks_;  // blocks that answer one pose
-  DeviceArray<Sphere> spheres_;
-  DeviceArray<std::uint32_t> graph_begin_, neighbors_, hubs_, grid_begin_, grid_spheres_;
+  DeviceMemory memory_;
   PaperLevel level_;
-  PaperMemory memory_;
+  PaperSpace space_;  // two teams alternate in it
   DeviceArray<Totals> totals_;
   DeviceArray<PaperCounters> counters_;
   std::unique_ptr<Teams> teams_;

@@ -4,12 +4,14 @@
 
 #include <type_traits>
 
-#include "libvpm/backend/cuda/answer.h"
-#include "libvpm/backend/cuda/camera_visibility.h"
+#include "libvpm/backend/cuda/cell_notes.h"
 #include "libvpm/backend/cuda/group_measure.h"
 #include "libvpm/backend/cuda/image_measure.h"
 #include "libvpm/backend/cuda/inside_flood.h"
+#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/backend/cuda/points.h"
+#include "libvpm/backend/cuda/task_measure.h"
+#include "libvpm/device/cuda/device_array.h"
 
 namespace vpm::cuda {
 namespace {
@@ -90,8 +92,13 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
                    launch.space.notes[turn % 2].points);
     return {};
   }
-  const PoseWork<Surface> work(launch.level, launch.surface, frame.to_surface, launch.space, turn,
-                               *launch.counters, of_spheres);
+  const PoseWork<Surface> work{launch.level,
+                               launch.surface,
+                               frame.to_surface,
+                               launch.space,
+                               launch.space.notes[turn % 2],
+                               *launch.counters,
+                               of_spheres};
   if constexpr (Surface::kTellsInside) {
     if (ImageMeasure::is_for(launch.level, of_spheres))
       return ImageMeasure(work, launch.counts_points, shared.image).run();
@@ -107,8 +114,13 @@ __device__ __noinline__ void note_planes(const RefinedLaunch<DepthSurface>& laun
                                          BlockShared<DepthSurface>& shared) {
   const BlockRange of_spheres{blockIdx.x, launch.sphere_blocks};
   if (blockIdx.x >= launch.sphere_blocks || !ImageMeasure::is_for(launch.level, of_spheres)) return;
-  const PoseWork<DepthSurface> work(launch.level, launch.surface, frame.to_surface, launch.space,
-                                    turn, *launch.counters, of_spheres);
+  const PoseWork<DepthSurface> work{launch.level,
+                                    launch.surface,
+                                    frame.to_surface,
+                                    launch.space,
+                                    launch.space.notes[turn % 2],
+                                    *launch.counters,
+                                    of_spheres};
   ImageMeasure(work, launch.counts_points, shared.image).note_planes();
 }
 
@@ -231,8 +243,8 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
     __syncthreads();
     if (launch.counts_points)
       count_points(level, launch.points, frame, {}, space.notes[turn % 2].points);
-    const PoseWork<Surface> work(level, launch.surface, frame.to_surface, space, turn, counters,
-                                 {});
+    const PoseWork<Surface> work{
+        level, launch.surface, frame.to_surface, space, space.notes[turn % 2], counters, {}};
     found = RawResult{};
     GroupMeasure<Surface>(work, launch.counts_points, shared.measure, found).run();
     if (Surface::kTellsInside) add_block(found, total);
@@ -248,4 +260,38 @@ __global__ void __launch_bounds__(kBatchThreads, kBatchBlocks)
 }
 
 }  // namespace
+
+// Holds the device memory of a number of teams, of one or more blocks each.
+class RefinedMemory {
+ public:
+  RefinedMemory(const TeamRoom& room, std::size_t teams, std::size_t blocks, unsigned threads)
+      : space_{{notes(room.cells * teams), notes(room.cells * teams)},
+               memory_.room<double>(room.cells * teams),
+               memory_.room<std::uint32_t>((room.cells + 1) * teams),
+               memory_.room<std::uint32_t>(room.cells * teams),
+               memory_.room<FarPiece>(room.pieces * teams),
+               memory_.room<FlatBlock>(2 * TaskLists::kTasks * blocks),
+               memory_.room<PlanarCluster>(threads * blocks)} {}
+
+  const RefinedSpace& space() const { return space_; }
+
+  // Returns the size of the memory of a team of one block, in bytes.
+  static std::size_t bytes_of_team(const TeamRoom& room) {
+    constexpr std::size_t kOfCell =
+        2 * (2 * sizeof(std::uint32_t) + sizeof(ToolSum) + sizeof(ContactPlane)) + sizeof(double) +
+        2 * sizeof(std::uint32_t);
+    return room.cells * kOfCell + room.pieces * sizeof(FarPiece) +
+           2 * TaskLists::kTasks * sizeof(FlatBlock) + kBatchThreads * sizeof(PlanarCluster);
+  }
+
+ private:
+  CellNotes notes(std::size_t cells) {
+    return {memory_.zeros<std::uint32_t>(cells), memory_.zeros<std::uint32_t>(cells),
+            memory_.zeros<ToolSum>(cells), memory_.zeros<ContactPlane>(cells)};
+  }
+
+  DeviceMemory memory_;
+  RefinedSpace space_;
+};
+
 }  // namespace vpm::cuda

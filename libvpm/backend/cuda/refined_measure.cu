@@ -3,8 +3,6 @@
 #include "libvpm/backend/cuda/device_level.h"
 #include "libvpm/backend/cuda/measure_on_device.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
-#include "libvpm/backend/cuda/refined_measure.h"
-#include "libvpm/backend/cuda/refined_memory.h"
 
 namespace vpm::cuda {
 namespace {

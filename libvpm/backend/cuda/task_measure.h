@@ -3,10 +3,73 @@
 // finds.
 #pragma once
 
-#include "libvpm/backend/cuda/cell_tasks.h"
-#include "libvpm/backend/cuda/pose_work.h"
+#include "libvpm/backend/cuda/cell_notes.h"
+#include "libvpm/measure/classify.h"
 
 namespace vpm::cuda {
+
+// Lists pieces of a cell to be measured together.
+struct Task {
+  enum Form : std::uint32_t { samples, block, whole_block, whole_cell };
+
+  std::uint32_t cell;
+  Form form;
+  std::uint32_t begin, count;  // samples; otherwise `begin` is the block or cell
+
+  __device__ bool is_whole() const { return form == whole_block || form == whole_cell; }
+};
+
+// Lists of tasks by how warps measure them. Wide tasks have more than kNarrow samples.
+struct TaskLists {
+  enum List { samples_wide, samples_narrow, flat_wide, pieces, flat_narrow, kLists };
+  static constexpr unsigned kTasks = 352;                               // room in a list
+  static constexpr unsigned kNarrow = 8, kWide = 32, kFlat = kSumRows;  // lanes
+
+  Task tasks[kLists][kTasks];
+  unsigned counts[kLists];
+  unsigned next_bundle;
+
+  __device__ static unsigned width(unsigned list) {
+    return list == pieces ? 1 : list == samples_wide ? kWide : list == flat_wide ? kFlat : kNarrow;
+  }
+  __device__ static bool is_flat(unsigned list) { return list == flat_wide || list == flat_narrow; }
+  __device__ unsigned add(unsigned list, const Task& task) {
+    const unsigned slot = atomicAdd(&counts[list], 1U);
+    tasks[list][slot] = task;
+    return slot;
+  }
+};
+
+// Packs a block task to be classified: its index in a task group, the slot of the threads that
+// classified that, and the cluster's class.
+struct SeenTask {
+  std::uint16_t bits;
+
+  __device__ static SeenTask of(unsigned slot, unsigned task, ClusterClass seen) {
+    return {static_cast<std::uint16_t>(static_cast<unsigned>(seen) << 11 | slot << 3 | task)};
+  }
+  __device__ ClusterClass seen() const { return static_cast<ClusterClass>(bits >> 11); }
+  __device__ unsigned slot() const { return bits >> 3 & 255U; }
+  __device__ unsigned task() const { return bits & 7U; }
+  __device__ Side side() const {
+    return seen() == ClusterClass::ambiguous    ? Side::ambiguous
+           : seen() == ClusterClass::no_surface ? Side::no_surface
+                                                : Side::behind;
+  }
+};
+inline constexpr unsigned kMeasureThreads = kThreads > kBatchThreads ? kThreads : kBatchThreads;
+static_assert(kMeasureThreads <= kMostThreads && kMostThreads <= 256 && TaskGroup::kTasks <= 8);
+
+// Lays out a block's shared memory.
+struct MeasureShared {
+  static constexpr unsigned kSeen = kMeasureThreads * TaskGroup::kTasks;
+  SeenTask seen[kSeen];  // not planar from the front, of cut clusters from the end
+  unsigned seen_count, clipped_count;
+  std::uint32_t pushed[kMeasureThreads];  // task groups of uniform clusters
+  unsigned pushed_count;
+  std::uint32_t first_units[kMeasureThreads];  // first block task of each slot's group
+  TaskLists lists;
+};
 
 template <class Surface>
 class TaskMeasure {
@@ -34,16 +97,64 @@ class TaskMeasure {
     __syncthreads();
     clear();
   }
-  // Measures all listed tasks. Call from all threads of the block.
-  __device__ void measure();
+  // Measures all listed tasks, by all threads of the block: warps take bundles of tasks of one
+  // list, as many as fit into a warp; the slowest lists come first.
+  __device__ void measure() {
+    for (;;) {
+      unsigned bundle = 0;
+      if (threadIdx.x % 32 == 0) bundle = atomicAdd(&lists_.next_bundle, 1U);
+      bundle = __shfl_sync(~0U, bundle, 0);
+      unsigned list = 0;
+      for (; list < TaskLists::kLists; ++list) {
+        const unsigned tasks = 32 / TaskLists::width(list);
+        const unsigned bundles = (lists_.counts[list] + tasks - 1) / tasks;
+        if (bundle < bundles) break;
+        bundle -= bundles;
+      }
+      if (list == TaskLists::kLists) return;
+      const Subwarp subwarp(TaskLists::width(list));
+      const unsigned slot = bundle * (32 / subwarp.width) + threadIdx.x % 32 / subwarp.width;
+      if (slot < lists_.counts[list]) measure(subwarp, list, slot, lists_.tasks[list][slot]);
+      __syncwarp();
+    }
+  }
   // Counts the cell noted last. Call it once, after all else.
   __device__ void finish() { count_cell(words_before_, bits_added_, found_); }
 
   __device__ void add(unsigned list, const Task& task) { lists_.add(list, task); }
-  __device__ void add_clipped(const BlockTask& block_task, const ClipPlane& plane);
-  __device__ void note_behind(const BlockTask& block_task, Vec3 normal);
-  __device__ Measure measure_of(const CellView& view) const {
-    return {work_.surface, work_.to_surface, work_.level.tool_reach, view};
+
+  // Adds a block in a cluster that is cut by one plane. Lists it if the plane cuts the block too.
+  __device__ void add_clipped(const BlockTask& block_task, const ClipPlane& plane) {
+    const TaskBall& ball = block_task.balls[BlockTask::of_block];
+    const PlaneSide side = side_of_plane(plane.distance(ball.center), ball.radius);
+    const Task task{block_task.cell, Task::samples, block_task.begin,
+                    block_task.end - block_task.begin};
+    if (side == PlaneSide::cut) {
+      const unsigned list =
+          task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
+      // Assigns member by member, since nvcc would store the whole byte by byte.
+      FlatBlock& block = flat(list, lists_.add(list, task));
+      block.plane = plane;
+      block.center = ball.center;
+      return;
+    }
+    CellResult result;
+    if (side == PlaneSide::behind)
+      add_whole(work_.level.tool_reach, work_.level.block_masses[block_task.block], plane.normal,
+                result.sum);
+    note_task(task, result);
+  }
+
+  // Adds a cell wholly behind its cluster's surface, pushed along `normal`.
+  __device__ void note_behind(const BlockTask& block_task, Vec3 normal) {
+    ToolSum sum;
+    add_whole(work_.level.tool_reach, work_.level.cell_masses[block_task.cell], normal, sum);
+    if (kFloods) {
+      work_.notes.sums[block_task.cell] = sum;
+    } else {
+      found_.sum.add(sum);
+      if (sum.volume.value != 0) count(block_task.cell, cell_bit::counted);
+    }
   }
 
  private:
@@ -56,7 +167,13 @@ class TaskMeasure {
     const unsigned row = 2 * work_.part.part + (list == TaskLists::flat_wide);
     return work_.space.flats[row * TaskLists::kTasks + slot];
   }
-  __device__ void measure(const Subwarp& subwarp, unsigned list, unsigned slot, const Task& task);
+
+  __device__ void measure(const Subwarp& subwarp, unsigned list, unsigned slot, const Task& task) {
+    const CellResult result = TaskLists::is_flat(list)
+                                  ? measure_flat(subwarp, flat(list, slot), task)
+                                  : measure_pieces(subwarp, task);
+    if (subwarp.leads()) note_task(task, result);
+  }
   __device__ ToolPiece piece(Task::Form form, std::uint32_t k) const {
     switch (form) {
       case Task::samples:
@@ -67,191 +184,109 @@ class TaskMeasure {
         return piece_of(work_.level.block_masses[k], work_.level.blocks[k]);
     }
   }
+
+  // Adds piece `k` of a task, if it exists, as CellMeasure::run() does, or whole() for a whole
+  // cell. Lists far pieces. Call from all lanes of the subwarp.
   __device__ void add_piece(const Subwarp& subwarp, const Measure& measure, const Task& task,
-                            std::uint32_t k, CellResult& result);
-  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool cells_it);
+                            std::uint32_t k, CellResult& result) {
+    const bool exists = k < task.count;
+    const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
+    const typename Measure::PieceSample sampled = measure.sample_piece(piece);
+    const bool inside = exists && sampled.is_inside;
+    const bool cells_it =
+        exists && task.form == Task::samples && Measure::shares_direction(piece, sampled);
+    const unsigned first =
+        Surface::kSearchesFoot ? first_neighbor(subwarp, cells_it) : subwarp.lane;
+    Vec3 normal;
+    if (inside && !Measure::is_cut(piece, sampled) && first == subwarp.lane)
+      normal = measure.closest_normal(sampled);
+    if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
+    if (!inside) return;
+    measure.note(piece, sampled, result);
+    work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
+  }
+
+  // Returns the first lane that shares a direction with this one; itself if it shares none.
+  __device__ static unsigned first_neighbor(const Subwarp& subwarp, bool cells_it) {
+    const unsigned sharing = subwarp.which(cells_it);
+    return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
+  }
+
+  // Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before
+  // the last one is added. Returns the result to the first lane.
   __device__ CellResult measure_flat(const Subwarp& subwarp, const FlatBlock& flat,
-                                     const Task& task);
-  __device__ CellResult measure_pieces(const Subwarp& subwarp, const Task& task);
-  __device__ void note_task(const Task& task, const CellResult& result);
-  __device__ void count(std::uint32_t cell, std::uint32_t bits);
+                                     const Task& task) {
+    const ClipPlane plane = flat.plane;
+    const Vec3 center = flat.center, cell = work_.level.centers[task.cell];
+    const double reach = work_.level.reach[task.cell];
+    const CellSample* const samples = work_.level.samples + task.begin;
+    CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
+    ClippedMoments row;
+#pragma unroll 1
+    for (std::uint32_t k = subwarp.lane; k < task.count;) {
+      const CellSample sample = next;
+      k += subwarp.width;
+      if (k < task.count) next = samples[k];
+      add_to_row(sample, plane, row, row.is_cut);
+    }
+    __syncwarp(subwarp.mask);
+    add_up(subwarp, row);
+    CellResult result;
+    if (subwarp.leads()) {
+      if (row.is_cut)
+        work_.measure_of({.center = cell, .reach = reach})
+            .add_to_plane(center, plane, result.plane);
+      add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_reach, result.sum);
+    }
+    return result;
+  }
+
+  // Measures the pieces of a task. Returns the result to all lanes of the subwarp.
+  __device__ CellResult measure_pieces(const Subwarp& subwarp, const Task& task) {
+    const std::uint32_t i = task.cell;
+    const Measure measure = work_.measure_of({.samples = work_.level.samples,
+                                              .center = work_.level.centers[i],
+                                              .reach = work_.level.reach[i]});
+    CellResult result;
+    for (std::uint32_t begin = 0; begin < task.count; begin += subwarp.width)
+      add_piece(subwarp, measure, task, begin + subwarp.lane, result);
+    __syncwarp(subwarp.mask);
+    add_up(subwarp, result.sum);
+    if (subwarp.any(result.plane.count > 0)) add_up(subwarp, result.plane);
+    result.is_far = subwarp.any(result.is_far);
+    return result;
+  }
+
+  // Notes the result of a task, which one thread calls for its subwarp.
+  __device__ void note_task(const Task& task, const CellResult& result) {
+    const std::uint32_t i = task.cell;
+    const bool cut = result.plane.count > 0;
+    if (kFloods) {
+      const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
+      const std::uint32_t bits =
+          (cut ? cell_bit::cut | cell_bit::summed : 0) | (partial ? cell_bit::partial : 0);
+      if (bits != 0) atomicOr(&work_.notes.words[i], bits);
+      add_atomically(result.sum, work_.notes.sums[i]);
+    } else {
+      found_.sum.add(result.sum);
+      if (cut || result.sum.volume.value != 0)
+        count(i, cell_bit::counted | (cut ? cell_bit::cut : 0));
+    }
+    if (cut) add_atomically(result.plane, work_.notes.planes[i]);
+  }
+
+  // Notes that a cell counts; other threads may do so too. The cell's last word is used only in the
+  // next call, so that nobody waits for it.
+  __device__ void count(std::uint32_t cell, std::uint32_t bits) {
+    count_cell(words_before_, bits_added_, found_);
+    words_before_ = atomicOr(&work_.notes.words[cell], bits);
+    bits_added_ = bits;
+  }
 
   const PoseWork<Surface>& work_;
   TaskLists& lists_;
   RawResult& found_;
   std::uint32_t words_before_ = 0, bits_added_ = 0;  // word of the cell noted last
 };
-
-// Adds a block in a cluster that is cut by one plane. Lists it if the plane cuts the block too.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::add_clipped(const BlockTask& block_task,
-                                                  const ClipPlane& plane) {
-  const TaskBall& ball = block_task.balls[BlockTask::of_block];
-  const PlaneSide side = side_of_plane(plane.distance(ball.center), ball.radius);
-  const Task task{block_task.cell, Task::samples, block_task.begin,
-                  block_task.end - block_task.begin};
-  if (side == PlaneSide::cut) {
-    const unsigned list =
-        task.count <= TaskLists::kNarrow ? TaskLists::flat_narrow : TaskLists::flat_wide;
-    // Assigns member by member, since nvcc would store the whole byte by byte.
-    FlatBlock& block = flat(list, lists_.add(list, task));
-    block.plane = plane;
-    block.center = ball.center;
-    return;
-  }
-  CellResult result;
-  if (side == PlaneSide::behind)
-    add_whole(work_.level.tool_reach, work_.level.block_masses[block_task.block], plane.normal,
-              result.sum);
-  note_task(task, result);
-}
-
-// Adds a cell wholly behind its cluster's surface, pushed along `normal`.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::note_behind(const BlockTask& block_task, Vec3 normal) {
-  ToolSum sum;
-  add_whole(work_.level.tool_reach, work_.level.cell_masses[block_task.cell], normal, sum);
-  if (kFloods) {
-    work_.notes.sums[block_task.cell] = sum;
-  } else {
-    found_.sum.add(sum);
-    if (sum.volume.value != 0) count(block_task.cell, cell_bit::counted);
-  }
-}
-
-// Measures all tasks: warps take bundles of tasks of one list, as many as fit into a warp; the
-// slowest lists come first.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::measure() {
-  for (;;) {
-    unsigned bundle = 0;
-    if (threadIdx.x % 32 == 0) bundle = atomicAdd(&lists_.next_bundle, 1U);
-    bundle = __shfl_sync(~0U, bundle, 0);
-    unsigned list = 0;
-    for (; list < TaskLists::kLists; ++list) {
-      const unsigned tasks = 32 / TaskLists::width(list);
-      const unsigned bundles = (lists_.counts[list] + tasks - 1) / tasks;
-      if (bundle < bundles) break;
-      bundle -= bundles;
-    }
-    if (list == TaskLists::kLists) return;
-    const Subwarp subwarp(TaskLists::width(list));
-    const unsigned slot = bundle * (32 / subwarp.width) + threadIdx.x % 32 / subwarp.width;
-    if (slot < lists_.counts[list]) measure(subwarp, list, slot, lists_.tasks[list][slot]);
-    __syncwarp();
-  }
-}
-
-template <class Surface>
-__device__ void TaskMeasure<Surface>::measure(const Subwarp& subwarp, unsigned list, unsigned slot,
-                                              const Task& task) {
-  const CellResult result = TaskLists::is_flat(list) ? measure_flat(subwarp, flat(list, slot), task)
-                                                     : measure_pieces(subwarp, task);
-  if (subwarp.leads()) note_task(task, result);
-}
-
-// Measures the pieces of a task. Returns the result to all lanes of the subwarp.
-template <class Surface>
-__device__ CellResult TaskMeasure<Surface>::measure_pieces(const Subwarp& subwarp,
-                                                           const Task& task) {
-  const std::uint32_t i = task.cell;
-  const Measure measure = measure_of({.samples = work_.level.samples,
-                                      .center = work_.level.centers[i],
-                                      .reach = work_.level.reach[i]});
-  CellResult result;
-  for (std::uint32_t begin = 0; begin < task.count; begin += subwarp.width)
-    add_piece(subwarp, measure, task, begin + subwarp.lane, result);
-  __syncwarp(subwarp.mask);
-  add_up(subwarp, result.sum);
-  if (subwarp.any(result.plane.count > 0)) add_up(subwarp, result.plane);
-  result.is_far = subwarp.any(result.is_far);
-  return result;
-}
-
-// Adds piece `k` of a task, if it exists, as CellMeasure::run() does, or whole() for a whole cell.
-// Lists far pieces. Call from all lanes of the subwarp.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::add_piece(const Subwarp& subwarp, const Measure& measure,
-                                                const Task& task, std::uint32_t k,
-                                                CellResult& result) {
-  const bool exists = k < task.count;
-  const ToolPiece piece = this->piece(task.form, task.begin + (exists ? k : 0));
-  const typename Measure::PieceSample sampled = measure.sample_piece(piece);
-  const bool inside = exists && sampled.is_inside;
-  const bool cells_it =
-      exists && task.form == Task::samples && Measure::shares_direction(piece, sampled);
-  const unsigned first = Surface::kSearchesFoot ? first_neighbor(subwarp, cells_it) : subwarp.lane;
-  Vec3 normal;
-  if (inside && !Measure::is_cut(piece, sampled) && first == subwarp.lane)
-    normal = measure.closest_normal(sampled);
-  if (Surface::kSearchesFoot) normal = subwarp.from(normal, first);
-  if (!inside) return;
-  measure.note(piece, sampled, result);
-  work_.add_inside(measure, piece, sampled, normal, task.cell, result.sum);
-}
-
-// Returns the first lane that shares a direction with this one; itself if it shares none.
-template <class Surface>
-__device__ unsigned TaskMeasure<Surface>::first_neighbor(const Subwarp& subwarp, bool cells_it) {
-  const unsigned sharing = subwarp.which(cells_it);
-  return cells_it ? direction_leader(subwarp.lane, sharing) : subwarp.lane;
-}
-
-// Measures a block that is cut by one plane, a row of samples per lane. Loads each sample before
-// the last one is added. Returns the result to the first lane.
-template <class Surface>
-__device__ CellResult TaskMeasure<Surface>::measure_flat(const Subwarp& subwarp,
-                                                         const FlatBlock& flat, const Task& task) {
-  const ClipPlane plane = flat.plane;
-  const Vec3 center = flat.center, cell = work_.level.centers[task.cell];
-  const double reach = work_.level.reach[task.cell];
-  const CellSample* const samples = work_.level.samples + task.begin;
-  CellSample next = samples[subwarp.lane < task.count ? subwarp.lane : 0];
-  ClippedMoments row;
-#pragma unroll 1
-  for (std::uint32_t k = subwarp.lane; k < task.count;) {
-    const CellSample sample = next;
-    k += subwarp.width;
-    if (k < task.count) next = samples[k];
-    add_to_row(sample, plane, row, row.is_cut);
-  }
-  __syncwarp(subwarp.mask);
-  add_up(subwarp, row);
-  CellResult result;
-  if (subwarp.leads()) {
-    if (row.is_cut)
-      measure_of({.center = cell, .reach = reach}).add_to_plane(center, plane, result.plane);
-    add_by_plane(PlaneSide::cut, {}, row, plane.normal, work_.level.tool_reach, result.sum);
-  }
-  return result;
-}
-
-// Notes the result of a task, which one thread calls for its subwarp.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::note_task(const Task& task, const CellResult& result) {
-  const std::uint32_t i = task.cell;
-  const bool cut = result.plane.count > 0;
-  if (kFloods) {
-    const bool partial = !task.is_whole() && (result.sum.volume.value > 0 || result.is_far);
-    const std::uint32_t bits =
-        (cut ? cell_bit::cut | cell_bit::summed : 0) | (partial ? cell_bit::partial : 0);
-    if (bits != 0) atomicOr(&work_.notes.words[i], bits);
-    add_atomically(result.sum, work_.notes.sums[i]);
-  } else {
-    found_.sum.add(result.sum);
-    if (cut || result.sum.volume.value != 0)
-      count(i, cell_bit::counted | (cut ? cell_bit::cut : 0));
-  }
-  if (cut) add_atomically(result.plane, work_.notes.planes[i]);
-}
-
-// Notes that a cell counts; other threads may do so too. The cell's last word is used only in the
-// next call, so that nobody waits for it.
-template <class Surface>
-__device__ void TaskMeasure<Surface>::count(std::uint32_t cell, std::uint32_t bits) {
-  count_cell(words_before_, bits_added_, found_);
-  words_before_ = atomicOr(&work_.notes.words[cell], bits);
-  bits_added_ = bits;
-}
 
 }  // namespace vpm::cuda

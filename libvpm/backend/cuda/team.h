@@ -6,7 +6,7 @@
 #include <cuda/atomic>
 
 #include "libvpm/measure/cell_measure.h"
-#include "libvpm/scene/pixel_rectangle.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 
 namespace vpm::cuda {
 
@@ -101,6 +101,16 @@ struct Subwarp {
   __device__ unsigned which(bool value) const {
     return __ballot_sync(mask, value) >> (threadIdx.x % 32 - lane);
   }
+  // Returns the number of lanes before this one that which() has found.
+  __device__ unsigned before(unsigned found) const {
+    return __popc(found & ((1U << lane) - 1));
+  }
+  // Counts the lanes that which() has found. Returns the slot of each of them.
+  __device__ unsigned take_slots(unsigned& counter, unsigned found) const {
+    unsigned slot = 0;
+    if (leads() && found != 0) slot = atomicAdd(&counter, __popc(found));
+    return from(slot, 0) + before(found);
+  }
   template <class T>
   __device__ T from(T value, unsigned source) const {
     return __shfl_sync(mask, value, static_cast<int>(source), static_cast<int>(width));
@@ -127,6 +137,13 @@ struct Subwarp {
 __device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
   const unsigned begin = neighbors_of(lane) * kNeighborSamples;
   return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
+}
+
+// Counts the places about its middle at which a cluster is sampled (SampleInTurn). Returns one of
+// them; an index would put them all in local memory.
+inline constexpr unsigned kPlacesAround = 4;
+__device__ inline Vec3 place_of(const Vec3 (&places)[kPlacesAround], unsigned k) {
+  return k == 0 ? places[0] : k == 1 ? places[1] : k == 2 ? places[2] : places[3];
 }
 
 // Counts the 64-bit terms of a ToolSum or ContactPlane.

@@ -6,9 +6,9 @@
 #include "libvpm/backend/cell_clusters.h"
 #include "libvpm/backend/sphere_location.h"
 #include "libvpm/measure/cell_measure.h"
-#include "libvpm/scene/cuda/cloud_views.h"
+#include "libvpm/scene/cuda/device_cloud.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 #include "libvpm/scene/depth/depth_surface.h"
-#include "libvpm/scene/pixel_rectangle.h"
 #include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm::cuda {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,40 @@ class DeviceArray {
   }
   T* data_ = nullptr;
   std::size_t count_ = 0;
+};
+
+// Owns arrays of several types on the device. Pointers to them stay valid as long as it lives.
+class DeviceMemory {
+ public:
+  // Returns a copy of these values; null for none.
+  template <class T>
+  T* copy(const T* values, std::size_t count) {
+    return keep(DeviceArray<T>(values, count));
+  }
+  template <class T>
+  T* copy(const std::vector<T>& values) {
+    return copy(values.data(), values.size());
+  }
+  // Return room for this many values: as it comes, and all bytes 0.
+  template <class T>
+  T* room(std::size_t count) {
+    return keep(DeviceArray<T>(count));
+  }
+  template <class T>
+  T* zeros(std::size_t count) {
+    DeviceArray<T> array(count);
+    array.clear();
+    return keep(std::move(array));
+  }
+
+ private:
+  template <class T>
+  T* keep(DeviceArray<T> array) {
+    T* const values = array.get();
+    kept_.push_back(std::make_shared<DeviceArray<T>>(std::move(array)));
+    return values;
+  }
+  std::vector<std::shared_ptr<void>> kept_;
 };
 
 // Values in the host's memory that the device reads and writes over the bus. Owns them. The

@@ -69,6 +69,24 @@ class TileWork {
     if (i < CloudTile::kHeight) arrays_.ray_y[i] = (tile_.v0 + i - k.cy) / k.fy;
   }
 
+  // Computes all normals by all threads of the block, and synchronises. `gated` must be 0.
+  __device__ __forceinline__ void find_normals(unsigned& gated) const {
+    const bool has_holes = __syncthreads_or(load()) != 0;
+    if (tile_.may_be_cut())
+      sum_columns<true>();
+    else
+      sum_columns<false>();
+    if (has_holes) close_once();
+    __syncthreads();
+    if (tile_.may_be_cut())
+      find_smooth_normals<true>(has_holes, gated);
+    else
+      find_smooth_normals<false>(has_holes, gated);
+    __syncthreads();
+    find_gated_normals(gated);
+    __syncthreads();
+  }
+
   // Loads the image. Returns true if pixels of the tile or its margin are unknown.
   __device__ __forceinline__ bool load() const {
     const float *const inverses = recipe_.inverse, *const depths = recipe_.depth;
@@ -97,13 +115,6 @@ class TileWork {
     return unknown;
   }
 
-  __device__ __forceinline__ void sum_columns() const {
-    if (tile_.may_be_cut())
-      sum_columns<true>();
-    else
-      sum_columns<false>();
-  }
-
   // Closes holes in a first pass, in the tile and the pixels beside it.
   __device__ __forceinline__ void close_once() const {
     const auto image = [&](int u, int v) {
@@ -121,13 +132,6 @@ class TileWork {
     }
   }
 
-  // Computes normals of smooth windows, lists the other windows, and closes holes.
-  __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
-    if (tile_.may_be_cut())
-      find_normals<true>(has_holes, gated);
-    else
-      find_normals<false>(has_holes, gated);
-  }
   __device__ __forceinline__ void find_gated_normals(unsigned count) const {
 #pragma unroll 1
     for (unsigned k = threadIdx.x; k < count; k += CloudTile::kPointThreads) {
@@ -181,8 +185,9 @@ class TileWork {
       arrays_.columns[k] = normals_.template sum_column<kMayBeCut>(
           k % tile_.columns() - tile_.radius(), k / tile_.columns());
   }
+  // Computes normals of smooth windows, lists the other windows, and closes holes.
   template <bool kMayBeCut>
-  __device__ __forceinline__ void find_normals(bool has_holes, unsigned& gated) const {
+  __device__ __forceinline__ void find_smooth_normals(bool has_holes, unsigned& gated) const {
 #pragma unroll kMayBeCut ? 1 : kUnroll
     for (int k = thread(); k < CloudTile::kPixels; k += CloudTile::kPointThreads) {
       const int x = k % CloudTile::kWidth, y = k / CloudTile::kWidth;
@@ -241,18 +246,5 @@ class TileWork {
   Arrays arrays_;
   Normals normals_;
 };
-
-// Computes all normals of a tile by all threads of a block, and synchronises. `gated` must be 0.
-template <class Normals>
-__device__ __forceinline__ void find_normals(const TileWork<Normals>& work, unsigned& gated) {
-  const bool has_holes = __syncthreads_or(work.load()) != 0;
-  work.sum_columns();
-  if (has_holes) work.close_once();
-  __syncthreads();
-  work.find_normals(has_holes, gated);
-  __syncthreads();
-  work.find_gated_normals(gated);
-  __syncthreads();
-}
 
 }  // namespace vpm::cuda

@@ -1,14 +1,9 @@
 #include "libvpm/core/lengths.h"
-#include "libvpm/scene/cuda/cloud_denoise.h"
+#include "libvpm/scene/cuda/cloud_prepare.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace vpm::cuda {
 namespace {
-
-// True if validate() and PreparedCloud accept this pose of a camera.
-bool is_sound_pose(const Pose& pose) {
-  return is_rotation(pose.rotation, kRotationExact) && is_in_range(pose.translation);
-}
 
 constexpr std::size_t whole_groups(std::size_t pixels) {
   return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce;
@@ -52,7 +47,9 @@ void CloudSlot::set_camera() {
 }
 
 void CloudSlot::begin() {
-  is_plain_ = preparation_.fits && is_usual(camera()) && is_sound_pose(camera().to_world);
+  const auto& [rotation, translation] = camera().to_world;  // as PreparedCloud accepts it
+  is_plain_ = preparation_.fits && is_usual(camera()) && is_rotation(rotation, kRotationExact) &&
+              is_in_range(translation);
   if (!is_plain_) {
     cloud();  // throws what is to be refused
     return;
@@ -109,18 +106,14 @@ bool CloudSlot::is_answered() const {
          number_of(look_at(answer_.host()->doubtful)) == sequence_;
 }
 
-void CloudSlot::wait_for_answer() const {
+void CloudSlot::wait() const {
   for (unsigned looks = 1; !is_answered(); ++looks)
     if (looks % kLooksPerCheck == 0 && has_happened(end_) && !is_answered())
       throw Error(ErrorKind::unavailable, "the device has not made the frame; prepare it again");
 }
 
-void CloudSlot::wait() const {
-  wait_for_answer();
-}
-
 bool CloudSlot::is_sound() const {
-  wait_for_answer();
+  wait();
   return value_of(look_at(answer_.host()->doubtful)) == 0;
 }
 

@@ -4,9 +4,9 @@
 #include <mutex>
 
 #include "libvpm/device/cuda/runtime.h"
-#include "libvpm/scene/cuda/cloud_take.h"
+#include "libvpm/scene/cuda/cloud_prepare.h"
 #include "libvpm/scene/cuda/device_cloud.h"
-#include "libvpm/scene/frame_slot.h"
+#include "libvpm/scene/frame_preparation.h"
 
 namespace vpm::cuda {
 
@@ -40,7 +40,6 @@ class CloudSlot : public FrameSlot {
   void launch();
   void set_camera();
   bool is_answered() const;
-  void wait_for_answer() const;
 
   Stream stream_;
   MappedArray<std::byte> image_;

@@ -7,8 +7,8 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/runtime.h"
 #include "libvpm/include/vpm/camera.h"
-#include "libvpm/scene/cuda/cloud_room.h"
-#include "libvpm/scene/depth/hole_closing.h"
+#include "libvpm/scene/cuda/device_cloud.h"
+#include "libvpm/scene/depth/denoised_image.h"
 
 namespace vpm::cuda {
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -9,8 +8,19 @@
 
 namespace vpm::cuda {
 
+namespace {
+
+std::size_t pixels_of(const DepthSurface& image) {
+  return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+}
+std::size_t tile_count(const DepthSurface& image, int level) {
+  return static_cast<std::size_t>(((image.height - 1) >> level) + 1) *
+         static_cast<std::size_t>(image.tiles_per_row(level));
+}
+
+}  // namespace
+
 DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
-  frame_.is_organised = cloud.is_organised();
   frame_.origin = cloud.origin();
   if (cloud.is_organised())
     copy_image(cloud);
@@ -27,14 +37,14 @@ DeviceCloud::DeviceCloud(const Camera& camera) {
   while (image.levels < DepthSurface::kMaxLevels &&
          ((std::max(image.width, image.height) - 1) >> (image.levels - 1)) > 0)
     ++image.levels;
-  frame_.is_organised = true;
-  make_room(image);
+  const std::size_t pixels = pixels_of(image);
+  std::size_t tiles = 0;
+  for (int level = 0; level < image.levels; ++level) tiles += tile_count(image, level);
+  set_image(image,
+            {memory_.room<Vec3f>(pixels), memory_.room<Vec3f>(pixels), memory_.room<Vec3f>(pixels),
+             memory_.room<float>(pixels)},
+            memory_.room<InverseDepthRange>(tiles));
   stand_at(camera.to_world);
-}
-
-std::uint64_t DeviceCloud::next_serial() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
 }
 
 void DeviceCloud::stand_at(const Pose& camera_to_world) {
@@ -42,50 +52,27 @@ void DeviceCloud::stand_at(const Pose& camera_to_world) {
   frame_.camera_to_world = camera_to_world;
 }
 
-CloudRoom DeviceCloud::room() const {
-  CloudRoom room{positions_.get(), normals_.get(), pixel_normals_.get(), measured_.get(), {},
-                 depth_.levels};
-  for (int level = 0; level < depth_.levels; ++level)
-    room.tiles[level] = tiles_.get() + tile_begin_[level];
-  return room;
-}
-
-void DeviceCloud::make_room(const DepthSurface& image) {
+void DeviceCloud::set_image(const DepthSurface& image, const CloudRoom& room,
+                            InverseDepthRange* tiles) {
   depth_ = image;
-  frame_.intrinsics = depth_.k;
-  frame_.width = depth_.width;
-  frame_.height = depth_.height;
-  const auto pixels =
-      static_cast<std::size_t>(depth_.width) * static_cast<std::size_t>(depth_.height);
-  positions_ = DeviceArray<Vec3f>(pixels);
-  normals_ = DeviceArray<Vec3f>(pixels);
-  pixel_normals_ = DeviceArray<Vec3f>(pixels);
-  measured_ = DeviceArray<float>(pixels);
-  points_ = {positions_.get(), normals_.get(), static_cast<std::uint32_t>(pixels), depth_.width,
-             nullptr};
-  std::size_t count = 0;
-  for (int level = 0; level < depth_.levels; ++level) {
-    tile_begin_[level] = count;
-    count += tile_count(level);
+  room_ = room;
+  room_.levels = image.levels;
+  for (int level = 0; level < image.levels; ++level) {
+    depth_.tiles[level] = room_.tiles[level] = tiles;
+    tiles += tile_count(image, level);
   }
-  tiles_ = DeviceArray<InverseDepthRange>(count);
-  depth_.normals = pixel_normals_.get();
-  depth_.measured = measured_.get();
-  for (int level = 0; level < depth_.levels; ++level)
-    depth_.tiles[level] = tiles_.get() + tile_begin_[level];
-}
-
-std::size_t DeviceCloud::tile_count(int level) const {
-  const auto rows = static_cast<std::size_t>(((depth_.height - 1) >> level) + 1);
-  return rows * static_cast<std::size_t>(depth_.tiles_per_row(level));
+  depth_.normals = room.pixel_normals;
+  depth_.measured = room.measured;
+  frame_.is_organised = true;
+  frame_.intrinsics = image.k;
+  frame_.width = image.width;
+  frame_.height = image.height;
+  points_ = {room.positions, room.normals, static_cast<std::uint32_t>(pixels_of(image)),
+             image.width, nullptr};
 }
 
 void DeviceCloud::copy_image(const PreparedCloud& cloud) {
   const DepthSurface image = cloud.depth_surface();
-  make_room(image);
-  stand_at(cloud.camera_to_world());
-  frame_.origin = cloud.origin();
-
   const std::vector<std::uint32_t>& begin = cloud.pixel_begin();
   const std::size_t pixels = begin.size() - 1;
   const float nowhere = std::nanf("");
@@ -95,43 +82,34 @@ void DeviceCloud::copy_image(const PreparedCloud& cloud) {
     positions[p] = cloud.positions()[begin[p]];
     normals[p] = cloud.normals()[begin[p]];
   }
-  positions_.fill(positions.data());
-  normals_.fill(normals.data());
-  pixel_normals_.fill(image.normals);
-  measured_.fill(image.measured);
   std::vector<InverseDepthRange> tiles;
   for (int level = 0; level < image.levels; ++level)
-    tiles.insert(tiles.end(), image.tiles[level], image.tiles[level] + tile_count(level));
-  tiles_.fill(tiles.data());
+    tiles.insert(tiles.end(), image.tiles[level], image.tiles[level] + tile_count(image, level));
+  set_image(image,
+            {memory_.copy(positions), memory_.copy(normals), memory_.copy(image.normals, pixels),
+             memory_.copy(image.measured, pixels)},
+            memory_.copy(tiles));
+  frame_.camera_to_world = cloud.camera_to_world();
 }
 
 void DeviceCloud::copy_points(const PreparedCloud& cloud) {
-  const auto copy_tree = [](PointTree tree, const DeviceArray<Vec3f>& points,
-                            DeviceArray<BoxQuad>& boxes) {
-    boxes = DeviceArray<BoxQuad>(tree.boxes, tree.quads());
-    tree.points = points.get();
-    tree.boxes = boxes.get();
+  const auto copy_tree = [&](PointTree tree, const Vec3f* points) {
+    tree.points = points;
+    tree.boxes = memory_.copy(tree.boxes, tree.quads());
     return tree;
   };
-  positions_ = DeviceArray<Vec3f>(cloud.positions());
-  normals_ = DeviceArray<Vec3f>(cloud.normals());
-  const PointTree tree = copy_tree(cloud.point_tree(), positions_, boxes_);
-  points_ = {positions_.get(), normals_.get(), tree.count, 0, tree};
-  disks_ = cloud.disk_surface();
+  const Vec3f* const positions = memory_.copy(cloud.positions());
+  const PointTree tree = copy_tree(cloud.point_tree(), positions);
+  points_ = {positions, memory_.copy(cloud.normals()), tree.count, 0, tree};
   const DenoisedDisks& denoised = cloud.disks();
-  feet_ = DeviceArray<Vec3f>(denoised.feet);
-  disk_normals_ = DeviceArray<Vec3f>(denoised.normals);
-  second_of_ = DeviceArray<std::uint32_t>(denoised.second_of);
-  seconds_ = DeviceArray<SecondPlane>(denoised.seconds);
-  cones_ = DeviceArray<ConeQuad>(disks_.cones.quads, disks_.feet.quads());
-  radii_ = DeviceArray<float>(disks_.radii.of_points, disks_.feet.count);
-  largest_radii_ = DeviceArray<float>(disks_.radii.of_nodes, disks_.feet.nodes());
-  disks_.feet = copy_tree(disks_.feet, feet_, foot_boxes_);
-  disks_.normals = disk_normals_.get();
-  disks_.second_of = second_of_.get();
-  disks_.seconds = seconds_.get();
-  disks_.cones.quads = cones_.get();
-  disks_.radii = {radii_.get(), largest_radii_.get()};
+  disks_ = cloud.disk_surface();
+  disks_.cones.quads = memory_.copy(disks_.cones.quads, disks_.feet.quads());
+  disks_.radii = {memory_.copy(disks_.radii.of_points, disks_.feet.count),
+                  memory_.copy(disks_.radii.of_nodes, disks_.feet.nodes())};
+  disks_.feet = copy_tree(disks_.feet, memory_.copy(denoised.feet));
+  disks_.normals = memory_.copy(denoised.normals);
+  disks_.second_of = memory_.copy(denoised.second_of);
+  disks_.seconds = memory_.copy(denoised.seconds);
 }
 
 std::shared_ptr<const DeviceCloud> on_device(const PreparedCloud& cloud) {

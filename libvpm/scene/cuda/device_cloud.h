@@ -1,49 +1,68 @@
-// Holds a cloud in the memory of a device.
+// Holds a cloud in the memory of a device, and describes it as kernels take it: plain pointers and
+// numbers.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
+#include "libvpm/cloud/camera.h"
 #include "libvpm/device/cuda/device_array.h"
-#include "libvpm/scene/cuda/cloud_room.h"
-#include "libvpm/scene/cuda/cloud_views.h"
+#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/scene/points/point_tree.h"
 #include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm::cuda {
 
+// Points to the device memory for the cloud of an image, by pixel.
+struct CloudRoom {
+  Vec3f* positions = nullptr;      // about the camera, world axes; NaN without a point
+  Vec3f* normals = nullptr;        // world axes
+  Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
+  float* measured = nullptr;       // inverse depth, 1/m, holes closed
+  InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
+  std::int32_t levels = 0;
+};
+
+// Points to the points of a cloud, about its origin: for an image by pixel (NaN where there is
+// none), else in the order of the leaves of their tree.
+struct PointsView {
+  const Vec3f* positions = nullptr;
+  const Vec3f* normals = nullptr;
+  std::uint32_t count = 0;
+  std::int32_t width = 0;  // the image's, or 0
+  PointTree tree;          // only without an image
+};
+
+// Holds the parts of a cloud that poses are combined with.
+struct CloudFrame {
+  bool is_organised = false;
+  Vec3 origin;
+  Pose camera_to_world;
+  Intrinsics intrinsics;
+  std::int32_t width = 0, height = 0;
+};
+
 class DeviceCloud {
  public:
   explicit DeviceCloud(const PreparedCloud& cloud);
-  // Allocates a cloud for an image, which kernels fill (cloud_prepare.h, cloud_denoise.h).
+  // Allocates a cloud for an image, which kernels fill (cloud_prepare.h).
   explicit DeviceCloud(const Camera& camera);
   void stand_at(const Pose& camera_to_world);
-  CloudRoom room() const;
+  const CloudRoom& room() const { return room_; }
 
-  // Returns a number unique in the process, not 0. The views of the surface stay the same for it.
-  std::uint64_t serial() const { return serial_; }
   const CloudFrame& frame() const { return frame_; }
   const PointsView& points() const { return points_; }
   const DepthSurface& depth_surface() const { return depth_; }  // requires an organised cloud
   const DiskSurface& disk_surface() const { return disks_; }    // requires an unorganised cloud
 
  private:
-  void make_room(const DepthSurface& image);
-  std::size_t tile_count(int level) const;
+  // Takes the arrays of an image; `tiles` holds all levels, one after another.
+  void set_image(const DepthSurface& image, const CloudRoom& room, InverseDepthRange* tiles);
   void copy_image(const PreparedCloud& cloud);
   void copy_points(const PreparedCloud& cloud);
 
-  static std::uint64_t next_serial();
-
-  std::uint64_t serial_ = next_serial();
-  DeviceArray<Vec3f> positions_, normals_, pixel_normals_;
-  DeviceArray<float> measured_;
-  DeviceArray<InverseDepthRange> tiles_;  // all levels, one after another
-  std::size_t tile_begin_[DepthSurface::kMaxLevels] = {};
-  DeviceArray<BoxQuad> boxes_, foot_boxes_;
-  DeviceArray<Vec3f> feet_, disk_normals_;
-  DeviceArray<std::uint32_t> second_of_;
-  DeviceArray<SecondPlane> seconds_;
-  DeviceArray<ConeQuad> cones_;
-  DeviceArray<float> radii_, largest_radii_;
+  DeviceMemory memory_;
+  CloudRoom room_;
   CloudFrame frame_;
   PointsView points_;
   DepthSurface depth_;

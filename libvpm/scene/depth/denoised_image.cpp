@@ -1,12 +1,65 @@
 #include "libvpm/scene/depth/denoised_image.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "libvpm/cloud/padded_image.h"
+#include "libvpm/cloud/row_bands.h"
 #include "libvpm/core/lanes.h"
 
 namespace vpm {
 namespace {
+
+struct ClosedPixel {
+  int u, v;
+  float value;
+};
+
+// Marks pixels of a tile that are not measured but have a measured opposite pair beside them. `at`
+// is the first pixel. Returns false if all pixels are measured.
+VPM_VECTOR_CLONES
+bool mark_candidates(const float* at, std::ptrdiff_t stride, std::uint8_t (&candidate)[kTile]) {
+  int holes = 0;
+  for (int i = 0; i < kTile; ++i) holes |= at[i] <= 0;
+  if (holes == 0) return false;
+  const float *up = at - stride, *down = at + stride;
+  for (int i = 0; i < kTile; ++i) {
+    const auto is_pair = [](float a, float b) { return (a > 0) & (b > 0); };
+    candidate[i] =
+        (at[i] <= 0) & (is_pair(at[i - 1], at[i + 1]) | is_pair(up[i], down[i]) |
+                        is_pair(up[i - 1], down[i + 1]) | is_pair(up[i + 1], down[i - 1]));
+  }
+  return true;
+}
+
+void find_closed(const PaddedImage& image, int begin, int end, std::vector<ClosedPixel>& closed) {
+  std::uint8_t candidate[kTile];
+  for (int v = begin; v < end; ++v) {
+    for (int first = 0; first < image.width; first += kTile) {
+      if (!mark_candidates(image.at(first, v), static_cast<std::ptrdiff_t>(image.stride),
+                           candidate))
+        continue;
+      for (int u = first; u < std::min(first + kTile, image.width); ++u) {
+        if (candidate[u - first] == 0) continue;
+        const float value = between_neighbors([&](int x, int y) { return *image.at(x, y); },
+                                              image.width, image.height, u, v);
+        if (value > 0) closed.push_back({u, v, value});
+      }
+    }
+  }
+}
+
+// Unites two rows of tiles to one of the next level; the last tile of an odd width has one column.
+VPM_VECTOR_CLONES
+void unite_rows(const InverseDepthRange* __restrict above,
+                const InverseDepthRange* __restrict below, std::size_t width,
+                InverseDepthRange* __restrict tiles) {
+  for (std::size_t u = 0; u < width / 2; ++u) {
+    tiles[u] =
+        united(united(above[2 * u], above[2 * u + 1]), united(below[2 * u], below[2 * u + 1]));
+  }
+  if (width % 2 != 0) tiles[width / 2] = united(above[width - 1], below[width - 1]);
+}
 
 // Sums down each column of the windows of some pixels of a row.
 class ColumnSums {
@@ -145,6 +198,19 @@ void take_row(const SeenImage& seen, int v, InverseDepthRange* depths, Vec3f* no
 
 }  // namespace
 
+void close_holes(PaddedImage& inverse) {
+  std::vector<std::vector<ClosedPixel>> closed(static_cast<std::size_t>(bands_of(inverse.height)));
+  for (int pass = 0; pass < kFillPasses; ++pass) {
+    for_bands(inverse.height, [&](int begin, int end) {
+      find_closed(inverse, begin, end, closed[static_cast<std::size_t>(begin / kRowsPerBand)]);
+    });
+    for (std::vector<ClosedPixel>& of_rows : closed) {
+      for (const ClosedPixel& pixel : of_rows) *inverse.at(pixel.u, pixel.v) = pixel.value;
+      of_rows.clear();
+    }
+  }
+}
+
 void SeenImage::resize(std::uint32_t width, std::uint32_t height) {
   static_assert(kDenoisedRadius <= kDenoisedReach, "the margin holds windows too");
   for (PaddedImage* image : {&inverse, &x, &y, &z, &marked})
@@ -161,18 +227,40 @@ void SeenImage::mark_rows(int begin, int end) {
   for (int v = begin; v < end; ++v) mark_row(*this, v, marked.at(0, v));
 }
 
-void DenoisedImage::resize(std::uint32_t width, std::uint32_t height) {
-  width_ = static_cast<int>(width), height_ = static_cast<int>(height);
+void DenoisedImage::resize(std::uint32_t new_width, std::uint32_t new_height) {
+  width_ = static_cast<int>(new_width), height_ = static_cast<int>(new_height);
   normals_.resize(first_of_row(height_));
   measured_.resize(first_of_row(height_));
-  tiles_.resize(width, height);
+  std::size_t width = new_width, height = new_height, levels = 1;
+  for (std::size_t side = std::max(width, height); side > 1; side = (side + 1) / 2) ++levels;
+  tiles_.resize(levels);
+  for (std::vector<InverseDepthRange>& level : tiles_) {
+    level.resize(width * height);
+    width = (width + 1) / 2, height = (height + 1) / 2;
+  }
 }
 
 void DenoisedImage::read_rows(const SeenImage& seen, Denoising points, int begin, int end) {
   const auto read_row = points == Denoising::on ? denoise_row : take_row;
   for (int v = begin; v < end; ++v) {
-    read_row(seen, v, tiles_.row(v), normals_.data() + first_of_row(v));
+    read_row(seen, v, tiles_[0].data() + first_of_row(v), normals_.data() + first_of_row(v));
     std::copy_n(seen.inverse.at(0, v), width_, measured_.data() + first_of_row(v));
+  }
+}
+
+void DenoisedImage::unite() {
+  auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+  for (std::size_t k = 1; k < tiles_.size(); ++k) {
+    const InverseDepthRange* fine = tiles_[k - 1].data();
+    const std::size_t half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+    for_bands(static_cast<int>(half_height), [&](int begin, int end) {
+      for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+        const InverseDepthRange* above = fine + 2 * v * width;
+        unite_rows(above, 2 * v + 1 < height ? above + width : above, width,
+                   tiles_[k].data() + v * half_width);
+      }
+    });
+    width = half_width, height = half_height;
   }
 }
 
@@ -181,11 +269,11 @@ DepthSurface DenoisedImage::surface(const Intrinsics& k) const {
   surface.k = k;
   surface.width = width_;
   surface.height = height_;
-  surface.levels = std::min(tiles_.levels(), DepthSurface::kMaxLevels);
+  surface.levels = std::min(static_cast<int>(tiles_.size()), DepthSurface::kMaxLevels);
   surface.normals = normals_.data();
   surface.measured = measured_.data();
   for (int level = 0; level < surface.levels; ++level)
-    surface.tiles[level] = tiles_.level(level).data();
+    surface.tiles[level] = tiles_[static_cast<std::size_t>(level)].data();
   return surface;
 }
 

@@ -3,10 +3,9 @@
 
 #include <bit>
 
-#include "libvpm/scene/ball_fraction.h"
 #include "libvpm/scene/body.h"
 #include "libvpm/scene/depth/depth_nearest.h"
-#include "libvpm/scene/pixel_rectangle.h"
+#include "libvpm/scene/depth/depth_sampler.h"
 
 namespace vpm {
 
@@ -42,9 +41,6 @@ struct DepthSurface : DepthSampler {
     float middle = 0;  // measured inverse depth of the pixel in the middle
   };
 
-  VPM_HD Side side_of_ball(Vec3 center, double radius) const {
-    return side_of(classify_ball(center, radius), center, radius);
-  }
   // Returns the side of a classified ball. Its tiles hold other pixels too: where they do not
   // decide, its own pixels tell if it is free.
   VPM_HD Side side_of(const BallClass& in_ball, Vec3 center, double radius) const {
@@ -187,50 +183,21 @@ struct DepthSurface : DepthSampler {
                          const ReadAll& sample_all, TangentPlane& plane) const {
     const SurfaceSample middle = sample_all.middle(*this, center);
     if (!middle.known) return false;
-    const PlacesAround around(middle, center, radius);
-    const Vec3 places[PlacesAround::kCount] = {around.at(0), around.at(1), around.at(2),
-                                               around.at(3)};
-    PlaneMean mean(middle);
-    if (!sample_all(*this, places,
-                    [&](const SurfaceSample& on_surface) { return mean.take(on_surface); }))
-      return false;
-    plane = mean.plane();
-    return shows(in_ball, plane, tolerance);
-  }
-  // Holds the four places around the middle. `middle` is the known sample at the centre.
-  struct PlacesAround {
-    static constexpr int kCount = 4;
-    Vec3 below, side, other;
-
-    VPM_HD PlacesAround(const SurfaceSample& middle, Vec3 center, double radius)
-        : below(center - middle.distance * middle.normal) {
-      const Vec3 n = middle.normal;
-      const Vec3 axis = std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-      side = kRim * radius * normalized_or_zero(cross(n, axis));
-      other = cross(n, side);
-    }
-    VPM_HD Vec3 at(int place) const {
-      const Vec3 aside = place < 2 ? side : other;
-      return place % 2 == 0 ? below + aside : below - aside;
-    }
-  };
-  // Computes the mean of five samples of one smooth surface.
-  struct PlaneMean {
-    Vec3 middle_normal, direction, feet;
-
-    VPM_HD explicit PlaneMean(const SurfaceSample& middle)
-        : middle_normal(middle.normal), direction(middle.normal), feet(middle.foot) {}
-    // Adds a sample. Returns false if it does not belong to that surface.
-    VPM_HD bool take(const SurfaceSample& on_surface) {
-      if (!on_surface.known || dot(on_surface.normal, middle_normal) < kSmoothCosine) return false;
+    const Vec3 n = middle.normal, below = center - middle.distance * n;
+    const Vec3 side = kRim * radius * normalized_or_zero(cross(n, axis_aside(n))),
+               other = cross(n, side);
+    const Vec3 places[] = {below + side, below - side, below + other, below - other};
+    Vec3 direction = n, feet = middle.foot;
+    const auto take = [&](const SurfaceSample& on_surface) {
+      if (!on_surface.known || dot(on_surface.normal, n) < kSmoothCosine) return false;
       direction += on_surface.normal;
       feet += on_surface.foot;
       return true;
-    }
-    // Returns the plane of the five samples.
-    VPM_HD TangentPlane plane() const { return {normalized_or_zero(direction), 0.2 * feet}; }
-  };
-
+    };
+    if (!sample_all(*this, places, take)) return false;
+    plane = {normalized_or_zero(direction), 0.2 * feet};
+    return shows(in_ball, plane, tolerance);
+  }
   // Bounds the distance, m, from any place in a classified ball to the foot of its sample.
   VPM_HD double largest_gap(const BallClass& in_ball, Vec3 center, double radius) const {
     const double nearest = center.z - radius, farthest = center.z + radius;

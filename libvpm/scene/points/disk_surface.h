@@ -3,13 +3,43 @@
 // frame, about its origin.
 #pragma once
 
-#include "libvpm/scene/ball_fraction.h"
+#include <cstdint>
+#include <vector>
+
+#include "libvpm/core/vec3.h"
 #include "libvpm/scene/body.h"
-#include "libvpm/scene/points/normal_cones.h"
-#include "libvpm/scene/points/point_list.h"
 #include "libvpm/scene/points/point_tree.h"
 
 namespace vpm {
+
+// Holds the cones of four nodes: a normal's cosine with the axis is at least `cosine`.
+struct alignas(16) ConeQuad {
+  float axis[3][4] = {};
+  float cosine[4] = {};
+
+  void set(std::uint32_t k, Vec3f axis_of_k, float cosine_of_k) {
+    axis[0][k] = axis_of_k.x, axis[1][k] = axis_of_k.y, axis[2][k] = axis_of_k.z;
+    cosine[k] = cosine_of_k;
+  }
+};
+
+// Holds plain pointers to the cones of a tree.
+struct NormalCones {
+  const ConeQuad* quads = nullptr;  // node k is entry k % 4 of quad k / 4
+
+  // True only if each normal of a node surely has a cosine above `least` with the unit vector n.
+  VPM_HD bool are_within(std::uint32_t node, Vec3 n, double least) const {
+    constexpr double kSlack = 1e-3;  // far above the rounding of float axes
+    const ConeQuad& quad = quads[node / 4];
+    const std::uint32_t k = node % 4;
+    const double cosine = quad.cosine[k],
+                 off = dot({quad.axis[0][k], quad.axis[1][k], quad.axis[2][k]}, n);
+    // Uses cos(a + b) = cos a cos b - sin a sin b; the last term is known by its square.
+    const double above = off * cosine - (least + kSlack);
+    return off > 0 && cosine > 0 && above > 0 &&
+           above * above > (1 - off * off) * (1 - cosine * cosine);
+  }
+};
 
 // Describes a second plane at a disk: the solid lies behind both (a convex edge, a thin plate), or
 // behind either of them (a concave edge, a slot).
@@ -253,11 +283,6 @@ struct DiskSurface {
     return true;
   }
 
-  // Returns a coordinate axis far from a direction.
-  static VPM_HD Vec3 axis_aside(Vec3 n) {
-    return std::fabs(n.x) < std::fabs(n.y) ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  }
-
   // True if the points in a ball show this plane on all sides of a place of it.
   VPM_HD bool shows(const TangentPlane& plane, Vec3 middle, Vec3 center, double squared_radius,
                     double tolerance) const {
@@ -356,5 +381,24 @@ VPM_HD inline bool DiskSurface::find_other_wall(Vec3 x, const TangentPlane& own,
 #endif
   return choose_other_wall(near, x, own, point, radius, unlike, other);
 }
+
+// Returns the cones of all normals that the disks know, for the nodes that searches step to.
+std::vector<ConeQuad> cones_of(const DiskSurface& disks);
+
+// Holds disks that are denoised once per cloud, with second planes close to them; README.md has the
+// reasons.
+struct DenoisedDisks {
+  std::vector<Vec3f> feet, normals;      // one per disk
+  std::vector<std::uint32_t> second_of;  // per disk: index into seconds, or kNoPoint
+  std::vector<float> radii;              // sampling radius per disk, m
+  std::vector<SecondPlane> seconds;
+};
+
+// Returns the denoised disks of `measured`, the points as they are with boxes about them, which
+// have these sampling radii, m. The result does not depend on the number of threads.
+DenoisedDisks settle(const DiskSurface& measured, std::vector<float> radii);
+
+// Returns the measured points themselves as disks.
+DenoisedDisks off(const DiskSurface& measured, std::vector<float> radii);
 
 }  // namespace vpm

@@ -1,15 +1,64 @@
-// Finds the disks of a cloud about one of them, within windows that follow its sampling radius.
+// Sums up the disks of a cloud about one of them, within windows that follow its sampling radius,
+// and finds second planes close to it, for the leaves of a cloud in parallel.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "libvpm/scene/points/disk_neighborhood.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/core/vec3.h"
 #include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm {
+
+struct Disk {
+  Vec3 place, normal;
+};
+
+// Sorts pairs of disks by the cosine between their normals.
+inline constexpr double kAlike = 0.9;      // above: one surface; 25 degrees
+inline constexpr double kOpposite = -0.8;  // below: two sides of a plate or slot; 143 degrees
+
+// Bounds the height, as a part of the ball's radius, at which another disk shows the same surface.
+inline constexpr double kOneSurface = 0.7;
+
+// Sum of planes to be averaged, with the heights of a place above them.
+struct PlaneSum {
+  Vec3 normal, place;
+  double height = 0;
+  std::uint32_t count = 0;
+
+  void add(const Disk& disk, Vec3 above) {
+    normal += disk.normal;
+    place += disk.place;
+    height += dot(disk.normal, above - disk.place);
+    ++count;
+  }
+};
+
+// Sums over the disks in a ball about one disk.
+struct Neighborhood {
+  Vec3 normals;       // sum over alike disks on the same surface
+  double height = 0;  // sum of the heights along the disk's normal at which these show it, m
+  std::uint32_t alike = 0, unlike = 0;
+  PlaneSum opposite;
+
+  std::uint32_t count() const { return alike + unlike + opposite.count; }
+};
+
+struct DiskInBall {
+  Disk disk;
+  double reach = 0;  // radius of the ball, m
+};
+
+// Sums up the disks about four disks at once by vectors. `near` holds all in their balls, and
+// others.
+void look_around(std::span<const Disk> near, const DiskInBall (&disks)[4],
+                 Neighborhood (&found)[4]);
 
 // Sets the radii of windows in sampling radii: a little wider than the 7 x 7 pixels by which
 // normals are estimated, and wide enough to reach beyond windows that hold both sides of a crease.
@@ -95,5 +144,67 @@ class DiskWindows {
   const DiskSurface& measured_;
   std::span<const float> radii_;
 };
+
+// Holds the mean of several planes, through `foot`; `place` is the mean of their disks.
+struct MeanPlane {
+  Vec3 normal, foot, place;
+
+  MeanPlane(const PlaneSum& sum, Vec3 above)
+      : normal(normalized_or_zero(sum.normal)),
+        foot(above - sum.height / sum.count * normal),
+        place(1.0 / sum.count * sum.place) {}
+};
+
+// Bounds a sheet's thickness, as a part of the sideways distance between its sides' disks.
+inline constexpr double kNoThickness = 1e-6;
+
+// Returns the second plane if each plane's disks lie behind the other, or in front of it, by at
+// least `apart`, m. Planes on one another, back to back, are a sheet with two free sides, which is
+// convex.
+inline std::optional<SecondPlane> second_plane(const Disk& first, const MeanPlane& second,
+                                               double apart) {
+  const Vec3 across = second.place - first.place;
+  const double ahead = dot(first.normal, across), back = -dot(second.normal, across);
+  const double none = kNoThickness * norm(across);
+  const bool is_sheet = apart == 0 && std::max(std::fabs(ahead), std::fabs(back)) <= none;
+  if (is_sheet) return SecondPlane{narrow(second.normal), narrow(second.foot), true};
+  if (!(ahead * back > 0 && std::min(std::fabs(ahead), std::fabs(back)) >= apart))
+    return std::nullopt;
+  return SecondPlane{narrow(second.normal), narrow(second.foot), ahead < 0};
+}
+
+// Holds scratch and results of a thread that goes over leaves.
+struct LeafWork {
+  struct Found {
+    std::uint32_t disk;
+    SecondPlane second;
+  };
+  std::vector<Disk> near;
+  std::vector<Found> found;
+};
+
+// Calls pass(leaf, work) for all leaves in parallel. Numbers what they find in the disks' order.
+template <class Pass>
+void for_leaves(const DiskWindows& windows, DenoisedDisks& result, const Pass& pass) {
+  constexpr std::uint32_t kGrain = 128 * PointTree::kLeafSize;
+  const std::uint32_t count = windows.count();
+  std::vector<std::vector<LeafWork::Found>> found((count + kGrain - 1) / kGrain);
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    LeafWork work;
+    for (std::size_t run = begin; run < end; ++run) {
+      const auto first = static_cast<std::uint32_t>(run) * kGrain;
+      const std::uint32_t last = std::min(first + kGrain, count);
+      for (std::uint32_t i = first; i < last; i += PointTree::kLeafSize)
+        pass(windows.leaf_of(i), work);
+      found[run].swap(work.found);
+    }
+  });
+  for (const auto& of_run : found) {
+    for (const LeafWork::Found& f : of_run) {
+      result.second_of[f.disk] = static_cast<std::uint32_t>(result.seconds.size());
+      result.seconds.push_back(f.second);
+    }
+  }
+}
 
 }  // namespace vpm

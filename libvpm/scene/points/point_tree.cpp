@@ -3,12 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
+#include <span>
 
+#include "libvpm/core/box.h"
 #include "libvpm/core/lanes.h"
-#include "libvpm/scene/points/point_tree_vectors.h"
+#include "libvpm/core/parallel.h"
+#include "libvpm/core/vec3x4.h"
+#include "libvpm/scene/points/disk_surface.h"
 
 namespace vpm {
 namespace {
+
+[[gnu::always_inline]] inline Double4 load_four(const float* from) {
+  Float4 four;
+  std::memcpy(&four, from, sizeof four);
+  return widen(four);
+}
 
 constexpr float kInf = HUGE_VALF;
 constexpr PointBox kEmpty{{kInf, kInf, kInf}, {-kInf, -kInf, -kInf}};
@@ -19,7 +30,70 @@ PointBox around(const PointBox& a, const PointBox& b) {
       {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
+// Holds a point and its rank in the given order.
+struct Ranked {
+  float at[3];
+  std::uint32_t rank;
+};
+
+// Partitions points along the longest side of their box, the `count` lower ones first.
+void part(std::span<Ranked> points, std::size_t count) {
+  Box box;
+  for (const Ranked& p : points) box.add({p.at[0], p.at[1], p.at[2]});
+  const int axis = box.longest_axis();
+  std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count),
+                   points.end(), [axis](const Ranked& a, const Ranked& b) {
+                     return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.rank < b.rank;
+                   });
+}
+
+// Calls body(points) for the nodes of one level, which hold `size` points each.
+template <class Body>
+void for_nodes(std::span<Ranked> all, std::size_t size, const Body& body) {
+  constexpr std::size_t kGrain = 8192;  // points
+  parallel_for((all.size() + size - 1) / size, std::max<std::size_t>(kGrain / size, 1),
+               [&](std::size_t begin, std::size_t end) {
+                 for (std::size_t k = begin; k < end; ++k)
+                   body(all.subspan(k * size, std::min(size, all.size() - k * size)));
+               });
+}
+
+// Sets cone k of a quad to that of the disks [begin, end).
+void set_cone(const DiskSurface& disks, std::uint32_t begin, std::uint32_t end, ConeQuad& quad,
+              std::uint32_t k) {
+  Vec3 sum;
+  for (std::uint32_t i = begin; i < end; ++i)
+    disks.for_normals_of(i, [&](Vec3 normal) { sum += normal; });
+  const Vec3f axis = narrow(normalized_or_zero(sum));
+  double cosine = 1;
+  for (std::uint32_t i = begin; i < end; ++i)
+    disks.for_normals_of(i,
+                         [&](Vec3 normal) { cosine = std::min(cosine, dot(widen(axis), normal)); });
+  quad.set(k, axis, static_cast<float>(cosine));
+}
+
 }  // namespace
+
+// Computes squared distances of four boxes, and of up to four points, by vectors.
+struct PointTree::ByVectors {
+  [[gnu::always_inline]] static void to_boxes(const BoxQuad& quad, Vec3 x, double (&squared)[4]) {
+    const double at[3] = {x.x, x.y, x.z};
+    Double4 sum{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Double4 before = load_four(quad.low[axis]) - at[axis],
+                    after = at[axis] - load_four(quad.high[axis]), zero{};
+      const Double4 gap = before > after ? before : after;
+      sum += gap > 0 ? gap * gap : zero;
+    }
+    std::memcpy(squared, &sum, sizeof sum);
+  }
+  [[gnu::always_inline]] static void to_points(const Vec3f* points, std::uint32_t count, Vec3 x,
+                                               double (&squared)[4]) {
+    const auto [a, b, c, d] = four_of(std::span(points, count), 0);
+    const Double4 all = squared_norm(Vec3x4(a, b, c, d) - Vec3x4(x, x, x, x));
+    std::memcpy(squared, &all, sizeof all);
+  }
+};
 
 void BoxQuad::set(std::uint32_t k, const PointBox& box) {
   low[0][k] = box.low.x, low[1][k] = box.low.y, low[2][k] = box.low.z;
@@ -120,6 +194,70 @@ std::vector<float> largest_in_nodes(std::span<const float> radii) {
   for (std::uint32_t node = leaves; node-- > 1;)
     largest[node] = std::max(largest[2 * node], largest[2 * node + 1]);
   return largest;
+}
+
+void order_by_leaves(std::span<const Vec3f> points, std::vector<std::uint32_t>& order) {
+  std::vector<Ranked> ranked(order.size());
+  for (std::uint32_t rank = 0; rank < order.size(); ++rank) {
+    const Vec3f p = points[order[rank]];
+    ranked[rank] = {{p.x, p.y, p.z}, rank};
+  }
+  constexpr std::size_t kLeaf = PointTree::kLeafSize;
+  for (std::size_t size = kLeaf * leaves_for(order.size()); size > kLeaf; size /= 2) {
+    for_nodes(ranked, size, [&](std::span<Ranked> node) {
+      if (node.size() > size / 2) part(node, size / 2);
+    });
+  }
+  for_nodes(ranked, kLeaf, [](std::span<Ranked> leaf) {
+    std::sort(leaf.begin(), leaf.end(),
+              [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
+  });
+  const std::vector<std::uint32_t> given = order;
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = given[ranked[i].rank];
+}
+
+VPM_VECTOR_CLONES
+int PointList::nearest_by_vectors(Vec3 x) const {
+  static_assert(kMost % kFour == 0);
+  Double4 least = Double4{} + HUGE_VAL;
+  Mask4 lane{0, 1, 2, 3}, best{};
+  for (int first = 0; first < size_; first += kFour) {
+    const Vec3x4 away{load_four(places_[0] + first) - x.x, load_four(places_[1] + first) - x.y,
+                      load_four(places_[2] + first) - x.z};
+    const Double4 squared = squared_norm(away);
+    const Mask4 nearer = (squared < least) & (lane < size_ - first);
+    least = nearer ? squared : least;
+    best = nearer ? lane + first : best;
+  }
+  int k = 0;
+  for (int other = 1; other < kFour; ++other) {
+    if (least[other] < least[k] || (least[other] == least[k] && best[other] < best[k])) k = other;
+  }
+  return static_cast<int>(best[k]);
+}
+
+VPM_VECTOR_CLONES
+bool DiskSurface::face_one_way_by_vectors(Vec3 center, double radius, Vec3 n, double least) const {
+  return face_one_way_by<PointTree::ByVectors>(center, radius, n, least);
+}
+
+std::vector<ConeQuad> cones_of(const DiskSurface& disks) {
+  const PointTree& tree = disks.feet;
+  std::vector<ConeQuad> quads(tree.quads());
+  for (std::uint32_t nodes = tree.leaves, size = PointTree::kLeafSize; nodes > 0;
+       nodes /= 4, size *= 4) {
+    constexpr std::size_t kGrain = 8192;  // disks
+    const std::size_t used = (std::size_t{tree.count} + size - 1) / size;
+    parallel_for(used, std::max<std::size_t>(kGrain / size, 4),
+                 [&](std::size_t first, std::size_t last) {
+                   for (auto k = static_cast<std::uint32_t>(first); k < last; ++k) {
+                     const std::uint32_t node = nodes + k;
+                     set_cone(disks, k * size, std::min((k + 1) * size, tree.count),
+                              quads[node / 4], node % 4);
+                   }
+                 });
+  }
+  return quads;
 }
 
 }  // namespace vpm

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <vector>
 
 #include "libvpm/core/vec3.h"
-#include "libvpm/scene/surface.h"
+#include "libvpm/scene/body.h"
 
 namespace vpm {
 
@@ -205,10 +206,49 @@ struct PointTree {
     return for_leaves_in_ball<OneByOne>(center, squared_radius, EachNode{}, visit);
   }
   // Calls visit(begin, end) likewise for leaves in nodes for which enters(node) is true.
-  // `Distances` is OneByOne or ByVectors (point_tree_vectors.h).
+  // `Distances` is OneByOne or ByVectors (point_tree.cpp).
   template <class Distances, class Enters, class Visit>
   VPM_HD bool for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
-                                 const Visit& visit) const;
+                                 const Visit& visit) const {
+    if (count == 0) return true;
+    std::uint32_t stack[NodeStack::kRoom + 1];
+    int size = 0;
+    double squared[4];
+    const auto push = [&](const BoxQuad& quad, const auto& node_of, std::uint32_t first) {
+      Distances::to_boxes(quad, center, squared);
+      for (std::uint32_t k = 4; k-- > first;) {
+        const std::uint32_t node = node_of(k);
+        stack[size] = node;
+        size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
+      }
+    };
+    const auto push_children = [&](std::uint32_t node, std::uint32_t first) {
+      push(
+          boxes[node], [&](std::uint32_t k) { return 4 * node + k; }, first);
+    };
+#ifndef __CUDA_ARCH__
+    const bool enters_near = squared_radius <= entry.ball * entry.ball && entry.holds(center, 0);
+#else
+    constexpr bool enters_near = false;
+#endif
+    if (enters_near)
+      push(
+          entry.boxes, [&](std::uint32_t k) { return entry.nodes[k]; }, 0);
+    else if (begins_at_root())
+      stack[size++] = 1;
+    else
+      push_children(0, 2);
+    while (size > 0) {
+      const std::uint32_t node = stack[--size];
+      if (node < leaves) {
+        push_children(node, 0);
+        continue;
+      }
+      const std::uint32_t begin = (node - leaves) * kLeafSize;
+      if (!visit(begin, end_of_leaf(begin))) return false;
+    }
+    return true;
+  }
   // Calls visit(i) for the points in a ball, until it returns false. Returns the last value.
   template <class Visit>
   VPM_HD bool for_points_in_ball(Vec3 center, double squared_radius, const Visit& visit) const {
@@ -335,56 +375,62 @@ struct PointTree {
                                 std::uint32_t (&listed)[kMostListed]) const;
 };
 
-template <class Distances, class Enters, class Visit>
-VPM_HD bool PointTree::for_leaves_in_ball(Vec3 center, double squared_radius, const Enters& enters,
-                                          const Visit& visit) const {
-  if (count == 0) return true;
-  std::uint32_t stack[NodeStack::kRoom + 1];
-  int size = 0;
-  double squared[4];
-  const auto push = [&](const BoxQuad& quad, const auto& node_of, std::uint32_t first) {
-    Distances::to_boxes(quad, center, squared);
-    for (std::uint32_t k = 4; k-- > first;) {
-      const std::uint32_t node = node_of(k);
-      stack[size] = node;
-      size += squared[k] <= squared_radius && enters(node) ? 1 : 0;
-    }
-  };
-  const auto push_children = [&](std::uint32_t node, std::uint32_t first) {
-    push(
-        boxes[node], [&](std::uint32_t k) { return 4 * node + k; }, first);
-  };
-#ifndef __CUDA_ARCH__
-  const bool enters_near = squared_radius <= entry.ball * entry.ball && entry.holds(center, 0);
-#else
-  constexpr bool enters_near = false;
-#endif
-  if (enters_near)
-    push(
-        entry.boxes, [&](std::uint32_t k) { return entry.nodes[k]; }, 0);
-  else if (begins_at_root())
-    stack[size++] = 1;
-  else
-    push_children(0, 2);
-  while (size > 0) {
-    const std::uint32_t node = stack[--size];
-    if (node < leaves) {
-      push_children(node, 0);
-      continue;
-    }
-    const std::uint32_t begin = (node - leaves) * kLeafSize;
-    if (!visit(begin, end_of_leaf(begin))) return false;
-  }
-  return true;
-}
-
 // Returns the number of leaves for this many points; kMostLeaves can be searched.
 std::uint32_t leaves_for(std::size_t points);
 
-// Returns the boxes of a tree of points in the order of order_by_leaves() (leaf_order.h).
+// Returns the boxes of a tree of points in the order of order_by_leaves().
 std::vector<BoxQuad> boxes_of(std::span<const Vec3f> points);
 
 // Returns PointNumbers::of_nodes for these radii.
 std::vector<float> largest_in_nodes(std::span<const float> radii);
+
+// Rearranges `order`, indices of points in a total order, for the leaves of a PointTree: each node
+// is split across the longest side of its box so that its first half is full. Equal coordinates,
+// and points in a leaf, keep the given order.
+void order_by_leaves(std::span<const Vec3f> points, std::vector<std::uint32_t>& order);
+
+// Lists a few points, which are faster to search than a tree. For host and device.
+class PointList {
+ public:
+  static constexpr int kMost = 256;
+
+  VPM_HD bool is_empty() const { return size_ == 0; }
+  VPM_HD void clear() { size_ = 0; }
+  // Adds a point; indices must ascend. Returns false if there is no room.
+  VPM_HD bool add(std::uint32_t index, Vec3f place) {
+    if (size_ == kMost) return false;
+    places_[0][size_] = place.x, places_[1][size_] = place.y, places_[2][size_] = place.z;
+    indices_[size_++] = index;
+    return true;
+  }
+
+  // Returns the index of the point nearest to x; ties go to the smaller index. Requires a point.
+  VPM_HD std::uint32_t nearest(Vec3 x) const {
+#ifdef __CUDA_ARCH__
+    return indices_[nearest_in_turn(x)];
+#else
+    return indices_[nearest_by_vectors(x)];
+#endif
+  }
+
+ private:
+  VPM_HD int nearest_in_turn(Vec3 x) const {
+    double least = HUGE_VAL;
+    int best = 0;
+    for (int k = 0; k < size_; ++k) {
+      const double squared =
+          squared_norm(widen(Vec3f{places_[0][k], places_[1][k], places_[2][k]}) - x);
+      if (!(squared < least)) continue;
+      least = squared;
+      best = k;
+    }
+    return best;
+  }
+  int nearest_by_vectors(Vec3 x) const;
+
+  int size_ = 0;
+  float places_[3][kMost];
+  std::uint32_t indices_[kMost];
+};
 
 }  // namespace vpm

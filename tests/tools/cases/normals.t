@@ -57,7 +57,7 @@ $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5,23.5 --export points.xy
 2> vpm-normals: error: --export points.xyz: the name must end in .ply or .pcd
 [2]
 $ vpm-normals wall.png -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0
-2> vpm-normals: error: pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0,0,0'
+2> vpm-normals: error: --camera-pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0,0,0'
 [2]
 $ vpm-normals wall.png -o - --report - --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: only one output can be standard output: --output or --report

@@ -1,4 +1,4 @@
-#include "libvpm/scene/points/disk_neighborhood.h"
+#include "libvpm/scene/points/disk_windows.h"
 
 #include "libvpm/core/lanes.h"
 #include "libvpm/core/vec3x4.h"

@@ -1,4 +1,4 @@
-#include "libvpm/scene/points/quadric_fit.h"
+#include "libvpm/query/quadric_fit.h"
 
 #include <algorithm>
 #include <cmath>
