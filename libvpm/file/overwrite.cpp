@@ -73,18 +73,16 @@ bool is_ending_of_container(const std::string& ending) {
 // True for the endings of kinds of files that are read or written here.
 bool is_known(const std::string& ending) {
   return is_ending_of_container(ending) ||
-         is_one_of(ending, {".stl", ".obj", ".off", ".ply", ".om", ".pcd", ".png", ".exr", ".tif",
-                            ".npy", ".json", ".jsonl", ".csv", ".html", ".urdf", ".yml", ".glb"});
+         is_one_of(ending,
+                   {".stl", ".obj", ".off", ".ply", ".om", ".pcd", ".png", ".exr", ".tif", ".npy",
+                    ".json", ".jsonl", ".csv", ".html", ".urdf", ".yml", ".glb", ".txt", ".pdf"});
 }
 
 // Throws if the name ends like that of another kind of file. Unknown endings, and none, pass.
-void refuse_other_ending(const std::string& path, std::optional<Kind> kind) {
+void refuse_other_ending(const std::string& path, Kind kind) {
   const std::string ending = ending_of(path);
-  if (!kind && is_ending_of_container(ending))
-    refuse_ending(path, "a text", "name it .json, .jsonl or .txt");
-  if (kind && is_known(ending) && ending != ending_of(*kind))
-    refuse_ending(path, names_of(*kind).what,
-                  std::string("let its name end in ") + ending_of(*kind));
+  if (is_known(ending) && ending != ending_of(kind))
+    refuse_ending(path, names_of(kind).what, std::string("let its name end in ") + ending_of(kind));
 }
 
 // Throws unless a file may be written to `path` that is nothing yet. Returns false for streams and
@@ -123,7 +121,14 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 void check_output(const std::string& path, std::optional<Kind> kind) {
-  if (check_place(path)) refuse_other_ending(path, kind);
+  if (check_place(path) && kind) refuse_other_ending(path, *kind);
+}
+
+void check_json(const std::string& path) {
+  if (!check_place(path)) return;
+  const std::string ending = ending_of(path);
+  if (is_known(ending) && !is_one_of(ending, {".json", ".jsonl", ".txt"}))
+    refuse_ending(path, "JSON", "name it .json or .jsonl");
 }
 
 void check_page(const std::string& path) {

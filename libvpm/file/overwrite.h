@@ -9,10 +9,14 @@
 namespace vpm::file {
 
 // Throws Error(invalid_argument) if writing to `path` would destroy a file that is not empty, or if
-// its name ends like that of another kind of file: a container's name may not end like a mesh's,
-// nor a text's (no `kind`) like a container's. "-", an empty path, pipes and devices always pass.
+// the name of a container ends like that of another kind of file. Without `kind` the name itself
+// chooses what is written. "-", an empty path, pipes and devices always pass.
 // Throws Error(cannot_write) if the folder does not exist.
 void check_output(const std::string& path, std::optional<Kind> kind);
+
+// Does the same for JSON and JSON Lines, whose name may not end like that of any other kind but
+// .txt.
+void check_json(const std::string& path);
 
 // Does the same for a page, whose name may not end like that of any other kind.
 void check_page(const std::string& path);

@@ -60,14 +60,13 @@ bool has_many_values(std::span<const float> values) {
   return std::count(found.begin(), found.end(), true) >= kMany;
 }
 
-// True if the exchanged bytes alone give values of depths: more than 8 bits, and millimetres that
-// sensors reach where the values themselves are beyond them.
-bool are_depths_if_swapped(std::span<const float> values) {
-  constexpr float kFewest = 256, kFarthest = 20000;
+constexpr float kFewest = 256;  // values that are all smaller are of 8 bits
+
+// True if the exchanged bytes give millimetres that sensors reach, and the values are beyond them.
+bool are_depths_only_if_swapped(std::span<const float> values) {
+  constexpr float kFarthest = 20000;
   const float exchanged = median_of(values, true);
-  if (exchanged < kFewest) return false;
-  return has_many_values(values) ||
-         (median_of(values, false) > kFarthest && exchanged <= kFarthest);
+  return exchanged >= kFewest && exchanged <= kFarthest && median_of(values, false) > kFarthest;
 }
 
 // True if 16-bit values are far smoother with their two bytes exchanged, and surely so.
@@ -87,7 +86,8 @@ bool look_swapped(std::span<const float> values, std::size_t width) {
     ++pairs;
   }
   return pairs >= kFewestPairs && as_given > kSmoother * as_swapped &&
-         are_depths_if_swapped(values);
+         (has_many_values(values) ? median_of(values, true) >= kFewest
+                                  : are_depths_only_if_swapped(values));
 }
 
 // Returns warnings about 16-bit values that look rotated by three bits, or like a Kinect's raw
@@ -170,7 +170,14 @@ void find_byte_order(std::vector<float>& values, const RawDepth& raw, const Dept
                      Remarks& remarks) {
   if (reading.decoding.swapped || reading.decoding.big_endian) return;
   const bool is_looked_at = reading.looks_for_mistakes && !decodes(reading.decoding);
-  if (!(raw.may_be_swapped || is_looked_at) || !look_swapped(values, raw.width)) return;
+  if (!raw.may_be_swapped && !is_looked_at) return;
+  if (!look_swapped(values, raw.width)) {
+    if (raw.may_be_swapped && is_looked_at && are_depths_only_if_swapped(values))
+      remarks.push_back({true,
+                         "as the standard of PGM says, half of its values are above 20000; if they "
+                         "stand with the low byte first, give `decode` swapped"});
+    return;
+  }
   if (!raw.may_be_swapped) {
     remarks.push_back(
         {true,

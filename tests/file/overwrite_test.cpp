@@ -47,7 +47,19 @@ TEST_F(Overwrite, NamesMustNotEndLikeOtherKinds) {
   EXPECT_EQ(container("new.vpmp"), ErrorKind::invalid_argument);
   EXPECT_EQ(text("new.json"), std::nullopt);
   EXPECT_EQ(text("new.ply"), std::nullopt);
-  EXPECT_EQ(text("new.vpmp"), ErrorKind::invalid_argument);
+  for (const char* name : {"new.txt", "new.csv"})
+    EXPECT_EQ(container(name), ErrorKind::invalid_argument) << name;
+}
+
+TEST_F(Overwrite, JsonIsNamedSo) {
+  const auto refused = [&](const char* name) {
+    return test::refusal([&] { check_json(path(name)); });
+  };
+  for (const char* name : {"new.json", "new.jsonl", "new.txt", "new.log", "new"})
+    EXPECT_EQ(refused(name), "") << name;
+  for (const char* name : {"new.csv", "new.vpmp", "new.ply", "new.html"})
+    EXPECT_NE(refused(name).find("name it .json or .jsonl"), std::string::npos) << name;
+  EXPECT_NE(refused("text").find("exists"), std::string::npos);
 }
 
 TEST_F(Overwrite, PagesEndInHtml) {

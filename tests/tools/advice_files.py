@@ -145,6 +145,8 @@ def write_images(folder):
     swapped = [(value >> 8) | (value & 255) << 8 for value in MILLIMETRES]
     nearer = [0.9 * z for z in METRES]
     files = {
+        "steps.pgm": depth_files.pgm([1000 if k % 2 else 1256 for k in range(WIDTH * HEIGHT)], "<"),
+        "white.pgm": depth_files.pgm([65535] * (WIDTH * HEIGHT)),
         "disparity.pgm": depth_files.pgm(disparity), "swapped.png": png(swapped), "wall.png": png(MILLIMETRES),
         "scale.pfm": depth_files.pfm([1000 * z for z in METRES]).replace(b"-1.0", b"-2.0", 1),
         "two.exr": exr({"left.Z": METRES, "right.Z": nearer}), "unnamed.exr": exr({"near": METRES, "far": nearer}),
@@ -216,6 +218,10 @@ def write_cameras(folder):
         "K.json": json.dumps({"K": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}),
         "camera_matrix.json": json.dumps({"camera_matrix": {"data": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}}),
         "intrinsic_matrix.json": json.dumps({"intrinsic_matrix": [60, 0, 0, 0, 60, 0, 31.5, 23.5, 1]}),
+        "both.json": json.dumps({"K": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1], "P": [61, 0, 31.5, 0, 0, 61, 23.5, 0, 0, 0, 1, 0]}),
+        "region.json": json.dumps({"width": 128, "height": 96, "K": [60, 0, 63.5, 0, 60, 47.5, 0, 0, 1],
+                                   "roi": {"x_offset": 32, "y_offset": 24, "width": WIDTH, "height": HEIGHT}}),
+        "shape.json": json.dumps({"width": 100, "height": 96, **one}),
         "several.json": json.dumps({"left": one, "right": one}),
         "two_poses.txt": "0 0 0 0 0 0 1\n0 0 0.5 0 0 0 1\n", "one_pose.txt": "0 0 0 0 0 0 1\n",
         "mirror.txt": "1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n",

@@ -293,7 +293,17 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<Outpu
         refuse_usage(std::string(output.option) + " would overwrite the input " + input +
                      "; name another output, or give --force");
     }
-    output.is_page ? file::check_page(output.path) : file::check_output(output.path, output.kind);
+    switch (output.form) {
+      case OutputForm::by_name:
+        file::check_output(output.path, output.kind);
+        break;
+      case OutputForm::json:
+        file::check_json(output.path);
+        break;
+      case OutputForm::page:
+        file::check_page(output.path);
+        break;
+    }
   }
 }
 

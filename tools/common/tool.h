@@ -69,11 +69,14 @@ class Tool {
 };
 
 // An output file: the option that names it, its path, and its container kind where it has one.
+// Tells what a file that is no container holds.
+enum class OutputForm { by_name, json, page };
+
 struct OutputFile {
   const char* option;
   std::string path;
   std::optional<file::Kind> kind;
-  bool is_page = false;  // for browsers
+  OutputForm form = OutputForm::by_name;
 };
 
 // Throws Error(invalid_argument) if two outputs would be one file, or an output an input, and

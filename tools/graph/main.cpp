@@ -96,8 +96,8 @@ void run(const Tool& tool, Arguments& a) {
   }
   check_files({a.packing, a.mesh},
               {{"--output", a.output, file::Kind::tool_model},
-               {"--report", a.report, std::nullopt},
-               {"--view", a.view, std::nullopt, true}},
+               {"--report", a.report, std::nullopt, OutputForm::json},
+               {"--view", a.view, std::nullopt, OutputForm::page}},
               tool.common());
   if (!a.view.empty()) view::check_available();
   const Packing packing = read_packing(a.packing);

@@ -43,9 +43,9 @@ void check(const Arguments& a, const CommonOptions& common) {
   if (!a.export_path.empty()) check_points_path(a.export_path);
   check_files({a.depth},
               {{"--output", a.output, file::Kind::cloud},
-               {"--report", a.report, std::nullopt},
+               {"--report", a.report, std::nullopt, OutputForm::json},
                {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt, true}},
+               {"--view", a.view, std::nullopt, OutputForm::page}},
               common);
 }
 

@@ -154,9 +154,9 @@ void check(const Arguments& a, const CommonOptions& common) {
     refuse_usage("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
-               {"--report", a.report, std::nullopt},
+               {"--report", a.report, std::nullopt, OutputForm::json},
                {"--export", a.export_path, std::nullopt},
-               {"--view", a.view, std::nullopt, true}},
+               {"--view", a.view, std::nullopt, OutputForm::page}},
               common);
 }
 

@@ -171,10 +171,10 @@ void check_names(const Arguments& a, const CommonOptions& common) {
                                   a.replay.camera_poses};
   inputs.insert(inputs.end(), a.tools.begin(), a.tools.end());
   check_files(inputs,
-              {{"--output", a.output, std::nullopt},
+              {{"--output", a.output, std::nullopt, OutputForm::json},
                {"--spheres-out", a.spheres_out, std::nullopt},
-               {"--stats", a.stats, std::nullopt},
-               {"--view", a.view, std::nullopt, true}},
+               {"--stats", a.stats, std::nullopt, OutputForm::json},
+               {"--view", a.view, std::nullopt, OutputForm::page}},
               common);
 }
 

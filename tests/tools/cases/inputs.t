@@ -111,7 +111,13 @@ $ vpm-pack cube.off -o cube.stl --spheres 5
 2> vpm-pack: error: cube.stl: this output is a packing (.vpmp), and .stl is the ending of another kind of file; let its name end in .vpmp, or give --force
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o results.vpmc
-2> vpm-query: error: results.vpmc: this output is a text, and .vpmc is the ending of another kind of file; name it .json, .jsonl or .txt, or give --force
+2> vpm-query: error: results.vpmc: this output is JSON, and .vpmc is the ending of another kind of file; name it .json or .jsonl, or give --force
+[2]
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o results.csv
+2> vpm-query: error: results.csv: this output is JSON, and .csv is the ending of another kind of file; name it .json or .jsonl, or give --force
+[2]
+$ vpm-graph cube.vpmp -o model.txt
+2> vpm-graph: error: model.txt: this output is a tool model (.vpmg), and .txt is the ending of another kind of file; let its name end in .vpmg, or give --force
 [2]
 
 # A closed pipe ends quietly, by its signal; what a killed run left is removed by the next one.

@@ -53,7 +53,7 @@ $ vpm-normals wall.pgm -o wall.vpmc --intrinsics 60,60,31.5,23.5 --channel Z --f
 2> vpm-normals: warning: wall.pgm: --channel is not used: it is no OpenEXR image
 2> vpm-normals: warning: wall.pgm: --flip is not used: normals estimated from depth face the camera
 $ vpm-normals wall.pgm -o none.vpmc --intrinsics 60,60,31.5,23.5 --range 5,9
-2> vpm-normals: error: wall.pgm: no pixel holds a measurement
+2> vpm-normals: error: wall.pgm: no pixel holds a measurement: its depths are from 1 m to 1.06 m, all outside of --range, which is in metres
 [1]
 
 # Files that are no depth images are named, with the next step.
