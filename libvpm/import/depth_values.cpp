@@ -29,13 +29,6 @@ std::uint16_t swapped(std::uint16_t bits) {
   return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
 }
 
-// Returns the number as short as "%g" writes it.
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
 // True if 16-bit values are far smoother with their two bytes exchanged.
 bool look_swapped(std::span<const float> values, std::size_t width) {
   constexpr double kSmoother = 8;
@@ -193,6 +186,12 @@ void along_optical_axis(DepthImage& image, const Intrinsics& intrinsics) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
 
 DepthDecoding decoding_from_text(const std::string& text) {
   DepthDecoding decoding;
