@@ -59,4 +59,7 @@ inline std::uint64_t most_memory(std::uint64_t file_bytes) {
 void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,
                         const std::string& name);
 
+// Returns the number as short as "%g" writes it, for messages.
+std::string number_text(double value);
+
 }  // namespace vpm

@@ -29,13 +29,6 @@ std::uint16_t swapped(std::uint16_t bits) {
   return static_cast<std::uint16_t>((bits << 8) | (bits >> 8));
 }
 
-// Returns the number as short as "%g" writes it.
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
 // Returns the median of the measured values, which the two bytes of each are exchanged in first if
 // `swaps`; 0 if there is none.
 float median_of(std::span<const float> values, bool swaps) {
@@ -249,6 +242,12 @@ void along_optical_axis(DepthImage& image, const Intrinsics& intrinsics) {
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
 
 DepthDecoding decoding_from_text(const std::string& text) {
   DepthDecoding decoding;

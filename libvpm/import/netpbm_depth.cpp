@@ -4,7 +4,6 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/depth_suspicions.h"
 #include "libvpm/import/scalar_type.h"
 
 namespace vpm {

@@ -29,7 +29,7 @@ struct Denoised {
                  static_cast<std::uint32_t>(height));
     for_bands(height,
               [&](int begin, int end) { image.read_rows(seen, Denoising::on, begin, end); });
-    image.finish();
+    image.unite();
     surface = image.surface({});
   }
   float inverse(int u, int v) const { return surface.tiles[0][v * surface.width + u].high; }
