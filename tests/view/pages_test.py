@@ -95,7 +95,8 @@ def write_points(name, count):
 
 def make_demo():
     run("make-example", FOLDER)
-    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 300, "--report", "pack.json", "--view", "pack.html")
+    run("vpm-pack", "tool.off", "-o", "tool.vpmp", "--spheres", 300, "--report", "pack.json", "--export",
+        "tool.csv", "--view", "pack.html")
     run("vpm-graph", "tool.vpmp", "-o", "tool.vpmg", "--levels", 50, "--report", "graph.json", "--view", "graph.html")
     run("vpm-normals", "depth.png", "-o", "scene.vpmc", *INTRINSICS, "--report", "normals.json", "--view",
         "normals.html")
@@ -336,6 +337,9 @@ class OtherTools(PageTest):
 
     def test_a_graph_has_its_edges_bridges_and_cells(self):
         page, report = self.open("graph.html"), json.loads((FOLDER / "graph.json").read_text())
+        smallest = page.evaluate("Math.min(...document.querySelector('#key .ends').textContent.match(/[0-9.]+/g))")
+        radii = [1000 * float(row.split(",")[3]) for row in (FOLDER / "tool.csv").read_text().splitlines()[1:]]
+        self.assertAlmostEqual(smallest, min(radii), delta=0.001 * min(radii))
         for level, facts in enumerate(report["levels"]):
             page.evaluate(f"vpm.setStep({level})")
             shown = {layer["name"]: layer["count"] for layer in page.report()["layers"] if layer["visible"]}
