@@ -32,7 +32,7 @@ $ npy() { python3 -c 'import struct, sys; h = sys.argv[1].encode(); sys.stdout.b
 # PNG
 $ png() { python3 -c 'import struct, sys, zlib; chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)); w, h, bits, color = map(int, sys.argv[1:]); sys.stdout.buffer.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, bits, color, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(b"\0" * 40)) + chunk(b"IEND", b""))' "$@"; }; for p in '2 2 8 2' '2 2 8 0' '9000 9000 16 0' '100000 100000 16 0' '9 9 16 0'; do png $p | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5; done
 2> vpm-normals: error: standard input: a PNG with 3 channels of 8 bits is no depth image; depth needs one gray channel of 16 bits
-2> vpm-normals: error: standard input: a PNG with 1 channels of 8 bits is no depth image; depth needs one gray channel of 16 bits
+2> vpm-normals: error: standard input: a PNG with 1 channel of 8 bits is no depth image; depth needs one gray channel of 16 bits
 2> vpm-normals: error: standard input: an image of 9000 x 9000 pixels is not read; at most 67108864 pixels are
 2> vpm-normals: error: standard input: an image of 100000 x 100000 pixels is not read; at most 67108864 pixels are
 2> vpm-normals: error: standard input: not a sound PNG: * (glob)
