@@ -145,7 +145,7 @@ def write_images(folder):
     swapped = [(value >> 8) | (value & 255) << 8 for value in MILLIMETRES]
     nearer = [0.9 * z for z in METRES]
     files = {
-        "steps.pgm": depth_files.pgm([1000 if k % 2 else 1256 for k in range(WIDTH * HEIGHT)], "<"),
+        "steps.pgm": depth_files.pgm([1256 if 2 * (k % WIDTH) < WIDTH else 1000 for k in range(WIDTH * HEIGHT)], "<"),
         "white.pgm": depth_files.pgm([65535] * (WIDTH * HEIGHT)),
         "disparity.pgm": depth_files.pgm(disparity), "swapped.png": png(swapped), "wall.png": png(MILLIMETRES),
         "scale.pfm": depth_files.pfm([1000 * z for z in METRES]).replace(b"-1.0", b"-2.0", 1),
