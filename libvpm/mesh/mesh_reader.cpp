@@ -11,6 +11,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/text_lines.h"
 
@@ -114,16 +115,28 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
   return std::nullopt;
 }
 
+// True if the first line is three numbers or more, as in files of points (XYZ); OFF files may
+// begin with their counts, so that only lines with a fraction count.
+bool is_table_of_points(std::string_view text) {
+  const std::vector<std::string_view> first = file::TextCursor(text.substr(0, 4096)).row();
+  return first.size() >= 3 && first[0].find('.') != text.npos &&
+         std::all_of(first.begin(), first.end(),
+                     [](std::string_view word) { return file::to_number(word).has_value(); });
+}
+
 // Refuses what is known to be something else than a mesh, by name.
 void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
                     const std::string& name) {
   if (const auto other = file::foreign_content(bytes))
-    refuse("this is " + other->what, name, other->next);
+    refuse("this is " + other->what, name, other->next_for_mesh);
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
   if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
   if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
   for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})
     if (text.starts_with(start)) refuse("this is a cloud of points (PCD)", name, hint);
+  if (is_table_of_points(text))
+    refuse("this is a table of points, without faces", name,
+           "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals");
 }
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
@@ -150,7 +163,7 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   refuse(
       "this is no mesh in a format that is read here: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF "
       "or FBX",
-      name);
+      name, "save it as OBJ, PLY or STL in the program that wrote it");
 }
 
 }  // namespace
