@@ -6,6 +6,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/holes.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
@@ -318,21 +319,26 @@ class Check {
                     weld_by);
       return text;
     }
-    if (options_.repair == Repair::none && closes_by_filling())
-      return "give `repair` to fill planar and small holes, or `repair` voxel for a new surface";
+    if (options_.repair == Repair::none && closes_by_filling()) {
+      return std::string("give `repair` to ") +
+             (topology_.boundary.empty() ? "drop repeated triangles"
+                                         : "fill planar and small holes") +
+             ", or `repair` voxel for a new surface";
+    }
     return "give `repair` voxel for a new surface, or mend it in a mesh editor";
   }
 
+  // True if joining vertices closes the mesh and no triangle is lost by it.
   bool closes_by_welding(double share) {
     std::vector<Triangle> joined = triangles();
-    weld(vertices(), share * diagonal_, joined);
-    drop_collapsed(joined);
-    return !joined.empty() && is_closed(topology_of(vertices().size(), joined));
+    const Weld done = weld(vertices(), share * diagonal_, joined);
+    return done.collapsed_triangles == 0 && is_closed(topology_of(vertices().size(), joined));
   }
 
-  // True if filling holes closes the mesh, as repair_holes() does it.
+  // True if repair_holes() would close the mesh, or if that takes too long to try.
   bool closes_by_filling() {
-    if (topology_.boundary.empty()) return false;
+    constexpr std::size_t kMostTried = 1000;  // edges
+    if (topology_.boundary.size() > kMostTried) return true;
     std::vector<Vec3> points = vertices();
     std::vector<Triangle> filled = triangles();
     weld(points, kDefaultWeld * diagonal_, filled);
@@ -341,7 +347,7 @@ class Check {
     Topology topology = topology_of(points.size(), filled);
     orient_consistently(topology, filled);
     topology = topology_of(points.size(), filled);
-    fill_holes(topology, diagonal_, points, filled);
+    if (!topology.boundary.empty()) fill_holes(topology, diagonal_, points, filled);
     return is_closed(topology_of(points.size(), filled));
   }
 

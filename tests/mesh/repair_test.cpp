@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -338,7 +339,7 @@ TEST(Repair, ANewSurfaceHasNoVertexOfTheFile) {
 TEST(Repair, WhatIsAdvisedMakesTheMeshPass) {
   // The corners of each triangle are off by up to 1e-5 of the size.
   const Solid cube = synthetic::make_cube(0.5);
-  std::string soup, faces;
+  std::string soup;
   std::size_t count = 0;
   char line[120];
   for (const Triangle& t : cube.triangles) {
@@ -348,8 +349,7 @@ TEST(Repair, WhatIsAdvisedMakesTheMeshPass) {
       std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x + off, p.y, p.z - off);
       soup += line;
     }
-    faces += "f -3 -2 -1\n";
-    soup += std::exchange(faces, "");
+    soup += "f -3 -2 -1\n";
   }
   const std::string message = refusal_of(soup, "a.obj");
   EXPECT_TRUE(contains(message, "give `weld` 1e-05, which joins")) << message;
