@@ -20,6 +20,8 @@
 namespace vpm {
 namespace {
 
+constexpr char kComplete = '.';  // last byte that a child sends
+
 bool write_all(int pipe, const std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size();) {
     const ssize_t count = ::write(pipe, bytes.data() + at, bytes.size() - at);
@@ -51,7 +53,7 @@ std::string read_to_end(int pipe) {
   ::setrlimit(RLIMIT_CORE, &no_core);
   const int nowhere = ::open("/dev/null", O_WRONLY);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-  ::_exit(write_all(pipe, work()) ? EXIT_SUCCESS : EXIT_FAILURE);
+  ::_exit(write_all(pipe, work() + kComplete) ? EXIT_SUCCESS : EXIT_FAILURE);
 }
 
 [[noreturn]] void refuse_child() {
@@ -82,10 +84,12 @@ std::optional<std::string> run_in_child(const std::function<std::string()>& work
     throw;
   }
   ::close(ends[0]);
-  int status = 0;
+  int status = 0;  // stays so where the program ignores the ends of its children
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != EXIT_SUCCESS) return std::nullopt;
+  const bool is_good = WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS;
+  if (!is_good || !bytes.ends_with(kComplete)) return std::nullopt;
+  bytes.pop_back();
   return bytes;
 }
 

@@ -131,10 +131,13 @@ std::string no_number(const CLI::App& app, const std::string& what) {
   const std::size_t begin = what.find("--"), equals = what.find(" = ");
   if (begin == what.npos || equals == what.npos || equals < begin) return what;
   const std::string name = what.substr(begin, equals - begin);
+  const std::string value = what.substr(equals + 3);
   const CLI::Option* const option = app.get_option_no_throw(name);
   const bool is_whole = option != nullptr && option->get_type_name().find("INT") != name.npos;
-  return name + " " + what.substr(equals + 3) + ": give a " +
-         (is_whole ? "whole number" : "plain number, such as 0.001");
+  const char* const wanted = is_whole               ? "a whole number"
+                             : value.ends_with('%') ? "a fraction, such as 0.95"
+                                                    : "a number without a unit, such as 0.001";
+  return name + " " + value + ": give " + wanted;
 }
 
 std::string message_of(const CLI::App& app, const CLI::ParseError& fault) {
