@@ -115,13 +115,21 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
   return std::nullopt;
 }
 
-// True if the first line is three numbers or more, as in files of points (XYZ); OFF files may
-// begin with their counts, so that only lines with a fraction count.
+// True if each of the first lines is three numbers or more, as in files of points (XYZ). OFF files
+// may begin with three counts, too, without their keyword; these have lines of other lengths.
 bool is_table_of_points(std::string_view text) {
-  const std::vector<std::string_view> first = file::TextCursor(text.substr(0, 4096)).row();
-  return first.size() >= 3 && first[0].find('.') != text.npos &&
-         std::all_of(first.begin(), first.end(),
-                     [](std::string_view word) { return file::to_number(word).has_value(); });
+  constexpr int kLooked = 4;  // lines
+  file::TextCursor cursor(text.substr(0, 4096));
+  std::size_t columns = 0;
+  for (int k = 0; k < kLooked; ++k) {
+    const std::vector<std::string_view> row = cursor.row();
+    if (row.empty()) return k > 1;
+    if (row.size() < 3 || (k > 0 && row.size() != columns)) return false;
+    columns = row.size();
+    for (const std::string_view word : row)
+      if (!file::to_number(word)) return false;
+  }
+  return true;
 }
 
 // Refuses what is known to be something else than a mesh, by name.
@@ -134,9 +142,6 @@ void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
   if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
   for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})
     if (text.starts_with(start)) refuse("this is a cloud of points (PCD)", name, hint);
-  if (is_table_of_points(text))
-    refuse("this is a table of points, without faces", name,
-           "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals");
 }
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
@@ -160,6 +165,10 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (extension == "stl") return parse_stl(text, name);
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
+  if (is_table_of_points(text)) {
+    refuse("this is a table of points, without faces", name,
+           "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals");
+  }
   refuse(
       "this is no mesh in a format that is read here: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF "
       "or FBX",

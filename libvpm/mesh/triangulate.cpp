@@ -14,8 +14,8 @@ namespace {
 // Polygons whose width is less than this fraction of their length are taken for lines.
 constexpr double kThin = 1e-13;
 // Triangles whose height is less than this fraction of their longest side are exchanged for others
-// where the polygon has any.
-constexpr double kSliver = 1e-6;
+// where the polygon has any. Coordinates of six digits leave corners of one line this far off it.
+constexpr double kSliver = 1e-3;
 // Limits corners of a polygon that is not convex, for which GLU may take quadratic time.
 constexpr std::size_t kMostCorners = 8192;
 constexpr const char* kHint = "save triangles in the program that wrote it";
