@@ -104,8 +104,10 @@ std::string_view json_of(std::string_view gltf) {
   return gltf.size() < kHeader ? "" : gltf.substr(kHeader, number_at(gltf, 12, 4));
 }
 
-// True for extensions that say how a surface looks, or what stands beside it.
-bool changes_no_mesh(const std::string& extension) {
+// True for extensions that say how a surface looks, or what stands beside it, and for the
+// compression that assimp may unpack; where it cannot, it says so.
+bool is_readable(const std::string& extension) {
+  if (extension == "KHR_draco_mesh_compression") return true;
   const std::string name = file::in_lower_case(extension);
   for (const char* const part : {"material", "texture", "light", "image", "xmp", "audio"})
     if (name.find(part) != name.npos) return true;
@@ -146,7 +148,7 @@ void check_gltf_extensions(std::string_view bytes, const std::string& name) {
   const auto required = content.find("extensionsRequired");
   if (required == content.end() || !required->is_array()) return;
   for (const auto& extension : *required) {
-    if (!extension.is_string() || changes_no_mesh(extension.get<std::string>())) continue;
+    if (!extension.is_string() || is_readable(extension.get<std::string>())) continue;
     refuse("it requires the glTF extension " + file::shown(extension.get<std::string>()) +
                ", which is not read here",
            name, "save it without compression, quantization and instancing, or as OBJ, PLY or STL");
