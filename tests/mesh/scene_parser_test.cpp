@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/child_process.h"
@@ -37,6 +38,10 @@ bool reads_scenes() {
     return fault.kind() != ErrorKind::unavailable;
   }
   return true;
+}
+
+RawMesh node_of(const std::string& content, const std::string& name) {
+  return parse_mesh(std::as_bytes(std::span(content)), "a", name);
 }
 
 void append_number(std::string& bytes, std::uint32_t number) {
@@ -89,7 +94,7 @@ TEST(Gltf, SkinsArePassedOver) {
     EXPECT_NEAR(solid.facts.volume, 0.125, 1e-9);
   }
   // A name stays as it is.
-  EXPECT_EQ(parse_mesh(std::as_bytes(std::span(glb(""))), "a.glb", "skin").polygon_count(), 12U);
+  EXPECT_EQ(node_of(glb(""), "skin").polygon_count(), 12U);
 }
 
 TEST(Gltf, RequiredExtensionsAreNamed) {
@@ -124,10 +129,6 @@ std::string node(const std::string& id, const std::string& name, double x,
                  const std::string& below = "") {
   return "<node id=\"" + id + "\" name=\"" + name + "\"><translate>" + std::to_string(x) +
          " 0 0</translate><instance_geometry url=\"#g\"/>" + below + "</node>";
-}
-
-RawMesh node_of(const std::string& content, const std::string& name) {
-  return parse_mesh(std::as_bytes(std::span(content)), "a.dae", name);
 }
 
 TEST(Collada, ItsUnitIsSaid) {

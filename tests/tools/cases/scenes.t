@@ -28,6 +28,7 @@ none
 2> vpm-pack: note: inch.3mf: its unit is taken to be 0.0254 m, the inch that the file names; transforms of nodes were applied; z is up, as in the file
 2> vpm-pack: note: none.3mf: its unit is taken to be 0.001 m, which 3MF has by default; transforms of nodes were applied; z is up, as in the file
 2> vpm-pack: error: mile.3mf: its unit 'mile' is none of 3MF: micron, millimeter, centimeter, inch, foot or meter
+[1]
 
 # Several nodes are joined, or one is chosen.
 $ for f in two.dae two.glb; do vpm-pack $f --spheres 5 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["shells"], round(r["volume_mesh"], 5))'; done
