@@ -15,9 +15,9 @@ namespace vpm {
   throw Error(ErrorKind::refused, what, where, hint);
 }
 
-// Returns the text on one line: control characters and bytes that are no UTF-8, which a file or a
-// name may hold to steer a terminal, become \xNN, and what is beyond `most` bytes is replaced by
-// "…", between two characters.
+// Returns the text on one line: control characters, those that turn the direction of text, and
+// bytes that are no UTF-8, which a file or a name may hold to steer a terminal, become \xNN, and
+// what is beyond `most` bytes is replaced by "…", between two characters.
 std::string printable(const std::string& text, std::size_t most);
 
 }  // namespace vpm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <string_view>
+#include <vector>
 
 #include "libvpm/file/container_layout.h"
 #include "libvpm/file/text.h"
@@ -19,6 +20,9 @@ struct Start {
   Holds holds = Holds::anything;
 };
 
+constexpr const char* kExport = "export it as OBJ, PLY or STL";
+constexpr const char* kExportMesh = "export a mesh from it, as OBJ, PLY or STL";
+
 constexpr Start kStarts[] = {
     {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
      "fetch it with: git lfs pull"},
@@ -27,7 +31,7 @@ constexpr Start kStarts[] = {
     {"<mujoco"sv, "a robot description (MJCF)", "give one of the files that it names", Holds::mesh},
     {"<robot"sv, "a robot description (URDF)", "give one of the files that it names", Holds::mesh},
     {"\x1f\x8b"sv, "compressed by gzip", "unpack it first: gunzip"},
-    {"pk\x03\x04"sv, "an archive (zip, npz)", "unpack it first, or save one array as .npy"},
+    {"pk\x03\x04"sv, "an archive (zip, npz)", "unpack it first; of an npz, save one array as .npy"},
     {"bzh"sv, "compressed by bzip2", "unpack it first: bunzip2"},
     {"\xfd\x37zxz"sv, "compressed by xz", "unpack it first: unxz"},
     {"\xff\xd8\xff"sv, "a JPEG picture, which holds no exact values",
@@ -41,11 +45,20 @@ constexpr Start kStarts[] = {
     {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL", Holds::scan},
     {"astm-e57"sv, "an E57 cloud", "convert it to PLY with normals, for example by PDAL",
      Holds::scan},
-    {"iso-10303-21"sv, "a STEP file of CAD", "export a mesh from it", Holds::mesh},
-    {"blender"sv, "a Blender file", "export a mesh from it", Holds::mesh},
+    {"iso-10303-21"sv, "a STEP file of CAD", kExportMesh, Holds::mesh},
+    {"blender"sv, "a Blender file", kExportMesh, Holds::mesh},
     {"7z\xbc\xaf"sv, "compressed by 7-Zip", "unpack it first: 7z x"},
-    {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", "export a mesh from it",
+    {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", kExportMesh,
      Holds::mesh},
+    {"#usda"sv, "a scene in USD", kExport, Holds::mesh},
+    {"pxr-usdc"sv, "a scene in USD", kExport, Holds::mesh},
+    {"#vrml"sv, "a scene in VRML", kExport, Holds::mesh},
+    {"#x3d"sv, "a scene in X3D", kExport, Holds::mesh},
+    {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
+    {"autocad binary dxf"sv, "a drawing in DXF", kExportMesh, Holds::mesh},
+    {"ac10"sv, "a drawing in DWG", kExportMesh, Holds::mesh},
+    {"\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
+    {"\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
 };
 
 // Tells the kinds of XML by what stands behind the declaration and comments.
@@ -59,7 +72,33 @@ std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
       return ForeignContent{"a robot description (URDF, MJCF, SDF)",
                             "give one of the files that it names", Holds::mesh};
   }
+  if (text.find("<x3d") != text.npos) return ForeignContent{"a scene in X3D", kExport, Holds::mesh};
   return ForeignContent{"an XML file", "give the file that was meant"};
+}
+
+// Tells formats that begin with no word of their own.
+std::optional<ForeignContent> kind_by_layout(std::string_view text) {
+  constexpr std::size_t kCardMark = 72;  // IGES has cards of 80 columns
+  const auto is_card = [&](std::size_t at) {
+    return text.size() > at + kCardMark + 8 && text[at + kCardMark] == 'S' &&
+           text.substr(at + kCardMark + 1, 7).find_first_not_of(" 0123456789") == text.npos;
+  };
+  if (is_card(0)) return ForeignContent{"a file of CAD in IGES", kExportMesh, Holds::mesh};
+  if (text.size() >= 6 && text.starts_with("MM")) {  // a chunk that is the whole file
+    std::uint32_t size = 0;
+    for (std::size_t k = 6; k-- > 2;) size = size << 8 | static_cast<unsigned char>(text[k]);
+    if (size == text.size())
+      return ForeignContent{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
+  }
+  TextCursor cursor(text.substr(0, 4096));
+  std::vector<std::string_view> first = cursor.row();
+  while (first.size() == 1 && first[0] == "999") {  // a comment, in the line after
+    cursor.line();
+    first = cursor.row();
+  }
+  if (first.size() == 1 && first[0] == "0" && cursor.word() == "SECTION")
+    return ForeignContent{"a drawing in DXF", kExportMesh, Holds::mesh};
+  return std::nullopt;
 }
 
 std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
@@ -72,7 +111,7 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
                            : kind == Kind::tool_model ? "it is ready for vpm-query"
                            : kind == Kind::cloud      ? "it is ready for vpm-query"
                                                       : "give the file that was meant";
-  return ForeignContent{names_of(kind).what, next};
+  return ForeignContent{names_of(kind).what, next, next};
 }
 
 }  // namespace
@@ -86,6 +125,7 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   for (const Start& known : kStarts)
     if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next, known.holds};
   if (const auto xml = xml_kind(bytes)) return xml;
+  if (const auto other = kind_by_layout(as_text(bytes))) return other;
   return own_kind(bytes);
 }
 

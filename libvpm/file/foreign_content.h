@@ -18,8 +18,8 @@ struct ForeignContent {
 };
 
 // Returns what the file is, if it is one of those that people give by mistake: Git LFS pointers,
-// web pages, archives, pictures, recordings, CAD and robot descriptions, files of this library of
-// any kind.
+// web pages, archives, pictures, recordings, CAD and robot descriptions, meshes and scenes of
+// formats that are not read here, text in UTF-16, files of this library of any kind.
 std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes);
 
 }  // namespace vpm::file

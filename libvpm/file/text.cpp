@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 
 #include "libvpm/core/error.h"
 
@@ -57,14 +56,13 @@ std::string in_lower_case(std::string_view text) {
 }
 
 std::string shown(std::string_view text, std::size_t most) {
-  std::string said;
-  for (const char c : text.substr(0, most)) {
-    const bool is_printable = c >= ' ' && c <= '~';
-    char code[5] = {c, 0};
-    if (!is_printable) std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned char>(c));
-    said += code;
-  }
-  return said + (text.size() > most ? "…" : "");
+  const auto goes_on = [&](std::size_t at) {  // as bytes within a character of UTF-8 do
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+  };
+  std::size_t end = std::min(most, text.size());
+  for (int k = 0; k < 3 && end > 0 && goes_on(end); ++k) --end;
+  const std::string said = printable(std::string(text.substr(0, end)), 4 * most);
+  return said + (text.size() > end ? "…" : "");
 }
 
 TextCursor::TextCursor(std::string_view text)

@@ -30,8 +30,8 @@ std::optional<std::uint64_t> to_count(std::string_view word);
 // Returns the text in lower case, of ASCII letters only.
 std::string in_lower_case(std::string_view text);
 
-// Returns the text as a message may show it: bytes that are no printable ASCII become \xNN, and
-// what is beyond `most` characters is replaced by "…".
+// Returns the text as a message may show it, by printable(); what is beyond `most` bytes of it is
+// replaced by "…".
 std::string shown(std::string_view text, std::size_t most = 60);
 
 // Reads a file in memory line by line or word by word. In a file whose first line ends in CR alone,

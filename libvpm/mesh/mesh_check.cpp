@@ -6,6 +6,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/mesh/holes.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/mesh/predicates.h"
 #include "libvpm/mesh/self_intersection.h"
@@ -93,8 +94,9 @@ class Check {
     close_by_welding();
     if (options_.repair == Repair::holes) repair_holes();
     refuse_defects();
-    // Joined vertices are unused too, but were used in the file.
-    facts().unused_vertices = drop_unused(vertices(), triangles()) - facts().joined_vertices;
+    // Joined vertices are unused too, but were used in the file; a new surface has none of them.
+    const std::size_t joined = facts().voxel_repair ? 0 : facts().joined_vertices;
+    facts().unused_vertices = drop_unused(vertices(), triangles()) - joined;
     if (facts().unused_vertices > 0)
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
@@ -142,8 +144,13 @@ class Check {
   }
 
   [[noreturn]] void refuse_faceless() const {
-    if (mesh_.dropped_polygons == 0) refuse("the mesh has no faces", mesh_.name);
-    refuse("the mesh has no faces of three corners or more", mesh_.name);
+    if (mesh_.dropped_polygons > 0)
+      refuse("the mesh has no faces of three corners or more", mesh_.name);
+    if (mesh_.vertices.empty())
+      refuse("this is no mesh: it has no vertices and no faces", mesh_.name,
+             "give the file that was meant, as OBJ, PLY or STL");
+    refuse("the mesh has no faces, only " + counted(mesh_.vertices.size(), "vertex", "vertices"),
+           mesh_.name, "save it with its faces; a cloud of points is for vpm-normals");
   }
 
   [[noreturn]] void refuse_empty() const {
@@ -300,13 +307,52 @@ class Check {
       add(counted(topology_.duplicate_triangles, "triangle is", "triangles are") +
           " listed more than once");
     }
-    const char* const advice =
-        options_.repair == Repair::none
-            ? "give `repair` to fill planar and small holes, `repair` voxel for a new surface, or "
-              "`weld` if parts should meet and do not"
-            : "give `repair` voxel for a new surface, or mend it in a mesh editor";
-    refuse(defects + ".", mesh_.name,
-           std::string("Only a closed surface has an inside: ") + advice);
+    refuse(defects + ".", mesh_.name, "Only a closed surface has an inside: " + advice());
+  }
+
+  // Returns what makes this mesh pass, found by trying.
+  std::string advice() {
+    for (const double weld_by : {1e-6, 1e-5, 1e-4, 1e-3}) {
+      if (weld_by <= options_.weld.value_or(kDefaultWeld) || !closes_by_welding(weld_by)) continue;
+      char text[64];
+      std::snprintf(text, sizeof text, "give `weld` %g, which joins parts that nearly meet",
+                    weld_by);
+      return text;
+    }
+    if (options_.repair == Repair::none && closes_by_filling()) {
+      return std::string("give `repair` to ") +
+             (topology_.boundary.empty() ? "drop repeated triangles"
+                                         : "fill planar and small holes") +
+             ", or `repair` voxel for a new surface";
+    }
+    return "give `repair` voxel for a new surface, or mend it in a mesh editor";
+  }
+
+  // True if joining vertices closes the mesh and no triangle is lost by it.
+  bool closes_by_welding(double share) {
+    std::vector<Triangle> joined = triangles();
+    const Weld done = weld(vertices(), share * diagonal_, joined);
+    return done.collapsed_triangles == 0 && is_closed(topology_of(vertices().size(), joined));
+  }
+
+  // True if repair_holes() would close the mesh, or if that takes too long to try.
+  bool closes_by_filling() {
+    constexpr std::size_t kMostTried = 1000;  // edges
+    if (topology_.boundary.size() > kMostTried) return true;
+    std::vector<Vec3> points = vertices();
+    std::vector<Triangle> filled = triangles();
+    weld(points, kDefaultWeld * diagonal_, filled);
+    drop_repeated(filled);
+    if (filled.empty()) return false;
+    Topology topology = topology_of(points.size(), filled);
+    orient_consistently(topology, filled);
+    topology = topology_of(points.size(), filled);
+    if (!topology.boundary.empty()) fill_holes(topology, diagonal_, points, filled);
+    return is_closed(topology_of(points.size(), filled));
+  }
+
+  static bool is_closed(const Topology& topology) {
+    return topology.boundary.empty() && topology.non_manifold.empty() && topology.pinched.empty();
   }
 
   void orient() {

@@ -11,6 +11,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/text_lines.h"
 
@@ -114,6 +115,23 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
   return std::nullopt;
 }
 
+// True if each of the first lines is three numbers or more, as in files of points (XYZ). OFF files
+// may begin with three counts, too, without their keyword; these have lines of other lengths.
+bool is_table_of_points(std::string_view text) {
+  constexpr int kLooked = 4;  // lines
+  file::TextCursor cursor(text.substr(0, 4096));
+  std::size_t columns = 0;
+  for (int k = 0; k < kLooked; ++k) {
+    const std::vector<std::string_view> row = cursor.row();
+    if (row.empty()) return k > 1;
+    if (row.size() < 3 || (k > 0 && row.size() != columns)) return false;
+    columns = row.size();
+    for (const std::string_view word : row)
+      if (!file::to_number(word)) return false;
+  }
+  return true;
+}
+
 // Refuses what is known to be something else than a mesh, by name.
 void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
                     const std::string& name) {
@@ -147,10 +165,14 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (extension == "stl") return parse_stl(text, name);
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
+  if (is_table_of_points(text)) {
+    refuse("this is a table of points, without faces", name,
+           "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals");
+  }
   refuse(
       "this is no mesh in a format that is read here: OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF "
       "or FBX",
-      name);
+      name, "save it as OBJ, PLY or STL in the program that wrote it");
 }
 
 }  // namespace

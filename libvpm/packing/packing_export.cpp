@@ -6,6 +6,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/file/text.h"
 #include "libvpm/view/sphere_files.h"
 
 namespace vpm {
@@ -51,7 +52,8 @@ std::string xml_text(const std::string& name) {
 }  // namespace
 
 ExportFormat export_format(const std::string& path) {
-  const auto ends = [&](const char* extension) { return path.ends_with(extension); };
+  const std::string name = file::in_lower_case(path);
+  const auto ends = [&](const char* extension) { return name.ends_with(extension); };
   if (view::sphere_format(path)) return ExportFormat::spheres;
   if (ends(".json")) return ExportFormat::json;
   if (ends(".vtk")) return ExportFormat::vtk;

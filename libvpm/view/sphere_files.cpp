@@ -11,6 +11,7 @@
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/view/packed.h"
 
@@ -247,10 +248,11 @@ std::string as_glb(std::span<const Sphere> spheres, std::span<const std::uint8_t
 }  // namespace
 
 std::optional<SphereFormat> sphere_format(const std::string& path) {
-  if (path.ends_with(".csv")) return SphereFormat::csv;
-  if (path.ends_with(".points.ply")) return SphereFormat::points;
-  if (path.ends_with(".ply")) return SphereFormat::ply;
-  if (path.ends_with(".glb")) return SphereFormat::glb;
+  const std::string name = file::in_lower_case(path);
+  if (name.ends_with(".csv")) return SphereFormat::csv;
+  if (name.ends_with(".points.ply")) return SphereFormat::points;
+  if (name.ends_with(".ply")) return SphereFormat::ply;
+  if (name.ends_with(".glb")) return SphereFormat::glb;
   return std::nullopt;
 }
 

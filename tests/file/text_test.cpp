@@ -53,6 +53,8 @@ TEST(Text, NumbersMayHaveAPlus) {
 TEST(Text, MessagesShowNoControlCharacters) {
   EXPECT_EQ(shown("a\x1b[31m\n"), "a\\x1b[31m\\x0a");
   EXPECT_EQ(shown("abcdef", 3), "abc…");
+  EXPECT_EQ(shown("зуб\xff"), "зуб\\xff");
+  EXPECT_EQ(shown("зуб", 3), "з…");
 }
 
 TEST(Text, ALineWithoutEndIsRefused) {

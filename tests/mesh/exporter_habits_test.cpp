@@ -257,6 +257,17 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       {"<!DOCTYPE html>", "this is a web page; download"},
       {"\x1f\x8b\x08", "compressed by gzip; unpack"},
       {"PK\x03\x04", "an archive"},
+      {"PK\x03\x04", "an archive (zip, npz); unpack it first"},
+      {"\xff\xd8\xff\xe0", "a JPEG picture; give the mesh, as OBJ, PLY or STL"},
+      {"#usda 1.0\n", "a scene in USD; export it as OBJ, PLY or STL"},
+      {"PXR-USDC", "a scene in USD; export it"},
+      {"#VRML V2.0 utf8\n", "a scene in VRML; export it as OBJ, PLY or STL"},
+      {"<?xml version=\"1.0\"?>\n<X3D>", "a scene in X3D; export it as OBJ, PLY or STL"},
+      {"  0\r\nSECTION\r\n  2\r\n", "a drawing in DXF; export a mesh"},
+      {"999\nmade by x\n0\nSECTION\n", "a drawing in DXF; export a mesh"},
+      {std::string(72, ' ') + "S      1\n", "a file of CAD in IGES; export a mesh"},
+      {std::string("MM\x06\0\0\0", 6), "a scene of 3D Studio (3DS); export it"},
+      {std::string("\xff\xfev\0", 4), "text in UTF-16; save it as UTF-8"},
       {"ISO-10303-21;\n", "a STEP file of CAD; export a mesh"},
       {"<?xml version=\"1.0\"?>\n<robot name=\"x\">", "a robot description"},
       {"%PDF-1.4", "a PDF document"},
@@ -267,6 +278,8 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       EXPECT_NE(refusal_of(content, name).find(message), std::string::npos)
           << name << ": " << refusal_of(content, name);
   }
+  const std::string points = refusal_of("0 0 0\n0.5 0.2 0.3\n1 1 1\n", "a.xyz");
+  EXPECT_NE(points.find("a table of points, without faces; give a mesh"), points.npos) << points;
 }
 
 }  // namespace

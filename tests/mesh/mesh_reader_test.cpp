@@ -111,7 +111,9 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
   const std::string face = "property list uchar int vertex_indices\n";
   const Bad cases[] = {
       {"a.off", "", "a.off: the file is empty"},
-      {"a.obj", "   \n", "the mesh has no faces"},
+      {"a.obj", "   \n", "this is no mesh: it has no vertices and no faces"},
+      {"a.obj", "Some words\nof a letter\n", "this is no mesh: it has no vertices and no faces"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\n", "the mesh has no faces, only 2 vertices"},
       {"a.xyz", "1 2 3\n", "a.xyz: this is no mesh"},
       {"a.obj", "v 0 0\n", "line 1: z is missing"},
       {"a.obj", "v 0 0 x\n", "line 1: z is 'x'"},

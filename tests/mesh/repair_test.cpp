@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -325,6 +326,36 @@ TEST(RealMeshes, BadBunniesAreRepaired) {
     EXPECT_EQ(remeshed.facts.euler, 2);
     EXPECT_NEAR(remeshed.facts.volume, bunny, 0.02 * bunny);
   }
+}
+
+TEST(Repair, ANewSurfaceHasNoVertexOfTheFile) {
+  // STL lists each point once for each triangle; the joined ones are gone with the old surface.
+  const std::string stl = as_binary_stl(synthetic::make_cube(0.5));
+  const CheckedSolid checked = solid_of(stl, "a.stl", repair(Repair::voxel, 16));
+  EXPECT_EQ(checked.facts.unused_vertices, 0U);
+  for (const std::string& note : checked.notes) EXPECT_FALSE(contains(note, "without a triangle"));
+}
+
+TEST(Repair, WhatIsAdvisedMakesTheMeshPass) {
+  // The corners of each triangle are off by up to 1e-5 of the size.
+  const Solid cube = synthetic::make_cube(0.5);
+  std::string soup;
+  std::size_t count = 0;
+  char line[120];
+  for (const Triangle& t : cube.triangles) {
+    for (const std::uint32_t corner : t) {
+      const Vec3 p = cube.vertices[corner];
+      const double off = 5e-6 * static_cast<double>(++count % 3) / 2;
+      std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x + off, p.y, p.z - off);
+      soup += line;
+    }
+    soup += "f -3 -2 -1\n";
+  }
+  const std::string message = refusal_of(soup, "a.obj");
+  EXPECT_TRUE(contains(message, "give `weld` 1e-05, which joins")) << message;
+  SolidOptions options;
+  options.weld = 1e-5;
+  EXPECT_NEAR(solid_of(soup, "a.obj", options).facts.volume, 0.125, 1e-5);
 }
 
 }  // namespace

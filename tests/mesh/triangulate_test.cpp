@@ -5,6 +5,7 @@
 #include <random>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/pose.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "tests/mesh/mesh_files.h"
 
@@ -132,13 +133,19 @@ TEST(Triangulate, CutsPolygonsThatGoToAndFro) {
 TEST(Triangulate, RefusesPolygonsThatCrossThemselves) {
   std::vector<Vec3> pentagram;
   for (int k = 0; k < 5; ++k) pentagram.push_back(on_circle(1, 0.4 * k));
-  std::vector<Vec3> eight{{0, 0, 0}, {2, 2, 0}, {3, 2, 0}, {2, 0, 0}, {0, 2, 0}};
-  for (const auto& corners : {pentagram, eight}) {
+  const std::vector<Vec3> eight{{0, 0, 0}, {2, 2, 0}, {3, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+  // Both halves of these are equal, so that no normal is left of their sum.
+  const std::vector<Vec3> bow{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+  const std::vector<Vec3> tilted{{0, 0, 0}, {2, 2, 1}, {2, 0, 1}, {0, 2, 0}};
+  const std::vector<Vec3> other{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {2, 2, 0}};
+  const std::vector<Vec3> uneven{{0, 0, 0}, {2, 2, 0}, {2, 0, 0}, {0, 1, 0}};
+  for (const auto& corners : {pentagram, eight, bow, tilted, other, uneven}) {
     try {
       triangulate(polygon(corners));
       ADD_FAILURE() << "accepted";
     } catch (const Error& error) {
-      EXPECT_NE(std::string(error.what()).find("a polygon of 5 corners, from ("),
+      EXPECT_NE(std::string(error.what())
+                    .find("a polygon of " + std::to_string(corners.size()) + " corners, from ("),
                 std::string::npos);
       EXPECT_NE(std::string(error.what()).find("crosses itself"), std::string::npos);
     }
@@ -175,6 +182,68 @@ TEST(Triangulate, ASolidMayHaveFacesWithHoles) {
     EXPECT_DOUBLE_EQ(plate.facts.volume, 84) << repeats;
     EXPECT_EQ(plate.facts.euler, 0) << repeats;
     EXPECT_EQ(plate.facts.turned_triangles, 0U) << repeats;
+  }
+}
+
+// Returns a prism over the polygon of the corners x, y, between z = 0 and 1, turned.
+std::string prism(const std::vector<Vec3>& corners, const Rotation& turn) {
+  std::string obj;
+  char line[120];
+  for (const double z : {0.0, 1.0}) {
+    for (const Vec3& corner : corners) {
+      const Vec3 p = turn * Vec3{corner.x, corner.y, z};
+      std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n", p.x, p.y, p.z);
+      obj += line;
+    }
+  }
+  const std::size_t count = corners.size();
+  obj += "f";
+  for (std::size_t k = count; k > 0; --k) obj += " " + std::to_string(k);
+  obj += "\nf";
+  for (std::size_t k = 1; k <= count; ++k) obj += " " + std::to_string(count + k);
+  obj += "\n";
+  for (std::size_t k = 1; k <= count; ++k) {
+    const std::size_t next = k % count + 1;
+    for (const std::size_t v : {k, next, count + next, count + k})
+      obj += (v == k ? "f " : " ") + std::to_string(v);
+    obj += "\n";
+  }
+  return obj;
+}
+
+// Returns the outline of a staircase whose sides have corners on them.
+std::vector<Vec3> staircase(std::mt19937& random) {
+  std::uniform_int_distribution<int> steps(1, 6), parts(1, 4);
+  std::vector<Vec3> corners;
+  Vec3 at;
+  const auto go = [&](double x, double y) {
+    const int count = parts(random);
+    for (int k = 0; k < count; ++k)
+      corners.push_back(at + static_cast<double>(k) / count * Vec3{x - at.x, y - at.y, 0});
+    at = {x, y, 0};
+  };
+  const int count = steps(random);
+  go(count, 0);
+  for (int k = 0; k < count; ++k) {
+    go(count - k, k + 1);
+    go(count - k - 1, k + 1);
+  }
+  go(0, 0);
+  return corners;
+}
+
+TEST(Triangulate, AMeshIsNotBlamedForCornersOnOneLine) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 200; ++k) {
+    const std::vector<Vec3> corners = staircase(random);
+    Vec3 axis;
+    if (k % 2 == 1) axis = {normal(random), normal(random), normal(random)};
+    const Rotation turn = rotation_from_vector(axis);
+    const CheckedSolid solid = solid_of(prism(corners, turn), "a.obj");
+    EXPECT_EQ(solid.facts.self_intersections, 0U) << prism(corners, turn);
+    EXPECT_EQ(solid.facts.zero_area_triangles, 0U) << k;
+    EXPECT_NEAR(solid.facts.volume, area_of(corners), 1e-9) << k;
   }
 }
 

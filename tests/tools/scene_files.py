@@ -66,10 +66,10 @@ def glb(nodes, edge):
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
 
 
-def threemf(path, edge, name="3D/3dmodel.model"):
+def threemf(path, edge, name="3D/3dmodel.model", unit=' unit="millimeter"'):
     vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % tuple(edge * c for c in v) for v in VERTICES)
     triangles = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % t for t in TRIANGLES)
-    model = ('<?xml version="1.0" encoding="UTF-8"?><model unit="millimeter" xml:lang="en-US" '
+    model = ('<?xml version="1.0" encoding="UTF-8"?><model' + unit + ' xml:lang="en-US" '
              'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh>'
              f'<vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object></resources>'
              '<build><item objectid="1"/></build></model>')
@@ -137,6 +137,10 @@ def write_all(folder):
     (folder / "cube.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5))
     (folder / "two.glb").write_bytes(glb([("body", 2, (0, 0, 0)), ("tip", -1, (3, 0, 0))], 0.5))
     threemf(folder / "cube.3mf", 1000)
+    threemf(folder / "metre.3mf", 1, unit=' unit="meter"')
+    threemf(folder / "inch.3mf", 1 / 0.0254, unit=" unit = 'inch'")
+    threemf(folder / "none.3mf", 1000, unit="")
+    threemf(folder / "mile.3mf", 1, unit=' unit="mile"')
     threemf(folder / "spelled.3mf", 1000, "3D/3DModel.model")  # as some programs spell it
     (folder / "cube.fbx").write_text(fbx(5, 10))
 

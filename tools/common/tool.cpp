@@ -12,6 +12,8 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -90,7 +92,57 @@ void die_of_closed_pipe() {
   std::raise(SIGPIPE);
 }
 
-std::string message_of(const CLI::ParseError& fault, const std::string& config) {
+// Returns how many letters must be changed, added or left out to make one word of the other.
+std::size_t edits_between(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = std::exchange(row[k + 1], std::min({changed, row[k + 1] + 1, row[k] + 1}));
+    }
+  }
+  return row[b.size()];
+}
+
+// Returns "; is --tool meant?" for an unknown option that is nearly one of the tool's or begins as
+// one does; nothing if none is near.
+std::string near_name(const CLI::App& app, const std::string& what) {
+  constexpr std::size_t kMostEdits = 2, kShortest = 5;  // letters, with the dashes
+  const std::size_t begin = what.find("--");
+  if (begin == what.npos) return "";
+  const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
+  if (given.size() < kShortest) return "";
+  std::string best;
+  std::size_t fewest = kMostEdits + 1;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      const std::string full = "--" + name;
+      const std::size_t edits = full.starts_with(given) ? 0 : edits_between(given, full);
+      if (edits < fewest) best = full, fewest = edits;
+    }
+  }
+  return best.empty() ? "" : "; is " + best + " meant?";
+}
+
+// Returns the message of a value that is no number, in CLI11's words "Could not convert: --scale =
+// mm", in ours.
+std::string no_number(const CLI::App& app, const std::string& what) {
+  const std::size_t begin = what.find("--"), equals = what.find(" = ");
+  if (begin == what.npos || equals == what.npos || equals < begin) return what;
+  const std::string name = what.substr(begin, equals - begin);
+  const std::string value = what.substr(equals + 3);
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  const bool is_whole = option != nullptr && option->get_type_name().find("INT") != name.npos;
+  const char* const wanted = is_whole               ? "a whole number"
+                             : value.ends_with('%') ? "a fraction, such as 0.95"
+                                                    : "a number without a unit, such as 0.001";
+  return name + " " + value + ": give " + wanted;
+}
+
+std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
+                       const std::string& config) {
   constexpr std::string_view kUnknownKey = "INI was not able to parse ";
   std::string what = fault.what();
   if (dynamic_cast<const CLI::FileError*>(&fault) != nullptr) {
@@ -102,6 +154,8 @@ std::string message_of(const CLI::ParseError& fault, const std::string& config) 
     }
     return "--config " + config + ": " + what;
   }
+  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return what + near_name(app, what);
+  if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr) return no_number(app, what);
   if (what.rfind(kUnknownKey, 0) != 0) return what;
   return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
 }
@@ -141,6 +195,8 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
 
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   end_of_early_failures();
+  if (!on_devices_)
+    app_.get_option("--device")->description("auto or cpu; " + name_ + " computes on the CPU only");
   open_standard_streams();
   set_signals();
   const auto fail = [&](ErrorKind kind, const std::string& message) {
@@ -178,7 +234,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
     return fail(ErrorKind::invalid_argument,
-                message_of(fault, config_name()) + " (see " + name_ + " --help)");
+                message_of(app_, fault, config_name()) + " (see " + name_ + " --help)");
   } catch (const file::ClosedPipe& fault) {
     if (dies_of_closed_pipes) die_of_closed_pipe();
     return fail(fault.kind(), fault.what());

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
@@ -125,6 +127,13 @@ SolidOptions solid_options(const Arguments& a) {
       "--repair: '" + a.repair + "' is none of holes, voxel, voxel=RES, flood and flood=RES");
 }
 
+// True for what cannot be meant as a mesh: a word without a suffix, and no file.
+bool is_bare_word(std::string_view word) {
+  std::error_code fault;
+  return !word.empty() && word[0] != '-' && word.find_first_of("./") == word.npos &&
+         !std::filesystem::exists(word, fault);
+}
+
 // Returns the arguments with a bare --repair replaced by `holes`, since CLI11 would take a mesh
 // that follows for its value.
 std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) {
@@ -133,7 +142,8 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
     if (arguments[k] != std::string_view("--repair")) continue;
     const std::string_view next = k + 1 < arguments.size() ? arguments[k + 1] : "";
     const std::string_view mode = next.substr(0, next.find('='));
-    if (mode != "holes" && mode != "voxel" && mode != "flood") arguments[k] = holes.data();
+    if (mode != "holes" && mode != "voxel" && mode != "flood" && !is_bare_word(next))
+      arguments[k] = holes.data();
   }
   return arguments;
 }
@@ -144,7 +154,8 @@ void check(const Arguments& a, const CommonOptions& common) {
     refuse_usage("--max-hole belongs to --repair voxel or flood");
   if (a.mesh.empty())
     refuse_usage(
-        "no mesh is given: name an OBJ, OFF, PLY, STL, COLLADA or glTF file, or - for a pipe");
+        "no mesh is given: name an OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX file, or - "
+        "for a pipe");
   if (a.output.empty() && a.export_path.empty() && a.report.empty() && a.view.empty())
     refuse_usage("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
@@ -181,11 +192,11 @@ CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& 
   }
 }
 
-// Warns if the mesh is larger or smaller than tools are, and names the scale that is likely meant.
-void warn_of_size(const Tool& tool, const Arguments& a, const std::string& prefix,
-                  const MeshFacts& facts) {
+// Adds a warning if the mesh is larger or smaller than tools are, with the scale that is likely
+// meant.
+void warn_of_size(const Arguments& a, CheckedSolid& checked) {
   constexpr double kLargest = 100, kSmallest = 0.001;  // m
-  const Vec3 sides = facts.high - facts.low;
+  const Vec3 sides = checked.facts.high - checked.facts.low;
   const double size = std::max({sides.x, sides.y, sides.z});
   if (size >= kSmallest && size <= kLargest) return;
   const bool is_large = size > kLargest;
@@ -193,7 +204,7 @@ void warn_of_size(const Tool& tool, const Arguments& a, const std::string& prefi
   std::snprintf(text, sizeof text, "the mesh is %.3g m across: if %s, give --scale %g", size,
                 is_large ? "its unit is the millimetre" : "it was scaled to metres twice",
                 a.scale * (is_large ? 0.001 : 1000));
-  tool.warn(prefix + text);
+  checked.warnings.push_back(text);
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
@@ -267,15 +278,17 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
 }
 
-void say_validation(const Tool& tool, const Validation& v) {
+void say_validation(const Tool& tool, const Validation& v, CheckedSolid& checked) {
   const std::string counts = std::to_string(v.protruding_voxels) + " voxels of spheres outside, " +
                              std::to_string(v.overlapping_voxels) + " of two spheres";
   // Disputed voxels are those where the two tests of the inside disagree; they prove no fault.
-  if (v.protruding_voxels > v.disputed_voxels || v.overlapping_voxels > 0)
-    tool.warn("the count of voxels contradicts the packing: " + counts +
-              "; check the mesh, which may intersect itself");
-  else
+  if (v.protruding_voxels > v.disputed_voxels || v.overlapping_voxels > 0) {
+    checked.warnings.push_back("the count of voxels contradicts the packing: " + counts +
+                               "; check the mesh, which may intersect itself");
+    tool.warn(checked.warnings.back());
+  } else {
     tool.note("voxels: " + std::to_string(v.coverage) + " of the volume covered, " + counts);
+  }
 }
 
 Packing make_packing(const Tool& tool, const std::string& input_hash, CheckedSolid checked,
@@ -302,8 +315,8 @@ void run(const Tool& tool, Arguments a) {
   CheckedSolid checked = checked_solid(tool, a, parse_mesh(bytes, name, a.node));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
+  warn_of_size(a, checked);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
-  warn_of_size(tool, a, prefix, checked.facts);
 
   std::optional<SceneScale> scene;
   if (!a.for_scene.empty()) scene = fit_to_scene(tool, checked.solid, a);
@@ -318,7 +331,7 @@ void run(const Tool& tool, Arguments a) {
   std::optional<Validation> validation;
   if (a.validate) {
     validation = validate_packing(checked.solid, result.spheres);
-    say_validation(tool, *validation);
+    say_validation(tool, *validation, checked);
   }
   if (!a.report.empty()) {
     auto report = pack_report(checked, result, certificate, validation, seconds);

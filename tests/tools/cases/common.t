@@ -72,7 +72,7 @@ $ echo '{"count": 5, "flag": true, "count": 6}' | vpm-probe --config - in.off -o
 $ echo '{"flag": false, "count": 5}' | vpm-probe --config - in.off -o -
 in.off none 5 0.100000 []
 $ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: Could not convert: --count = five (see vpm-probe --help)
+2> vpm-probe: error: --count five: give a whole number (see vpm-probe --help)
 [2]
 
 
@@ -120,8 +120,11 @@ $ vpm-probe in.off -o - --act exhaust
 $ vpm-probe in.off -o - --wrong
 2> vpm-probe: error: The following argument was not expected: --wrong (see vpm-probe --help)
 [2]
+$ vpm-probe in.off -o - --coutn 5
+2> vpm-probe: error: The following argument was not expected: --coutn; is --count meant? (see vpm-probe --help)
+[2]
 $ vpm-probe in.off -o - --count many
-2> vpm-probe: error: Could not convert: --count = many (see vpm-probe --help)
+2> vpm-probe: error: --count many: give a whole number (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --threads -1
 2> vpm-probe: error: --threads: -1 is not a whole number from 0 to 4096 (see vpm-probe --help)
