@@ -111,7 +111,7 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
                            : kind == Kind::tool_model ? "it is ready for vpm-query"
                            : kind == Kind::cloud      ? "it is ready for vpm-query"
                                                       : "give the file that was meant";
-  return ForeignContent{names_of(kind).what, next, next};
+  return ForeignContent{names_of(kind).what, next};
 }
 
 }  // namespace
