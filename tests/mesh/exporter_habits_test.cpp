@@ -258,7 +258,7 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       {"\x1f\x8b\x08", "compressed by gzip; unpack"},
       {"PK\x03\x04", "an archive"},
       {"PK\x03\x04", "an archive (zip, npz); unpack it first"},
-      {"\xff\xd8\xff\xe0", "a JPEG picture; give the mesh, as OBJ, PLY or STL"},
+      {"\xff\xd8\xff\xe0", "a JPEG picture, which holds no exact values; give the mesh"},
       {"#usda 1.0\n", "a scene in USD; export it as OBJ, PLY or STL"},
       {"PXR-USDC", "a scene in USD; export it"},
       {"#VRML V2.0 utf8\n", "a scene in VRML; export it as OBJ, PLY or STL"},

@@ -88,6 +88,7 @@ def write_meshes(folder):
         "far.stl": binary_stl(far, TRIANGLES), "near.stl": binary_stl(CORNERS, TRIANGLES),
         "cut.stl": binary_stl(CORNERS, TRIANGLES)[:-50],
         "crossing.off": off([*CORNERS, *crossing], [*FACES, (8, 9, 10, 11, 12)]),
+        "points.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS), "blank.obj": "\n", "words.txt": "words of no format\n", "points.xyz": "0 0 0\n1 0 0\n0 1 0\n",
         "robot.urdf": '<?xml version="1.0"?>\n<robot name="r"><link name="l"><visual><geometry><mesh filename="cube.off"/>'
                       "</geometry></visual></link></robot>\n",
         "binary.off": b"4OFF BINARY\n" + struct.pack(">3i", 1, 0, 0) + struct.pack(">4f", 0, 0, 0, 1),
@@ -96,6 +97,7 @@ def write_meshes(folder):
         "cube.obj": "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(
             f"f {' '.join(str(k + 1) for k in f)}\n" for f in FACES),
     }
+    files["packed.gltf"] = '{"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_meshopt_compression"]}'
     write_all(folder, files)
     scene_files.write_all(folder)
     (folder / "cut.glb").write_bytes((folder / "cube.glb").read_bytes()[:500])
@@ -269,7 +271,7 @@ def write_recordings(folder):
 # What other files begin with, and the advice for each: for those that lead to meshes, to scans, and to either.
 MESH_STARTS = {
     b"<mujoco>": "give one of the files that it names", b"ISO-10303-21;": "export a mesh from it",
-    b"BLENDER-v300": "export a mesh from it", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it",
+    b"BLENDER-v300": "export a mesh from it, as OBJ, PLY or STL", b"#usda 1.0\n": "export it as OBJ, PLY or STL", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it",
 }
 SCAN_STARTS = {
     b"\xff\xd8\xff\xe0": "give the 16-bit or float image", b"GIF89a": "give the 16-bit or float image",
@@ -283,7 +285,7 @@ OTHER_STARTS = {
     b"<!DOCTYPE html>": "download the file itself", b"<html>": "download the file itself",
     b"%PDF-1.7": "give the file that was meant", b"7z\xbc\xaf\x27\x1c": "unpack it first: 7z x",
     b"version https://git-lfs.github.com/spec/v1\n": "fetch it with: git lfs pull",
-    b'<?xml version="1.0"?>\n<svg/>': "give the file that was meant",
+    b'<?xml version="1.0"?>\n<svg/>': "give the file that was meant", b"\xff\xfev\0": "save it as UTF-8",
 }
 STARTS = {**MESH_STARTS, **SCAN_STARTS, **OTHER_STARTS}
 

@@ -106,14 +106,14 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// Returns "; is --tool meant?" for an unknown option that is nearly one of the tool's or begins as
-// one does; nothing if none is near.
-std::string near_name(const CLI::App& app, const std::string& what) {
+// Returns "there is no option --tol; is --tool meant?" for an unknown option that is nearly one of
+// the tool's or begins as one does; CLI11's words if none is near.
+std::string unknown_option(const CLI::App& app, const std::string& what) {
   constexpr std::size_t kMostEdits = 2, kShortest = 5;  // letters, with the dashes
   const std::size_t begin = what.find("--");
-  if (begin == what.npos) return "";
+  if (begin == what.npos) return what;
   const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
-  if (given.size() < kShortest) return "";
+  if (given.size() < kShortest) return what;
   std::string best;
   std::size_t fewest = kMostEdits + 1;
   for (const CLI::Option* option : app.get_options()) {
@@ -123,7 +123,7 @@ std::string near_name(const CLI::App& app, const std::string& what) {
       if (edits < fewest) best = full, fewest = edits;
     }
   }
-  return best.empty() ? "" : "; is " + best + " meant?";
+  return best.empty() ? what : "there is no option " + given + "; is " + best + " meant?";
 }
 
 // Returns the message of a value that is no number, in CLI11's words "Could not convert: --scale =
@@ -154,7 +154,7 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
     }
     return "--config " + config + ": " + what;
   }
-  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return what + near_name(app, what);
+  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return unknown_option(app, what);
   if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr) return no_number(app, what);
   if (what.rfind(kUnknownKey, 0) != 0) return what;
   return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
@@ -251,7 +251,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
 std::string Tool::config_name() const {
   const CLI::Option* option = app_.get_config_ptr();
   const std::string name = option->results().empty() ? "" : option->results().back();
-  return name == "-" ? "standard input" : name;
+  return name == "-" || name == "/dev/stdin" ? "standard input" : name;
 }
 
 // Refuses --grow=1e999, of which CLI11 makes whatever it can.

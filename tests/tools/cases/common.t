@@ -121,7 +121,7 @@ $ vpm-probe in.off -o - --wrong
 2> vpm-probe: error: The following argument was not expected: --wrong (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --coutn 5
-2> vpm-probe: error: The following argument was not expected: --coutn; is --count meant? (see vpm-probe --help)
+2> vpm-probe: error: there is no option --coutn; is --count meant? (see vpm-probe --help)
 [2]
 $ vpm-probe in.off -o - --count many
 2> vpm-probe: error: --count many: give a whole number (see vpm-probe --help)

@@ -76,7 +76,7 @@ $ printf 'version https://git-lfs.github.com/spec/v1\noid sha256:0\n' | vpm-norm
 2> vpm-normals: error: standard input: this is a Git LFS pointer, not the file itself; fetch it with: git lfs pull
 [1]
 $ printf 'PK\003\004' | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: error: standard input: this is an archive (zip, npz); unpack it first, or save one array as .npy
+2> vpm-normals: error: standard input: this is an archive (zip, npz); unpack it first; of an npz, save one array as .npy
 [1]
 $ vpm-normals wall.vpmc -o x.vpmc
 2> vpm-normals: error: wall.vpmc: this is a cloud (.vpmc); it is ready for vpm-query
@@ -132,6 +132,6 @@ $ sleep 0 & : > .x.vpmp.vpm-$!-0.tmp; wait; vpm-pack cube.off -o swept.vpmp --sp
 # the one that fits best, or all that fit as well.
 $ printf '%s\n' '0.1 0.1 0.95 0 0 0 1' '-0.2 -0.13 0.98 0 0 0 1' > steps.txt
 $ vpm-normals opengl.pcd --axes opengl -o turned.vpmc --camera-pose 0,0,0,0,0,0,1 --quiet && vpm-query --tool cube.vpmg --cloud turned.vpmc --poses steps.txt -o /dev/null
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opencv: give vpm-normals --axes opencv --camera-pose 0,0,0,0,0,0,1
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opencv: give vpm-normals --axes opencv
 $ vpm-normals wall.pgm -o moved.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 4,0,0,0,0,0,1 && vpm-query --tool cube.vpmg --cloud moved.vpmc --poses steps.txt -o /dev/null
 2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there if the poses are in the camera's frame: leave vpm-normals --camera-pose out

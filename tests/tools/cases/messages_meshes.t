@@ -8,7 +8,7 @@ $ refuse() { printf "$1" > a.obj; vpm-pack a.obj -o x.vpmp; }; for t in 'v 0 0\n
 2> vpm-pack: error: a.obj: line 2: vertex index 5 is out of range; the file has 1 vertices
 2> vpm-pack: error: a.obj: line 2: a corner of the face is not a vertex index
 2> vpm-pack: error: a.obj: line 1: the vertex divided by its w is not finite
-2> vpm-pack: error: a.obj: the mesh has no faces
+2> vpm-pack: error: a.obj: the mesh has no faces, only 1 vertex; save it with its faces; a cloud of points is for vpm-normals
 2> vpm-pack: error: a.obj: the mesh has no faces of three corners or more
 [1]
 
@@ -64,7 +64,7 @@ $ for t in 'solid\nfacet normal 0 0 1\nfacet\n' 'solid\nvertex 0 0 0\n' 'solid\n
 2> vpm-pack: error: a.stl: line 4: z is 'zero', which is not a number
 2> vpm-pack: error: a.stl: line 2: not a statement of an STL file
 2> vpm-pack: error: a.stl: the file ends without 'endsolid'; it is truncated
-2> vpm-pack: error: a.stl: the mesh has no faces
+2> vpm-pack: error: a.stl: this is no mesh: it has no vertices and no faces; give the file that was meant, as OBJ, PLY or STL
 [1]
 $ head -c 83 /dev/zero > a.stl; vpm-pack a.stl -o x.vpmp; head -c 100 /dev/zero > a.stl; vpm-pack a.stl -o x.vpmp; (head -c 80 /dev/zero; printf '\1\0\0\0'; head -c 46 /dev/zero; printf '\377\377\377\177') | head -c 134 > a.stl; vpm-pack a.stl -o x.vpmp
 2> vpm-pack: error: a.stl: 83 bytes are too few for a binary STL file; it is truncated
@@ -82,7 +82,7 @@ $ mesh() { echo "OFF $1 $2 0"; }; (mesh 3 1; printf '1 1 1\n1 1 1\n1 1 1\n3 0 1 
 [1]
 $ cube='OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n'; printf "$cube" > cube.off; printf "${cube/6 0/7 0}3 0 1 6\n" | vpm-pack - -o x.vpmp; printf "${cube/6 0/7 0}4 3 2 1 0\n" | vpm-pack - --spheres 5 --repair --report - | grep volume_mesh; printf "${cube/1 1 1/1 1 1e31}" | vpm-pack - -o x.vpmp
   "volume_mesh": 1.0,
-2> vpm-pack: error: standard input: the mesh is open: 2 edges belong to one triangle only, around 1 hole: a rim of 2 edges through (0, 0, 0), (1, 1, 1), (1, 0, 0); the mesh is non-manifold: 1 edge belongs to more than two triangles, at (0, 0, 0)-(1, 0, 0). Only a closed surface has an inside: give --repair to fill planar and small holes, --repair voxel for a new surface, or --weld if parts should meet and do not
+2> vpm-pack: error: standard input: the mesh is open: 2 edges belong to one triangle only, around 1 hole: a rim of 2 edges through (0, 0, 0), (1, 1, 1), (1, 0, 0); the mesh is non-manifold: 1 edge belongs to more than two triangles, at (0, 0, 0)-(1, 0, 0). Only a closed surface has an inside: give --repair voxel for a new surface, or mend it in a mesh editor
 2> vpm-pack: note: standard input: 2 repeated triangles dropped
 2> vpm-pack: error: standard input: the mesh reaches from (0, 0, 0) to (1, 1, 1e+31), which leaves the range of 1e-30 to 1e30 m; give --scale
 [1]
@@ -104,7 +104,7 @@ $ for t in '\xff\xd8\xff' '\x89HDF' 'LASF' '#ROSBAG V2.0' 'BLENDER' '<mujoco>' '
 2> vpm-pack: error: standard input: this is an HDF5 file; give the mesh, or a cloud and images to vpm-normals
 2> vpm-pack: error: standard input: this is a LAS cloud; give the mesh, or a cloud and images to vpm-normals
 2> vpm-pack: error: standard input: this is a ROS bag; give the mesh, or a cloud and images to vpm-normals
-2> vpm-pack: error: standard input: this is a Blender file; export a mesh from it
+2> vpm-pack: error: standard input: this is a Blender file; export a mesh from it, as OBJ, PLY or STL
 2> vpm-pack: error: standard input: this is a robot description (MJCF); give one of the files that it names
 2> vpm-pack: error: standard input: this is compressed by gzip; unpack it first: gunzip
 2> vpm-pack: error: standard input: this is a cloud of points (PCD); give the mesh, or a cloud and images to vpm-normals

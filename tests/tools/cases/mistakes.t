@@ -207,5 +207,5 @@ $ echo '{"pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud
 $ vpm-normals wall.png -o - --intrinsics '60 60 31.5 23.5' | cmp - wall.vpmc
 $ echo '{"intrinsics": [60, 60, 31.5, 23.5], "camera-pose": [1, 2, 3, 0, 0, 0, 1], "range": [0.1, 5]}' > lists.json; vpm-normals wall.png --export lists.ply --config lists.json && vpm-normals wall.png --export options.ply --intrinsics '[60, 60, 31.5, 23.5]' --camera-pose '1 2 3 0 0 0 1' --range '0.1 5' && cmp lists.ply options.ply
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose '0 0 0.95'
-2> vpm-query: error: pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0 0 0.95'
+2> vpm-query: error: --pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0 0 0.95'
 [2]

@@ -50,7 +50,7 @@ $ vpm-pack missing.off -o missing.vpmp
 
 # Wrong usage is refused.
 $ vpm-pack
-2> vpm-pack: error: no mesh is given: name an OBJ, OFF, PLY, STL, COLLADA or glTF file, or - for a pipe
+2> vpm-pack: error: no mesh is given: name an OBJ, OFF, PLY, STL, OM, COLLADA, glTF, 3MF or FBX file, or - for a pipe
 [2]
 $ vpm-pack cube.off
 2> vpm-pack: error: nothing would be written: give -o OUT.vpmp, --export, --report or --view
