@@ -168,10 +168,13 @@ class TiffReader {
     }
   }
 
-  // Returns libtiff's size of a buffer if it holds `values` values.
+  // Returns libtiff's size of a buffer if it holds `values` values, and there is memory for it
+  // beside the image.
   std::size_t buffer_size(tmsize_t size, std::uint64_t values) const {
     const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(size, 0));
-    if (bytes == 0 || bytes > most_memory(source_.bytes.size()) || bytes < values * type_.size)
+    const std::uint64_t of_image = sizeof(float) * image_.values.size();
+    if (bytes == 0 || of_image + bytes > most_memory(source_.bytes.size()) ||
+        bytes < values * type_.size)
       fail(source_.fault);
     return bytes;
   }
