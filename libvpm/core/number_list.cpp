@@ -1,8 +1,6 @@
 #include "libvpm/core/number_list.h"
 
 #include <algorithm>
-#include <charconv>
-#include <string_view>
 
 #include "libvpm/core/error.h"
 
@@ -31,13 +29,9 @@ std::vector<double> numbers_from_text(const std::string& text) {
   for (;;) {
     const std::size_t end = std::min(list.find_first_of(", \t\r\n"), list.size());
     const std::string_view word = list.substr(0, end);
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-    double value = 0;
-    const auto [stop, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (fault != std::errc() || stop != digits.data() + digits.size() || opens != closes ||
-        (word != digits && digits.starts_with('-')))
-      fail(word);
-    numbers.push_back(value);
+    const auto number = number_from_text<double>(word);
+    if (!number || opens != closes) fail(word);
+    numbers.push_back(*number);
     list = trimmed(list.substr(end));
     if (list.empty()) return numbers;
     if (list.starts_with(',')) list = trimmed(list.substr(1));

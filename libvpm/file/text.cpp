@@ -1,23 +1,14 @@
 #include "libvpm/file/text.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/number_list.h"
 
 namespace vpm::file {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\v\f";
-
-template <class Number>
-std::optional<Number> parse(std::string_view word) {
-  word = without_plus(word);
-  Number value{};
-  const auto [stop, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (fault != std::errc() || stop != word.data() + word.size()) return std::nullopt;
-  return value;
-}
 
 bool ends_first_line_in_cr(std::string_view text) {
   const std::size_t end = text.find_first_of("\r\n");
@@ -36,16 +27,12 @@ std::vector<std::string_view> split_words(std::string_view line) {
   return words;
 }
 
-std::string_view without_plus(std::string_view word) {
-  return word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
-}
-
 std::optional<double> to_number(std::string_view word) {
-  return parse<double>(word);
+  return number_from_text<double>(word);
 }
 
 std::optional<std::uint64_t> to_count(std::string_view word) {
-  return parse<std::uint64_t>(word);
+  return number_from_text<std::uint64_t>(word);
 }
 
 std::string in_lower_case(std::string_view text) {

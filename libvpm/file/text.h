@@ -19,11 +19,7 @@ inline std::string_view as_text(std::span<const std::byte> bytes) {
 
 std::vector<std::string_view> split_words(std::string_view line);
 
-// Returns the word without a plus sign before its number, which std::from_chars() takes for no part
-// of one.
-std::string_view without_plus(std::string_view word);
-
-// Returns the whole word as a number, also "+1", "nan" and "inf"; empty if it is none.
+// Returns the whole word as a number, by number_from_text(); empty if it is none.
 std::optional<double> to_number(std::string_view word);
 std::optional<std::uint64_t> to_count(std::string_view word);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/number_list.h"
 
 namespace vpm {
 namespace {
@@ -85,7 +86,7 @@ void TextLines::pass(std::size_t count) {
 
 double TextLines::to_number(std::string_view given, const char* what) const {
   if (given.empty()) refuse_missing(what);
-  const std::string_view text = file::without_plus(given);
+  const std::string_view text = without_plus(given);
   double value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault == std::errc::invalid_argument) {
@@ -100,7 +101,7 @@ double TextLines::to_number(std::string_view given, const char* what) const {
 std::int64_t TextLines::integer(const char* what) {
   const std::string_view given = word();
   if (given.empty()) refuse_missing(what);
-  const std::string_view text = file::without_plus(given);
+  const std::string_view text = without_plus(given);
   std::int64_t value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault != std::errc()) {
