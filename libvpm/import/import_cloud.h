@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
@@ -24,6 +25,30 @@ enum class CameraAxes {
   opengl,  // x right, y up, z backward
   ros      // x forward, y left, z up: a robot's body
 };
+
+struct AxesName {
+  CameraAxes axes;
+  const char* name;   // word of the option
+  const char* words;  // "x right, y down, z forward"
+};
+
+inline constexpr AxesName kAxesNames[] = {
+    {CameraAxes::opencv, "opencv", "x right, y down, z forward"},
+    {CameraAxes::opengl, "opengl", "x right, y up, z backward"},
+    {CameraAxes::ros, "ros", "x forward, y left, z up"},
+};
+
+// Return the name of axes, and the axes of a name; nothing for another word.
+constexpr const char* name_of(CameraAxes axes) {
+  for (const AxesName& known : kAxesNames)
+    if (known.axes == axes) return known.name;
+  return "";
+}
+constexpr std::optional<CameraAxes> axes_named(std::string_view name) {
+  for (const AxesName& known : kAxesNames)
+    if (known.name == name) return known.axes;
+  return std::nullopt;
+}
 
 // Returns the rotation from this library's axes to the others.
 constexpr Rotation to_axes(CameraAxes axes) {

@@ -33,18 +33,6 @@ struct OrganisedView {
   bool were_in_world = false;  // the file's points were in the world's frame
 };
 
-struct AxesName {
-  CameraAxes axes;
-  const char* name;
-  const char* words;
-};
-
-constexpr AxesName kAxes[] = {
-    {CameraAxes::opencv, "opencv", "x right, y down, z forward"},
-    {CameraAxes::opengl, "opengl", "x right, y up, z backward"},
-    {CameraAxes::ros, "ros", "x forward, y left, z up"},
-};
-
 PointSet moved(PointSet points, const Pose& pose) {
   for (Vec3& p : points.positions) p = pose * p;
   for (Vec3& n : points.normals) n = pose.rotation * n;
@@ -64,7 +52,7 @@ PinholeFit fit(const PointSet& points, const std::optional<Intrinsics>& intrinsi
 // Throws if the points fit a camera with other axes than those that are told.
 void refuse_other_axes(const PointSet& points, const PointFrame& frame,
                        const std::optional<Intrinsics>& intrinsics, const std::string& name) {
-  for (const AxesName& other : kAxes) {
+  for (const AxesName& other : kAxesNames) {
     if (other.axes == frame.axes || !fit(in_own_axes(points, other.axes), intrinsics).fits())
       continue;
     refuse(std::string("its points are those of a camera with ") + other.words, name,

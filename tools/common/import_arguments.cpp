@@ -164,9 +164,7 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& 
 }
 
 void read_pose(const Tool& tool, const ImportArguments& a, ImportOptions& options) {
-  options.axes = a.axes == "opengl" ? CameraAxes::opengl
-                 : a.axes == "ros"  ? CameraAxes::ros
-                                    : CameraAxes::opencv;
+  options.axes = axes_named(a.axes).value_or(CameraAxes::opencv);
   if (a.camera_pose.empty()) return;
   double deviation = 0;
   options.to_world =

@@ -1,9 +1,7 @@
 #include "tools/query/setup_check.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <utility>
@@ -18,12 +16,6 @@ namespace {
 constexpr std::size_t kMostKept = 512;      // poses
 constexpr std::size_t kMostScenes = 64;     // of those that the kept poses were in
 constexpr std::size_t kMostPixels = 20000;  // of a scan
-
-std::string metres_text(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", length);
-  return text;
-}
 
 double diagonal_of(std::span<const Vec3f> points) {
   if (points.empty()) return 0;
@@ -131,10 +123,6 @@ std::optional<Pose> motion_of(const Suspicion& suspicion, const PlacedScene& pla
   return motion && !is_identity(*motion) ? motion : std::nullopt;
 }
 
-const char* name_of(CameraAxes axes) {
-  return axes == CameraAxes::opengl ? "opengl" : axes == CameraAxes::ros ? "ros" : "opencv";
-}
-
 // Returns the mistake and its cure: "if ...: ...".
 std::string words_of(const Suspicion& suspicion, const PlacedScene& place,
                      const SceneSource& source) {
@@ -190,19 +178,11 @@ SceneSource source_of(const Cloud& cloud) {
   if (!cloud.provenance.is_object() || !cloud.provenance.contains("parameters")) return source;
   const nlohmann::json& told = cloud.provenance["parameters"];
   if (!told.is_object()) return source;
-  for (const CameraAxes axes : {CameraAxes::opengl, CameraAxes::ros})
-    if (told.contains("axes") && told["axes"] == name_of(axes)) source.axes = axes;
+  if (told.contains("axes") && told["axes"].is_string())
+    source.axes = axes_named(told["axes"].get<std::string>()).value_or(source.axes);
   if (cloud.sensor || !told.contains("camera-pose")) return source;
-  std::array<double, 7> n{};
-  const nlohmann::json& numbers = told["camera-pose"];
-  if (!numbers.is_array() || numbers.size() != n.size()) return source;
-  for (std::size_t i = 0; i < n.size(); ++i) {
-    if (!numbers[i].is_number()) return source;
-    n[i] = numbers[i].get<double>();
-  }
   try {
-    source.points_to_world =
-        Pose{rotation_from_quaternion({n[3], n[4], n[5], n[6]}), {n[0], n[1], n[2]}};
+    source.points_to_world = pose_from_text(told["camera-pose"].dump());
   } catch (const Error&) {  // it was not this program's vpm-normals that wrote it
   }
   return source;
