@@ -234,25 +234,38 @@ class Check {
     }
   }
 
+  struct Filling {
+    std::size_t repeated = 0;  // triangles that were dropped
+    std::vector<FilledHole> holes;
+    Topology topology;  // sides of the triangles that result
+  };
+
+  // Drops repeated triangles and fills holes.
+  Filling fill(std::vector<Vec3>& points, std::vector<Triangle>& list) const {
+    Filling done;
+    done.repeated = drop_repeated(list);
+    done.topology = topology_of(points.size(), list);
+    if (done.topology.boundary.empty()) return done;
+    orient_consistently(done.topology, list);
+    done.topology = topology_of(points.size(), list);  // turned triangles have other sides
+    done.holes = fill_holes(done.topology, diagonal_, points, list).filled;
+    done.topology = topology_of(points.size(), list);
+    return done;
+  }
+
   void repair_holes() {
-    facts().repeated_triangles = drop_repeated(triangles());
-    if (facts().repeated_triangles > 0) {
-      note(counted(facts().repeated_triangles, "repeated triangle", "repeated triangles") +
-           " dropped");
-      topology_ = topology_of(vertices().size(), triangles());
-    }
-    if (topology_.boundary.empty()) return;
-    orient_consistently(topology_, triangles());
-    topology_ = topology_of(vertices().size(), triangles());  // turned triangles have other sides
-    HoleFilling done = fill_holes(topology_, diagonal_, vertices(), triangles());
-    for (FilledHole& hole : done.filled) {
+    Filling done = fill(vertices(), triangles());
+    facts().repeated_triangles = done.repeated;
+    if (done.repeated > 0)
+      note(counted(done.repeated, "repeated triangle", "repeated triangles") + " dropped");
+    for (FilledHole& hole : done.holes) {
       note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +
            counted(hole.edges, "edge", "edges") + " about " + text_of(hole.center));
       hole.center = options_.scale * hole.center;
       hole.size *= options_.scale;
     }
-    facts().filled_holes = std::move(done.filled);
-    topology_ = topology_of(vertices().size(), triangles());
+    facts().filled_holes = std::move(done.holes);
+    topology_ = std::move(done.topology);
   }
 
   // Returns "A, B, C, ...".
@@ -342,13 +355,7 @@ class Check {
     std::vector<Vec3> points = vertices();
     std::vector<Triangle> filled = triangles();
     weld(points, kDefaultWeld * diagonal_, filled);
-    drop_repeated(filled);
-    if (filled.empty()) return false;
-    Topology topology = topology_of(points.size(), filled);
-    orient_consistently(topology, filled);
-    topology = topology_of(points.size(), filled);
-    if (!topology.boundary.empty()) fill_holes(topology, diagonal_, points, filled);
-    return is_closed(topology_of(points.size(), filled));
+    return !filled.empty() && is_closed(fill(points, filled).topology);
   }
 
   static bool is_closed(const Topology& topology) {

@@ -259,12 +259,10 @@ char up_axis(const aiScene& scene, MeshFormat format, std::string_view bytes) {
   return axis == 0 ? 'x' : axis == 2 ? 'z' : 'y';
 }
 
-// Reads by assimp; see parse_scene.
+// Reads by assimp; see parse_scene, which tells the mesh its format and name.
 RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat format,
                    const std::string& node) {
   RawMesh mesh;
-  mesh.format = format;
-  mesh.name = name;
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
   std::string fault;

@@ -100,12 +100,14 @@ bool sides_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
          ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0));
 }
 
+double squared_distance(Vec2 a, Vec2 b) {
+  return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+}
+
 // Returns the least height of the triangle relative to its longest side; negative if it is turned.
 double shape_of(Vec2 a, Vec2 b, Vec2 c) {
-  const auto squared = [](Vec2 from, Vec2 to) {
-    return (to.x - from.x) * (to.x - from.x) + (to.y - from.y) * (to.y - from.y);
-  };
-  const double longest = std::max({squared(a, b), squared(b, c), squared(c, a)});
+  const double longest =
+      std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
   return longest > 0 ? turn(a, b, c) / longest : 0;
 }
 
@@ -163,8 +165,7 @@ class SliverFlips {
   }
 
   double squared_length(Ends side) const {
-    const Vec2 a = flat_[side.first], b = flat_[side.second];
-    return (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+    return squared_distance(flat_[side.first], flat_[side.second]);
   }
 
   // Replaces the longest side by the other diagonal of the two triangles at it, where that makes
