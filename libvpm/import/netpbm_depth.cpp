@@ -40,7 +40,7 @@ class NetpbmReader {
     const std::size_t first = rest.find_first_not_of(" \t\r\n");
     if (first == rest.npos) return;
     if (rest.substr(first).starts_with('P'))
-      image_.remarks.push_back({true, "it holds several images; the first is read"});
+      image_.remarks.push_back({true, kSeveralImages});
     else
       image_.remarks.push_back(
           {true, "the " + std::to_string(rest.size()) + " bytes after its pixels are not read"});

@@ -91,8 +91,7 @@ class TiffReader {
     read_layout();
     image_.values.resize(std::size_t{image_.width} * image_.height);
     TIFFIsTiled(file_.get()) ? read_tiles() : read_rows();
-    if (TIFFNumberOfDirectories(file_.get()) > 1)
-      image_.remarks.push_back({true, "it holds several images; the first is read"});
+    if (TIFFNumberOfDirectories(file_.get()) > 1) image_.remarks.push_back({true, kSeveralImages});
     return std::move(image_);
   }
 
