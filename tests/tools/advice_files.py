@@ -268,10 +268,12 @@ def write_recordings(folder):
     write_all(folder, {f"{name}.txt": f"0 {name}/{file}\n" for name, file in names.items()})
 
 
-# What other files begin with, and the advice for each: for those that lead to meshes, to scans, and to either.
+# These tables hold the first bytes of other programs' files, and the advice for each: files that lead to meshes, to scans, to
+# either.
 MESH_STARTS = {
     b"<mujoco>": "give one of the files that it names", b"ISO-10303-21;": "export a mesh from it",
-    b"BLENDER-v300": "export a mesh from it, as OBJ, PLY or STL", b"#usda 1.0\n": "export it as OBJ, PLY or STL", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it",
+    b"BLENDER-v300": "export a mesh from it, as OBJ, PLY or STL", b"#usda 1.0\n": "export it as OBJ, PLY or STL",
+    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it",
 }
 SCAN_STARTS = {
     b"\xff\xd8\xff\xe0": "give the 16-bit or float image", b"GIF89a": "give the 16-bit or float image",
