@@ -1,5 +1,6 @@
-// Draws the scene into the canvas whenever something has changed. Where a frame takes long, layers
-// are coarser and pixels larger for as long as something moves.
+// Draws the scene into the canvas whenever something has changed. Where frames take long, layers are
+// coarser and pixels larger for as long as something moves. Where software draws, frames count as
+// long from the first: the time they take is spent after the page has been told that they are drawn.
 
 const SLOW = 60;      // ms from asking for a frame to drawing it, of a browser that is behind
 const SLOW_FRAMES = 2;  // in a row, before all becomes coarser
@@ -56,7 +57,7 @@ class Stage {
       this.isWanted = false;
       if (this.isMoving || this.isPlaying) {
         this.slowFrames = performance.now() - asked > SLOW ? this.slowFrames + 1 : 0;
-        if (this.slowFrames >= SLOW_FRAMES) this.setCoarse(true);
+        if (this.bySoftware || this.slowFrames >= SLOW_FRAMES) this.setCoarse(true);
       }
       this.render();
       if (this.firstPicture) return;

@@ -186,6 +186,20 @@ class Query(PageTest):
             page.evaluate("vpm.setView('camera')")
             self.assertGreater(share(scene(page), surface), 0.15)
 
+    def test_software_draws_coarser_while_the_scene_turns(self):
+        page = self.open("query.html")
+        self.assertTrue(page.report()["bySoftware"])
+        page.settle()
+        at_rest = page.report()["load"]
+        page.mouse("mousePressed", 800, 400)
+        for x in (820, 840):
+            page.mouse("mouseMoved", x, 400, buttons=1)
+            page.settle()
+        self.assertLess(page.report()["load"]["triangles"], at_rest["triangles"])
+        page.mouse("mouseReleased", 840, 400)
+        page.settle()
+        self.assertEqual(page.report()["load"], at_rest)
+
     def test_mouse_and_touch_turn_the_scene(self):
         page = self.open("query.html")
         before = scene(page)
