@@ -1,5 +1,5 @@
+#include "libvpm/backend/cuda/answer.h"
 #include "libvpm/backend/cuda/device_level.h"
-#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/backend/cuda/refined_kernels.h"
 #include "tests/cuda/any_body.h"
 

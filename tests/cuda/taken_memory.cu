@@ -1,5 +1,5 @@
-#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/device/cuda/device_array.h"
+#include "libvpm/device/cuda/occupancy.h"
 #include "tests/cuda/taken_memory.h"
 
 namespace vpm::testing {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/lanes.h"
 #include "libvpm/backend/cuda/views.h"
 #include "libvpm/measure/flood_rules.h"
 

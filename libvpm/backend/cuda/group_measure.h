@@ -288,7 +288,9 @@ class GroupMeasure {
     if constexpr (SeesFreeSpace<Surface>) {
       constexpr unsigned kCell = BlockTask::of_cell;
       if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
-      const PixelRectangle pixels = lanes.from(Surface::pixels_of(in_ball), kCell);
+      const PixelRectangle own = Surface::pixels_of(in_ball);
+      const PixelRectangle pixels{lanes.from(own.u0, kCell), lanes.from(own.v0, kCell),
+                                  lanes.from(own.u1, kCell), lanes.from(own.v1, kCell)};
       const double farthest = lanes.from(depth, kCell);
       return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
     } else {

@@ -116,13 +116,6 @@ class ImageTaskGroup {
     return (__ballot_sync(~0U, value) >> (threadIdx.x % 32 - lane_) & mask) != 0;
   }
 
-  __device__ static double from(double value, unsigned lane) {
-    return __shfl_sync(~0U, value, static_cast<int>(lane));
-  }
-  // Returns the value of the lane `lanes` further on, within the task.
-  __device__ static double from_next(double value, unsigned lanes) {
-    return __shfl_down_sync(~0U, value, lanes);
-  }
   // Adds up over the lanes of a task; all of them receive the sum.
   template <class Sum>
   __device__ void add_up(Sum& sum) const {
@@ -343,7 +336,7 @@ class ImageTaskGroup {
     }
     Vec3 normal;
     if (searches) normal = search.normal();
-    normal = {from(normal.x, leader), from(normal.y, leader), from(normal.z, leader)};
+    normal = Warp::from(normal, leader);
     if (is_inside && piece.weight > 0) add_piece(measure, piece, sampled, normal, found);
     return normal;
   }
@@ -393,9 +386,8 @@ class ImageTaskGroup {
     __syncwarp();
 #pragma unroll 1
     for (unsigned half = lanes_ / 2; half > 0; half /= 2) {
-      row.weight += from_next(row.weight, half);
-      row.moment += Vec3{from_next(row.moment.x, half), from_next(row.moment.y, half),
-                         from_next(row.moment.z, half)};
+      row.weight += Warp::from_next(row.weight, half);
+      row.moment += Warp::from_next(row.moment, half);
     }
     row.is_cut = any(row.is_cut);
     return row;

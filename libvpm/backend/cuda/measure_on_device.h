@@ -3,8 +3,9 @@
 
 #include <memory>
 
-#include "libvpm/backend/cuda/launch.h"
+#include "libvpm/backend/cuda/answer.h"
 #include "libvpm/backend/device_measure.h"
+#include "libvpm/device/cuda/occupancy.h"
 #include "libvpm/scene/cuda/cloud_slot.h"
 
 namespace vpm::cuda {

@@ -119,18 +119,6 @@ class PaperFlood {
   __device__ std::uint32_t degree(std::uint32_t i) const {
     return level_.graph_begin[i + 1] - level_.graph_begin[i];
   }
-  // Returns the subwarp's threads with a true `value`, the first thread as bit 0.
-  __device__ static unsigned ballot(const Subwarp& subwarp, bool value) {
-    return (__ballot_sync(subwarp.mask, value) & subwarp.mask) >> (threadIdx.x % 32 - subwarp.lane);
-  }
-  // Returns the sum of the values in a warp's lanes up to this one.
-  __device__ static unsigned sum_upto(const Subwarp& warp, unsigned value) {
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const unsigned lower = __shfl_up_sync(~0U, value, step);
-      if (warp.lane >= step) value += lower;
-    }
-    return value;
-  }
 
   // Runs steps 3 and 4 with a subwarp for each boundary sphere, or a block if it is a hub.
   __device__ void enter() {
@@ -182,7 +170,7 @@ class PaperFlood {
       const bool gives = gives_normal(word, i, j);
       const Vec3 theirs = gives ? space_.normals[i] : Vec3{};
       claim(subwarp, word == 0, i);
-      for (unsigned rest = ballot(subwarp, gives); rest != 0; rest &= rest - 1) {
+      for (unsigned rest = subwarp.which(gives); rest != 0; rest &= rest - 1) {
         const unsigned from = __ffs(static_cast<int>(rest)) - 1;
         normal += subwarp.from(theirs, from);
       }
@@ -193,7 +181,7 @@ class PaperFlood {
   // Adds to the next front those spheres of a subwarp that nobody has claimed yet.
   __device__ void claim(const Subwarp& subwarp, bool wants, std::uint32_t i) {
     const bool claimed = wants && atomicCAS(&space_.words[i], 0U, front_ + 1) == 0;
-    const unsigned all = ballot(subwarp, claimed);
+    const unsigned all = subwarp.which(claimed);
     if (all == 0) return;
     const unsigned slot = subwarp.take_slots(counters_.fronts[(front_ + 1) % 3], all);
     if (claimed) space_.inside[next_ + slot] = i;
@@ -259,12 +247,12 @@ class PaperFlood {
       for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
         const bool gives = gives_normal(words[k], spheres[k], j);
         if (gives) theirs[k] = space_.normals[spheres[k]];
-        givers[k] = ballot(warp, gives);
+        givers[k] = warp.which(gives);
         if (warp.leads()) shared_.counts[group + k] = __popc(givers[k]);
         claim(warp, words[k] == 0, spheres[k]);
       }
       __syncthreads();
-      const unsigned upto = sum_upto(warp, shared_.counts[warp.lane]);
+      const unsigned upto = Warp::sum_upto(shared_.counts[warp.lane]);
 #pragma unroll
       for (unsigned k = 0; k < HubShared::kOfThread; ++k) {
         const unsigned slot =

@@ -3,7 +3,7 @@
 
 #include <math_constants.h>
 
-#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/lanes.h"
 #include "libvpm/backend/cuda/views.h"
 
 namespace vpm::cuda {

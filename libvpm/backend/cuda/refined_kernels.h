@@ -4,14 +4,15 @@
 
 #include <type_traits>
 
+#include "libvpm/backend/cuda/answer.h"
 #include "libvpm/backend/cuda/cell_notes.h"
 #include "libvpm/backend/cuda/group_measure.h"
 #include "libvpm/backend/cuda/image_measure.h"
 #include "libvpm/backend/cuda/inside_flood.h"
-#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/backend/cuda/points.h"
 #include "libvpm/backend/cuda/task_measure.h"
 #include "libvpm/device/cuda/device_array.h"
+#include "libvpm/device/cuda/occupancy.h"
 
 namespace vpm::cuda {
 namespace {

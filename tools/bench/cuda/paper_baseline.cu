@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <string>
 
-#include "libvpm/backend/cuda/launch.h"
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/scene/cuda/device_cloud.h"
 #include "tools/bench/cuda/paper_kernels.h"

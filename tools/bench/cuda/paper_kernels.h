@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "libvpm/backend/cuda/team.h"
+#include "libvpm/backend/cuda/lanes.h"
 #include "libvpm/backend/cuda/views.h"
 #include "libvpm/backend/sphere_location.h"
 #include "libvpm/measure/paper_contact.h"

@@ -1,0 +1,106 @@
+// Deals the samples of a cell out to the lanes of a warp, and adds up what lanes and blocks find.
+#pragma once
+
+#include "libvpm/backend/cuda/views.h"
+#include "libvpm/device/cuda/subwarp.h"
+#include "libvpm/device/cuda/team.h"
+
+namespace vpm::cuda {
+
+// Sets the threads of a block: for one pose with other blocks, and for many poses alone. Registers
+// limit the refined measure: fewer finish a pose sooner, more get through more poses.
+inline constexpr unsigned kThreads = 128, kBatchThreads = 192;
+inline constexpr unsigned kPaperThreads = 256, kPaperBlocksPerProcessor = 2;
+inline constexpr unsigned kMostThreads = 256;
+
+// Returns the first of the neighbouring samples that share a direction with this lane's; `sharing`
+// has a bit for each lane.
+__device__ inline unsigned direction_leader(unsigned lane, unsigned sharing) {
+  const unsigned begin = neighbors_of(lane) * kNeighborSamples;
+  return begin + static_cast<unsigned>(__ffs(static_cast<int>(sharing >> begin))) - 1;
+}
+
+// Counts the places about its middle at which a cluster is sampled (SampleInTurn). Returns one of
+// them; an index would put them all in local memory.
+inline constexpr unsigned kPlacesAround = 4;
+__device__ inline Vec3 place_of(const Vec3 (&places)[kPlacesAround], unsigned k) {
+  return k == 0 ? places[0] : k == 1 ? places[1] : k == 2 ? places[2] : places[3];
+}
+
+// Counts the 64-bit terms of a ToolSum or ContactPlane.
+inline constexpr int kTerms = 7;
+template <class Sum>
+__device__ std::int64_t* terms_of(Sum& sum) {
+  static_assert(sizeof(Sum) == kTerms * sizeof(std::int64_t));
+  return reinterpret_cast<std::int64_t*>(&sum);
+}
+
+// Adds up over a subwarp; all its lanes receive the sum.
+template <class Sum>
+__device__ void add_up(const Subwarp& subwarp, Sum& sum) {
+  std::int64_t* const terms = terms_of(sum);
+  // Shuffles all terms in each step, so that they overlap.
+#pragma unroll 1
+  for (unsigned other = subwarp.width / 2; other > 0; other /= 2) {
+#pragma unroll
+    for (int k = 0; k < kTerms; ++k)
+      terms[k] += __shfl_xor_sync(subwarp.mask, terms[k], static_cast<int>(other),
+                                  static_cast<int>(subwarp.width));
+  }
+}
+
+// Adds up the rows of a subwarp's lanes for its first lane. Missing rows count as 0.
+__device__ inline void add_up(const Subwarp& subwarp, ClippedMoments& row) {
+#pragma unroll 1
+  for (unsigned half = subwarp.width / 2; half > 0; half /= 2) {
+    row.weight += subwarp.from_next(row.weight, half);
+    row.moment += subwarp.from_next(row.moment, half);
+  }
+  row.is_cut = subwarp.any(row.is_cut);
+}
+
+// Adds a term to a sum, atomically.
+__device__ inline void add_term(std::int64_t& sum, std::int64_t term) {
+  atomicAdd(reinterpret_cast<unsigned long long*>(&sum), static_cast<unsigned long long>(term));
+}
+
+template <class Sum>
+__device__ void add_atomically(Sum part, Sum& sum) {
+  const std::int64_t* const terms = terms_of(part);
+  std::int64_t* const totals = terms_of(sum);
+#pragma unroll
+  for (int k = 0; k < kTerms; ++k)
+    if (terms[k] != 0) add_term(totals[k], terms[k]);
+}
+
+// Adds a block's parts to `total`, which may lie in shared memory.
+__device__ inline void add_block(const RawResult& part, RawResult& total) {
+  constexpr unsigned kMostWarps = kMostThreads / 32, kCounts = kTerms;
+  __shared__ std::int64_t values[kMostWarps][kTerms + 1];
+  const ToolSum& s = part.sum;
+  const std::int64_t counts = std::int64_t{part.inside} << 32 | part.boundary;
+  std::int64_t mine[kTerms + 1] = {
+      s.volume.value,    s.force[0].value,  s.force[1].value,  s.force[2].value,
+      s.torque[0].value, s.torque[1].value, s.torque[2].value, counts};
+  const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
+  const std::int64_t sum_of_warp = Warp::add_up(mine);
+  __syncthreads();
+  if (lane % 4 == 0) values[warp][lane / 4] = sum_of_warp;
+  if (__any_sync(~0U, part.points != 0) != 0) {  // seldom
+    const auto points = static_cast<unsigned>(Subwarp(32).sum(part.points));
+    if (lane == 0) atomicAdd(&total.points, points);
+  }
+  __syncthreads();
+  if (threadIdx.x > kCounts) return;
+  std::int64_t sum = 0;
+  for (unsigned w = 0; w < blockDim.x / 32; ++w) sum += values[w][threadIdx.x];
+  if (sum == 0) return;
+  if (threadIdx.x < kCounts) {
+    add_term(terms_of(total.sum)[threadIdx.x], sum);
+  } else {
+    atomicAdd(&total.boundary, static_cast<unsigned>(sum));
+    atomicAdd(&total.inside, static_cast<unsigned>(sum >> 32));
+  }
+}
+
+}  // namespace vpm::cuda
