@@ -85,6 +85,7 @@ void parallel_for(std::size_t count, std::size_t grain,
 }
 
 struct ParallelRegion::Helpers {
+  Handover begun, done;
   tbb::task_group tasks;
 };
 
@@ -112,8 +113,15 @@ ParallelRegion::ParallelRegion() : threads_(is_in_region ? 1 : thread_count()) {
   // A thread that is new to the scheduler has no index yet (negative); it will get index 0.
   first_thread_ = std::max(tbb::this_task_arena::current_thread_index(), 0);
   is_in_region = true;
+  helpers_->begun.give();
   try {
-    for (int k = 1; k < threads_; ++k) helpers_->tasks.run([this] { help(); });
+    for (int k = 1; k < threads_; ++k) {
+      helpers_->tasks.run([this, helpers = helpers_.get()] {
+        helpers->begun.take();
+        help();
+        helpers->done.give();
+      });
+    }
   } catch (...) {
     end();
     throw;
@@ -127,6 +135,7 @@ ParallelRegion::~ParallelRegion() {
 void ParallelRegion::end() {
   is_over_.store(true, std::memory_order_release);
   helpers_->tasks.wait();
+  helpers_->done.take();
   is_in_region = false;
 }
 
