@@ -193,6 +193,29 @@ Tool::Tool(const std::string& name, const std::string& purpose) : name_(name), a
   app_.add_flag("--force", common_.force, "Overwrite outputs whatever they are now, even inputs");
 }
 
+// Reads the command line. False if it asked for the configuration, which is printed then.
+bool Tool::parse(int argc, char** argv) {
+  // Lets --dump-config pass without required options: inputs may not be known yet.
+  if (is_asked(argc, argv, "--dump-config")) {
+    for (CLI::Option* option : app_.get_options()) option->required(false);
+  }
+  refuse_cut_options(argc, argv);
+  refuse_values_of_flags(argc, argv);
+  app_.parse(argc, argv);
+  refuse_senseless_values();
+  if (dump_config_) {
+    std::cout << app_.config_to_str(true, false);
+    flush_output();
+    return false;
+  }
+  if (common_.device != "auto" && device().is_cuda() && !on_devices_) {
+    throw Error(ErrorKind::unavailable,
+                "--device " + common_.device + ": " + name_ +
+                    " computes on the CPU only; use --device cpu, or leave the option out");
+  }
+  return true;
+}
+
 int Tool::run(int argc, char** argv, const std::function<void()>& job) {
   end_of_early_failures();
   if (!on_devices_)
@@ -204,24 +227,7 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     return exit_code(kind);
   };
   try {
-    // Lets --dump-config pass without required options: inputs may not be known yet.
-    if (is_asked(argc, argv, "--dump-config")) {
-      for (CLI::Option* option : app_.get_options()) option->required(false);
-    }
-    refuse_cut_options(argc, argv);
-    refuse_values_of_flags(argc, argv);
-    app_.parse(argc, argv);
-    refuse_senseless_values();
-    if (dump_config_) {
-      std::cout << app_.config_to_str(true, false);
-      flush_output();
-      return 0;
-    }
-    if (common_.device != "auto" && device().is_cuda() && !on_devices_) {
-      throw Error(ErrorKind::unavailable,
-                  "--device " + common_.device + ": " + name_ +
-                      " computes on the CPU only; use --device cpu, or leave the option out");
-    }
+    if (!parse(argc, argv)) return 0;
     set_thread_count(common_.threads);
     job();
     flush_output();

@@ -56,6 +56,7 @@ class Tool {
   nlohmann::json parameters() const;
 
  private:
+  bool parse(int argc, char** argv);
   std::string config_name() const;
   void refuse_values_of_flags(int argc, char** argv) const;
   void refuse_senseless_values() const;

@@ -14,8 +14,8 @@ namespace vpm::tools {
 namespace {
 
 constexpr std::size_t kMostKept = 512;      // poses
-constexpr std::size_t kMostScenes = 64;     // of those that the kept poses were in
-constexpr std::size_t kMostPixels = 20000;  // of a scan
+constexpr std::size_t kMostScenes = 64;     // chosen from those that the kept poses were in
+constexpr std::size_t kMostPixels = 20000;  // chosen from a scan
 
 double diagonal_of(std::span<const Vec3f> points) {
   if (points.empty()) return 0;
