@@ -34,7 +34,7 @@ fuzz() {
   : >"$build/$target.log"
   while left=$((end - SECONDS)) && ((left > 0)); do
     VPM_FUZZ_TARGET=$target nice "$program" "$corpus" "$build/seeds/$target" "${findings[@]}" \
-      -max_total_time=$left -timeout=120 -malloc_limit_mb=320 -rss_limit_mb=2048 -max_len=16384 \
+      -max_total_time=$left -timeout=120 -report_slow_units=120 -malloc_limit_mb=320 -rss_limit_mb=2048 -max_len=16384 \
       -dict=tests/fuzz/words.dict -artifact_prefix="$found/" -print_final_stats=1 -close_fd_mask=1 \
       >>"$build/$target.log" 2>&1 && break
   done

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/core/box.h"
 #include "libvpm/model/packing.h"
 #include "libvpm/model/tool_model.h"
 #include "tests/fuzz/container_mutator.h"
@@ -20,9 +21,12 @@ void run_vpmp(Bytes input) {
     const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
     if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)
       return;
-    GraphOptions options;  // coarse: the default takes half a second for a cube
-    for (const Sphere& sphere : packing.spheres)
-      options.epsilon = std::max(options.epsilon, sphere.radius / 4);
+    // Coarse: the default takes half a second for a cube, and seconds where spheres are far
+    // smaller.
+    GraphOptions options;
+    Box box;
+    for (const Vec3& vertex : packing.solid.vertices) box.add(vertex);
+    options.epsilon = std::max(options.epsilon, norm(box.size()) / 32);
     validate(build_tool_model(packing, options), "built");
   });
 }

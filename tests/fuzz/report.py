@@ -2,17 +2,24 @@
 """Adds the logs of fuzzing to a table: report.py BUILD fuzz.json TARGET...
 
 Executions and seconds are sums over all runs that the table has seen, coverage is that of the last
-run (edges of the program), findings are the files in BUILD/findings. Exit status: 1 if there are
-findings.
+run (edges of the program), findings are the files in BUILD/findings. Command, commit and machine
+are those of the last run. Exit status: 1 if there are findings.
 """
 import json
+import os
 import pathlib
 import re
+import subprocess
 import sys
 
 
 def numbers(pattern, text):
     return [int(number) for number in re.findall(pattern, text)]
+
+
+def processor():
+    text = pathlib.Path("/proc/cpuinfo").read_text()
+    return next(iter(re.findall(r"model name\s*: (.*)", text)), "unknown")
 
 
 def main():
@@ -37,6 +44,10 @@ def main():
         print(f"{target:12} {executions:10} executions, coverage {entry['coverage']:6}, "
               f"{len(entry['findings'])} findings")
     results["targets"] = dict(sorted(results["targets"].items()))
+    results["command"] = "scripts/fuzz.sh"
+    results["commit"] = subprocess.run(["git", "rev-parse", "HEAD"], text=True, check=True,
+                                       stdout=subprocess.PIPE).stdout.strip()
+    results["machine"] = {"cores": os.cpu_count(), "processor": processor()}
     table.write_text(json.dumps(results, indent=2) + "\n")
     sys.exit(1 if found_any else 0)
 
