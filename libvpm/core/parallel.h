@@ -49,6 +49,7 @@ class ParallelRegion {
 
  private:
   struct Helpers;
+  struct HelperTask;
   // Non-owning reference to a loop body; unlike std::function it never allocates.
   struct BodyView {
     const void* body = nullptr;
