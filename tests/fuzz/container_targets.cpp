@@ -1,7 +1,4 @@
-#include <algorithm>
-
 #include "libvpm/cloud/cloud.h"
-#include "libvpm/core/box.h"
 #include "libvpm/model/packing.h"
 #include "libvpm/model/tool_model.h"
 #include "tests/fuzz/container_mutator.h"
@@ -15,19 +12,13 @@ namespace vpm::fuzz {
 
 #ifdef VPM_FUZZ_SOLID
 void run_vpmp(Bytes input) {
-  // Size of the largest packing of which a tool model is made.
+  // Sizes of the largest packing that becomes a tool model, which takes half a second for a cube.
   constexpr std::size_t kMostSpheres = 12, kMostTriangles = 40;
   expect_error_at_most([&] {
     const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
     if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)
       return;
-    // Coarse: the default takes half a second for a cube, and seconds where spheres are far
-    // smaller.
-    GraphOptions options;
-    Box box;
-    for (const Vec3& vertex : packing.solid.vertices) box.add(vertex);
-    options.epsilon = std::max(options.epsilon, norm(box.size()) / 32);
-    validate(build_tool_model(packing, options), "built");
+    validate(build_tool_model(packing, {}), "built");
   });
 }
 #endif

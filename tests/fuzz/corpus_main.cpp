@@ -1,10 +1,10 @@
 // Runs a target on the files of folders, without the fuzzer: vpm-fuzz-corpus TARGET FOLDER...
 //
 // A file may take five seconds, and 64 times its size and 256 MB of memory beyond what the process
-// has anyway. Folders that do not exist are empty. Then changes the files blindly for
-// VPM_FUZZ_SECONDS (0) seconds; VPM_FUZZ_SEED (1), a number, says how. An input that breaks a
-// promise lies in vpm-fuzz-last-TARGET of the temporary folder. `vpm-fuzz-corpus` alone lists the
-// targets.
+// has anyway; builds with a sanitizer do not measure memory. Folders that do not exist are empty.
+// Then changes the files blindly for VPM_FUZZ_SECONDS (0) seconds; VPM_FUZZ_SEED (1), a number,
+// says how. An input that breaks a promise lies in vpm-fuzz-last-TARGET of the temporary folder.
+// `vpm-fuzz-corpus` alone lists the targets.
 #include <sys/resource.h>
 
 #include <algorithm>
