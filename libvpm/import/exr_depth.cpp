@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -45,6 +46,7 @@ struct Part {
   std::uint8_t compression = 0;
   std::uint64_t bytes_per_pixel = 0;
   std::uint64_t chunks = 0;                       // as declared; 0 if it is not
+  std::set<std::string_view> names;               // of all attributes
   std::uint32_t tile_width = 0, tile_height = 0;  // 0: stored in rows
 
   bool is_tiled() const { return tile_width > 0 && tile_height > 0; }
@@ -99,6 +101,7 @@ class HeaderCheck {
       const std::string_view value = text_.substr(at_, size);
       check_length(name, type, value);
       keep(part, name, value);
+      part.names.insert(name);
       at_ += size;
     }
   }
@@ -149,7 +152,16 @@ class HeaderCheck {
     }
   }
 
+  // The format requires these; OpenEXR takes a value of its own for one that is missing, which may
+  // ask for more memory than what is declared.
+  static void check_names(const Part& part) {
+    for (const char* name : {"channels", "compression", "dataWindow", "displayWindow"})
+      if (!part.names.contains(name))
+        throw std::runtime_error("attribute " + std::string(name) + " is missing; it is damaged");
+  }
+
   void check(const Part& part) const {
+    check_names(part);
     const std::uint64_t width = part.data.width(), height = part.data.height();
     // Sums with floating point, which no declared size overflows.
     const auto as_double = [](std::uint64_t n) { return static_cast<double>(n); };

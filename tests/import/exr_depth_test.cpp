@@ -169,6 +169,15 @@ TEST(ExrDepth, TakesNoMoreMemoryForAnImageThanItsFileMayAskFor) {
   EXPECT_NE(refused(with_window("dataWindow", 0x7fffffff, 0x7fffffff)), "");
 }
 
+// Without one, OpenEXR would take a value of its own: rows by sixteens, of a file of single rows.
+TEST(ExrDepth, RefusesAHeaderThatLacksWhatDecidesItsMemory) {
+  for (const std::string name : {"channels", "compression", "dataWindow", "displayWindow"}) {
+    std::string file = make_exr(3, 2, false, {{"Z", kValues}});
+    file[file.find(name + '\0')] = 'x';
+    EXPECT_TRUE(says(refused(file), "attribute " + name + " is missing")) << refused(file);
+  }
+}
+
 TEST(ExrDepth, DamageIsRefused) {
   expect_damage_is_refused(make_exr(3, 2, true, {{"Y", kValues}}), 300,
                            [](auto bytes) { parse_exr_depth(bytes, "file", ""); });
