@@ -1,6 +1,7 @@
 // Parsers of the formats, between which parse_mesh chooses and whose contract they share.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,8 @@ RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat 
                     const std::string& node);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
 
+// Returns the format of a file of a scene, which holds meshes in nodes, if its content tells.
+std::optional<MeshFormat> scene_by_content(std::string_view text);
 bool looks_like_off(std::string_view text);
 bool looks_like_om(std::string_view bytes);
 bool looks_like_ply(std::string_view bytes);

@@ -92,9 +92,6 @@ void RawMesh::end_polygon() {
   }
 }
 
-namespace {
-
-// Returns the format of a file of a scene, which holds meshes in nodes.
 std::optional<MeshFormat> scene_by_content(std::string_view text) {
   const std::string_view start = text.substr(0, 4096);
   if (start.starts_with("glTF")) return MeshFormat::gltf;
@@ -106,6 +103,8 @@ std::optional<MeshFormat> scene_by_content(std::string_view text) {
   }
   return std::nullopt;
 }
+
+namespace {
 
 std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
   if (extension == "dae") return MeshFormat::dae;

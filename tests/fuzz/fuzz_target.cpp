@@ -20,6 +20,7 @@ constexpr Target kTargets[] = {
     {"ply", run_ply},
     {"stl", run_stl},
     {"om", run_om},
+    {"scene", run_scene},
     {"solid", run_solid},
     {"vpmp", run_vpmp, mutate_container},
 #endif

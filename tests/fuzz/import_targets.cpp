@@ -23,7 +23,7 @@ void run_cloud(Bytes input, const std::string& name, bool has_intrinsics) {
   });
 }
 
-constexpr std::size_t kMostPixels = 4096;  // largest image that is queried
+constexpr std::size_t kMostPixels = 1024;  // largest image that is queried
 
 // Reads the image alone, whatever its size, and imports it if it is small.
 template <class Parser>

@@ -11,6 +11,9 @@ import sys
 import zlib
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(SOURCE / "tests/tools"))
+import scene_files  # noqa: E402
+
 VERTICES = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 TRIANGLES = [t for a, b, c, d in QUADS for t in ((a, b, c), (a, c, d))]
@@ -233,6 +236,8 @@ def main():
         raise SystemExit(__doc__)
     folder = pathlib.Path(sys.argv[1])
     shutil.rmtree(folder, ignore_errors=True)
+    (folder / "scene").mkdir(parents=True)
+    scene_files.write_all(folder / "scene")
     for make in (meshes, images, clouds, texts, containers):
         for name, content in make():
             path = folder / name

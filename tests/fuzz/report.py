@@ -2,8 +2,8 @@
 """Adds the logs of fuzzing to a table: report.py BUILD fuzz.json TARGET...
 
 Executions and seconds are sums over all runs that the table has seen, coverage is that of the last
-run (edges of the program), findings are the files in BUILD/findings. Command, commit and machine
-are those of the last run. Exit status: 1 if there are findings.
+run (edges of the program), findings are the files in BUILD/findings. Command and commit are those
+of the last run, machines those of all runs. Exit status: 1 if there are findings.
 """
 import json
 import os
@@ -47,7 +47,9 @@ def main():
     results["command"] = "scripts/fuzz.sh"
     results["commit"] = subprocess.run(["git", "rev-parse", "HEAD"], text=True, check=True,
                                        stdout=subprocess.PIPE).stdout.strip()
-    results["machine"] = {"cores": os.cpu_count(), "processor": processor()}
+    machine = {"cores": os.cpu_count(), "processor": processor()}
+    if machine not in results.setdefault("machines", []):
+        results["machines"].append(machine)
     table.write_text(json.dumps(results, indent=2) + "\n")
     sys.exit(1 if found_any else 0)
 

@@ -11,6 +11,8 @@ void run_off(Bytes input);
 void run_ply(Bytes input);
 void run_stl(Bytes input);
 void run_om(Bytes input);
+// Takes COLLADA, glTF, 3MF and FBX, which a process of its own reads.
+void run_scene(Bytes input);
 // Takes a byte of options and an OBJ file: repaired, welded, packed.
 void run_solid(Bytes input);
 

@@ -73,16 +73,19 @@ def threemf(path, edge, name="3D/3dmodel.model", unit=' unit="millimeter"'):
              'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh>'
              f'<vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object></resources>'
              '<build><item objectid="1"/></build></model>')
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("[Content_Types].xml", '<?xml version="1.0" encoding="UTF-8"?><Types '
+    with zipfile.ZipFile(path, "w") as archive:
+        def add(name, text):
+            archive.writestr(zipfile.ZipInfo(name), text, zipfile.ZIP_DEFLATED)  # without the time of day
+
+        add("[Content_Types].xml", '<?xml version="1.0" encoding="UTF-8"?><Types '
                          'xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" '
                          'ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" '
                          'ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>')
-        archive.writestr("_rels/.rels", '<?xml version="1.0" encoding="UTF-8"?><Relationships '
+        add("_rels/.rels", '<?xml version="1.0" encoding="UTF-8"?><Relationships '
                          'xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship '
                          f'Target="/{name}" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"'
                          '/></Relationships>')
-        archive.writestr(name, model)
+        add(name, model)
 
 
 def fbx(edge, unit_in_cm):
