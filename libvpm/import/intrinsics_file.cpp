@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/import/scan_facts.h"
 
 namespace vpm {
 namespace {
@@ -100,12 +100,6 @@ std::optional<Intrinsics> rectified(const json& object) {
   return std::nullopt;
 }
 
-std::string text_of(const Intrinsics& k) {
-  char text[128];
-  std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g", k.fx, k.fy, k.cx, k.cy);
-  return text;
-}
-
 bool are_same(const Intrinsics& a, const Intrinsics& b) {
   return a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
 }
@@ -116,17 +110,17 @@ void choose_rectified(const json& object, IntrinsicsFile& file) {
   const bool differs = p && !are_same(*p, file.intrinsics);
   if (!has_distortion(object)) {
     if (differs)
-      file.remarks.push_back({false, "its K is used, " + text_of(file.intrinsics) +
+      file.remarks.push_back({false, "its K is used, " + intrinsics_text(file.intrinsics) +
                                          "; if the image is rectified, give `intrinsics` " +
-                                         text_of(*p) + ", its P"});
+                                         intrinsics_text(*p) + ", its P"});
     return;
   }
   if (differs) {
     file.remarks.push_back({true,
                             "the lens distorts, so that the depth image must be a rectified "
                             "one: its P is used, " +
-                                text_of(*p) + ", which holds for that, and not its K, " +
-                                text_of(file.intrinsics)});
+                                intrinsics_text(*p) + ", which holds for that, and not its K, " +
+                                intrinsics_text(file.intrinsics)});
     file.intrinsics = *p;
     return;
   }

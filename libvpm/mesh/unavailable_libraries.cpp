@@ -7,7 +7,7 @@ namespace vpm {
 
 #ifdef VPM_WITHOUT_GLU
 PolygonCutting cut_polygon(std::span<const Vec2>) {
-  return {.fault = CuttingFault::unavailable};
+  return {{}, CuttingFault::unavailable, {}};
 }
 #endif
 
