@@ -31,9 +31,9 @@ def source(report):
               report.get("device") or report.get("settings", {}).get("device"))
     if device:
         return f"`{report['command']}`, commit {report['commit'][:7]}, {device}."
-    machine = report["machine"]
-    return (f"`{report['command']}`, commit {report['commit'][:7]}, {machine['cores']} cores of "
-            f"{machine['processor']}.")
+    machines = report.get("machines") or [report["machine"]]
+    cores = ", ".join(f"{machine['cores']} cores of {machine['processor']}" for machine in machines)
+    return f"`{report['command']}`, commit {report['commit'][:7]}, {cores}."
 
 
 def percent(value, digits=3):
@@ -326,6 +326,12 @@ def reached(accuracy, timing, replay, packing, cuda):
     return table(["with 1000 spheres and a camera at 1 m, unless told otherwise", "median or mean"], rows)
 
 
+def fuzz(report):
+    rows = [[name, thousands(t["executions"]), f"{t['seconds'] / 60:.0f}", thousands(t["coverage"]), len(t["findings"])]
+            for name, t in report["targets"].items()]
+    return table(["reader", "executions", "minutes", "edges covered", "findings"], rows)
+
+
 # Maps each page to its tables: the function that makes it, and the suites whose results it takes.
 PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "packing", "cuda")},
          "tests/results/README.md": {
@@ -339,7 +345,7 @@ PAGES = {"README.md": {"reached": (reached, "accuracy", "timing", "replay", "pac
              "replay stream": (replay_stream, "replay"), "replay stream on a device": (replay_stream, "replay_cuda"),
              "cuda": (cuda, "cuda"), "cuda devices": (cuda_devices, "cuda_devices"),
              "cuda frames": (cuda_frames, "cuda_frames"), "cuda million": (cuda_frame_rows, "cuda_frames_million"),
-             "scaling": (scaling, "scaling")}}
+             "scaling": (scaling, "scaling"), "fuzz": (fuzz, "fuzz")}}
 
 
 def commits(suites, reports):

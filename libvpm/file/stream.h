@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,5 +60,11 @@ void write_all(const std::string& path, std::string_view text);
 
 // Removes the temporary files of unfinished outputs. Async-signal-safe, for signal handlers.
 void remove_unfinished_output();
+
+// Returns the bytes of memory that a library may take to decode a file: 64 times its size and
+// 256 MB, which no sound file comes near.
+inline std::uint64_t most_memory(std::uint64_t file_bytes) {
+  return 64 * file_bytes + 256'000'000;
+}
 
 }  // namespace vpm::file

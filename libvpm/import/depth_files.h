@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/file/stream.h"
 #include "libvpm/import/remark.h"
 
 namespace vpm {
@@ -48,12 +49,6 @@ RawDepth parse_npy_depth(std::span<const std::byte> bytes, const std::string& na
 
 // Throws Error(refused) for sizes of 0 and more than kMaxPoints pixels.
 void check_image_size(std::uint64_t width, std::uint64_t height, const std::string& name);
-
-// Returns the bytes of memory that a compressed image may ask for before it is decoded: 64 times
-// the file and 256 MB, which no depth image of a sensor comes near.
-inline std::uint64_t most_memory(std::uint64_t file_bytes) {
-  return 64 * file_bytes + 256'000'000;
-}
 
 // Throws Error(refused) if the values, floats, of a compressed image would take more than that.
 void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,

@@ -46,7 +46,7 @@ struct Part {
   std::uint8_t compression = 0;
   std::uint64_t bytes_per_pixel = 0;
   std::uint64_t chunks = 0;                       // as declared; 0 if it is not
-  std::set<std::string_view> names;               // of all attributes
+  std::set<std::string_view> names;               // all attributes
   std::uint32_t tile_width = 0, tile_height = 0;  // 0: stored in rows
 
   bool is_tiled() const { return tile_width > 0 && tile_height > 0; }
@@ -186,10 +186,10 @@ class HeaderCheck {
         sizeof(float) * (as_double(width) * as_double(height) +
                          as_double(part.display.width()) * as_double(part.display.height())) +
         kBuffers * pixels_at_once * as_double(part.bytes_per_pixel);
-    if (memory > as_double(most_memory(text_.size())))
+    if (memory > as_double(file::most_memory(text_.size())))
       throw std::runtime_error("it asks for " + std::to_string(std::uint64_t(memory / 1e6)) +
                                " MB of memory, a file of its size for " +
-                               std::to_string(most_memory(text_.size()) / 1'000'000) +
+                               std::to_string(file::most_memory(text_.size()) / 1'000'000) +
                                " at most; it is damaged, or store it with less compression");
   }
 
@@ -222,7 +222,7 @@ class HeaderCheck {
 
 // Throws std::runtime_error if an attribute is longer than the file or than its value, if the image
 // cannot have its rows or tiles in the file, or if reading it would take more memory than a file of
-// this size may ask for (most_memory). Passes over what OpenEXR itself refuses.
+// this size may ask for (file::most_memory). Passes over what OpenEXR itself refuses.
 void check_exr_header(std::span<const std::byte> bytes) {
   HeaderCheck(bytes).run();
 }

@@ -92,7 +92,7 @@ void check_image_size(std::uint64_t width, std::uint64_t height, const std::stri
 
 void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,
                         const std::string& name) {
-  if (sizeof(float) * width * height <= most_memory(file_bytes)) return;
+  if (sizeof(float) * width * height <= file::most_memory(file_bytes)) return;
   refuse("an image of " + std::to_string(width) + " x " + std::to_string(height) +
              " pixels does not come from a file of " + std::to_string(file_bytes) +
              " bytes; it is truncated or damaged",

@@ -70,8 +70,8 @@ using TiffFile = std::unique_ptr<TIFF, CloseTiff>;
 
 TiffFile open_tiff(TiffSource& source, const std::string& name) {
   TIFFOpenOptions* const options = TIFFOpenOptionsAlloc();
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options,
-                                      static_cast<tmsize_t>(most_memory(source.bytes.size())));
+  TIFFOpenOptionsSetMaxSingleMemAlloc(
+      options, static_cast<tmsize_t>(file::most_memory(source.bytes.size())));
   TIFFOpenOptionsSetErrorHandlerExtR(options, keep_first_fault, &source);
   TIFFOpenOptionsSetWarningHandlerExtR(options, pass_over, nullptr);
   TIFF* const file = TIFFClientOpenExt(name.c_str(), "rm", &source, read_bytes, write_no_bytes,
@@ -172,7 +172,7 @@ class TiffReader {
   std::size_t buffer_size(tmsize_t size, std::uint64_t values) const {
     const auto bytes = static_cast<std::uint64_t>(std::max<tmsize_t>(size, 0));
     const std::uint64_t of_image = sizeof(float) * image_.values.size();
-    if (bytes == 0 || of_image + bytes > most_memory(source_.bytes.size()) ||
+    if (bytes == 0 || of_image + bytes > file::most_memory(source_.bytes.size()) ||
         bytes < values * type_.size)
       fail(source_.fault);
     return bytes;

@@ -8,11 +8,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/error.h"
@@ -41,16 +44,35 @@ std::string read_to_end(int pipe) {
   }
 }
 
+void set_limit(int resource, rlim_t most) {
+  rlimit limit{};
+  if (::getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min(limit.rlim_cur, most);
+  ::setrlimit(resource, &limit);
+}
+
+void apply(const ChildLimits& limits) {
+  set_limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_CPU, limits.seconds);
+#ifdef __linux__
+  std::uint64_t pages = 0;  // all that the process has mapped
+  std::ifstream("/proc/self/statm") >> pages;
+  if (pages == 0) return;
+  set_limit(RLIMIT_AS, pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + limits.memory);
+#endif
+}
+
 // Ends the child without running what belongs to the parent: its destructors, and handlers of
 // signals, which remove the parent's unfinished files.
-[[noreturn]] void be_child(int pipe, const std::function<std::string()>& work) {
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGHUP})
+[[noreturn]] void be_child(int pipe, const std::function<std::string()>& work,
+                           const ChildLimits& limits) {
+  for (const int signal :
+       {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGINT, SIGTERM, SIGHUP})
     std::signal(signal, SIG_DFL);
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
+  apply(limits);
   const int nowhere = ::open("/dev/null", O_WRONLY);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
   ::_exit(write_all(pipe, work() + kComplete) ? EXIT_SUCCESS : EXIT_FAILURE);
@@ -62,13 +84,13 @@ std::string read_to_end(int pipe) {
 
 }  // namespace
 
-std::optional<std::string> run_in_child(const std::function<std::string()>& work) {
+ChildResult run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) refuse_child();
   const pid_t child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
-    be_child(ends[1], work);
+    be_child(ends[1], work, limits);
   }
   ::close(ends[1]);
   if (child < 0) {
@@ -88,9 +110,11 @@ std::optional<std::string> run_in_child(const std::function<std::string()>& work
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   const bool is_good = WIFEXITED(status) && WEXITSTATUS(status) == EXIT_SUCCESS;
-  if (!is_good || !bytes.ends_with(kComplete)) return std::nullopt;
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+    return {ChildResult::End::out_of_time, {}};
+  if (!is_good || !bytes.ends_with(kComplete)) return {ChildResult::End::crashed, {}};
   bytes.pop_back();
-  return bytes;
+  return {ChildResult::End::returned, std::move(bytes)};
 }
 
 }  // namespace vpm

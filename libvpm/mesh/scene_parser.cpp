@@ -23,6 +23,7 @@
 #include <system_error>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/mesh/child_process.h"
 #include "libvpm/mesh/mesh_parsers.h"
@@ -272,6 +273,11 @@ RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat f
   } catch (const std::exception& error) {
     fault = error.what();
   }
+  if (fault.find("bad_alloc") != fault.npos)
+    refuse("assimp asks for more than " +
+               std::to_string(file::most_memory(bytes.size()) / 1'000'000) +
+               " MB of memory for this " + name_of(format) + " file; it is damaged",
+           name, kSaveAgain);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     // Messages that name the buffer in memory, or no reader, say nothing of the file.
     const bool says_why = !fault.empty() && fault.find("No suitable reader") == fault.npos &&
@@ -360,13 +366,19 @@ RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat 
     bytes = changed;
   }
   const auto read = [&] { return read_scene(bytes, name, format, node); };
-  const std::optional<std::string> result = run_in_child([&] { return scene_as_bytes(read); });
-  if (!result) {
-    refuse(std::string("assimp, the library that reads ") + name_of(format) +
-               " here, crashed on this file",
+  // A second for each megabyte, and what a busy machine may need for the smallest.
+  const ChildLimits limits{file::most_memory(bytes.size()),
+                           4 + static_cast<unsigned>(bytes.size() / 1'000'000)};
+  const ChildResult result = run_in_child([&] { return scene_as_bytes(read); }, limits);
+  if (result.end != ChildResult::End::returned) {
+    refuse(std::string("assimp, the library that reads ") + name_of(format) + " here, " +
+               (result.end == ChildResult::End::crashed
+                    ? "crashed on this file"
+                    : "takes more than " + std::to_string(limits.seconds) +
+                          " s of the processor for this file; it is damaged"),
            name, kSaveAgain);
   }
-  RawMesh mesh = scene_from_bytes(*result);
+  RawMesh mesh = scene_from_bytes(result.bytes);
   mesh.format = format;
   mesh.name = name;
   return mesh;

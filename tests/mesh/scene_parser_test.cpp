@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
+#include <new>
 #include <span>
 
 #include "libvpm/core/error.h"
@@ -15,10 +17,17 @@
 namespace vpm::test {
 namespace {
 
+constexpr ChildLimits kLimits{100'000'000, 5};
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+constexpr bool kKeepsItsLimits = false;  // without memory, a sanitizer ends the program
+#else
+constexpr bool kKeepsItsLimits = true;
+#endif
+
 TEST(ChildProcess, ReturnsWhatItsWorkDoes) {
   const std::string large(1 << 20, 'x');  // more than a pipe holds
-  EXPECT_EQ(run_in_child([&] { return large; }), large);
-  EXPECT_EQ(run_in_child([] { return std::string(); }), "");
+  EXPECT_EQ(run_in_child([&] { return large; }, kLimits).bytes, large);
+  EXPECT_EQ(run_in_child([] { return std::string(); }, kLimits).end, ChildResult::End::returned);
 }
 
 TEST(ChildProcess, ACrashIsSeen) {
@@ -27,8 +36,25 @@ TEST(ChildProcess, ACrashIsSeen) {
       std::raise(signal);
       return std::string("done");
     };
-    EXPECT_EQ(run_in_child(crash), std::nullopt) << signal;
+    EXPECT_EQ(run_in_child(crash, kLimits).end, ChildResult::End::crashed) << signal;
   }
+}
+
+TEST(ChildProcess, HasLimitedMemoryAndTime) {
+  const auto take_memory = [] {
+    try {
+      return std::string(300'000'000, 'x').substr(0, 1);
+    } catch (const std::bad_alloc&) {
+      return std::string("no memory");
+    }
+  };
+  if (kKeepsItsLimits) {
+    EXPECT_EQ(run_in_child(take_memory, kLimits).bytes, "no memory");
+  }
+  const auto take_time = []() -> std::string {
+    for (;;) std::clock();
+  };
+  EXPECT_EQ(run_in_child(take_time, {kLimits.memory, 1}).end, ChildResult::End::out_of_time);
 }
 
 bool reads_scenes() {
