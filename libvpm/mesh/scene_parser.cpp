@@ -18,8 +18,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <system_error>
 
 #include "libvpm/core/error.h"
@@ -273,11 +273,7 @@ RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat f
   } catch (const std::exception& error) {
     fault = error.what();
   }
-  if (fault.find("bad_alloc") != fault.npos)
-    refuse("assimp asks for more than " +
-               std::to_string(file::most_memory(bytes.size()) / 1'000'000) +
-               " MB of memory for this " + name_of(format) + " file; it is damaged",
-           name, kSaveAgain);
+  if (fault.find("bad_alloc") != fault.npos) throw std::bad_alloc();
   if (scene == nullptr || scene->mRootNode == nullptr) {
     // Messages that name the buffer in memory, or no reader, say nothing of the file.
     const bool says_why = !fault.empty() && fault.find("No suitable reader") == fault.npos &&
@@ -317,10 +313,14 @@ void take(std::vector<T>& list, std::size_t count, std::string_view& bytes) {
   bytes.remove_prefix(count * sizeof(T));
 }
 
-// Returns what read_scene does, a mesh or an error, as bytes: a line of JSON, then the lists.
-std::string scene_as_bytes(const std::function<RawMesh()>& read) {
+// Returns what read_scene does, a mesh or an error, as bytes: a line of JSON, then the lists. The
+// error is `no_memory` where memory ends.
+std::string scene_as_bytes(const std::function<RawMesh()>& read, const Error& no_memory) {
   constexpr auto kReplace = nlohmann::json::error_handler_t::replace;
   nlohmann::json head;
+  const auto take_error = [&](const Error& fault) {
+    head = {{"problem", fault.problem()}, {"where", fault.where()}, {"hint", fault.hint()}};
+  };
   try {
     const RawMesh mesh = read();
     head = {{"vertices", mesh.vertices.size()},
@@ -334,9 +334,9 @@ std::string scene_as_bytes(const std::function<RawMesh()>& read) {
     append(mesh.polygon_end, bytes);
     return bytes;
   } catch (const Error& fault) {
-    head = {{"problem", fault.problem()}, {"where", fault.where()}, {"hint", fault.hint()}};
+    take_error(fault);
   } catch (const std::exception&) {
-    head = {{"problem", "not enough memory for this file"}, {"where", ""}, {"hint", ""}};
+    take_error(no_memory);
   }
   return head.dump(-1, ' ', false, kReplace) + "\n";
 }
@@ -369,7 +369,11 @@ RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat 
   // A second for each megabyte, and what a busy machine may need for the smallest.
   const ChildLimits limits{file::most_memory(bytes.size()),
                            4 + static_cast<unsigned>(bytes.size() / 1'000'000)};
-  const ChildResult result = run_in_child([&] { return scene_as_bytes(read); }, limits);
+  const Error no_memory(ErrorKind::refused,
+                        "assimp asks for more than " + std::to_string(limits.memory / 1'000'000) +
+                            " MB of memory for this " + name_of(format) + " file; it is damaged",
+                        name, kSaveAgain);
+  const ChildResult result = run_in_child([&] { return scene_as_bytes(read, no_memory); }, limits);
   if (result.end != ChildResult::End::returned) {
     refuse(std::string("assimp, the library that reads ") + name_of(format) + " here, " +
                (result.end == ChildResult::End::crashed

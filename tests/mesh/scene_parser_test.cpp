@@ -27,7 +27,9 @@ constexpr bool kKeepsItsLimits = true;
 TEST(ChildProcess, ReturnsWhatItsWorkDoes) {
   const std::string large(1 << 20, 'x');  // more than a pipe holds
   EXPECT_EQ(run_in_child([&] { return large; }, kLimits).bytes, large);
-  EXPECT_EQ(run_in_child([] { return std::string(); }, kLimits).end, ChildResult::End::returned);
+  const ChildResult empty = run_in_child([] { return std::string(); }, kLimits);
+  EXPECT_EQ(empty.end, ChildResult::End::returned);
+  EXPECT_EQ(empty.bytes, "");
 }
 
 TEST(ChildProcess, ACrashIsSeen) {
