@@ -145,7 +145,8 @@ void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
   if (bytes.empty()) refuse("the file is empty", name);
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string_view text = content;
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
     text.remove_prefix(kByteOrderMark.size());
@@ -154,7 +155,7 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
-  if (const auto scene = scene_by_content(text)) return parse_scene(text, name, *scene, node);
+  if (const auto scene = scene_by_content(content)) return parse_scene(text, name, *scene, node);
   refuse_foreign(bytes, text, name);
   if (const auto scene = scene_by_extension(extension))
     return parse_scene(text, name, *scene, node);

@@ -1,6 +1,3 @@
-#include <functional>
-#include <string>
-
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/model/packing.h"
 #include "libvpm/model/tool_model.h"
@@ -22,28 +19,38 @@ void run_vpmp(Bytes input) {
     const Packing packing = parse_packing(with_mended_checksums(input), "x.vpmp");
     if (packing.spheres.size() > kMostSpheres || packing.solid.triangles.size() > kMostTriangles)
       return;
-    const std::string bytes = text_of(input);
-    if (std::hash<std::string>()(bytes) % kBuiltOf != 0) return;
+    if (Choice(input).one_of(kBuiltOf) != 0) return;
     validate(build_tool_model(packing, {}), "built");
   });
 }
 #endif
 
 void run_vpmg(Bytes input) {
-  expect_error_at_most(
-      [&] { expect_sound_answers(parse_tool_model(with_mended_checksums(input), "x.vpmg")); });
+  expect_error_at_most([&] {
+    expect_sound_answers(parse_tool_model(with_mended_checksums(input), "x.vpmg"), Choice(input));
+  });
 }
 
 void run_vpmc(Bytes input) {
-  expect_error_at_most(
-      [&] { expect_sound_answers(parse_cloud(with_mended_checksums(input), "x.vpmc")); });
+  expect_error_at_most([&] {
+    expect_sound_answers(parse_cloud(with_mended_checksums(input), "x.vpmc"), Choice(input));
+  });
 }
 
 void run_container(Bytes input) {
   const std::vector<std::byte> bytes(input.begin(), input.end());
-  expect_error_at_most([&] { parse_packing(bytes, "x"); });
-  expect_error_at_most([&] { parse_tool_model(bytes, "x"); });
-  expect_error_at_most([&] { parse_cloud(bytes, "x"); });
+  expect_error_at_most([&] {
+    switch (Choice(input).one_of(3)) {
+      case 0:
+        parse_packing(bytes, "x");
+        return;
+      case 1:
+        parse_tool_model(bytes, "x");
+        return;
+      default:
+        parse_cloud(bytes, "x");
+    }
+  });
 }
 
 }  // namespace vpm::fuzz

@@ -47,4 +47,20 @@ inline std::string text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+// Decides by the bytes of an input alone what is done with it where doing everything would be slow.
+class Choice {
+ public:
+  explicit Choice(Bytes input) : rest_(std::hash<std::string>()(text_of(input))) {}
+
+  // Returns a number less than `ways`, each about as often; calls do not depend on each other.
+  std::size_t one_of(std::size_t ways) {
+    const std::size_t chosen = rest_ % ways;
+    rest_ /= ways;
+    return chosen;
+  }
+
+ private:
+  std::size_t rest_;
+};
+
 }  // namespace vpm::fuzz

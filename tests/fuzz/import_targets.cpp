@@ -19,7 +19,7 @@ void run_cloud(Bytes input, const std::string& name, bool has_intrinsics) {
     if (has_intrinsics) options.intrinsics = {20, 20, 7.5, 5.5};
     const ImportedCloud imported = import_cloud(input, name, options);
     validate(imported.cloud, "imported");
-    expect_sound_answers(imported.cloud);
+    expect_sound_answers(imported.cloud, Choice(input));
   });
 }
 
@@ -35,7 +35,7 @@ void run_depth(Bytes input, const std::string& name, const Parser& parse) {
     if (raw.values.size() > kMostPixels) return;
     ImportOptions options;
     options.intrinsics = {20, 20, 7.5, 5.5};
-    expect_sound_answers(import_cloud(input, name, options).cloud);
+    expect_sound_answers(import_cloud(input, name, options).cloud, Choice(input));
   });
 }
 

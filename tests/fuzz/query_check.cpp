@@ -6,7 +6,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
-#include "tests/fuzz/fuzz_target.h"
+#include "libvpm/scene/prepared_cloud.h"
 
 namespace vpm::fuzz {
 namespace {
@@ -24,7 +24,7 @@ void expect_sound(const Result& result) {
     fail("a fraction of " + std::to_string(result.volume_fraction));
 }
 
-QueryOptions options_of(int way, bool is_organised) {
+QueryOptions options_of(std::size_t way, bool is_organised) {
   QueryOptions options;
   options.measure = way == 1 ? Measure::paper : Measure::refined;
   options.counts_points = way == 2;
@@ -33,47 +33,36 @@ QueryOptions options_of(int way, bool is_organised) {
   return options;
 }
 
-Vec3 middle_of(const PreparedCloud& cloud) {
-  return cloud.origin() + widen(cloud.positions()[cloud.positions().size() / 2]);
+// Asks before the cloud or where its middle is.
+void expect_sound_answers(const ToolModel& tool, const PreparedCloud& cloud, Choice choice) {
+  Pose pose{{}, {0, 0, 1}};
+  if (choice.one_of(2) == 1 && !cloud.positions().empty()) {
+    const Vec3 middle = cloud.origin() + widen(cloud.positions()[cloud.positions().size() / 2]);
+    pose.translation = middle - tool.center_of_mass;
+  }
+  const std::size_t way = choice.one_of(4);
+  ToolQuery query(tool, options_of(way, cloud.is_organised()));
+  expect_sound(query.run(cloud, pose));
+  if (way == 3) expect_sound(query.run(cloud, pose));
 }
 
 }  // namespace
 
-void expect_sound_answers(const ToolModel& tool, const PreparedCloud& cloud, const Pose& pose) {
-  for (int way = 0; way < 4; ++way) {
-    expect_error_at_most([&] {
-      ToolQuery query(tool, options_of(way, cloud.is_organised()));
-      const Result first = query.run(cloud, pose);
-      expect_sound(first);
-      if (way == 3) expect_sound(query.run(cloud, pose));
-    });
-  }
-}
-
-void expect_sound_answers(const Cloud& cloud) {
+void expect_sound_answers(const Cloud& cloud, Choice choice) {
   static const ToolModel cube = read_tool_model(kGolden + "cube.vpmg");
   if (cloud.positions.size() > kMostPoints) return;
   if (cloud.sensor) {
     const Camera& camera = cloud.sensor->camera;
     if (std::size_t{camera.width} * camera.height > kMostPixels) return;
   }
-  for (const Denoising denoising : {Denoising::on, Denoising::off}) {
-    expect_error_at_most([&] {
-      const PreparedCloud prepared(cloud, denoising);
-      expect_sound_answers(cube, prepared, {{}, {0, 0, 1}});
-      if (!prepared.positions().empty())
-        expect_sound_answers(cube, prepared, {{}, middle_of(prepared) - cube.center_of_mass});
-    });
-  }
+  const PreparedCloud prepared(cloud, choice.one_of(2) == 0 ? Denoising::on : Denoising::off);
+  expect_sound_answers(cube, prepared, choice);
 }
 
-void expect_sound_answers(const ToolModel& tool) {
+void expect_sound_answers(const ToolModel& tool, Choice choice) {
   static const PreparedCloud wall(read_cloud(kGolden + "wall.vpmc")),
       scattered(read_cloud(kGolden + "scattered.vpmc"));
-  for (const PreparedCloud* cloud : {&wall, &scattered}) {
-    expect_sound_answers(tool, *cloud, {{}, {0, 0, 1}});
-    expect_sound_answers(tool, *cloud, {{}, middle_of(*cloud) - tool.center_of_mass});
-  }
+  expect_sound_answers(tool, choice.one_of(2) == 0 ? wall : scattered, choice);
 }
 
 }  // namespace vpm::fuzz

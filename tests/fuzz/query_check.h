@@ -1,19 +1,18 @@
-// Asks queries of what readers accept.
+// Asks queries of what readers accept. Each has several ways to ask, of which a choice takes one:
+// all of them together would take most of the time that fuzzing has.
 #pragma once
 
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace vpm::fuzz {
 
-// Asks in every way at this pose; results must be finite, and fractions of 0 to 1.
-void expect_sound_answers(const ToolModel& tool, const PreparedCloud& cloud, const Pose& pose);
+// Asks for the cube of formats/golden before the cloud or inside it, unless the cloud is large.
+// Results must be finite, and fractions of 0 to 1.
+void expect_sound_answers(const Cloud& cloud, Choice choice);
 
-// Asks where the cube of formats/golden touches the cloud, unless the cloud is large.
-void expect_sound_answers(const Cloud& cloud);
-
-// Asks the tool in both clouds of formats/golden.
-void expect_sound_answers(const ToolModel& tool);
+// Asks for the tool in one of the clouds of formats/golden.
+void expect_sound_answers(const ToolModel& tool, Choice choice);
 
 }  // namespace vpm::fuzz

@@ -1,6 +1,7 @@
 #include "tools/common/json_config.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -24,9 +25,12 @@ std::string text_of(const std::string& key, const json& value) {
 // Returns a configuration of at most a million bytes, far more than all options take.
 std::string whole_text(std::istream& input) {
   constexpr std::size_t kLongest = 1'000'000;
-  std::string text(kLongest + 1, '\0');
-  input.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(input.gcount()));
+  std::string text;
+  std::array<char, 4096> block{};
+  do {
+    input.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(input.gcount()));
+  } while (input && text.size() <= kLongest);
   if (text.size() > kLongest)
     throw CLI::FileError("the configuration is longer than " + std::to_string(kLongest) + " bytes");
   return text;
