@@ -5,12 +5,11 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
-#include "libvpm/file/text.h"
+#include "libvpm/file/scan_format.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/point_files.h"
 #include "libvpm/import/point_scan.h"
@@ -18,62 +17,17 @@
 namespace vpm {
 namespace {
 
-// Formats of depth images and clouds, told apart by their content.
-enum class FileFormat { png, exr, tiff, netpbm, npy, pcd, ply };
-
-using std::string_view_literals::operator""sv;
-
-struct Start {
-  std::string_view bytes;
-  FileFormat format;
-};
-
-constexpr Start kStarts[] = {
-    {"\x89PNG\r\n\x1a\n"sv, FileFormat::png},
-    {"\x76\x2f\x31\x01"sv, FileFormat::exr},
-    {"II*\0"sv, FileFormat::tiff},
-    {"MM\0*"sv, FileFormat::tiff},
-    {"II+\0"sv, FileFormat::tiff},
-    {"MM\0+"sv, FileFormat::tiff},
-    {"\x93NUMPY"sv, FileFormat::npy},
-    {"ply\n"sv, FileFormat::ply},
-    {"ply\r"sv, FileFormat::ply},
-    {"# .PCD"sv, FileFormat::pcd},
-    {"VERSION"sv, FileFormat::pcd},
-    {"FIELDS"sv, FileFormat::pcd},
-};
-
-// True if comments come first, as in "# .PCD v0.7" in other words, and then an entry of a PCD's
-// header: other texts begin with comments too.
-bool is_commented_pcd(std::string_view text) {
-  if (!text.starts_with('#')) return false;
-  file::TextCursor cursor(text);
-  while (const auto line = cursor.line()) {
-    const std::vector<std::string_view> words = file::split_words(*line);
-    if (words.empty() || words[0].starts_with('#')) continue;
-    return words[0] == "VERSION" || words[0] == "FIELDS" || words[0] == "COLUMNS";
-  }
-  return false;
-}
-
-bool is_netpbm(std::string_view text) {
-  return text.size() > 2 && text[0] == 'P' && "23456fF"sv.find(text[1]) != std::string_view::npos &&
-         " \t\r\n#"sv.find(text[2]) != std::string_view::npos;
-}
+using file::ScanFormat;
 
 // Throws Error(refused), naming `name` and what the file seems to be, if it is none of these.
-FileFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
-  const std::string_view text = file::as_text(bytes);
-  if (text.empty()) refuse("the file is empty", name, "give a depth image or a cloud");
+ScanFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
+  if (bytes.empty()) refuse("the file is empty", name, "give a depth image or a cloud");
   if (const auto other = file::foreign_content(bytes))
     refuse("this is " + other->what, name,
            other->holds == file::Holds::mesh
                ? "give a depth image or a cloud, or the mesh to vpm-pack"
                : other->next);
-  for (const Start& start : kStarts)
-    if (text.starts_with(start.bytes)) return start.format;
-  if (is_netpbm(text)) return FileFormat::netpbm;
-  if (is_commented_pcd(text)) return FileFormat::pcd;
+  if (const auto format = file::scan_format(bytes)) return *format;
   refuse("neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY by its content", name,
          "give a depth image or a cloud");
 }
@@ -83,16 +37,16 @@ std::size_t count_invalid(const DepthImage& depth) {
                                                 [](float d) { return !is_measured(d); }));
 }
 
-RawDepth parse_depth(FileFormat format, std::span<const std::byte> bytes, const std::string& name,
+RawDepth parse_depth(ScanFormat format, std::span<const std::byte> bytes, const std::string& name,
                      const ImportOptions& options) {
   switch (format) {
-    case FileFormat::exr:
+    case ScanFormat::exr:
       return parse_exr_depth(bytes, name, options.channel);
-    case FileFormat::tiff:
+    case ScanFormat::tiff:
       return parse_tiff_depth(bytes, name);
-    case FileFormat::netpbm:
+    case ScanFormat::netpbm:
       return parse_netpbm_depth(bytes, name);
-    case FileFormat::npy:
+    case ScanFormat::npy:
       return parse_npy_depth(bytes, name);
     default:
       return parse_png_depth(bytes, name);
@@ -125,7 +79,7 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
          name, cure);
 }
 
-ImportedScan scan_of_image(FileFormat format, std::span<const std::byte> bytes,
+ImportedScan scan_of_image(ScanFormat format, std::span<const std::byte> bytes,
                            const std::string& name, const ImportOptions& options) {
   if (!options.intrinsics) {
     throw Error(ErrorKind::invalid_argument,
@@ -193,14 +147,14 @@ ImportedScan scan_of_depth(const RawDepth& raw, const Intrinsics& k, const Pose&
 
 ImportedScan import_scan(std::span<const std::byte> bytes, const std::string& name,
                          const ImportOptions& options) {
-  const FileFormat format = format_of(bytes, name);
-  const bool holds_points = format == FileFormat::pcd || format == FileFormat::ply;
+  const ScanFormat format = format_of(bytes, name);
+  const bool holds_points = format == ScanFormat::pcd || format == ScanFormat::ply;
   ImportedScan scan =
-      holds_points ? scan_of_points(format == FileFormat::pcd ? parse_pcd(bytes, name)
+      holds_points ? scan_of_points(format == ScanFormat::pcd ? parse_pcd(bytes, name)
                                                               : parse_ply_points(bytes, name),
                                     name, options)
                    : scan_of_image(format, bytes, name, options);
-  if (!options.channel.empty() && format != FileFormat::exr)
+  if (!options.channel.empty() && format != ScanFormat::exr)
     scan.remarks.push_back({true, "`channel` is not used: it is no OpenEXR image"});
   return scan;
 }

@@ -10,6 +10,7 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
+#include "libvpm/file/scan_format.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/mesh/mesh_parsers.h"
@@ -132,15 +133,13 @@ bool is_table_of_points(std::string_view text) {
 }
 
 // Refuses what is known to be something else than a mesh, by name.
-void refuse_foreign(std::span<const std::byte> bytes, std::string_view text,
-                    const std::string& name) {
+void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
   if (const auto other = file::foreign_content(bytes))
     refuse("this is " + other->what, name, other->holds == file::Holds::scan ? hint : other->next);
-  if (text.starts_with("\x89PNG")) refuse("this is a PNG picture", name, hint);
-  if (text.starts_with("\x76\x2f\x31\x01")) refuse("this is an OpenEXR image", name, hint);
-  for (const char* const start : {"# .PCD", "VERSION ", "FIELDS "})
-    if (text.starts_with(start)) refuse("this is a cloud of points (PCD)", name, hint);
+  const auto scan = file::scan_format(bytes);
+  if (scan && *scan != file::ScanFormat::ply)
+    refuse(std::string("this is ") + file::describe(*scan), name, hint);
 }
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
@@ -156,7 +155,7 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
   if (const auto scene = scene_by_content(content)) return parse_scene(text, name, *scene, node);
-  refuse_foreign(bytes, text, name);
+  refuse_foreign(bytes, name);
   if (const auto scene = scene_by_extension(extension))
     return parse_scene(text, name, *scene, node);
   if (extension == "obj") return parse_obj(text, name);

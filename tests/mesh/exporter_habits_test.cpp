@@ -272,6 +272,11 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       {"<?xml version=\"1.0\"?>\n<robot name=\"x\">", "a robot description"},
       {"%PDF-1.4", "a PDF document"},
       {"\x89PNG\r\n", "a PNG picture; give the mesh"},
+      {"\x76\x2f\x31\x01", "an OpenEXR image; give the mesh"},
+      {std::string("II*\0", 4), "a TIFF image; give the mesh"},
+      {"\x93NUMPY\x01", "an array of NumPy; give the mesh"},
+      {"P5\n2 2\n65535\n", "a PGM, PPM or PFM image; give the mesh"},
+      {"# made by x\nVERSION .7\n", "a cloud of points"},
       {"# .PCD v0.7", "a cloud of points"}};
   for (const auto& [content, message] : cases) {
     for (const char* const name : {"a.obj", "a.stl", "a.off", "a.ply", "a.dae", "standard input"})

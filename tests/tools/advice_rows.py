@@ -230,6 +230,8 @@ COMMANDS = [
     ("vpm-pack small.off --spheres 5 -o out.vpmp --link hand",
      r"name in (\S+), (\S+) and (\S+); give (--export) with one of these",
      "for e in {0} {1} {2}; do vpm-pack small.off --spheres 5 --link hand {3} out$e || exit; done"),
+    ("vpm-pack small.off --spheres 5 --export out.csv --link hand", r"give --export with one of these",
+     "vpm-pack small.off --spheres 5 --export out.urdf --link hand"),
     # Options and configurations
     ("vpm-pack small.off --spheres 5 -o out.vpmp --report=", r"give one, or leave the option out",
      "vpm-pack small.off --spheres 5 -o out.vpmp --report=out.json"),

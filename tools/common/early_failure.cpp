@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <system_error>
 
@@ -19,6 +20,8 @@ const char* program = "vpm";
 std::string reason() {
   try {
     std::rethrow_exception(std::current_exception());
+  } catch (const std::filesystem::filesystem_error& fault) {
+    return fault.what();
   } catch (const std::system_error& fault) {
     return "a thread is refused (" + fault.code().message() +
            "); allow more processes (ulimit -u) or more memory (ulimit -v)";

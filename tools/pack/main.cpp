@@ -148,6 +148,11 @@ std::vector<char*> with_plain_repair(int argc, char** argv, std::string& holes) 
   return arguments;
 }
 
+bool has_link(ExportFormat format) {
+  return format == ExportFormat::yml || format == ExportFormat::urdf ||
+         format == ExportFormat::srdf;
+}
+
 void check(const Arguments& a, const CommonOptions& common) {
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
@@ -160,8 +165,8 @@ void check(const Arguments& a, const CommonOptions& common) {
     refuse_usage("nothing would be written: give -o OUT.vpmp, --export, --report or --view");
   if (a.mesh == "-" && a.for_scene == "-")
     refuse_usage("only one of the mesh and --for-scene can be standard input");
-  if (!a.export_path.empty()) export_format(a.export_path);
-  if (!a.link.empty() && a.export_path.empty())
+  const bool names_link = !a.export_path.empty() && has_link(export_format(a.export_path));
+  if (!a.link.empty() && !names_link)
     refuse_usage("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
