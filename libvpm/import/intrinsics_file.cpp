@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/json_text.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/scan_facts.h"
 
@@ -202,11 +203,11 @@ std::vector<double> plain_numbers(std::string_view text) {
 json parse_calibration(std::string_view text, const std::string& name) {
   const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   if (!text.substr(first).starts_with('{')) return parse_yaml(text, name);
-  constexpr int kDeepest = 32;
-  json value = json::parse(
-      text, [](int depth, json::parse_event_t, const json&) { return depth <= kDeepest; }, false);
-  if (value.is_discarded()) refuse("not JSON", name);
-  return value;
+  try {
+    return file::parse_json(text);
+  } catch (const Error& fault) {
+    refuse(fault.problem(), name);
+  }
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ def main():
         text = log.read_text(errors="replace") if log.exists() else ""
         executions = sum(numbers(r"stat::number_of_executed_units: *(\d+)", text))
         # A run that a finding ends prints no statistics, but its number of executions before.
-        for run in text.split("INFO: Running with entropic")[1:]:
+        for run in text.split("INFO: Seed: ")[1:]:
             if "stat::number_of_executed_units" not in run:
                 executions += max(numbers(r"^#(\d+)", run) + numbers(r"\n#(\d+)", run), default=0)
         entry = results["targets"].setdefault(target, {"executions": 0, "seconds": 0})

@@ -1,12 +1,14 @@
 #include "tools/common/json_config.h"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/json_text.h"
 
 namespace vpm::tools {
 namespace {
@@ -89,23 +91,15 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
   const std::string text = whole_text(input);
   std::set<std::string> keys;
-  const auto look = [&](int depth, json::parse_event_t event, const json& parsed) {
-    constexpr int kDeepest = 32;  // JSON values are copied recursively and could fill the stack
-    if (depth > kDeepest) throw CLI::FileError("the configuration is nested too deeply");
-    const bool is_option = depth == 1 && event == json::parse_event_t::key;
-    if (is_option && !keys.insert(parsed.get<std::string>()).second)
-      throw CLI::FileError("the configuration gives '" + parsed.get<std::string>() +
-                           "' twice; leave one of them out");
-    return true;
+  const auto look = [&](const std::string& key) {
+    if (!keys.insert(key).second)
+      throw CLI::FileError("the configuration gives '" + key + "' twice; leave one of them out");
   };
   json config;
   try {
-    config = json::parse(text, look);
-  } catch (const json::parse_error& fault) {
-    const auto at = static_cast<std::ptrdiff_t>(std::min(fault.byte, text.size()));
-    throw CLI::FileError("the configuration is not JSON: it cannot be read from line " +
-                         std::to_string(1 + std::count(text.begin(), text.begin() + at, '\n')) +
-                         " on");
+    config = file::parse_json(text, look);
+  } catch (const Error& fault) {
+    throw CLI::FileError("the configuration is " + fault.problem());
   }
   if (!config.is_object())
     throw CLI::FileError("the configuration must be a JSON object of options");

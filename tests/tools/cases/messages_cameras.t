@@ -3,11 +3,12 @@
 $ python3 $SOURCE/tests/tools/depth_files.py . && cp $SOURCE/tests/tools/inputs/* . && vpm-pack cube.off -o cube.vpmp --spheres 30 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet && vpm-normals wall.pgm -o wall.vpmc --intrinsics 60,60,31.5,23.5
 
 # Intrinsics
-$ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}}' '{' '60 60 31.5' '60 0 31.5 0 60 23.5 0 0 2' '-60 60 31.5 23.5' 'camera: [' 'a: b'; do echo "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
+$ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}}' '{' '{"fx": 1e999}' '60 60 31.5' '60 0 31.5 0 60 23.5 0 0 2' '-60 60 31.5 23.5' 'camera: [' 'a: b'; do echo "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
 2> vpm-normals: error: i.txt: no camera's intrinsics in it; it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix
 2> vpm-normals: error: i.txt: no camera's intrinsics in it; it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix
 2> vpm-normals: error: i.txt: it holds several cameras: left, right; give the numbers of one as --intrinsics fx,fy,cx,cy
-2> vpm-normals: error: i.txt: not JSON
+2> vpm-normals: error: i.txt: not JSON: it cannot be read from line 2 on
+2> vpm-normals: error: i.txt: not readable: one of its numbers is beyond what a double holds
 2> vpm-normals: error: i.txt: its 3 numbers are neither fx fy cx cy nor a matrix fx 0 cx 0 fy cy 0 0 1
 2> vpm-normals: error: i.txt: its 9 numbers are neither fx fy cx cy nor a matrix fx 0 cx 0 fy cy 0 0 1
 2> vpm-normals: error: i.txt: its focal lengths are not greater than 0, or its numbers are too large

@@ -196,6 +196,9 @@ $ vpm-normals wall.png --window 011 -o x.vpmc
 $ python3 -c 'print("{\"spheres\": " + 100000 * "[" + 100000 * "]" + "}")' > deep.json; vpm-pack cube.off --config deep.json -o x.vpmp
 2> vpm-pack: error: --config deep.json: the configuration is nested too deeply (see vpm-pack --help)
 [2]
+$ echo '{"coverage": -1e999}' > large.json; vpm-pack cube.off --config large.json -o x.vpmp
+2> vpm-pack: error: --config large.json: the configuration is not readable: one of its numbers is beyond what a double holds (see vpm-pack --help)
+[2]
 $ vpm-pack cube.off --repair flood --max-hole 50 -o x.vpmp
 2> vpm-pack: error: --max-hole 50 m is more than the mesh is across, 0.346 m: nothing of it would be reached from outside; is it in metres?
 [2]
