@@ -55,6 +55,18 @@ bool has_many_values(std::span<const float> values) {
 
 constexpr float kFewest = 256;  // values that are all smaller are of 8 bits
 
+// True if the lower byte of some values is in use: otherwise they may be of 8 bits, scaled.
+bool have_low_bytes(std::span<const float> values) {
+  constexpr std::size_t kSome = 100;  // one value of so many
+  std::size_t measured = 0, low = 0;
+  for (const float value : values) {
+    if (!is_value(value) || value == 65535) continue;
+    ++measured;
+    low += static_cast<std::uint16_t>(value) % 256 != 0;
+  }
+  return kSome * low > measured;
+}
+
 // True if the exchanged bytes give millimetres that sensors reach, and the values are beyond them.
 bool are_depths_only_if_swapped(std::span<const float> values) {
   constexpr float kFarthest = 20000;
@@ -79,12 +91,11 @@ bool look_swapped(std::span<const float> values, std::size_t width) {
     ++pairs;
   }
   return pairs >= kFewestPairs && as_given > kSmoother * as_swapped &&
-         (has_many_values(values) ? median_of(values, true) >= kFewest
-                                  : are_depths_only_if_swapped(values));
+         (has_many_values(values) ? have_low_bytes(values) : are_depths_only_if_swapped(values));
 }
 
-// Returns warnings about 16-bit values that look rotated by three bits, or like a Kinect's raw
-// disparity.
+// Returns a warning about 16-bit values of which one byte is not used, that look rotated by three
+// bits, or like a Kinect's raw disparity.
 Remarks coding_suspicions(std::span<const float> values) {
   constexpr std::size_t kFewestSteps = 64;   // distinct multiples of 8
   constexpr float kLargestDisparity = 2047;  // marks pixels without any
@@ -102,6 +113,11 @@ Remarks coding_suspicions(std::span<const float> values) {
     steps[bits / 8] = true;
   }
   const auto distinct = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), true));
+  if (has_many_values(values) && !have_low_bytes(values)) {
+    return {{true,
+             "all values are multiples of 256, like those of 8 bits; if their bytes stand in the "
+             "other order, give `decode` swapped"}};
+  }
   if (multiples == measured && distinct >= kFewestSteps) {
     return {{true,
              "all values are multiples of 8, as if they were rotated by three bits (SUN3D, APC), "

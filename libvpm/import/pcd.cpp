@@ -180,6 +180,10 @@ void PcdParser::read_fields(const std::vector<std::string_view>& words) {
 }
 
 void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
+  // Some writers have no pose and fill the line with zeros, of any number.
+  if (std::all_of(words.begin() + 1, words.end(),
+                  [](std::string_view word) { return file::to_number(word) == 0; }))
+    return;
   double n[7];
   if (words.size() != 8) fail("header: VIEWPOINT needs 7 numbers: tx ty tz qw qx qy qz");
   for (std::size_t i = 0; i < 7; ++i) {

@@ -134,18 +134,43 @@ bool are_as_of_a_camera(const PointSet& points) {
                      [](const Vec3& p) { return !is_finite(p) || p.z >= kSlowest * norm(p); });
 }
 
+constexpr double kNearlyAll = 0.9;  // share of normals
+
+// Numbers of normals that face a place and that face away from it.
+struct Facing {
+  std::size_t towards = 0, away = 0;
+};
+
+Facing facing(const PointSet& points, const Vec3& place) {
+  Facing facing;
+  for (std::size_t i = 0; i < points.normals.size(); ++i) {
+    const double along = dot(place - points.positions[i], points.normals[i]);
+    facing.towards += along > 0 && along < HUGE_VAL;
+    facing.away += along < 0 && along > -HUGE_VAL;
+  }
+  return facing;
+}
+
+// True if points with a viewpoint stand in the world's frame, as some programs write them: nearly
+// all normals face the viewpoint as a point among them, and nearly none the origin, where the
+// sensor would be in the sensor's frame.
+bool are_in_world(const PointSet& points, bool are_flipped) {
+  const auto share = [&](const Vec3& place) {
+    const Facing f = facing(points, place);
+    return static_cast<double>(are_flipped ? f.away : f.towards) /
+           static_cast<double>(points.normals.size());
+  };
+  return points.viewpoint && !points.normals.empty() &&
+         share(points.viewpoint->translation) >= kNearlyAll && share({}) <= 1 - kNearlyAll;
+}
+
 // Returns a warning if nearly all normals face away from the origin, where the sensor was if the
 // file has a viewpoint, and may have been if all points lie before a camera there. Points of no
 // such view cannot be judged.
 Remarks facing_away(const PointSet& points, bool are_flipped) {
   if (!points.viewpoint && !are_as_of_a_camera(points)) return {};
-  std::size_t away = 0, all = 0;
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    const double along = dot(points.positions[i], points.normals[i]);
-    away += along > 0;
-    all += along != 0 && std::abs(along) < HUGE_VAL;
-  }
-  constexpr double kNearlyAll = 0.9;
+  const auto [towards, away] = facing(points, {});
+  const std::size_t all = towards + away;
   if (all == 0 || static_cast<double>(away) < kNearlyAll * static_cast<double>(all)) return {};
   const std::string sensor = points.viewpoint
                                  ? "its VIEWPOINT, and so from the sensor"
@@ -195,10 +220,9 @@ Remarks coarse_coordinates(const PointSet& points, const Cloud& cloud) {
                      "or nearer to the origin"}};
 }
 
-// Returns the cloud of points in metres. A file with a viewpoint has its sensor at the origin of
-// its frame, towards which normals must point. Throws Error(refused), naming `name`, for points
-// without normals.
-ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world, bool are_flipped,
+// Returns the cloud of points in metres. Throws Error(refused), naming `name`, for points without
+// normals.
+ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
                                 const std::string& name) {
   refuse_missing_normals(points, name);
   ScatteredScan scan;
@@ -210,7 +234,6 @@ ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world, bo
   if (scan.without_normal > 0)
     scan.remarks.push_back(
         {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
-  append(scan.remarks, facing_away(points, are_flipped));
   append(scan.remarks, facing_each_other(scan.cloud));
   append(scan.remarks, coarse_coordinates(points, scan.cloud));
   return scan;
@@ -235,6 +258,7 @@ std::string text_of(const Pose& pose) {
 struct ToldPose {
   std::optional<Pose> pose;  // m
   bool is_viewpoint = false;
+  bool is_among_points = false;  // a viewpoint that stands where the points do, in the world
 };
 
 ToldPose told_pose(const PointSet& points, const ImportOptions& options, double units_per_metre) {
@@ -284,7 +308,9 @@ ImportedScan scan_without_camera(PointSet points, const ToldPose& told, const st
   for (Vec3& p : points.positions) p = p / units_per_metre;
   if (options.flip)
     for (Vec3& n : points.normals) n = -n;
-  ScatteredScan read = scan_of_scattered(points, to_world, options.flip, name);
+  ScatteredScan read = scan_of_scattered(points, to_world, name);
+  // A file with a viewpoint has its sensor at the origin of its frame, which normals must face.
+  if (!told.is_among_points) append(read.remarks, facing_away(points, options.flip));
   ImportedScan scan;
   scan.width = points.width;
   scan.height = points.height;
@@ -318,25 +344,31 @@ Remarks unused_options(const ImportOptions& options) {
 ImportedScan scan_of_points(PointSet points, const std::string& name,
                             const ImportOptions& options) {
   const double units_per_metre = options.depth.units_per_metre.value_or(1);
-  const ToldPose told = told_pose(points, options, units_per_metre);
+  ToldPose told = told_pose(points, options, units_per_metre);
   Remarks remarks;
-  if (told.is_viewpoint) {
-    remarks.push_back(
-        {false, "its VIEWPOINT is taken for the pose of its points' frame in the world, " +
-                    text_of(*told.pose) +
-                    "; `camera_pose` 0,0,0,0,0,0,1 leaves the points where they are"});
-  }
   std::optional<OrganisedView> view;
   if (points.organised()) {
     if (!has_any_point(points)) throw NothingMeasured("no pixel holds a measurement", name);
     PointFrame frame{options.axes, told.pose};
     if (frame.to_world) frame.to_world->translation = units_per_metre * told.pose->translation;
     view = find_view(points, frame, options.intrinsics, name);
-    if (!view)
-      remarks.push_back({false,
-                         "its grid fits no pinhole camera: its points are read with their normals, "
-                         "as of no camera"});
   }
+  if (!view && told.is_viewpoint && are_in_world(points, options.flip)) {
+    remarks.push_back({false,
+                       "its points are in the world's frame, since their normals face its "
+                       "VIEWPOINT there; `camera_pose` " +
+                           text_of(*told.pose) + " takes them from the sensor's frame"});
+    told = {std::nullopt, true, true};
+  } else if (told.is_viewpoint) {
+    remarks.push_back(
+        {false, "its VIEWPOINT is taken for the pose of its points' frame in the world, " +
+                    text_of(*told.pose) +
+                    "; `camera_pose` 0,0,0,0,0,0,1 leaves the points where they are"});
+  }
+  if (!view && points.organised())
+    remarks.push_back({false,
+                       "its grid fits no pinhole camera: its points are read with their normals, "
+                       "as of no camera"});
   ImportedScan scan =
       view ? scan_of_view(*view, told, name, options)
            : scan_without_camera(std::move(points), told, name, options, units_per_metre);

@@ -115,6 +115,26 @@ TEST(DepthValues, TheOrderOfBytesIsToldByNeighbours) {
   EXPECT_TRUE(metres(image_of(slope(400), 400, true)).remarks.empty());
 }
 
+TEST(DepthValues, NearDepthsTellTheOrderOfBytesToo) {
+  std::vector<float> values;
+  for (int k = 0; k < 400; ++k) values.push_back(static_cast<float>(150 + k / 3));  // mm
+  const auto read = [](std::vector<float> given, bool swaps) {
+    if (swaps)
+      for (float& value : given) value = swapped(value);
+    RawDepth raw = image_of(given, 400, true);
+    raw.may_be_swapped = true;
+    return metres(raw);
+  };
+  EXPECT_EQ(read(values, true).depth[9], 0.153F);
+  EXPECT_EQ(read(values, false).depth[9], 0.153F);
+  // Those of one byte may be 8-bit values, scaled, or stand in the other order.
+  for (float& value : values) value = std::min(value, 255.F);
+  const Metres doubted = read(values, true);
+  ASSERT_EQ(doubted.remarks.size(), 1U);
+  EXPECT_TRUE(says(doubted.remarks[0].text, "multiples of 256"));
+  EXPECT_TRUE(read(values, false).remarks.empty());
+}
+
 TEST(DepthValues, BytesAreExchangedOnlyWhereThatIsSure) {
   // Two depths stand closer with their bytes exchanged; either order may be meant.
   const auto steps = [](float low, float high, bool swaps) {

@@ -64,6 +64,49 @@ TEST(ImportCloud, RecoversTheCameraOfAnOrganisedCloud) {
   EXPECT_EQ(imported.cloud.origin, (Vec3{5, 0, 0})) << "the VIEWPOINT";
 }
 
+// Returns points of a plane, written by a program that knows the sensor's place as a point among
+// them or as the pose of their frame.
+std::string plane_with_viewpoint(const std::string& viewpoint, double z, double normal_z) {
+  std::string file =
+      "VERSION 0.7\nFIELDS x y z normal_x normal_y normal_z\nSIZE 8 8 8 8 8 8\nTYPE F F F F F F\n"
+      "COUNT 1 1 1 1 1 1\nWIDTH 320\nHEIGHT 1\nVIEWPOINT " +
+      viewpoint + "\nPOINTS 320\nDATA ascii\n";
+  for (int k = 0; k < 320; ++k) {
+    char line[128];
+    std::snprintf(line, sizeof line, "%.9g %.9g %.9g 0 0 %.9g\n", 0.01 * (k % 20), 0.01 * (k / 20),
+                  z, normal_z);
+    file += line;
+  }
+  return file;
+}
+
+TEST(ImportCloud, NormalsTellWhetherTheViewpointIsAPointOrAPose) {
+  const auto height = [](const ImportedCloud& imported) {
+    return imported.cloud.origin.z + imported.cloud.positions[0].z;
+  };
+  // Normals face the viewpoint among the points: they are in the world already.
+  for (const char* const among : {"0 0 5 0 1 0 0", "0 0 5 1 0 0 0"}) {
+    const ImportedCloud imported = import(plane_with_viewpoint(among, 1, 1));
+    EXPECT_NEAR(height(imported), 1, 1e-6) << among;
+    ASSERT_FALSE(imported.remarks.empty());
+    EXPECT_TRUE(says(imported.remarks[0].text, "in the world's frame"));
+    for (const Remark& remark : imported.remarks) EXPECT_FALSE(remark.is_warning) << remark.text;
+  }
+  EXPECT_NEAR(height(import(plane_with_viewpoint("0 0 2 1 0 0 0", 0, 1))), 0, 1e-6);
+  // Normals face the origin of the points' frame, the sensor.
+  const ImportedCloud of_sensor = import(plane_with_viewpoint("0 0 5 0 1 0 0", 1, -1));
+  EXPECT_NEAR(height(of_sensor), 4, 1e-6);
+  EXPECT_TRUE(says(of_sensor.remarks[0].text, "pose of its points' frame"));
+  // With --flip the normals of the file are meant the other way.
+  ImportOptions flipped;
+  flipped.flip = true;
+  EXPECT_NEAR(height(import(plane_with_viewpoint("0 0 5 0 1 0 0", 1, -1), flipped)), 1, 1e-6);
+  // A pose that is given goes before all this.
+  ImportOptions told;
+  told.to_world = Pose{{}, {0, 0, 7}};
+  EXPECT_NEAR(height(import(plane_with_viewpoint("0 0 5 0 1 0 0", 1, 1), told)), 8, 1e-6);
+}
+
 TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
   EXPECT_TRUE(says(refused(organised_pcd(0.02)), "fits no pinhole camera"));
   EXPECT_TRUE(says(refused(organised_pcd(0.02)), "pixels away"));

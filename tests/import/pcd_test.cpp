@@ -131,6 +131,17 @@ TEST(Pcd, KeepsGridAndViewpoint) {
   EXPECT_EQ(*points.viewpoint * (Vec3{1, 1, 1}), (Vec3{2, 1, 2}));
 }
 
+TEST(Pcd, AViewpointOfZerosIsNone) {
+  for (const char* const zeros : {"0 0 0 0 0 0 0", "0 0 0 0 0 0 0 0 0 0", "0.0 0 0 0 0 0 -0"}) {
+    const PointSet points = parse(
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+        "VIEWPOINT " +
+        std::string(zeros) + "\nPOINTS 1\nDATA ascii\n0 0 1\n");
+    EXPECT_FALSE(points.viewpoint) << zeros;
+  }
+  EXPECT_TRUE(says(refused("VERSION 0.7\nVIEWPOINT 1 0 0 0 0 0 0\n"), "VIEWPOINT"));
+}
+
 TEST(Pcd, SaysWhatIsWrong) {
   const std::string plain = header("x y z", "4 4 4", "F F F", "1 1 1", 2);
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 x 6\n"), "point 1: 'x' is not a number"));

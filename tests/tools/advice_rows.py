@@ -411,6 +411,12 @@ COMMANDS = [
      "either every pose has a time or none",
      f"{COUPLED.replace('device.txt', 'timed.txt')} --coupling stiffness=500,damping=5"),
     # Scenes and tools that do not meet
+    (f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0,0.9659258,0.258819,0,0 -o - | "
+     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227,0,0,0,1",
+     "the quaternion of the camera's pose begins with w: give vpm-normals (--camera-pose) tx,ty,tz,qx,qy,qz,qw",
+     f"vpm-normals wall.pgm {CAMERA} {{0}} 0,0,0,0.258819,0,0,0.9659258 -o - | "
+     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227,0,0,0,1",
+     WALL),
     (f"{TOOL} --poses inverted.txt", "it would be there if the poses are inverted", f"{TOOL} --poses poses.txt", WALL),
     (f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,-3,0,0,0,1 -o - | "
      "vpm-query --tool small.vpmg --cloud - --pose 0,0,3.95,0,0,0,1",

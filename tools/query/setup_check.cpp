@@ -57,7 +57,7 @@ struct PoseFit {
 };
 
 // Mistakes that would explain why no tool is at the scene.
-enum class Mistake { poses_inverted, camera_inverted, poses_of_camera, axes };
+enum class Mistake { poses_inverted, camera_inverted, poses_of_camera, camera_w_first, axes };
 
 struct Suspicion {
   Mistake mistake = Mistake::axes;
@@ -96,6 +96,12 @@ struct PlacedScene {
 
 namespace {
 
+// Returns the pose whose quaternion was written with w first, and read with w last.
+Pose with_w_first(const Pose& read) {
+  const Quaternion q = quaternion_from_rotation(read.rotation);
+  return {rotation_from_quaternion({q.y, q.z, q.w, q.x}), read.translation};
+}
+
 // Returns the motion that takes the scene, if the mistake is put right, to where it is now: moves
 // the tool instead of the points. Returns nothing where the mistake cannot have been made.
 std::optional<Pose> motion_of(const Suspicion& suspicion, const PlacedScene& place,
@@ -112,6 +118,9 @@ std::optional<Pose> motion_of(const Suspicion& suspicion, const PlacedScene& pla
       break;
     case Mistake::poses_of_camera:
       if (has_pose) motion = frame * turn;
+      break;
+    case Mistake::camera_w_first:
+      if (has_pose) motion = frame * inverse(with_w_first(frame));
       break;
     case Mistake::axes:
       if (place.scene.camera)
@@ -138,6 +147,10 @@ std::string words_of(const Suspicion& suspicion, const PlacedScene& place,
       return "if the poses are in the camera's frame: " +
              (source.are_frames ? "they must be in the world's"
                                 : "leave " + tool + "--camera-pose out");
+    case Mistake::camera_w_first:
+      return "if the quaternion of the camera's pose begins with w: " +
+             (source.are_frames ? "it must be" : "give " + tool + "--camera-pose") +
+             " tx,ty,tz,qx,qy,qz,qw";
     case Mistake::axes:
       break;
   }
@@ -249,8 +262,10 @@ PoseFit SetupCheck::fit_of(const std::map<std::size_t, PlacedScene>& places,
 // Returns the mistakes that would explain it, with their cures. Names those that put the tool to
 // the surface at more than half as many poses as the best of them: fewer are no match for it.
 std::string SetupCheck::hint(const std::map<std::size_t, PlacedScene>& places) const {
-  std::vector<Suspicion> suspicions{
-      {Mistake::poses_inverted}, {Mistake::camera_inverted}, {Mistake::poses_of_camera}};
+  std::vector<Suspicion> suspicions{{Mistake::poses_inverted},
+                                    {Mistake::camera_inverted},
+                                    {Mistake::poses_of_camera},
+                                    {Mistake::camera_w_first}};
   for (const CameraAxes axes : {CameraAxes::opengl, CameraAxes::ros, CameraAxes::opencv})
     suspicions.push_back({Mistake::axes, axes});
   std::vector<PoseFit> fits;

@@ -135,3 +135,5 @@ $ vpm-normals opengl.pcd --axes opengl -o turned.vpmc --camera-pose 0,0,0,0,0,0,
 2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opencv: give vpm-normals --axes opencv
 $ vpm-normals wall.pgm -o moved.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 4,0,0,0,0,0,1 && vpm-query --tool cube.vpmg --cloud moved.vpmc --poses steps.txt -o /dev/null
 2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there if the poses are in the camera's frame: leave vpm-normals --camera-pose out
+$ vpm-normals wall.pgm -o w_first.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0,0.9659258,0.258819,0,0 && vpm-query --tool cube.vpmg --cloud w_first.vpmc --pose 0,-0.475,0.8227,0,0,0,1 -o /dev/null
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the quaternion of the camera's pose begins with w: give vpm-normals --camera-pose tx,ty,tz,qx,qy,qz,qw
