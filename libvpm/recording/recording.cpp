@@ -37,9 +37,15 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Returns the time and file of the depth image in a line "time file" or "time file time file".
+// Returns the time and file of the depth image in a line "time file", "time,file" or "time file
+// time file".
 std::optional<std::pair<double, std::string>> entry_of(std::string_view line) {
-  const std::vector<std::string_view> words = file::split_words(line);
+  std::vector<std::string_view> words = file::split_words(line);
+  if (const std::size_t comma = line.find(','); words.size() == 1 && comma != line.npos) {
+    words = file::split_words(line.substr(0, comma));
+    for (const std::string_view word : file::split_words(line.substr(comma + 1)))
+      words.push_back(word);
+  }
   if (words.empty()) return std::nullopt;
   const bool second = words.size() == 4 && words[3].find("depth") != std::string_view::npos;
   const bool fits = words.size() == 2 || words.size() == 4;
@@ -74,7 +80,7 @@ void read_list(const fs::path& list, Recording& recording) {
 bool is_frame(const fs::path& path) {
   static const std::set<std::string> kKinds{".png",  ".exr", ".pcd", ".ply", ".tif",
                                             ".tiff", ".pgm", ".pfm", ".npy"};
-  return kKinds.contains(path.extension().string());
+  return kKinds.contains(file::in_lower_case(path.extension().string()));
 }
 
 std::string stem_of(const fs::path& path) {
@@ -103,17 +109,6 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// Returns the time in a name that is a number with a point, or of so many digits that it counts
-// milli-, micro- or nanoseconds since 1970.
-std::optional<double> time_in(const fs::path& path) {
-  constexpr std::size_t kFewestDigits = 13;
-  const std::string name = path.stem().string();
-  const bool is_stamp = name.size() >= kFewestDigits && file::to_count(name);
-  if (name.find('.') == std::string::npos && !is_stamp) return std::nullopt;
-  const std::optional<double> time = file::to_number(name);
-  return time && std::isfinite(*time) ? std::optional(seconds_of_stamp(*time)) : std::nullopt;
-}
-
 // Returns the last number before the first dot of a name.
 std::optional<std::uint64_t> number_in(const fs::path& path) {
   const std::string stem = stem_of(path);
@@ -122,6 +117,23 @@ std::optional<std::uint64_t> number_in(const fs::path& path) {
   const std::size_t before = stem.find_last_not_of("0123456789", last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
   return file::to_count(std::string_view(stem).substr(first, last - first + 1));
+}
+
+// True if the whole name is a number with a point.
+bool is_decimal(const fs::path& path) {
+  const std::string name = path.stem().string();
+  const std::optional<double> time = file::to_number(name);
+  return name.find('.') != std::string::npos && time && std::isfinite(*time);
+}
+
+// Returns the time in a name that is a number with a point, or has a number of so many digits that
+// it counts milli-, micro- or nanoseconds since 1970.
+std::optional<double> time_in(const fs::path& path) {
+  constexpr std::uint64_t kSmallestStamp = 1'000'000'000'000;
+  if (is_decimal(path)) return seconds_of_stamp(*file::to_number(path.stem().string()));
+  const std::optional<std::uint64_t> number = number_in(path);
+  if (!number || *number < kSmallestStamp) return std::nullopt;
+  return seconds_of_stamp(static_cast<double>(*number));
 }
 
 void number_frames(const std::vector<fs::path>& files, double frame_rate, Recording& recording) {
@@ -193,21 +205,26 @@ void place_by_path(const std::string& name, Recording& recording) {
 fs::path pose_beside(const RecordedFrame& frame) {
   const fs::path path(frame.path);
   fs::path whole = path.parent_path() / (path.stem().string() + ".pose.txt");
-  if (time_in(path) || fs::exists(status_of(whole))) return whole;
+  if (is_decimal(path) || fs::exists(status_of(whole))) return whole;
   return path.parent_path() / (stem_of(path) + ".pose.txt");
 }
 
 void place_by_files(Recording& recording) {
+  std::optional<Error> first_fault;
   for (RecordedFrame& frame : recording.frames) {
     try {
       PoseReader reader(pose_beside(frame).string());
       frame.camera = reader.next();
       recording.largest_deviation =
           std::max(recording.largest_deviation, reader.largest_deviation());
-    } catch (const Error&) {  // trackers write invalid poses where they are lost
+    } catch (const Error& fault) {  // trackers write invalid poses where they are lost
+      if (!first_fault) first_fault = fault;
     }
     frame.is_lost = !frame.camera;
   }
+  const bool are_all_lost = std::all_of(recording.frames.begin(), recording.frames.end(),
+                                        [](const RecordedFrame& frame) { return frame.is_lost; });
+  if (are_all_lost && first_fault) throw *first_fault;
   recording.camera_source = ".pose.txt beside the frames";
 }
 

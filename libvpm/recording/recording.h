@@ -3,9 +3,9 @@
 // Tries three layouts in this order:
 //   list         a text file of "time file" lines (TUM RGB-D: depth.txt; associations.txt with four
 //                columns, of which the depth image's are used), given itself or in the folder
-//   named times  files called after their time: 1305031102.160407.png (s), 1403636579763555584.png
-//   (ns) numbered     files with a number in their name: frame-000460.depth.png (7-Scenes). Their
-//   times
+//   named times  files called after their time: 1305031102.160407.png (s), or a number of 13 digits
+//                or more in their names: depth_1403636579763555584.png (ns since 1970)
+//   numbered     files with a number in their names: frame-000460.depth.png (7-Scenes). Their times
 //                are the numbers divided by the frame rate, from 0 for the first
 // In a folder, frames are images (.png, .exr, .tif, .tiff, .pgm, .pfm, .npy) and clouds (.pcd,
 // .ply); if some names contain "depth", only those.
@@ -56,7 +56,7 @@ inline constexpr double kPoseTolerance = 0.02;  // seconds
 
 // Reads the recording at `path`, a folder or a list. Throws Error(refused) if there is no frame, a
 // name is no time, or the list or camera_poses is faulty. A .pose.txt that is missing or no pose
-// only loses its frame.
+// only loses its frame, unless all are.
 Recording read_recording(const std::string& path, const RecordingOptions& options);
 
 }  // namespace vpm

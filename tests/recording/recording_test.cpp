@@ -51,6 +51,45 @@ TEST_F(ARecording, OfNumberedFramesHasNumbersForTimes) {
   }
 }
 
+TEST_F(ARecording, StampsInNamesAreTimes) {
+  for (const char* const name :
+       {"Depth_1567167300033.123.png", "Depth_1567167300066.5.png", "Depth_1567167300100.9.png"})
+    write(name);
+  EXPECT_TRUE(read().has_clock);
+  EXPECT_NEAR(times()[1] - times()[0], 0.033, 1e-6);
+  EXPECT_NEAR(times()[0], 1567167300.033, 1e-6);
+}
+
+TEST_F(ARecording, EndingsMayBeInCapitals) {
+  write("DEPTH_000.PNG");
+  write("DEPTH_001.Png");
+  EXPECT_EQ(read().frames.size(), 2u);
+}
+
+TEST_F(ARecording, ListsMayHaveCommas) {
+  write("a.png");
+  write("b.png");
+  write("depth.txt",
+        "#timestamp [ns],filename\n1403636579763555584,a.png\n1403636579813555584,b.png\n");
+  ASSERT_EQ(times().size(), 2u);
+  EXPECT_NEAR(times()[1] - times()[0], 0.05, 1e-6);
+  for (const char* const line : {",", "1,", ",a.png", "1,a.png,b.png"}) {
+    write("depth.txt", line);
+    EXPECT_NE(refusal([&] { read(); }).find("depth.txt"), std::string::npos) << line;
+  }
+}
+
+TEST_F(ARecording, OfWhichNoPoseCanBeReadSaysWhy) {
+  for (const char* const name : {"frame-1", "frame-2"}) {
+    write(std::string(name) + ".png");
+    write(std::string(name) + ".pose.txt", "2 0 0 0\n0 2 0 0\n0 0 2 0\n0 0 0 1\n");
+  }
+  const std::string why = refusal([&] { read(); });
+  EXPECT_NE(why.find("frame-1.pose.txt"), std::string::npos) << why;
+  write("frame-2.pose.txt", kIdentity);
+  EXPECT_FALSE(read().frames[1].is_lost);
+}
+
 TEST_F(ARecording, ThatCannotBeReadIsSaid) {
   std::filesystem::create_symlink("loop", path("loop"));
   EXPECT_NE(refusal([&] { read_recording(path("loop"), {}); }).find("loop"), std::string::npos);

@@ -106,14 +106,11 @@ std::size_t edits_between(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-// Returns "there is no option --tol; is --tool meant?" for an unknown option that is nearly one of
-// the tool's or begins as one does; CLI11's words if none is near.
-std::string unknown_option(const CLI::App& app, const std::string& what) {
+// Returns the option, with its dashes, that is nearly the one given or begins as it does; empty if
+// none is near.
+std::string nearest_option(const CLI::App& app, const std::string& given) {
   constexpr std::size_t kMostEdits = 2, kShortest = 5;  // letters, with the dashes
-  const std::size_t begin = what.find("--");
-  if (begin == what.npos) return what;
-  const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
-  if (given.size() < kShortest) return what;
+  if (given.size() < kShortest) return {};
   std::string best;
   std::size_t fewest = kMostEdits + 1;
   for (const CLI::Option* option : app.get_options()) {
@@ -123,7 +120,24 @@ std::string unknown_option(const CLI::App& app, const std::string& what) {
       if (edits < fewest) best = full, fewest = edits;
     }
   }
+  return best;
+}
+
+// Returns "there is no option --tol; is --tool meant?", or CLI11's words if none is near.
+std::string unknown_option(const CLI::App& app, const std::string& what) {
+  const std::size_t begin = what.find("--");
+  if (begin == what.npos) return what;
+  const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
+  const std::string best = nearest_option(app, given);
   return best.empty() ? what : "there is no option " + given + "; is " + best + " meant?";
+}
+
+// Returns the message of an option of one value that has several, in CLI11's words "--scale: At
+// Most 1 required but received 2", in ours.
+std::string too_many_values(const std::string& what) {
+  const std::size_t end = what.find(": At Most 1 required");
+  return end == what.npos ? what
+                          : what.substr(0, end) + " has several values; leave all but one out";
 }
 
 // Returns the message of a value that is no number, in CLI11's words "Could not convert: --scale =
@@ -156,8 +170,12 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return unknown_option(app, what);
   if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr) return no_number(app, what);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr) return too_many_values(what);
   if (what.rfind(kUnknownKey, 0) != 0) return what;
-  return "--config: there is no option '" + what.substr(kUnknownKey.size()) + "'";
+  const std::string key = what.substr(kUnknownKey.size());
+  const std::string best = nearest_option(app, "--" + key);
+  return "--config " + config + ": there is no option '" + key + "'" +
+         (best.empty() ? "" : "; is '" + best.substr(2) + "' meant?");
 }
 
 std::string check_device(const std::string& text) {
@@ -281,6 +299,10 @@ void Tool::refuse_senseless_values() const {
         std::find(values.begin(), values.end(), "") != values.end())
       throw Error(ErrorKind::invalid_argument,
                   option->get_name() + ": its value is empty; give one, or leave the option out");
+    for (const std::string& value : values) {  // as "-o $OUT --report" has it without OUT
+      if (value.size() > 1 && value[0] == '-' && app_.get_option_no_throw(value) != nullptr)
+        refuse_usage(option->get_name() + ": its value is missing; " + value + " is an option");
+    }
     const bool is_nonsense = std::any_of(values.begin(), values.end(), [](const std::string& v) {
       return v != "true" && v != "false";
     });

@@ -1,5 +1,6 @@
 // Mode of vpm-query that moves the tool, or a haptic device that holds it, through recorded frames,
 // step by step.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -58,6 +59,7 @@ class Replay {
 
  private:
   void note_sources() const;
+  void warn_of_improbable_times() const;
   double start_time() const;
   void find_first_cloud();
   void say(const PreparedChange& change);
@@ -195,8 +197,27 @@ void Replay::note_sources() const {
     tool_.detail("poses of the camera: " + recording_.camera_source);
   }
   note_deviation(tool_, recording_.camera_source, recording_.largest_deviation);
+  warn_of_improbable_times();
   if (!recording_.has_clock && path_.path().has_times())
     tool_.note("frames have numbers, not times: they begin with the path, at --frame-rate");
+}
+
+void Replay::warn_of_improbable_times() const {
+  constexpr double kShortest = 0.0015, kLongest = 5;  // s
+  const auto& frames = recording_.frames;
+  if (frames.size() < 3) return;
+  std::vector<double> gaps;
+  for (std::size_t k = 1; k < frames.size(); ++k)
+    gaps.push_back(frames[k].time - frames[k - 1].time);
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  if (*middle >= kShortest && *middle <= kLongest) return;
+  char apart[32];
+  std::snprintf(apart, sizeof apart, "%.2g", *middle);
+  tool_.warn(
+      "the frames are " + std::string(apart) + " s apart, as their names or their list " +
+      (recording_.has_clock ? "tell their times" : "number them") +
+      ", which is unusual; if that is wrong, give --frames a list of \"seconds file\" lines");
 }
 
 double Replay::start_time() const {

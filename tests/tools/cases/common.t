@@ -49,7 +49,7 @@ in.off none 3 0.100000 []
 
 # Wrong configurations are refused.
 $ echo '{"threadz": 2}' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: --config: there is no option 'threadz' (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: there is no option 'threadz'; is 'threads' meant? (see vpm-probe --help)
 [2]
 $ echo '{"help": true}' | vpm-probe --config - in.off -o -
 2> vpm-probe: error: help: This option is not allowed in a configuration file (see vpm-probe --help)

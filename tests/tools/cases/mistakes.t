@@ -120,7 +120,7 @@ $ echo '{"name": "part#3", "time": 5, "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-q
 $ for p in '[0, 0, 0.95, 0, 0, 0, 1]' '[7, 0, 0, 0.95, 0, 0, 0, 1]' '0 0 0.95 0 0 0 1 # here'; do echo "$p" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | md5sum; done | uniq | wc -l
 1
 $ echo '{"time": 1, "pose": [1, 0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
-2> vpm-query: error: standard input, line 1: found 8 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row)
+2> vpm-query: error: standard input, line 1: found 8 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them), 12 (3x4, row by row) or 16 (4x4, row by row)
 [1]
 $ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
 2> vpm-query: error: standard input, line 1: "time" must be a number of seconds
@@ -195,6 +195,12 @@ $ vpm-normals wall.png --window 011 -o x.vpmc
 [2]
 $ python3 -c 'print("{\"spheres\": " + 100000 * "[" + 100000 * "]" + "}")' > deep.json; vpm-pack cube.off --config deep.json -o x.vpmp
 2> vpm-pack: error: --config deep.json: the configuration is nested too deeply (see vpm-pack --help)
+[2]
+$ vpm-pack cube.off --spheres 3 --spheres 4 -o x.vpmp
+2> vpm-pack: error: --spheres has several values; leave all but one out (see vpm-pack --help)
+[2]
+$ vpm-pack cube.off --spheres 3 -o $NO_SUCH_VARIABLE --report
+2> vpm-pack: error: --output: its value is missing; --report is an option
 [2]
 $ echo '{"coverage": -1e999}' > large.json; vpm-pack cube.off --config large.json -o x.vpmp
 2> vpm-pack: error: --config large.json: the configuration is not readable: one of its numbers is beyond what a double holds (see vpm-pack --help)
