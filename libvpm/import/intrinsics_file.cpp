@@ -5,11 +5,14 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/foreign_content.h"
 #include "libvpm/file/json_text.h"
 #include "libvpm/file/text.h"
+#include "libvpm/import/calibration_fields.h"
 #include "libvpm/import/scan_facts.h"
 
 namespace vpm {
@@ -17,19 +20,13 @@ namespace {
 
 using nlohmann::json;
 
-// Object of a calibration that holds intrinsics, and the keys that lead to it.
+// Intrinsics of a calibration, and the keys that lead to them.
 struct Candidate {
   std::string path;
   IntrinsicsFile file;
+  std::string fault;  // why they do not serve; empty if they do
+  std::string hint;   // how to mend that
 };
-
-std::optional<double> number_at(const json& object, std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    const auto found = object.find(key);
-    if (found != object.end() && found->is_number()) return found->get<double>();
-  }
-  return std::nullopt;
-}
 
 // Returns the numbers of a list, of a list of lists, or of an object's "data".
 std::vector<double> numbers_of(const json& value) {
@@ -46,9 +43,23 @@ std::vector<double> numbers_of(const json& value) {
   return numbers;
 }
 
-// Returns the intrinsics of a matrix of 3x3 by rows or columns, or 3x4 by rows.
-std::optional<Intrinsics> from_matrix(std::vector<double> m, Remarks& remarks) {
-  if (m.size() == 12) m = {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
+// Returns the left 3x3 of a matrix of 3x3, or of 3x4 or 4x4 by rows; other numbers as they are.
+std::vector<double> upper_left(const std::vector<double>& m) {
+  if (m.size() != 12 && m.size() != 16) return m;
+  return {m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
+}
+
+// True if what a matrix of 3x4 or 4x4 has beside its left 3x3 is that of the unit matrix.
+bool has_unit_border(const std::vector<double>& m) {
+  if (m.size() < 12) return true;
+  const bool has_column = m[3] != 0 || m[7] != 0 || m[11] != 0;
+  const bool has_row = m.size() == 16 && (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1);
+  return !has_column && !has_row;
+}
+
+// Returns the intrinsics of a matrix of 3x3 by rows or columns, or of the left 3x3 of a larger one.
+std::optional<Intrinsics> from_matrix(const std::vector<double>& numbers, Remarks& remarks) {
+  std::vector<double> m = upper_left(numbers);
   if (m.size() != 9 || m[8] != 1) return std::nullopt;
   if (m[2] == 0 && m[5] == 0 && (m[6] != 0 || m[7] != 0)) {  // stored by columns
     std::swap(m[2], m[6]);
@@ -60,42 +71,96 @@ std::optional<Intrinsics> from_matrix(std::vector<double> m, Remarks& remarks) {
   return Intrinsics{m[0], m[4], m[2], m[5]};
 }
 
-std::optional<Intrinsics> from_numbers(const json& object) {
-  const auto fx = number_at(object, {"fx", "fl_x", "Camera.fx", "Camera1.fx", "focal_x"}),
-             fy = number_at(object, {"fy", "fl_y", "Camera.fy", "Camera1.fy", "focal_y"}),
-             cx = number_at(object, {"cx", "ppx", "Camera.cx", "Camera1.cx"}),
-             cy = number_at(object, {"cy", "ppy", "Camera.cy", "Camera1.cy"});
+// Sets the candidate to the camera of a matrix; returns false if the numbers are none.
+bool take_matrix(const std::vector<double>& numbers, Candidate& candidate) {
+  const auto found = from_matrix(numbers, candidate.file.remarks);
+  if (!found) return false;
+  candidate.file.intrinsics = *found;
+  if (has_unit_border(numbers)) return true;
+  candidate.fault =
+      "the last column of its matrix is not 0, or the last row not 0 0 0 1, as if "
+      "it were of another camera beside this one, or a pose";
+  candidate.hint = "if fx, fy, cx and cy in it are those of this image, give `intrinsics` " +
+                   intrinsics_text(*found);
+  return true;
+}
+
+// Sets the candidate to the camera of a list fx, fy, cx, cy, as Kalibr writes it beside the model;
+// returns false if `numbers` are no such list.
+bool take_list(const Fields& fields, const std::vector<double>& numbers, Candidate& candidate) {
+  if (numbers.size() < 4 || numbers.size() > 8) return false;  // the models have as many
+  const Fields::Field* const model = fields.find({"cameramodel"});
+  if (model && model->value->is_string() &&
+      file::in_lower_case(model->value->get_ref<const std::string&>()).find("pinhole") ==
+          std::string::npos) {
+    candidate.fault = "its camera_model is " +
+                      file::shown(model->value->get_ref<const std::string&>()) +
+                      ", and only pinhole is read";
+    candidate.hint =
+        "rectify the images and give the numbers of the camera that they have then "
+        "as `intrinsics` fx,fy,cx,cy";
+    return true;
+  }
+  if (numbers.size() != 4) return false;
+  candidate.file.intrinsics = {numbers[0], numbers[1], numbers[2], numbers[3]};
+  return true;
+}
+
+// Names of one camera's values in an object: "camera1." before fx, "1" behind the M of OpenCV's
+// pairs of cameras.
+struct Affixes {
+  std::string before, behind;
+};
+
+std::optional<Intrinsics> from_numbers(const Fields& fields, const std::string& before) {
+  const auto fx = fields.number({before + "fx", before + "flx", before + "focalx"}),
+             fy = fields.number({before + "fy", before + "fly", before + "focaly"}),
+             cx = fields.number({before + "cx", before + "ppx"}),
+             cy = fields.number({before + "cy", before + "ppy"});
   if (!fx || !fy || !cx || !cy) return std::nullopt;
   return Intrinsics{*fx, *fy, *cx, *cy};
 }
 
-std::optional<Intrinsics> from_matrices(const json& object, Remarks& remarks) {
-  for (const char* key : {"K", "k", "camera_matrix", "intrinsic_matrix", "cam_K", "Camera.K"}) {
-    if (!object.contains(key)) continue;
-    if (const auto found = from_matrix(numbers_of(object[key]), remarks)) return found;
+// Sets the candidate to the first matrix, or list, of one camera; returns false if there is none.
+bool take_matrices(const Fields& fields, const std::string& behind, Candidate& candidate) {
+  for (const char* key : {"k", "m", "cameramatrix", "intrinsicmatrix", "camk", "camera.k",
+                          "intrinsics", "intrinsic"}) {
+    const Fields::Field* const field = fields.find({key + behind});
+    if (!field) continue;
+    const std::vector<double> numbers = numbers_of(*field->value);
+    const bool is_list = std::string_view(key).starts_with("intrinsic");
+    if (!take_matrix(numbers, candidate) && !(is_list && take_list(fields, numbers, candidate)))
+      continue;
+    if (!behind.empty()) candidate.path += (candidate.path.empty() ? "" : ".") + field->key;
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
-// Returns true if the object has coefficients of a distortion that does something.
-bool has_distortion(const json& object) {
-  for (const char* key :
-       {"distortion_coefficients", "D", "d", "coeffs", "dist_coeffs", "distortion"}) {
-    if (!object.contains(key)) continue;
-    const std::vector<double> values = numbers_of(object[key]);
-    if (std::any_of(values.begin(), values.end(), [](double value) { return value != 0; }))
-      return true;
+// True if the object has coefficients of a distortion that does something, in a list or each under
+// its own key.
+bool has_distortion(const Fields& fields, const Affixes& camera) {
+  const auto does = [](double value) { return value != 0; };
+  for (const char* key : {"distortioncoefficients", "distortioncoeffs", "distortionparams", "d",
+                          "coeffs", "distcoeffs", "distortion"}) {
+    const Fields::Field* const field = fields.find({key + camera.behind});
+    if (!field) continue;
+    const std::vector<double> values = numbers_of(*field->value);
+    if (std::any_of(values.begin(), values.end(), does)) return true;
   }
+  for (const char* key : {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"})
+    if (does(fields.number({camera.before + key}).value_or(0))) return true;
   return false;
 }
 
 // Returns the intrinsics of the rectified image, the left 3x3 of ROS' projection matrix P, if it is
 // told.
-std::optional<Intrinsics> rectified(const json& object) {
-  for (const char* key : {"P", "p", "projection_matrix"}) {
-    if (!object.contains(key)) continue;
+std::optional<Intrinsics> rectified(const Fields& fields, const std::string& behind) {
+  for (const char* key : {"p", "projectionmatrix"}) {
+    const Fields::Field* const field = fields.find({key + behind});
+    if (!field) continue;
     Remarks of_p;
-    const auto found = from_matrix(numbers_of(object[key]), of_p);
+    const auto found = from_matrix(numbers_of(*field->value), of_p);
     if (found && are_sound(*found)) return found;
   }
   return std::nullopt;
@@ -106,10 +171,10 @@ bool are_same(const Intrinsics& a, const Intrinsics& b) {
 }
 
 // Takes the intrinsics of the rectified image where the lens distorts, and says which were taken.
-void choose_rectified(const json& object, IntrinsicsFile& file) {
-  const std::optional<Intrinsics> p = rectified(object);
+void choose_rectified(const Fields& fields, const Affixes& camera, IntrinsicsFile& file) {
+  const std::optional<Intrinsics> p = rectified(fields, camera.behind);
   const bool differs = p && !are_same(*p, file.intrinsics);
-  if (!has_distortion(object)) {
+  if (!has_distortion(fields, camera)) {
     if (differs)
       file.remarks.push_back({false, "its K is used, " + intrinsics_text(file.intrinsics) +
                                          "; if the image is rectified, give `intrinsics` " +
@@ -129,47 +194,83 @@ void choose_rectified(const json& object, IntrinsicsFile& file) {
       {true, "the lens's distortion in it is not used: the depth image must be a rectified one"});
 }
 
-std::uint32_t size_at(const json& object, std::initializer_list<const char*> keys) {
-  const double size = number_at(object, keys).value_or(0);
+std::uint32_t as_size(double size) {
   return size >= 1 && size <= 1e9 ? static_cast<std::uint32_t>(size) : 0;
 }
 
+std::uint32_t size_at(const Fields& fields, const Fields::Keys& keys) {
+  return as_size(fields.number(keys).value_or(0));
+}
+
 // Returns the region of interest of ROS' camera_info; empty where it is the whole image.
-std::optional<ImageRegion> region_of(const json& object) {
-  const auto found = object.find("roi");
-  if (found == object.end() || !found->is_object()) return std::nullopt;
-  const ImageRegion region{size_at(*found, {"x_offset"}), size_at(*found, {"y_offset"}),
-                           size_at(*found, {"width"}), size_at(*found, {"height"})};
+std::optional<ImageRegion> region_of(const Fields& fields) {
+  const Fields::Field* const roi = fields.find({"roi"});
+  if (!roi || !roi->value->is_object()) return std::nullopt;
+  const Fields of(*roi->value);
+  const ImageRegion region{size_at(of, {"xoffset"}), size_at(of, {"yoffset"}),
+                           size_at(of, {"width"}), size_at(of, {"height"})};
   return region.width > 0 && region.height > 0 ? std::optional(region) : std::nullopt;
 }
 
-// Appends the objects in `value` that hold intrinsics. The parser has limited its depth.
+void read_size(const Fields& fields, IntrinsicsFile& file) {
+  file.width = size_at(fields, {"width", "imagewidth", "xres", "w", "camera.width"});
+  file.height = size_at(fields, {"height", "imageheight", "yres", "h", "camera.height"});
+  const Fields::Field* const size = fields.find({"resolution"});  // Kalibr, EuRoC
+  const std::vector<double> both = size ? numbers_of(*size->value) : std::vector<double>{};
+  if (file.width > 0 || file.height > 0 || both.size() != 2) return;
+  file.width = as_size(both[0]);
+  file.height = as_size(both[1]);
+}
+
+void append_candidate(const Fields& fields, const Affixes& camera, Candidate candidate,
+                      std::vector<Candidate>& found) {
+  read_size(fields, candidate.file);
+  candidate.file.region = region_of(fields);
+  candidate.file.factor = depth_factor_in(fields);
+  if (candidate.fault.empty()) choose_rectified(fields, camera, candidate.file);
+  found.push_back(std::move(candidate));
+}
+
+// Appends the cameras whose values stand in an object itself: one whose keys have no number, or
+// several of which each has its own.
+void find_in_object(const Fields& fields, const std::string& path, std::vector<Candidate>& found) {
+  const std::size_t before = found.size();
+  for (const std::string prefix : {"", "camera.", "camera1.", "camera2."}) {
+    const auto intrinsics = from_numbers(fields, prefix);
+    if (!intrinsics) continue;
+    Candidate candidate;
+    candidate.path = path;
+    candidate.file.intrinsics = *intrinsics;
+    if (!prefix.empty())
+      candidate.path += (path.empty() ? "" : ".") + prefix.substr(0, prefix.find('.'));
+    append_candidate(fields, {prefix, ""}, std::move(candidate), found);
+  }
+  for (const std::string suffix : {"", "0", "1", "2", "3", "4"}) {
+    if (found.size() > before && (suffix.empty() || found.back().path == path)) return;
+    Candidate candidate;
+    candidate.path = path;
+    if (take_matrices(fields, suffix, candidate))
+      append_candidate(fields, {"", suffix}, std::move(candidate), found);
+  }
+}
+
+// Appends the cameras in `value`. The parser has limited its depth.
 void find_candidates(const json& value, const std::string& path, std::vector<Candidate>& found) {
   if (value.is_array())
     for (const json& item : value) find_candidates(item, path + "[]", found);
   if (!value.is_object()) return;
-  Candidate candidate{path, {}};
-  std::optional<Intrinsics> intrinsics = from_numbers(value);
-  if (!intrinsics) intrinsics = from_matrices(value, candidate.file.remarks);
-  if (intrinsics) {
-    candidate.file.intrinsics = *intrinsics;
-    candidate.file.width = size_at(value, {"width", "image_width", "xres", "w", "Camera.width"});
-    candidate.file.height =
-        size_at(value, {"height", "image_height", "yres", "h", "Camera.height"});
-    candidate.file.region = region_of(value);
-    choose_rectified(value, candidate.file);
-    found.push_back(std::move(candidate));
-    return;
-  }
+  const std::size_t before = found.size();
+  find_in_object(Fields(value), path, found);
+  if (found.size() > before) return;
   for (const auto& [key, item] : value.items())
     find_candidates(item, path.empty() ? key : path + "." + key, found);
 }
 
-IntrinsicsFile chosen(const std::vector<Candidate>& candidates, const std::string& name) {
+const Candidate& chosen(const std::vector<Candidate>& candidates, const std::string& name) {
   if (candidates.empty())
     refuse("no camera's intrinsics in it", name,
            "it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix");
-  if (candidates.size() == 1) return candidates.front().file;
+  if (candidates.size() == 1) return candidates.front();
   std::vector<const Candidate*> depth;
   std::string paths;
   for (const Candidate& candidate : candidates) {
@@ -180,7 +281,7 @@ IntrinsicsFile chosen(const std::vector<Candidate>& candidates, const std::strin
   if (depth.size() != 1)
     refuse("it holds several cameras: " + file::shown(paths, 200), name,
            "give the numbers of one as `intrinsics` fx,fy,cx,cy");
-  return depth.front()->file;
+  return *depth.front();
 }
 
 // Returns the numbers of a text that holds nothing else; empty otherwise.
@@ -210,32 +311,58 @@ json parse_calibration(std::string_view text, const std::string& name) {
   }
 }
 
+// Refuses what is no calibration by its first bytes: XML of OpenCV, UTF-16, archives, web pages.
+void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
+  const std::string_view text = file::as_text(bytes);
+  const std::string_view start =
+      text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+  if (start.starts_with("<?xml") || start.starts_with("<opencv_storage"))
+    refuse("this is XML, which is not read for intrinsics", name,
+           "write it as .yml, which OpenCV does where the file's name ends so");
+  const auto other = file::foreign_content(bytes);
+  if (other && other->holds == file::Holds::anything)
+    refuse("this is " + other->what, name, other->next);
+}
+
+// Returns the camera of a text that holds numbers and nothing else.
+Candidate from_text(const std::vector<double>& n, const std::string& name) {
+  Candidate read;
+  if (n.size() == 4)
+    read.file.intrinsics = {n[0], n[1], n[2], n[3]};
+  else if (!take_matrix(n, read))
+    refuse("its " + std::to_string(n.size()) +
+               " numbers are neither fx fy cx cy nor a matrix fx 0 cx 0 fy cy 0 0 1",
+           name);
+  return read;
+}
+
+// Returns the camera of a calibration in JSON or YAML.
+Candidate from_calibration(std::string_view text, const std::string& name) {
+  const json calibration = parse_calibration(text, name);
+  std::vector<Candidate> candidates;
+  find_candidates(calibration, "", candidates);
+  Candidate read = chosen(candidates, name);
+  if (!read.file.factor && calibration.is_object())
+    read.file.factor = depth_factor_in(Fields(calibration));
+  return read;
+}
+
 }  // namespace
 
 IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::size_t kLargest = std::size_t{1} << 20;  // bytes
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";      // UTF-8's, written by some editors
+  if (file::as_text(bytes).starts_with(kMark)) bytes = bytes.subspan(kMark.size());
+  refuse_foreign(bytes, name);
   const std::string_view text = file::as_text(bytes);
   if (text.size() > kLargest || text.find('\0') != text.npos)
     refuse("not a text with a camera's intrinsics", name);
-  const std::vector<double> n = plain_numbers(text);
-  IntrinsicsFile read;
-  if (n.size() == 4) {
-    read.intrinsics = {n[0], n[1], n[2], n[3]};
-  } else if (!n.empty()) {
-    const auto found = from_matrix(n, read.remarks);
-    if (!found)
-      refuse("its " + std::to_string(n.size()) +
-                 " numbers are neither fx fy cx cy nor a matrix fx 0 cx 0 fy cy 0 0 1",
-             name);
-    read.intrinsics = *found;
-  } else {
-    std::vector<Candidate> candidates;
-    find_candidates(parse_calibration(text, name), "", candidates);
-    read = chosen(candidates, name);
-  }
-  if (!are_sound(read.intrinsics))
+  const std::vector<double> numbers = plain_numbers(text);
+  const Candidate read = numbers.empty() ? from_calibration(text, name) : from_text(numbers, name);
+  if (!read.fault.empty()) refuse(read.fault, name, read.hint);
+  if (!are_sound(read.file.intrinsics))
     refuse("its focal lengths are not greater than 0, or its numbers are too large", name);
-  return read;
+  return read.file;
 }
 
 }  // namespace vpm

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "libvpm/cloud/camera.h"
+#include "libvpm/import/depth_factor.h"
 #include "libvpm/import/remark.h"
 
 namespace vpm {
@@ -24,17 +25,19 @@ struct IntrinsicsFile {
   // Size of the calibrated image, px; 0 if the file does not tell.
   std::uint32_t width = 0, height = 0;
   std::optional<ImageRegion> region;  // if the file tells one
+  std::optional<DepthFactor> factor;  // if the file tells one
   Remarks remarks;
 };
 
-// Parses one of these:
-//   text   four numbers fx fy cx cy, or a matrix of 3x3 or 3x4, separated by blanks, commas and
-//          line ends
+// Parses one of these, in UTF-8 with or without a byte order mark:
+//   text   four numbers fx fy cx cy, or a matrix of 3x3, 3x4 or 4x4, separated by blanks, commas
+//          and line ends
 //   JSON   or YAML of which an object has fx, fy, cx, cy (RealSense: ppx, ppy; ORB-SLAM:
-//          Camera.fx; nerfstudio: fl_x, fl_y), or a matrix called K, camera_matrix or
-//          intrinsic_matrix (ROS camera_info, Open3D, OpenCV); of several objects the one under a
-//          key "depth". Where the lens distorts, ROS' P is taken instead, which holds for the
-//          rectified image
+//          Camera.fx; nerfstudio: fl_x, fl_y), a matrix called K, camera_matrix, intrinsic_matrix
+//          or intrinsics (ROS camera_info, Open3D, OpenCV; M1 of a pair), or a list intrinsics of
+//          fx, fy, cx, cy (Kalibr, EuRoC); keys are compared without case and underscores; of
+//          several cameras the one under a key "depth". Where the lens distorts, ROS' P is taken
+//          instead, which holds for the rectified image
 // Throws Error(refused), naming `name`, for anything else, Error(unavailable) for YAML in builds
 // without it.
 IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name);

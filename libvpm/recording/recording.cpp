@@ -8,7 +8,6 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
-#include "libvpm/import/intrinsics_file.h"
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/recording/timed_path.h"
 
@@ -245,7 +244,7 @@ void place_cameras(const fs::path& folder, const RecordingOptions& options, Reco
 
 void read_intrinsics(const fs::path& path, Recording& recording) {
   if (!is_file(path)) return;
-  recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string()).intrinsics;
+  recording.intrinsics = parse_intrinsics(file::read_all(path.string()), path.string());
 }
 
 }  // namespace

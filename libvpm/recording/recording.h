@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "libvpm/cloud/camera.h"
+#include "libvpm/import/intrinsics_file.h"
 
 namespace vpm {
 
@@ -36,7 +37,7 @@ struct Recording {
   std::size_t missing = 0;
   std::string camera_source;  // source of the camera poses, for notes; may be empty
   // Read from camera-intrinsics.txt (3x3) in the folder.
-  std::optional<Intrinsics> intrinsics;
+  std::optional<IntrinsicsFile> intrinsics;
   double largest_deviation = 0;  // largest of the camera rotations, before normalisation
 };
 

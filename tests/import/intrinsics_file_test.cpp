@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 
@@ -31,6 +33,22 @@ TEST(IntrinsicsFile, ReadsText) {
   expect_camera("525 0 319.5\r\n0 526 239.5\r\n0 0 1\r\n");
   expect_camera("[[525, 0, 319.5], [0, 526, 239.5], [0, 0, 1]]");
   expect_camera("525 0 319.5 0  0 526 239.5 0  0 0 1 0");
+  expect_camera("525 0 319.5 0\n0 526 239.5 0\n0 0 1 0\n0 0 0 1\n");  // ScanNet
+  expect_camera(
+      "\xEF\xBB\xBF"
+      "525 526 319.5 239.5\n");
+}
+
+TEST(IntrinsicsFile, RefusesMatricesOfDisplacedCameras) {
+  for (const char* text :
+       {"525 0 319.5 45  0 526 239.5 0  0 0 1 0", "525 0 319.5 0  0 526 239.5 0  0 0 1 0.1",
+        "525 0 319.5 0  0 526 239.5 2  0 0 1 0  0 0 0 1",
+        "525 0 319.5 0  0 526 239.5 0  0 0 1 0  0 0 0 2",
+        R"({"K": [525, 0, 319.5, 45, 0, 526, 239.5, 0, 0, 0, 1, 0]})"}) {
+    EXPECT_TRUE(says(refused(text), "is not 0")) << text;
+    EXPECT_TRUE(says(refused(text), "`intrinsics` 525,526,319.5,239.5")) << text;
+  }
+  EXPECT_TRUE(says(refused("0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1"), "its 16 numbers"));
 }
 
 TEST(IntrinsicsFile, ReadsJson) {
@@ -45,6 +63,40 @@ TEST(IntrinsicsFile, ReadsJson) {
       R"({"color": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "depth": {"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5}})");
 }
 
+constexpr const char* kMatrix = "[525,0,319.5, 0,526,239.5, 0,0,1]";
+
+TEST(IntrinsicsFile, ComparesKeysWithoutCaseAndUnderscores) {
+  for (const char* key :
+       {"K", "k", "K1", "M1", "m1", "cameraMatrix", "Camera_Matrix", "CAMERA_MATRIX", "cam_K",
+        "intrinsicMatrix", "Intrinsic_Matrix", "intrinsic", "intrinsics", "Camera.K"})
+    expect_camera(std::string("{\"") + key + "\": " + kMatrix + "}");
+  expect_camera(R"({"FX": 525, "Fy": 526, "CX": 319.5, "c_y": 239.5, "Image_Width": 640})", 640);
+}
+
+TEST(IntrinsicsFile, ReadsMatricesAndListsOfIntrinsics) {
+  for (const char* value :
+       {"[525, 526, 319.5, 239.5]", "[[525, 0, 319.5], [0, 526, 239.5], [0, 0, 1]]",
+        "[[525, 0, 319.5, 0], [0, 526, 239.5, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"}) {
+    expect_camera(std::string(R"({"intrinsics": )") + value + "}");
+    expect_camera(std::string(R"({"cam0": {"intrinsic": )") + value +
+                      R"(, "camera_model": "pinhole", "resolution": [640, 480]}})",
+                  640, 480);
+  }
+  EXPECT_TRUE(
+      says(refused(R"({"camera_model": "omni", "intrinsics": [0.9, 1, 1, 1, 1]})"), "omni"));
+  EXPECT_TRUE(says(refused(R"({"camera_model": "eucm", "intrinsics": [0.9, 1, 1, 1]})"), "eucm"));
+}
+
+TEST(IntrinsicsFile, RefusesSeveralCamerasOfOneObjectByTheirNames) {
+  const std::string m = kMatrix, list = R"({"intrinsics": [1, 1, 1, 1]})";
+  EXPECT_TRUE(says(refused(R"({"M1": )" + m + R"(, "M2": )" + m + "}"), "cameras: M1, M2"));
+  EXPECT_TRUE(says(refused(R"({"cam0": )" + list + R"(, "cam1": )" + list + "}"), "cam0, cam1"));
+  EXPECT_TRUE(says(refused(R"({"Camera1.fx": 1, "Camera1.fy": 1, "Camera1.cx": 1, "Camera1.cy": 1,
+                               "Camera2.fx": 1, "Camera2.fy": 1, "Camera2.cx": 1, "Camera2.cy": 1})"),
+                   "camera1, camera2"));
+  expect_camera(R"({"M0": [525,0,319.5, 0,526,239.5, 0,0,1], "M1": "none"})");
+}
+
 TEST(IntrinsicsFile, RefusesWhatTellsNoCamera) {
   EXPECT_TRUE(says(refused("1 2 3\n"), "3 numbers"));
   EXPECT_TRUE(says(refused(R"({"fx": 525})"), "no camera's intrinsics"));
@@ -56,11 +108,91 @@ TEST(IntrinsicsFile, RefusesWhatTellsNoCamera) {
   EXPECT_TRUE(says(refused(std::string("\x89PNG\0", 5)), "not a text"));
 }
 
+TEST(IntrinsicsFile, RefusesOtherFormatsByTheirNames) {
+  for (const std::string start : {"", "\xEF\xBB\xBF", "\n "}) {
+    EXPECT_TRUE(says(refused(start + "<?xml version=\"1.0\"?>\n<opencv_storage/>"), "XML"));
+    EXPECT_TRUE(says(refused(start + "<opencv_storage/>"), ".yml"));
+  }
+  EXPECT_TRUE(says(refused(std::string("\xFF\xFE"
+                                       "6\0",
+                                       4)),
+                   "UTF-16"));
+  EXPECT_TRUE(says(refused(std::string("\xFE\xFF\0"
+                                       "6",
+                                       4)),
+                   "UTF-16"));
+  EXPECT_TRUE(says(refused("\x1f\x8b"), "gzip"));
+}
+
 TEST(IntrinsicsFile, SaysThatDistortionIsNotUsed) {
   const IntrinsicsFile read =
       parse(R"({"K": [525,0,319.5, 0,526,239.5, 0,0,1], "D": [0.1, 0, 0, 0, 0]})");
   ASSERT_EQ(read.remarks.size(), 1U);
   EXPECT_TRUE(read.remarks[0].is_warning);
+}
+
+// Returns a camera with one more key.
+std::string with(const std::string& more, const std::string& before = "") {
+  std::string text = "{";
+  for (const char* key : {"fx", "fy", "cx", "cy"}) text += '"' + before + key + "\": 100, ";
+  return text + more + "}";
+}
+
+TEST(IntrinsicsFile, SaysThatDistortionOfSeparateKeysIsNotUsed) {
+  for (const char* key : {"k1", "k2", "k3", "p1", "p2", "K1", "k_1"}) {
+    for (const std::string before : {"", "Camera.", "Camera1."}) {
+      const std::string name = '"' + before + key + "\": ";
+      const Remarks remarks = parse(with(name + "0.26", before)).remarks;
+      ASSERT_EQ(remarks.size(), 1U) << name;
+      EXPECT_TRUE(remarks[0].is_warning);
+      EXPECT_TRUE(says(remarks[0].text, "distortion in it is not used"));
+      EXPECT_TRUE(parse(with(name + "0", before)).remarks.empty()) << name;
+    }
+  }
+  for (const char* key : {"distCoeffs", "distortionCoefficients", "Distortion_Coefficients"})
+    EXPECT_EQ(parse(with('"' + std::string(key) + "\": [0, 0.1]")).remarks.size(), 1U) << key;
+  const std::string m = R"({"M1": [525,0,319.5, 0,526,239.5, 0,0,1], "D1": )";
+  EXPECT_EQ(parse(m + "[0.1, 0, 0, 0]}").remarks.size(), 1U);
+  EXPECT_TRUE(parse(m + "[0, 0, 0, 0]}").remarks.empty());
+}
+
+// Returns what is said of a factor in a file, where `given` was given.
+std::string said_of(const std::string& factor, std::optional<double> given = std::nullopt) {
+  std::string said;
+  for (const Remark& remark : unused_factor(parse(with(factor)).factor, given))
+    said += (remark.is_warning ? "warning: " : "note: ") + remark.text;
+  return said;
+}
+
+TEST(IntrinsicsFile, SaysThatADepthFactorIsNotUsed) {
+  for (const char* key :
+       {"DepthMapFactor", "RGBD.DepthMapFactor", "depth_scale", "png_depth_scale", "scale"}) {
+    const std::string factor = '"' + std::string(key) + "\": 5000.0";
+    EXPECT_EQ(said_of(factor), "warning: it tells a depth factor, " + std::string(key) +
+                                   " 5000, which is not used; give `depth_scale` 5000");
+    EXPECT_EQ(said_of(factor, 5000), "");
+    EXPECT_TRUE(says(said_of(factor, 1000), "note: ")) << key;
+  }
+  EXPECT_TRUE(says(said_of(R"("scale": 6553.5)"), "`depth_scale` 6553.5"));
+  EXPECT_TRUE(says(said_of(R"("depth_scale": 0.1)"),
+                   "if it is in millimetres per unit, give `depth_scale` 10000"));
+  EXPECT_TRUE(says(said_of(R"("depth_scale": 0.00025)"),
+                   "if it is in metres per unit, give `depth_scale` 4000"));
+  EXPECT_TRUE(says(said_of(R"("DepthMapFactor": 200)"), "`depth_scale` 200"));
+}
+
+TEST(IntrinsicsFile, SaysNothingOfFactorsThatAreTheDefault) {
+  for (const char* factor :
+       {R"("name": 1)", R"("depth_scale": 1)", R"("depth_scale": 0.001)", R"("depth_scale": 1000)",
+        R"("DepthMapFactor": 1)", R"("DepthMapFactor": 0)", R"("DepthMapFactor": "x")",
+        R"("scale": 0.33)", R"("depth_scale": -1)", R"("depth_scale": 1e-320)"})
+    EXPECT_EQ(said_of(factor), "") << factor;
+}
+
+TEST(IntrinsicsFile, FindsTheDepthFactorBesideTheCamera) {
+  const IntrinsicsFile read = parse(R"({"depth_scale": 0.1, "depth": )" + with("\"w\": 640") + "}");
+  ASSERT_TRUE(read.factor);
+  EXPECT_EQ(read.factor->units_per_metre, 10000);
 }
 
 TEST(IntrinsicsFile, TakesTheRectifiedCameraWhereTheLensDistorts) {
@@ -104,6 +236,14 @@ TEST(IntrinsicsFile, ReadsYaml) {
   expect_camera(
       "height: 480\nwidth: 640\nk: [525.0, 0.0, 319.5, 0.0, 526.0, 239.5, 0.0, 0.0, 1.0]\n---\n",
       640, 480);
+  expect_camera(
+      "%YAML:1.0\ncameraMatrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [525., 0., 319.5, 0., 526., 239.5, 0., 0., 1.]\n");  // iai_kinect2
+  expect_camera(
+      "\xEF\xBB\xBF"
+      "camera_model: pinhole\nresolution: [640, 480]\n"
+      "intrinsics: [525, 526, 319.5, 239.5] #fu, fv, cu, cv\n",
+      640, 480);  // EuRoC
   EXPECT_TRUE(says(refused("a: [1\n"), "not YAML"));
 }
 #endif

@@ -175,10 +175,10 @@ TEST_F(ARecording, KnowsItsCamera) {
   EXPECT_FALSE(read().intrinsics);
   write("camera-intrinsics.txt", "585.0 0 320\n0 584 240\n0 0 1\n");
   const Recording r = read();
-  EXPECT_EQ(r.intrinsics->fx, 585);
-  EXPECT_EQ(r.intrinsics->fy, 584);
-  EXPECT_EQ(r.intrinsics->cx, 320);
-  EXPECT_EQ(r.intrinsics->cy, 240);
+  EXPECT_EQ(r.intrinsics->intrinsics.fx, 585);
+  EXPECT_EQ(r.intrinsics->intrinsics.fy, 584);
+  EXPECT_EQ(r.intrinsics->intrinsics.cx, 320);
+  EXPECT_EQ(r.intrinsics->intrinsics.cy, 240);
   write("camera-intrinsics.txt", "585 0 320");
   EXPECT_THROW(read(), Error);
 }
@@ -205,7 +205,7 @@ TEST(SharedRecording, OfTheRedKitchenIsWhole) {
   const Recording r = read_recording(folder, {});
   ASSERT_EQ(r.frames.size(), 15u);
   EXPECT_EQ(r.missing, 0u);
-  EXPECT_EQ(r.intrinsics->fx, 585);
+  EXPECT_EQ(r.intrinsics->intrinsics.fx, 585);
   EXPECT_NEAR(norm(r.frames.back().camera->translation - r.frames.front().camera->translation), 0.2,
               0.01);
   EXPECT_LT(r.largest_deviation, 4e-4);

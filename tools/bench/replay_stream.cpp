@@ -31,7 +31,8 @@ struct Stream {
 
 Stream read_stream(const std::string& folder, const Device& device) {
   Stream stream{read_recording(folder, {}), {}, device};
-  stream.import.intrinsics = stream.recording.intrinsics;
+  if (stream.recording.intrinsics)
+    stream.import.intrinsics = stream.recording.intrinsics->intrinsics;
   if (!stream.import.intrinsics)
     refuse(folder + ": camera-intrinsics.txt (3x3: fx 0 cx, 0 fy cy, 0 0 1) is missing in it");
   return stream;

@@ -155,6 +155,7 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& 
   } else {
     const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics);
     say(tool, a.intrinsics, read.remarks);
+    say(tool, a.intrinsics, unused_factor(read.factor, options.depth.units_per_metre));
     options.intrinsics = read.intrinsics;
     options.calibrated_width = read.width;
     options.calibrated_height = read.height;

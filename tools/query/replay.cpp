@@ -178,7 +178,11 @@ Replay::Replay(const Tool& tool, const ReplayArguments& arguments, double rate,
       points_(points) {
   recording_ = read_recording(arguments.frames, recording_options(arguments, import_));
   if (!import_.intrinsics && recording_.intrinsics) {
-    import_.intrinsics = recording_.intrinsics;
+    const IntrinsicsFile& file = *recording_.intrinsics;
+    const std::string name = arguments_.frames + "/camera-intrinsics.txt";
+    import_.intrinsics = file.intrinsics;
+    tools::say(tool_, name, file.remarks);
+    tools::say(tool_, name, unused_factor(file.factor, import_.depth.units_per_metre));
     check_intrinsics(*import_.intrinsics);
     tool_.note("intrinsics " + intrinsics_text(*import_.intrinsics) +
                " are read from camera-intrinsics.txt in " + arguments_.frames);
