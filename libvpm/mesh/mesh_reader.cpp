@@ -93,15 +93,38 @@ void RawMesh::end_polygon() {
   }
 }
 
+namespace {
+
+// True for the JSON of glTF, whose members may stand in any order; other descriptions of scenes
+// have an asset, too.
+bool looks_like_gltf_text(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == text.npos || text[first] != '{') return false;
+  const auto has = [&](const char* key) { return text.find(key) != text.npos; };
+  return has("\"asset\"") && has("\"version\"") &&
+         (has("\"meshes\"") || has("\"accessors\"") || has("\"buffers\"") || has("\"nodes\""));
+}
+
+// True for a zip archive whose names are those of a 3MF file, however the model is called.
+bool looks_like_threemf(std::string_view bytes) {
+  if (!bytes.starts_with("PK\x03\x04")) return false;
+  for (const char* name : {"3D/3dmodel.model", "3D/3DModel.model"})  // as programs spell it
+    if (bytes.find(name) != bytes.npos) return true;
+  return bytes.find("_rels/.rels") != bytes.npos && bytes.find(".model") != bytes.npos;
+}
+
+}  // namespace
+
 std::optional<MeshFormat> scene_by_content(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of UTF-8
   const std::string_view start = text.substr(0, 4096);
   if (start.starts_with("glTF")) return MeshFormat::gltf;
-  if (start.starts_with("Kaydara FBX Binary")) return MeshFormat::fbx;
+  if (start.starts_with("Kaydara FBX Binary") || start.starts_with("; FBX") ||
+      start.find("FBXHeaderExtension") != start.npos)
+    return MeshFormat::fbx;
   if (start.find("<COLLADA") != start.npos) return MeshFormat::dae;
-  if (start.starts_with("PK\x03\x04")) {
-    for (const char* model : {"3D/3dmodel.model", "3D/3DModel.model"})  // as programs spell it
-      if (text.find(model) != text.npos) return MeshFormat::threemf;
-  }
+  if (looks_like_threemf(text)) return MeshFormat::threemf;
+  if (looks_like_gltf_text(text)) return MeshFormat::gltf;
   return std::nullopt;
 }
 
@@ -155,7 +178,8 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
   if (const auto scene = scene_by_content(content)) return parse_scene(text, name, *scene, node);
-  refuse_foreign(bytes, name);
+  const bool is_named_threemf = extension == "3mf" && text.starts_with("PK\x03\x04");
+  if (!is_named_threemf) refuse_foreign(bytes, name);
   if (const auto scene = scene_by_extension(extension))
     return parse_scene(text, name, *scene, node);
   if (extension == "obj") return parse_obj(text, name);

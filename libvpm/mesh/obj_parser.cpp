@@ -8,6 +8,12 @@
 namespace vpm {
 namespace {
 
+// Keywords whose statements hold numbers, and may go on after a backslash. Statements with names
+// may end in one that belongs to the name: "g C:\parts\".
+constexpr std::string_view kWithNumbers[] = {
+    "v",    "vt",   "vn",   "vp",   "f",  "fo",  "l",    "p",   "curv", "curv2", "surf",
+    "parm", "trim", "hole", "scrv", "sp", "con", "bmat", "deg", "step", "ctech", "stech"};
+
 // Returns the vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", which counts from 1, or
 // backwards from the last vertex so far.
 std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::size_t so_far) {
@@ -48,7 +54,7 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
   std::uint32_t largest = 0;  // a face may name a later vertex
   std::size_t largest_line = 0;
   std::size_t divided = 0;
-  TextLines lines(text, name, '#', '\\');
+  TextLines lines(text, name, '#', {'\\', kWithNumbers});
   while (lines.next_line()) {
     const std::string_view keyword = lines.word();
     if (keyword == "v") {

@@ -160,6 +160,21 @@ Header parse_header(TextLines& lines, const Keyword& keyword) {
   return header;
 }
 
+// Returns the number of words left in the line, or many if they are more than of any vertex.
+std::size_t words_left(TextLines lines) {
+  constexpr std::size_t kMany = 100;
+  std::size_t count = 0;
+  while (count < kMany && !lines.word().empty()) ++count;
+  return count;
+}
+
+// True if the rest of the line begins with a face of three corners or more.
+bool holds_face(TextLines lines) {
+  lines.cross_lines(false);
+  const auto corners = file::to_count(lines.word());
+  return corners && *corners >= 3 && words_left(lines) >= *corners;
+}
+
 // Reads the vertices and faces that the header announces.
 class Body {
  public:
@@ -172,15 +187,21 @@ class Body {
   // whether lines are left.
   RawMesh by_lines(TextLines lines, bool& has_more) {
     lines.cross_lines(false);
+    std::size_t extras_of_first = 0;
     for (std::int64_t k = 0; k < header_.vertices; ++k) {
       lines.require_line("a vertex");
       add_vertex(lines);
+      if (k != 0 && k + 1 != header_.vertices) continue;
+      const std::size_t extras = words_left(lines);
+      if (k == 0) extras_of_first = extras;
+      if (extras != extras_of_first) suspect_vertex(lines);
     }
     for (std::int64_t k = 0; k < header_.faces; ++k) {
       lines.require_line("a face");
       add_face(lines);
     }
     has_more = lines.next_line();
+    if (has_more) say_unread(lines);
     return finished();
   }
 
@@ -188,9 +209,13 @@ class Body {
   // if there are any, end with its line. Empty if words are left.
   std::optional<RawMesh> by_words(TextLines lines, int extras, bool faces_have_colors) {
     lines.cross_lines(true);
+    std::int64_t cut_lines = 0;  // those that go on after a vertex
     for (std::int64_t k = 0; k < header_.vertices; ++k) {
       add_vertex(lines);
       for (int extra = 0; extra < extras; ++extra) lines.number("a vertex's colour or normal");
+      const bool cuts_line = !lines.rest().empty(), is_last = k > 0 && k + 1 == header_.vertices;
+      if (is_last && cuts_line && cut_lines == 0 && !holds_face(lines)) suspect_vertex(lines);
+      cut_lines += cuts_line;
     }
     for (std::int64_t k = 0; k < header_.faces; ++k) {
       add_face(lines);
@@ -226,6 +251,28 @@ class Body {
       mesh_.corners.push_back(static_cast<std::uint32_t>(index));
     }
     mesh_.end_polygon();
+  }
+
+  // Says that the last vertex differs from those before it: the header may count a face as one.
+  void suspect_vertex(const TextLines& lines) {
+    say("the header counts " + std::to_string(header_.vertices) + " vertices, but line " +
+        std::to_string(lines.line_number()) + " does not look like one");
+  }
+
+  void say_unread(const TextLines& lines) {
+    const std::string in_line = " in line " + std::to_string(lines.line_number());
+    if (keyword_length(lines.rest()) > 0) {
+      say("another OFF file follows" + in_line + ", which is not read");
+    } else {
+      say("the header counts " + std::to_string(header_.faces) +
+          (header_.faces == 1 ? " face" : " faces") + ", but more follows" + in_line +
+          ", which is not read");
+    }
+  }
+
+  void say(const std::string& defect) {
+    mesh_.notes.push_back(defect);
+    if (mesh_.doubt.empty()) mesh_.doubt = defect;
   }
 
   RawMesh finished() {
@@ -269,7 +316,7 @@ RawMesh parse_off(std::string_view text, const std::string& name) {
   RawMesh empty;
   empty.format = MeshFormat::off;
   empty.name = name;
-  TextLines lines(text, name, '#');
+  TextLines lines(without_padding(text), name, '#');
   lines.require_line("the keyword OFF");
   const std::size_t length = keyword_length(lines.rest());
   // Geomview reads files that begin with the counts, too.

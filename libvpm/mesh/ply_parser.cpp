@@ -158,13 +158,33 @@ class TextBody {
     }
   }
   void begin_record() { lines_.require_line("another element"); }
+  void end_record() {
+    if (lines_.rest().empty()) return;
+    if (longer_ == 0) first_longer_ = lines_.line_number();
+    ++longer_;
+  }
   double value(Type) { return lines_.number("a value"); }
   [[noreturn]] void refuse_here(const std::string& defect) const { lines_.refuse_here(defect); }
   // True if `count` more values may follow; lines are bounded by the file's size.
   bool holds(std::size_t, Type) const { return true; }
 
+  // Says what the records' lines hold beyond their values; empty if nothing.
+  std::string excess() const {
+    if (longer_ == 0) return {};
+    const std::string line = "line " + std::to_string(first_longer_);
+    return (longer_ == 1
+                ? line + " holds"
+                : std::to_string(longer_) + " lines, the first of them " + line + ", hold") +
+           " more numbers than the header says; they are not read";
+  }
+  // Returns what follows the last record, and moves there; empty if nothing does.
+  std::string_view rest() { return lines_.next_line() ? lines_.rest() : std::string_view(); }
+  std::string more_follows() const { return "more follows " + place() + ", which is not read"; }
+  std::string place() const { return "in line " + std::to_string(lines_.line_number()); }
+
  private:
   TextLines lines_;
+  std::size_t longer_ = 0, first_longer_ = 0;  // lines with more than a record
 };
 
 class BinaryBody {
@@ -172,6 +192,7 @@ class BinaryBody {
   BinaryBody(std::string_view bytes, const Header& header, const std::string& name)
       : bytes_(bytes), name_(name), at_(header.body), swap_(header.encoding == Encoding::big) {}
   void begin_record() {}
+  void end_record() {}
   double value(Type type) {
     std::array<char, 8> raw{};
     const std::size_t size = size_of(type);
@@ -209,6 +230,17 @@ class BinaryBody {
   bool holds(std::size_t count, Type type) const {
     return count <= (bytes_.size() - at_) / size_of(type);
   }
+  std::string excess() const { return {}; }
+  // Returns what follows the last record; empty if that is at most an end of a line or padding.
+  std::string_view rest() const {
+    const std::string_view rest = bytes_.substr(at_);
+    return rest.find_first_not_of(kEnd) == rest.npos ? std::string_view() : rest;
+  }
+  std::string more_follows() const {
+    return std::to_string(bytes_.size() - at_) + " bytes more follow " + place() +
+           ", which are not read";
+  }
+  std::string place() const { return "at byte " + std::to_string(at_); }
 
  private:
   template <class T>
@@ -217,6 +249,8 @@ class BinaryBody {
     std::memcpy(&value, raw.data(), sizeof value);
     return value;
   }
+  static constexpr std::string_view kEnd{"\0\x1a\r\n", 4};
+
   std::string_view bytes_;
   const std::string& name_;
   std::size_t at_;
@@ -299,6 +333,27 @@ std::size_t count_of(const Header& header, std::string_view name) {
   return 0;
 }
 
+std::string last_count(const Header& header) {
+  const Element& last = header.elements.back();
+  if (last.name != "face") return std::to_string(last.count) + " x " + file::shown(last.name, 40);
+  return std::to_string(last.count) + (last.count == 1 ? " face" : " faces");
+}
+
+// Says what the header does not count, and so was not read.
+template <class Body>
+void say_unread(Body& body, const Header& header, RawMesh& mesh) {
+  const std::string excess = body.excess();
+  const std::string_view rest = body.rest();
+  if (!excess.empty()) mesh.notes.push_back(excess);
+  if (looks_like_ply(rest) || rest == "ply") {
+    mesh.notes.push_back("another PLY file follows " + body.place() + ", which is not read");
+  } else if (!rest.empty()) {
+    mesh.notes.push_back("the header counts " + last_count(header) + ", but " +
+                         body.more_follows());
+  }
+  if (!mesh.notes.empty()) mesh.doubt = mesh.notes.front();
+}
+
 template <class Body>
 void read_body(Body body, const Header& header, RawMesh& mesh) {
   const std::size_t vertices = count_of(header, "vertex");
@@ -314,8 +369,10 @@ void read_body(Body body, const Header& header, RawMesh& mesh) {
       } else {
         for (const Property& property : element.properties) skip(body, property);
       }
+      body.end_record();
     }
   }
+  say_unread(body, header, mesh);
 }
 
 void check_elements(const Header& header, const std::string& name) {
@@ -360,7 +417,7 @@ RawMesh parse_ply(std::string_view bytes, const std::string& name) {
   check_counts(header, bytes.size(), name);
   check_elements(header, name);
   if (header.encoding == Encoding::ascii) {
-    read_body(TextBody(bytes, header, name), header, mesh);
+    read_body(TextBody(without_padding(bytes), header, name), header, mesh);
   } else {
     read_body(BinaryBody(bytes, header, name), header, mesh);
   }

@@ -1,133 +1,67 @@
 #include "libvpm/mesh/scene_header.h"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <nlohmann/json.hpp>
+#include <cstddef>
 #include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/mesh/scene_archive.h"
+#include "libvpm/mesh/scene_xml.h"
 
 namespace vpm {
 namespace {
 
-constexpr std::size_t kLooked = 1 << 16;  // bytes in which the header of a model stands
-constexpr std::string_view kBlank = " \t\r\n";
+constexpr const char* kExport = "export it as STL or OBJ";
 
-// Returns the value of an attribute of the first element of the name; nothing where it has none.
-std::optional<std::string_view> attribute_of(std::string_view xml, std::string_view element,
-                                             std::string_view attribute) {
-  for (std::size_t at = xml.find(element); at != xml.npos; at = xml.find(element, at + 1)) {
-    const std::size_t after = at + element.size();
-    const bool is_element = at > 0 && (xml[at - 1] == '<' || xml[at - 1] == ':') &&
-                            after < xml.size() && kBlank.find(xml[after]) != kBlank.npos;
-    if (!is_element) continue;
-    const std::string_view tag = xml.substr(after, xml.find('>', after) - after);
-    for (std::size_t name = tag.find(attribute); name != tag.npos;
-         name = tag.find(attribute, name + 1)) {
-      const std::size_t equals = tag.find_first_not_of(kBlank, name + attribute.size());
-      if (name == 0 || kBlank.find(tag[name - 1]) == kBlank.npos || equals == tag.npos ||
-          tag[equals] != '=')
+// Takes the length of COLLADA's unit.
+void take_unit(const XmlTags& tag, const std::string& name, ColladaHeader& header) {
+  const auto word = tag.attribute("meter");
+  if (!word) {
+    header.unit_name = tag.attribute("name").value_or("");
+    return;
+  }
+  const auto metres = file::to_number(*word);
+  if (!metres || !(*metres > 0) || !std::isfinite(*metres)) {
+    refuse(
+        "its unit has the length meter=\"" + file::shown(*word) + "\", which is no positive number",
+        name, "write the metres of one unit there, 0.001 for millimetres");
+  }
+  header.metres = metres;
+}
+
+// Returns the main model in a 3MF archive: that which its relationships name, otherwise that of the
+// usual name, otherwise any.
+std::string main_model(std::string_view zip) {
+  const std::vector<ZipEntry> entries = zip_entries(zip);
+  const auto find = [&](std::string_view path) {
+    return std::find_if(entries.begin(), entries.end(),
+                        [&](const ZipEntry& entry) { return entry.path == path; });
+  };
+  auto model = entries.end();
+  if (const auto list = find("_rels/.rels"); list != entries.end()) {
+    const std::string text = unpacked(zip, *list);
+    for (XmlTags tag(text); model == entries.end() && tag.next();) {
+      if (tag.name() != "Relationship" || !tag.attribute("Type").value_or("").ends_with("/3dmodel"))
         continue;
-      const std::size_t quote = tag.find_first_not_of(kBlank, equals + 1);
-      if (quote == tag.npos || (tag[quote] != '"' && tag[quote] != '\'')) return std::nullopt;
-      const std::size_t end = tag.find(tag[quote], quote + 1);
-      if (end == tag.npos) return std::nullopt;
-      return tag.substr(quote + 1, end - quote - 1);
+      std::string target = file::in_lower_case(tag.attribute("Target").value_or(""));
+      if (target.starts_with('/')) target.erase(0, 1);
+      model = find(target);
     }
-    return std::nullopt;
   }
-  return std::nullopt;
-}
-
-// Returns a number of little-endian bytes, 0 beyond the end.
-std::uint32_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t k = size; k-- > 0;)
-    value = value << 8 | (at + k < bytes.size() ? static_cast<unsigned char>(bytes[at + k]) : 0U);
-  return value;
-}
-
-// Returns up to kLooked bytes of a deflated stream's beginning.
-std::string inflated(std::string_view packed) {
-  std::string text(kLooked, '\0');
-  z_stream stream{};
-  if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) return "";
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-  stream.avail_in = static_cast<uInt>(std::min<std::size_t>(packed.size(), UINT32_MAX));
-  stream.next_out = reinterpret_cast<Bytef*>(text.data());
-  stream.avail_out = static_cast<uInt>(text.size());
-  ::inflate(&stream, Z_SYNC_FLUSH);
-  text.resize(text.size() - stream.avail_out);
-  ::inflateEnd(&stream);
-  return text;
-}
-
-// Returns the beginning of an entry of a zip archive, given the place of its record in the central
-// directory; empty if it is damaged.
-std::string entry_at(std::string_view zip, std::size_t record) {
-  constexpr std::size_t kLocalSize = 30;
-  const std::uint32_t method = number_at(zip, record + 10, 2),
-                      size = number_at(zip, record + 20, 4);
-  const std::size_t local = number_at(zip, record + 42, 4);
-  const std::size_t begin =
-      local + kLocalSize + number_at(zip, local + 26, 2) + number_at(zip, local + 28, 2);
-  if (begin >= zip.size()) return "";
-  const std::string_view packed = zip.substr(begin, size);
-  return method == 0 ? std::string(packed.substr(0, kLooked)) : inflated(packed);
-}
-
-// Returns the beginning of the model in a 3MF archive; empty if there is none. Where parts of the
-// model are files of their own, the main one has the usual name.
-std::string model_in(std::string_view zip) {
-  constexpr std::string_view kRecord{"PK\x01\x02", 4};
-  constexpr std::size_t kRecordSize = 46, kMostTried = 64;
-  std::size_t model = zip.npos, tried = 0;
-  for (std::size_t at = zip.find(kRecord); at != zip.npos && tried < kMostTried;
-       at = zip.find(kRecord, at + 1), ++tried) {
-    const std::string_view rest = zip.substr(std::min(at + kRecordSize, zip.size()));
-    const std::string path = file::in_lower_case(rest.substr(0, number_at(zip, at + 28, 2)));
-    if (path == "3d/3dmodel.model") return entry_at(zip, at);
-    if (path.ends_with(".model")) model = at;
+  if (model == entries.end()) model = find("3d/3dmodel.model");
+  if (model == entries.end()) {
+    model = std::find_if(entries.begin(), entries.end(),
+                         [](const ZipEntry& entry) { return entry.path.ends_with(".model"); });
   }
-  return model == zip.npos ? "" : entry_at(zip, model);
+  return model == entries.end() ? "" : unpacked(zip, *model);
 }
 
-// Returns the JSON of a glTF file, which is the first chunk of a binary one.
-std::string_view json_of(std::string_view gltf) {
-  constexpr std::size_t kHeader = 20;
-  if (!gltf.starts_with("glTF")) return gltf;
-  return gltf.size() < kHeader ? "" : gltf.substr(kHeader, number_at(gltf, 12, 4));
-}
-
-// True for extensions that say how a surface looks, or what stands beside it, and for the
-// compression that assimp may unpack; where it cannot, it says so.
-bool is_readable(const std::string& extension) {
-  if (extension == "KHR_draco_mesh_compression") return true;
-  const std::string name = file::in_lower_case(extension);
-  for (const char* const part : {"material", "texture", "light", "image", "xmp", "audio"})
-    if (name.find(part) != name.npos) return true;
-  return false;
-}
-
-}  // namespace
-
-std::optional<double> collada_unit(std::string_view text) {
-  const auto word = attribute_of(text.substr(0, kLooked), "unit", "meter");
-  const auto metres = word ? file::to_number(*word) : std::nullopt;
-  return metres && *metres > 0 && std::isfinite(*metres) ? metres : std::nullopt;
-}
-
-std::optional<NamedUnit> threemf_unit(std::string_view bytes, const std::string& name) {
-  const std::string model = model_in(bytes);
-  if (model.empty())
-    refuse("its archive is damaged: no 3D model can be unpacked from it", name,
-           "save it again, or as OBJ, PLY or STL");
-  const auto unit = attribute_of(model, "model", "unit");
+// Returns the unit that the model's root element names.
+std::optional<NamedUnit> unit_of_model(const XmlTags& root, const std::string& name) {
+  const auto unit = root.attribute("unit");
   if (!unit) return std::nullopt;
   constexpr std::array<std::pair<const char*, double>, 6> kUnits = {{{"micron", 1e-6},
                                                                      {"millimeter", 0.001},
@@ -142,30 +76,81 @@ std::optional<NamedUnit> threemf_unit(std::string_view bytes, const std::string&
          name);
 }
 
-void check_gltf_extensions(std::string_view bytes, const std::string& name) {
-  const auto content = nlohmann::json::parse(json_of(bytes), nullptr, false);
-  if (!content.is_object()) return;  // assimp says what is wrong
-  const auto required = content.find("extensionsRequired");
-  if (required == content.end() || !required->is_array()) return;
-  for (const auto& extension : *required) {
-    if (!extension.is_string() || is_readable(extension.get<std::string>())) continue;
-    refuse("it requires the glTF extension " + file::shown(extension.get<std::string>()) +
-               ", which is not read here",
-           name, "save it without compression, quantization and instancing, or as OBJ, PLY or STL");
+// Refuses extensions that the model requires and that may change its bodies. Parts in other files,
+// which the production extension allows, are refused where they are.
+void check_required(const XmlTags& root, const std::string& name) {
+  for (const std::string_view prefix :
+       file::split_words(root.attribute("requiredextensions").value_or(""))) {
+    const std::string_view space = root.attribute("xmlns:" + std::string(prefix)).value_or(prefix);
+    const auto is_for = [&](const char* part) { return space.find(part) != space.npos; };
+    if (is_for("/production/") || is_for("/material/") || is_for("/trianglesets/")) continue;
+    refuse("it requires the 3MF extension " + file::shown(space, 100) + ", which is not read here",
+           name, kExport);
   }
 }
 
-std::string without_skins(std::string_view gltf) {
-  std::string changed(gltf);
-  const std::string_view json = json_of(gltf);
-  const auto first = static_cast<std::size_t>(json.data() - gltf.data());
-  for (const std::string_view key : {"\"skins\"", "\"skin\""}) {
-    for (std::size_t at = json.find(key); at != json.npos; at = json.find(key, at + 1)) {
-      const std::size_t colon = json.find_first_not_of(kBlank, at + key.size());
-      if (colon != json.npos && json[colon] == ':') changed[first + at + 1] = '_';
+// Refuses bodies that are not read, given a start tag and the name of the element around it; notes
+// what a mesh has besides its triangles.
+void check_body(const XmlTags& tag, std::string_view parent, const std::string& name,
+                std::vector<std::string>& notes) {
+  const std::string_view element = tag.name();
+  const auto is_one_of = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), element) != names.end();
+  };
+  using Names = std::initializer_list<std::string_view>;
+  if ((element == "component" || element == "item") && tag.prefixed_attribute("path")) {
+    refuse(
+        "its parts lie in other files of the archive (production extension), which are not read "
+        "here",
+        name, kExport);
+  }
+  if (parent == "object" && !is_one_of(Names{"mesh", "components", "metadatagroup"})) {
+    refuse("one of its objects is of '" + file::shown(element) +
+               "', which is not read here, only meshes are",
+           name, kExport);
+  }
+  if (parent != "mesh" || is_one_of(Names{"vertices", "triangles", "trianglesets"})) return;
+  const std::string note = "a mesh has '" + file::shown(element) + "', which is not applied";
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
+}  // namespace
+
+ColladaHeader collada_header(std::string_view text, const std::string& name) {
+  ColladaHeader header;
+  bool in_asset = false, has_unit = false, has_axis = false;
+  for (XmlTags tag(text); tag.next();) {
+    if (tag.depth() == 1) in_asset = !tag.is_end() && tag.name() == "asset";
+    if (tag.is_end()) continue;
+    if (tag.name() == "morph") header.has_morph = true;
+    if (!in_asset || tag.depth() != 2) continue;
+    if (tag.name() == "unit" && !has_unit) {
+      take_unit(tag, name, header);
+      has_unit = true;
+    } else if (tag.name() == "up_axis" && !has_axis) {
+      header.up = tag.text() == "Z_UP" ? 'z' : tag.text() == "X_UP" ? 'x' : 'y';
+      has_axis = true;
     }
   }
-  return changed;
+  return header;
+}
+
+ThreemfHeader threemf_header(std::string_view bytes, const std::string& name) {
+  const std::string model = main_model(bytes);
+  ThreemfHeader header;
+  XmlTags tag(model);
+  if (!tag.next() || tag.name() != "model")
+    refuse("no 3D model in UTF-8 can be unpacked from it; it is damaged, or another zip archive",
+           name, "save it again, or as OBJ, PLY or STL");
+  header.unit = unit_of_model(tag, name);
+  check_required(tag, name);
+  std::array<std::string_view, 5> around;  // names of the elements by depth; bodies lie no deeper
+  while (tag.next()) {
+    if (tag.is_end() || tag.depth() == 0 || tag.depth() >= around.size()) continue;
+    around[tag.depth()] = tag.name();
+    check_body(tag, around[tag.depth() - 1], name, header.notes);
+  }
+  return header;
 }
 
 }  // namespace vpm

@@ -1,30 +1,55 @@
-// Reads of files of scenes what assimp does not tell: units, and what a file needs to be read.
+// Reads of files of scenes what assimp does not tell: units, what a file needs to be read, and what
+// of it is not applied.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vpm {
 
-// Returns the factor to metres of the unit that a COLLADA file names; nothing where it names none.
-std::optional<double> collada_unit(std::string_view text);
+struct ColladaHeader {
+  std::optional<double> metres;  // length of the unit, where the file names one
+  std::string unit_name;         // of a unit without a length
+  char up = 'y';
+  bool has_morph = false;
+};
+
+// Reads the asset of a COLLADA file's root. Throws Error(refused) if its unit's length is no
+// positive number: a file in millimetres would be taken for one in metres.
+ColladaHeader collada_header(std::string_view text, const std::string& name);
 
 struct NamedUnit {
   std::string name;
   double metres;
 };
 
-// Returns the unit of the model in a 3MF file: what it names, or nothing where it names none.
-// Throws Error(refused) if the archive holds no model that can be unpacked, or an unknown unit.
-std::optional<NamedUnit> threemf_unit(std::string_view bytes, const std::string& name);
+struct ThreemfHeader {
+  std::optional<NamedUnit> unit;  // where the file names one
+  std::vector<std::string> notes;
+};
 
-// Throws Error(refused) if a glTF file, binary or text, requires an extension that changes the
-// mesh.
-void check_gltf_extensions(std::string_view bytes, const std::string& name);
+// Reads the model in a 3MF file. Throws Error(refused) if the archive holds no model that can be
+// unpacked, for an unknown unit, and for bodies that are not read here: those in other files of the
+// archive, and what is no mesh.
+ThreemfHeader threemf_header(std::string_view bytes, const std::string& name);
+
+struct GltfHeader {
+  std::vector<std::string> notes;
+  bool has_skin = false;
+  bool keeps_skin = false;  // assimp can read the skins; it crashes on others
+};
+
+// Reads the JSON of a glTF file, binary or text. Throws Error(refused) if it requires an extension
+// that changes the mesh, or a file that is not there.
+GltfHeader gltf_header(std::string_view bytes, const std::string& name);
 
 // Returns the glTF file, of the same size, with the keys of its skins renamed, so that they are
-// passed over: they move no vertex here, and assimp crashes on those without matrices.
+// passed over.
 std::string without_skins(std::string_view gltf);
+
+// Returns the text with each %NN replaced by the byte that it stands for.
+std::string percent_decoded(std::string_view text);
 
 }  // namespace vpm

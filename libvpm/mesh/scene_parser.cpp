@@ -20,6 +20,7 @@
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 
 #include "libvpm/core/error.h"
@@ -28,6 +29,7 @@
 #include "libvpm/mesh/child_process.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/scene_header.h"
+#include "libvpm/mesh/scene_skin.h"
 
 namespace vpm {
 namespace {
@@ -48,13 +50,22 @@ const char* hint_of(MeshFormat format, std::string_view bytes) {
   }
 }
 
-// Opens one file from memory, and those that it names from where they are.
+// Opens one file from memory, and those that it names from where they are; where there is none of
+// the name as written, %NN in it is taken for a byte, as in addresses.
 class FileInMemory : public Assimp::DefaultIOSystem {
  public:
   FileInMemory(std::string path, std::string_view bytes) : path_(std::move(path)), bytes_(bytes) {}
 
+  bool Exists(const char* path) const override {
+    return path == path_ || DefaultIOSystem::Exists(path) ||
+           DefaultIOSystem::Exists(percent_decoded(path).c_str());
+  }
+
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    if (path != path_) return DefaultIOSystem::Open(path, mode);
+    if (path != path_) {
+      const bool is_there = DefaultIOSystem::Exists(path);
+      return DefaultIOSystem::Open(is_there ? path : percent_decoded(path).c_str(), mode);
+    }
     return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()),
                                       bytes_.size());
   }
@@ -64,19 +75,22 @@ class FileInMemory : public Assimp::DefaultIOSystem {
   std::string_view bytes_;
 };
 
-// A glTF file may name others beside it, so what is a file is read by its path.
+// A glTF file may name others beside it, so what is a file is read by its path, with the suffix by
+// which assimp tells text from binary. Nodes without meshes get none that would show them.
 const aiScene* import_scene(Assimp::Importer& importer, std::string_view bytes,
                             const std::string& name, MeshFormat format) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-  const bool is_gltf_text = format == MeshFormat::gltf && !bytes.starts_with("glTF");
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  const char* const hint = hint_of(format, bytes);
   std::error_code fault;
-  if (is_gltf_text && std::filesystem::is_regular_file(name, fault)) {
-    importer.SetIOHandler(new FileInMemory(name, bytes));
-    return importer.ReadFile(name, 0);
+  if (format == MeshFormat::gltf && std::filesystem::is_regular_file(name, fault)) {
+    const std::string path = name + "." + hint;
+    importer.SetIOHandler(new FileInMemory(path, bytes));
+    return importer.ReadFile(path, 0);
   }
-  return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint_of(format, bytes));
+  return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
 }
 
 std::string name_of(const aiNode& node) {
@@ -97,9 +111,9 @@ struct PlacedNode {
 };
 
 // Returns all nodes, each before those below it.
-std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
+std::vector<PlacedNode> placed_nodes(const aiScene& scene, const aiMatrix4x4& of_root) {
   std::vector<PlacedNode> nodes;
-  std::vector<PlacedNode> open{{scene.mRootNode, scene.mRootNode->mTransformation, 0, 0, false}};
+  std::vector<PlacedNode> open{{scene.mRootNode, of_root, 0, 0, false}};
   while (!open.empty()) {
     const PlacedNode here = open.back();
     open.pop_back();
@@ -124,8 +138,8 @@ std::vector<PlacedNode> placed_nodes(const aiScene& scene) {
 // NAME[2], ... in the order of the file.
 class NodeChoice {
  public:
-  NodeChoice(const aiScene& scene, const std::string& file)
-      : scene_(scene), file_(file), nodes_(placed_nodes(scene)) {
+  NodeChoice(const aiScene& scene, const aiMatrix4x4& of_root, const std::string& file)
+      : scene_(scene), file_(file), nodes_(placed_nodes(scene, of_root)) {
     for (std::size_t k = 0; k < nodes_.size(); ++k)
       if (nodes_[k].holds_faces) named_[nodes_[k].node->mName.C_Str()].push_back(k);
   }
@@ -140,6 +154,13 @@ class NodeChoice {
   }
 
   const PlacedNode& operator[](std::size_t k) const { return nodes_[k]; }
+
+  PlacesByName places() const {
+    PlacesByName places;
+    for (const PlacedNode& placed : nodes_)
+      places[placed.node->mName.C_Str()].push_back(placed.to_world);
+    return places;
+  }
 
   // Returns the names by which they are chosen.
   std::string names_of(const std::vector<std::size_t>& nodes) const {
@@ -185,21 +206,20 @@ class NodeChoice {
   std::map<std::string, std::vector<std::size_t>> named_;  // those that hold faces, in order
 };
 
-// Appends the mesh as the node places it; a mirrored one is turned over, as its surface is.
-void add_mesh(const aiMesh& mesh, const aiMatrix4x4& to_world, RawMesh& result) {
+// Appends the mesh with its vertices where they are placed; a mirrored one is turned over, as its
+// surface is.
+void add_mesh(const aiMesh& mesh, const RestPose& placed, RawMesh& result) {
   const std::size_t first = result.vertices.size();
   if (mesh.mNumVertices > kMaxVertices - first) refuse("more than 2^32 - 2 vertices", result.name);
-  for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
-    const aiVector3D p = to_world * mesh.mVertices[k];
+  for (const aiVector3D& p : placed.vertices) {
     const Vec3 vertex{p.x, p.y, p.z};
     if (!is_finite(vertex)) refuse("a coordinate is not finite", result.name);
     result.vertices.push_back(vertex);
   }
-  const bool is_mirrored = to_world.Determinant() < 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      const unsigned index = face.mIndices[is_mirrored ? face.mNumIndices - 1 - k : k];
+      const unsigned index = face.mIndices[placed.is_mirrored ? face.mNumIndices - 1 - k : k];
       if (index >= mesh.mNumVertices) refuse("a vertex index is out of range", result.name);
       result.corners.push_back(static_cast<std::uint32_t>(first + index));
     }
@@ -207,10 +227,50 @@ void add_mesh(const aiMesh& mesh, const aiMatrix4x4& to_world, RawMesh& result) 
   }
 }
 
-// How long a unit of the file is in metres, as told; the file may name none.
-struct FileUnit {
-  double metres;
-  std::string words;
+RestPose moved(const aiMesh& mesh, const aiMatrix4x4& to_world) {
+  RestPose placed;
+  placed.is_mirrored = to_world.Determinant() < 0;
+  for (unsigned k = 0; k < mesh.mNumVertices; ++k)
+    placed.vertices.push_back(to_world * mesh.mVertices[k]);
+  return placed;
+}
+
+constexpr const char* kSkinIsNotApplied =
+    "it has a skin, which is not applied: check its size, or export it without the skin";
+
+// Appends the meshes of the nodes. The joints of a skin place its mesh, not the node, as glTF and
+// COLLADA say; those of FBX stand for deformations only.
+void add_nodes(const aiScene& scene, const NodeChoice& choice,
+               const std::vector<std::size_t>& nodes, MeshFormat format, RawMesh& result) {
+  const PlacesByName places = choice.places();
+  std::size_t posed = 0, without_pose = 0;
+  for (const std::size_t k : nodes) {
+    const aiNode& node = *choice[k].node;
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+      const auto pose =
+          mesh.HasBones() && format != MeshFormat::fbx ? rest_pose(mesh, places) : std::nullopt;
+      if (mesh.HasBones()) ++(pose ? posed : without_pose);
+      const bool by_node = !mesh.HasBones() || format != MeshFormat::gltf;
+      add_mesh(mesh, pose ? *pose : moved(mesh, by_node ? choice[k].to_world : aiMatrix4x4()),
+               result);
+    }
+  }
+  if (posed > 0) {
+    result.notes.push_back(
+        "it has a skin: the joints place its mesh as the file does, and the "
+        "transform of its node does not count");
+  }
+  if (without_pose > 0) result.notes.push_back(kSkinIsNotApplied);
+}
+
+// What the file says of itself: how long its unit is in metres, as told, which axis is up, and
+// notes about what is not applied.
+struct FileFacts {
+  double metres = 1;
+  std::string unit;
+  char up = 'y';
+  std::vector<std::string> notes;
 };
 
 std::string text_of_metres(double metres) {
@@ -219,51 +279,80 @@ std::string text_of_metres(double metres) {
   return text;
 }
 
-// Returns the unit by which coordinates are to be multiplied; of COLLADA, assimp has done so.
-FileUnit unit_of(const aiScene& scene, MeshFormat format, std::string_view bytes,
-                 const std::string& name) {
-  const auto told = [](double metres, const std::string& why) {
-    return FileUnit{metres, "its unit is taken to be " + text_of_metres(metres) + why};
-  };
-  constexpr double kCentimetre = 0.01;
-  float factor = 1;
-  double factor64 = 1;
-  switch (format) {
-    case MeshFormat::dae: {
-      const auto unit = collada_unit(bytes);
-      if (!unit) return {1, "its coordinates are taken to be metres, as it names no unit"};
-      return {1, "its unit of " + text_of_metres(*unit) + " was applied"};
-    }
-    case MeshFormat::threemf: {
-      const auto unit = threemf_unit(bytes, name);
-      if (!unit) return told(0.001, ", which 3MF has by default");
-      return told(unit->metres, ", the " + unit->name + " that the file names");
-    }
-    case MeshFormat::fbx:
-      if (scene.mMetaData != nullptr && scene.mMetaData->Get("UnitScaleFactor", factor))
-        return told(kCentimetre * double{factor}, ", as the file says");
-      if (scene.mMetaData != nullptr && scene.mMetaData->Get("UnitScaleFactor", factor64))
-        return told(kCentimetre * factor64, ", as the file says");
-      return told(kCentimetre, ", which FBX has by default");
-    default:
-      return {1, "its coordinates are metres"};
+FileFacts facts_of_collada(std::string_view text, const std::string& name) {
+  const ColladaHeader header = collada_header(text, name);
+  FileFacts facts{1, "its coordinates are taken to be metres, as it names no unit", header.up, {}};
+  if (header.metres) {
+    facts.metres = *header.metres;
+    facts.unit = "its unit of " + text_of_metres(*header.metres) + " was applied";
+  } else if (!header.unit_name.empty()) {
+    facts.unit = "its coordinates are taken to be metres, as its unit '" +
+                 file::shown(header.unit_name) + "' has no length (meter)";
   }
+  if (header.has_morph)
+    facts.notes.push_back("it has morph targets, which are not applied: check its shape");
+  return facts;
 }
 
-// Returns the axis that the file says is up. No rotation makes it another one.
-char up_axis(const aiScene& scene, MeshFormat format, std::string_view bytes) {
-  if (format == MeshFormat::threemf) return 'z';
-  if (format == MeshFormat::dae)
-    return bytes.find("Z_UP") != bytes.npos ? 'z' : bytes.find("X_UP") != bytes.npos ? 'x' : 'y';
+FileFacts facts_of_threemf(std::string_view bytes, const std::string& name) {
+  const ThreemfHeader header = threemf_header(bytes, name);
+  const NamedUnit unit = header.unit.value_or(NamedUnit{"", 0.001});
+  return {unit.metres,
+          "its unit is taken to be " + text_of_metres(unit.metres) +
+              (header.unit ? ", the " + unit.name + " that the file names"
+                           : ", which 3MF has by default"),
+          'z', header.notes};
+}
+
+FileFacts facts_of_fbx(const aiScene& scene) {
+  constexpr double kCentimetre = 0.01;
+  float factor = 1;
+  double centimetres = 1;
   int axis = 1;
-  if (format == MeshFormat::fbx && scene.mMetaData != nullptr) scene.mMetaData->Get("UpAxis", axis);
-  return axis == 0 ? 'x' : axis == 2 ? 'z' : 'y';
+  bool is_said = false;
+  if (const aiMetadata* const said = scene.mMetaData) {
+    is_said = said->Get("UnitScaleFactor", centimetres);
+    if (!is_said && said->Get("UnitScaleFactor", factor)) {
+      is_said = true;
+      centimetres = factor;
+    }
+    said->Get("UpAxis", axis);
+  }
+  const double metres = kCentimetre * centimetres;
+  return {metres,
+          "its unit is taken to be " + text_of_metres(metres) +
+              (is_said ? ", as the file says" : ", which FBX has by default"),
+          axis == 0   ? 'x'
+          : axis == 2 ? 'z'
+                      : 'y',
+          {}};
+}
+
+// Returns what the file itself tells, of those formats for which no scene is needed.
+FileFacts facts_of(MeshFormat format, std::string_view bytes, const std::string& name) {
+  if (format == MeshFormat::dae) return facts_of_collada(bytes, name);
+  if (format == MeshFormat::threemf) return facts_of_threemf(bytes, name);
+  return {1, "its coordinates are metres", 'y', {}};
+}
+
+// Returns the transform of the root node. That of COLLADA is the unit as assimp reads it, which
+// takes what it cannot read for 1; ours replaces it where they differ by more than rounding.
+aiMatrix4x4 root_transform(const aiScene& scene, MeshFormat format, double metres) {
+  constexpr double kRounding = 1e-6;
+  const aiMatrix4x4& root = scene.mRootNode->mTransformation;
+  if (format != MeshFormat::dae || std::abs(double{root.a1} - metres) <= kRounding * metres)
+    return root;
+  aiMatrix4x4 unit;
+  const auto scale = static_cast<float>(metres);
+  return aiMatrix4x4::Scaling({scale, scale, scale}, unit);
 }
 
 // Reads by assimp; see parse_scene, which tells the mesh its format and name.
 RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat format,
                    const std::string& node) {
+  FileFacts facts = facts_of(format, bytes, name);
   RawMesh mesh;
+  mesh.name = name;
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
   std::string fault;
@@ -283,21 +372,20 @@ RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat f
                          : ", which is damaged or of a version that it does not know"),
            name, kSaveAgain);
   }
-  const NodeChoice choice(*scene, name);
+  if (format == MeshFormat::fbx) facts = facts_of_fbx(*scene);
+  const NodeChoice choice(*scene, root_transform(*scene, format, facts.metres), name);
   const std::vector<std::size_t> nodes = choice.choose(node);
-  const FileUnit unit = unit_of(*scene, format, bytes, name);
-  for (const std::size_t k : nodes) {
-    const aiNode& placed = *choice[k].node;
-    for (unsigned m = 0; m < placed.mNumMeshes; ++m)
-      add_mesh(*scene->mMeshes[placed.mMeshes[m]], choice[k].to_world, mesh);
-  }
-  for (Vec3& p : mesh.vertices) p = unit.metres * p;
-  mesh.notes.push_back(unit.words + "; transforms of nodes were applied; " +
-                       up_axis(*scene, format, bytes) + " is up, as in the file");
+  if (nodes.empty()) refuse("it has no faces, only nodes", name, "export it with its mesh");
+  add_nodes(*scene, choice, nodes, format, mesh);
+  if (format != MeshFormat::dae)  // its root has done so
+    for (Vec3& p : mesh.vertices) p = facts.metres * p;
+  mesh.notes.insert(mesh.notes.begin(), facts.unit + "; transforms of nodes were applied; " +
+                                            facts.up + " is up, as in the file");
   if (nodes.size() > 1) {
     mesh.notes.push_back("the meshes of " + std::to_string(nodes.size()) +
                          " nodes are joined: " + choice.names_of(nodes) + "; `node` chooses one");
   }
+  mesh.notes.insert(mesh.notes.end(), facts.notes.begin(), facts.notes.end());
   return mesh;
 }
 
@@ -357,14 +445,11 @@ RawMesh scene_from_bytes(std::string_view bytes) {
 
 }  // namespace
 
-RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,
-                    const std::string& node) {
-  std::string changed;
-  if (format == MeshFormat::gltf) {
-    check_gltf_extensions(bytes, name);
-    changed = without_skins(bytes);
-    bytes = changed;
-  }
+namespace {
+
+// Reads in a process of its own; nothing if that crashes.
+std::optional<RawMesh> read_apart(std::string_view bytes, const std::string& name,
+                                  MeshFormat format, const std::string& node) {
   const auto read = [&] { return read_scene(bytes, name, format, node); };
   // A second for each megabyte, and what a busy machine may need for the smallest.
   const ChildLimits limits{file::most_memory(bytes.size()),
@@ -374,18 +459,43 @@ RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat 
                             " MB of memory for this " + name_of(format) + " file; it is damaged",
                         name, kSaveAgain);
   const ChildResult result = run_in_child([&] { return scene_as_bytes(read, no_memory); }, limits);
+  if (result.end == ChildResult::End::crashed) return std::nullopt;
   if (result.end != ChildResult::End::returned) {
-    refuse(std::string("assimp, the library that reads ") + name_of(format) + " here, " +
-               (result.end == ChildResult::End::crashed
-                    ? "crashed on this file"
-                    : "takes more than " + std::to_string(limits.seconds) +
-                          " s of the processor for this file; it is damaged"),
+    refuse(std::string("assimp, the library that reads ") + name_of(format) +
+               " here, takes more than " + std::to_string(limits.seconds) +
+               " s of the processor for this file; it is damaged",
            name, kSaveAgain);
   }
-  RawMesh mesh = scene_from_bytes(result.bytes);
-  mesh.format = format;
-  mesh.name = name;
+  return scene_from_bytes(result.bytes);
+}
+
+// Reads glTF: with its skins where assimp can, otherwise without.
+std::optional<RawMesh> read_gltf(std::string_view bytes, const std::string& name,
+                                 const std::string& node) {
+  const GltfHeader header = gltf_header(bytes, name);
+  auto mesh = header.keeps_skin ? read_apart(bytes, name, MeshFormat::gltf, node) : std::nullopt;
+  if (!mesh) {
+    mesh = read_apart(without_skins(bytes), name, MeshFormat::gltf, node);
+    if (mesh && header.has_skin) mesh->notes.push_back(kSkinIsNotApplied);
+  }
+  if (mesh) mesh->notes.insert(mesh->notes.end(), header.notes.begin(), header.notes.end());
   return mesh;
+}
+
+}  // namespace
+
+RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,
+                    const std::string& node) {
+  auto mesh = format == MeshFormat::gltf ? read_gltf(bytes, name, node)
+                                         : read_apart(bytes, name, format, node);
+  if (!mesh) {
+    refuse(std::string("assimp, the library that reads ") + name_of(format) +
+               " here, crashed on this file",
+           name, kSaveAgain);
+  }
+  mesh->format = format;
+  mesh->name = name;
+  return *std::move(mesh);
 }
 
 }  // namespace vpm

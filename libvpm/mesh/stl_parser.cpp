@@ -133,7 +133,7 @@ Facets find_facets(std::string_view bytes, const std::string& name) {
 
 bool looks_like_ascii(std::string_view bytes) {
   constexpr std::size_t kLooked = 4096;  // a "solid" line, then "facet" or at once "endsolid"
-  const std::string_view start = bytes.substr(0, kLooked);
+  const std::string_view start = without_padding(bytes).substr(0, kLooked);
   const std::size_t word = start.find_first_not_of(" \t\r\n");
   return word != std::string_view::npos && file::in_lower_case(start.substr(word, 5)) == "solid" &&
          start.find('\0') == std::string_view::npos;
@@ -153,49 +153,132 @@ void add_corner(RawMesh& mesh, Vec3 p) {
   mesh.vertices.push_back(p);
 }
 
-// Returns the next keyword in small letters; "end loop" and its like, which some programs write,
-// become one word.
-std::string next_keyword(TextLines& lines) {
-  std::string keyword = file::in_lower_case(lines.word());
-  if (keyword == "end") keyword += file::in_lower_case(lines.word());
-  return keyword;
+// True if the word is the keyword, in small or capital letters.
+bool is_keyword(std::string_view word, std::string_view keyword) {
+  return word.size() == keyword.size() &&
+         std::equal(word.begin(), word.end(), keyword.begin(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
 }
 
-void parse_ascii(std::string_view text, RawMesh& mesh) {
-  TextLines lines(text, mesh.name, 0);
-  std::size_t corners = 0;  // number read of the facet
-  std::size_t solids = 0;
-  bool open = false, ended = false;
-  while (lines.next_line()) {
-    const std::string keyword = next_keyword(lines);
-    if (keyword == "facet") {
-      if (open) lines.refuse_here("a facet begins within a facet");
-      open = true;
-      ended = false;
-      corners = 0;
-    } else if (keyword == "vertex") {
-      if (!open) lines.refuse_here("a vertex outside of a facet");
-      if (mesh.vertices.size() >= kMaxVertices) lines.refuse_here("more than 2^32 - 2 vertices");
-      add_corner(mesh, lines.point());
-      ++corners;
-    } else if (keyword == "endfacet") {
-      if (!open || corners != 3) lines.refuse_here("a facet must have 3 vertices");
-      open = false;
-      mesh.end_polygon();
-    } else if (keyword == "endsolid") {
-      ended = true;
-      ++solids;
-    } else if (keyword == "solid") {
-      ended = false;
-    } else if (keyword != "outer" && keyword != "endloop") {
-      lines.refuse_here("not a statement of an STL file");
+// Reads ASCII files by words, wherever lines end. Only names end with their line.
+class Text {
+ public:
+  Text(std::string_view text, RawMesh& mesh)
+      : lines_(without_padding(text), mesh.name, 0), mesh_(mesh) {
+    lines_.cross_lines(true);
+  }
+
+  void parse() {
+    std::size_t line = 0;  // of the word before
+    for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
+      const bool begins_line = lines_.line_number() != line;
+      // Words after a statement are passed over: a normal, which may be no number, or a colour.
+      if (!take(word) && begins_line && !is_of_normal(word))
+        lines_.refuse_here("not a statement of an STL file");
+      line = lines_.line_number();
     }
+    finish();
   }
-  if (open || !ended) refuse("the file ends without 'endsolid'; it is truncated", mesh.name);
-  if (solids > 1) {
-    mesh.notes.push_back(counted(solids, "solid") + " stand one after the other; all were read");
+
+ private:
+  // Takes the statement that begins with the word; false if none does.
+  bool take(std::string_view word) {
+    if (is_keyword(word, "vertex")) {
+      add_vertex();
+    } else if (is_keyword(word, "facet")) {
+      begin_facet();
+    } else if (is_keyword(word, "end")) {  // "end loop", as some programs write
+      return take_end(lines_.word());
+    } else if (word.size() > 3 && is_keyword(word.substr(0, 3), "end")) {
+      return take_end(word.substr(3));
+    } else if (is_keyword(word, "solid")) {
+      is_ended_ = false;
+      facets_of_solid_ = 0;
+      pass_name();
+    } else {
+      return is_keyword(word, "normal") || is_keyword(word, "outer") || is_keyword(word, "loop");
+    }
+    return true;
   }
-}
+
+  bool take_end(std::string_view what) {
+    if (is_keyword(what, "facet")) {
+      end_facet();
+    } else if (is_keyword(what, "solid")) {
+      is_ended_ = true;
+      facets_of_solid_ = 0;
+      ++solids_;
+      pass_name();
+    } else {
+      return is_keyword(what, "loop");
+    }
+    return true;
+  }
+
+  bool is_of_normal(std::string_view word) const {
+    return is_open_ && corners_ == 0 && file::to_number(word);
+  }
+
+  void begin_facet() {
+    if (is_open_) lines_.refuse_here("a facet begins within a facet");
+    is_open_ = true;
+    is_ended_ = false;
+    corners_ = 0;
+  }
+
+  void add_vertex() {
+    if (!is_open_) lines_.refuse_here("a vertex outside of a facet");
+    if (mesh_.vertices.size() >= kMaxVertices) lines_.refuse_here("more than 2^32 - 2 vertices");
+    add_corner(mesh_, lines_.point());
+    ++corners_;
+  }
+
+  void end_facet() {
+    if (!is_open_ || corners_ != 3) lines_.refuse_here("a facet must have 3 vertices");
+    is_open_ = false;
+    ++facets_of_solid_;
+    mesh_.end_polygon();
+  }
+
+  // Passes over a solid's name, which may hold any words: up to the line's end, or to a facet with
+  // its normal in the same line.
+  void pass_name() {
+    lines_.cross_lines(false);
+    TextLines ahead = lines_;
+    for (std::string_view word = ahead.word(); !word.empty(); word = ahead.word()) {
+      if (is_keyword(word, "facet") && is_facet(ahead)) break;
+      lines_ = ahead;
+    }
+    lines_.cross_lines(true);
+  }
+
+  // True if "normal" and a number follow, or "outer loop".
+  static bool is_facet(TextLines lines) {
+    const std::string_view first = lines.word(), second = lines.word();
+    return (is_keyword(first, "normal") && file::to_number(second)) ||
+           (is_keyword(first, "outer") && is_keyword(second, "loop"));
+  }
+
+  void finish() {
+    if (is_open_ || (!is_ended_ && facets_of_solid_ == 0))
+      refuse("the file ends without 'endsolid'; it is truncated", mesh_.name);
+    if (!is_ended_) {
+      ++solids_;
+      mesh_.doubt = "the file ends without 'endsolid', after " +
+                    counted(facets_of_solid_, "whole facet") + "; it may be truncated";
+      mesh_.notes.push_back(mesh_.doubt);
+    }
+    if (solids_ > 1)
+      mesh_.notes.push_back(counted(solids_, "solid") +
+                            " stand one after the other; all were read");
+  }
+
+  TextLines lines_;
+  RawMesh& mesh_;
+  std::size_t corners_ = 0;  // number read of the facet
+  std::size_t facets_of_solid_ = 0, solids_ = 0;
+  bool is_open_ = false, is_ended_ = false;
+};
 
 void parse_binary(std::string_view bytes, RawMesh& mesh) {
   Facets facets = find_facets(bytes, mesh.name);
@@ -236,7 +319,7 @@ RawMesh parse_stl(std::string_view bytes, const std::string& name) {
   mesh.name = name;
   // The size decides first, since exporters of binary files write "solid" into the header too.
   if (!has_binary_size(bytes) && looks_like_ascii(bytes)) {
-    parse_ascii(bytes, mesh);
+    Text(bytes, mesh).parse();
   } else if (bytes.size() < kFacetsAt) {
     refuse(
         std::to_string(bytes.size()) + " bytes are too few for a binary STL file; it is truncated",

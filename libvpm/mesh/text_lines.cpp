@@ -1,5 +1,6 @@
 #include "libvpm/mesh/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -28,29 +29,52 @@ std::string_view without_trailing_blanks(std::string_view text) {
   return text;
 }
 
+std::string_view first_word(std::string_view line) {
+  return line.substr(
+      0, static_cast<std::size_t>(std::find_if(line.begin(), line.end(), is_blank) - line.begin()));
+}
+
 std::string quoted(std::string_view word) {
   return "'" + file::shown(word, kLongestShown) + "'";
 }
 
 }  // namespace
 
-TextLines::TextLines(std::string_view text, std::string name, char comment, char continuation)
+std::string_view without_padding(std::string_view text) {
+  constexpr std::string_view kPadding("\0\x1a", 2), kPaddingOrBlank("\0\x1a \t\r\n\v\f", 8);
+  const std::size_t last = text.find_last_not_of(kPaddingOrBlank);
+  const std::size_t end = last == text.npos ? 0 : last + 1;
+  return text.substr(0, text.find_first_of(kPadding, end));
+}
+
+TextLines::TextLines(std::string_view text, std::string name, char comment,
+                     Continuation continuation)
     : cursor_(text), name_(std::move(name)), comment_(comment), continuation_(continuation) {}
 
 bool TextLines::load_line() {
   const std::optional<std::string_view> line = cursor_.line();
-  continues_ = false;
+  const bool is_continued = std::exchange(continues_, false);
   rest_ = {};
   if (!line) return false;
   ++line_number_;
   std::string_view text = comment_ == 0 ? *line : line->substr(0, line->find(comment_));
-  if (continuation_ != 0) {
+  text = without_leading_blanks(text);
+  if (continuation_.character != 0) {
     const std::string_view trimmed = without_trailing_blanks(text);
-    continues_ = trimmed.ends_with(continuation_);
-    if (continues_) text = trimmed.substr(0, trimmed.size() - 1);
+    if (trimmed.ends_with(continuation_.character)) {
+      const std::string_view before = trimmed.substr(0, trimmed.size() - 1);
+      continues_ = is_continued || may_continue(before);
+      if (continues_) text = before;
+    }
   }
-  rest_ = without_leading_blanks(text);
+  rest_ = text;
   return true;
+}
+
+bool TextLines::may_continue(std::string_view line) const {
+  const std::string_view keyword = first_word(line);
+  return keyword.empty() ||
+         std::ranges::find(continuation_.keywords, keyword) != continuation_.keywords.end();
 }
 
 bool TextLines::next_line() {

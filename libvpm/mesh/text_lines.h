@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,11 +12,21 @@
 
 namespace vpm {
 
+// Returns the text without the NULs and Ctrl-Zs at its end, and the blanks among them. Some
+// programs pad files with NULs, and those of DOS mark the end of a text with Ctrl-Z.
+std::string_view without_padding(std::string_view text);
+
+// A character at the end of a line that goes on in the next one.
+struct Continuation {
+  char character = 0;  // 0 for formats without continued lines
+  // Keywords whose lines may go on. Other lines may hold names that end in the character.
+  std::span<const std::string_view> keywords;
+};
+
 class TextLines {
  public:
-  // Skips everything after `comment` on a line; 0 for formats without comments. A line that ends in
-  // `continuation` goes on in the next one; 0 for formats without that.
-  TextLines(std::string_view text, std::string name, char comment, char continuation = 0);
+  // Skips everything after `comment` on a line; 0 for formats without comments.
+  TextLines(std::string_view text, std::string name, char comment, Continuation continuation = {});
 
   // Moves to the next line that has a word; false at the end of the text. Lines end in LF, CRLF or
   // CR (file::TextCursor).
@@ -46,11 +57,13 @@ class TextLines {
 
  private:
   bool load_line();
+  bool may_continue(std::string_view line) const;
   [[noreturn]] void refuse_missing(const char* what) const;
 
   file::TextCursor cursor_;
   std::string name_;
-  char comment_, continuation_;
+  char comment_;
+  Continuation continuation_;
   bool continues_ = false;  // the line goes on in the next one
   bool crosses_ = false;
   std::size_t line_number_ = 0;

@@ -132,11 +132,99 @@ TEST(Off, HasWhatItsKeywordSays) {
   expect_cube(off_with("OFF", "255 0 0", "3 255 0 0", ""), "a.off", 0.5);
 }
 
+// Expects a note that holds the text, or none about what is not read if it is empty.
+void expect_unread(const std::string& content, const std::string& name, const std::string& note) {
+  const std::string notes = all_of(solid_of(content, name).notes);
+  if (note.empty()) {
+    EXPECT_EQ(notes.find("not read"), notes.npos) << notes;
+  } else {
+    EXPECT_NE(notes.find(note), notes.npos) << notes << content.substr(0, 400);
+  }
+}
+
+// Expects a refusal that holds both texts.
+void expect_refusal(const std::string& content, const std::string& name, const std::string& cause,
+                    const std::string& effect) {
+  const std::string refusal = refusal_of(content, name);
+  EXPECT_NE(refusal.find(cause), refusal.npos) << refusal;
+  EXPECT_NE(refusal.find(effect), refusal.npos) << refusal;
+}
+
+// Returns two cubes side by side, the faces of the first before those of the second.
+Solid two_cubes() {
+  return together(make_cube(0.5), moved(make_cube(0.5), {2, 0, 0}));
+}
+
+TEST(Off, WhatFollowsTheCountedFacesIsSaid) {
+  const std::string off = as_off(make_cube(0.5)), both = as_off(two_cubes());
+  expect_unread(replaced(both, "16 24 0", "16 12 0"), "a.off",
+                "the header counts 12 faces, but more follows in line 31, which is not read");
+  expect_unread(off + off, "a.off", "another OFF file follows in line 23, which is not read");
+  expect_refusal(replaced(off, "8 12 0", "8 11 0"), "a.off",
+                 "the header counts 11 faces, but more follows in line 22", "the mesh is open");
+  for (const std::string end : {"\n\n", "# an end\n", " ", "\x1a", "\x1a\n"})
+    expect_cube(off + end, "a.off", 0.5);
+  expect_cube(off + std::string(100, '\0'), "a.off", 0.5);
+}
+
+TEST(Off, AFaceReadAsAVertexIsSaid) {
+  const std::string off = as_off(make_cube(0.5));
+  const std::string cause = "the header counts 9 vertices, but line 11 does not look like one";
+  expect_refusal(replaced(off, "8 12 0", "9 11 0"), "a.off", cause, "the mesh is open");
+  // By words, all numbers may fit by chance.
+  const std::string quads =
+      "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n"
+      "4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+  expect_refusal("OFF\n9 6 0\n" + quads, "a.off", cause, "the mesh is open");
+  expect_cube("OFF\n8 6 0\n" + replaced(quads, "\n4 3 2", " 4 3 2"), "a.off", 1);
+}
+
+TEST(Ply, WhatFollowsTheCountedElementsIsSaid) {
+  const Solid cube = make_cube(0.5);
+  expect_unread(replaced(as_ascii_ply(two_cubes()), "face 24", "face 12"), "a.ply",
+                "the header counts 12 faces, but more follows in line");
+  const std::string ply = as_ascii_ply(cube);
+  expect_unread(ply + ply, "a.ply", "another PLY file follows in line");
+  expect_refusal(replaced(ply, "face 12", "face 11"), "a.ply", "the header counts 11 faces, but",
+                 "the mesh is open");
+  expect_refusal(replaced(replaced(ply, "vertex 8", "vertex 9"), "face 12", "face 11"), "a.ply",
+                 "line 19 holds more numbers than the header says; they are not read",
+                 "the mesh is open");
+  for (const bool big_endian : {false, true}) {
+    const std::string binary = as_binary_ply(cube, big_endian);
+    expect_unread(replaced(as_binary_ply(two_cubes(), big_endian), "face 24", "face 12"), "a.ply",
+                  "the header counts 12 faces, but 156 bytes more follow at byte");
+    expect_unread(binary + binary, "a.ply", "another PLY file follows at byte");
+    expect_refusal(replaced(binary, "face 12", "face 11"), "a.ply",
+                   "the header counts 11 faces, but 13 bytes more follow", "the mesh is open");
+    for (const std::string end : {"\n", "\r\n", "\x1a"}) expect_cube(binary + end, "a.ply", 0.5);
+    expect_cube(binary + '\0', "a.ply", 0.5);
+  }
+  for (const std::string end : {"\n\n", " ", "\x1a"}) expect_cube(ply + end, "a.ply", 0.5);
+  expect_cube(ply + '\0', "a.ply", 0.5);
+  // Elements after the faces are counted, too.
+  const std::string edge = "element edge 1\nproperty int vertex1\nproperty int vertex2\n";
+  expect_cube(replaced(ply, "end_header", edge + "end_header") + "0 1\n", "a.ply", 0.5);
+  expect_unread(replaced(ply, "end_header", edge + "end_header") + "0 1\n1 2\n", "a.ply",
+                "the header counts 1 x edge, but more follows");
+}
+
 TEST(Obj, LinesContinueAfterABackslash) {
   const std::string obj = as_obj(make_cube(0.5));
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     const std::string broken = replaced(replaced(obj, " 0", " \\\n0"), "f ", "f\\\n ");
     expect_cube(replaced("vt 0 \\\n0\n" + broken, "\n", end), "a.obj", 0.5);
+  }
+}
+
+TEST(Obj, NamesMayEndInABackslash) {
+  const std::string obj = as_obj(make_cube(0.5));
+  const std::size_t faces = obj.find("f ");
+  for (const std::string end : {"\n", "\r\n", " \n"}) {
+    for (const std::string keyword : {"g", "o", "usemtl", "mtllib"}) {
+      const std::string name = keyword + " C:\\x\\" + end;
+      expect_cube(name + obj.substr(0, faces) + name + obj.substr(faces), "a.obj", 0.5);
+    }
   }
 }
 
@@ -184,13 +272,57 @@ TEST(AsciiStl, KeywordsAreReadAsProgramsWriteThem) {
   expect_cube(in_capitals(apart), "a.stl", 0.5);
 }
 
+TEST(AsciiStl, IsReadByWords) {
+  const std::string stl = as_ascii_stl(make_cube(0.5));
+  for (const std::string& text : {stl, in_capitals(stl)}) {
+    for (const std::string name : {"a.stl", "standard input"}) {
+      expect_cube(replaced(text, "\n", " "), name, 0.5);
+      const std::size_t begin = text.find('\n'), end = text.rfind('\n', text.size() - 2);
+      const std::string facets = replaced(text.substr(begin, end - begin), " ", "\n");
+      expect_cube(text.substr(0, begin) + facets + text.substr(end), name, 0.5);
+    }
+  }
+  for (const std::string keyword : {"vertex", "endloop", "endfacet", "facet", "outer"})
+    expect_cube(replaced(replaced(stl, "\n" + keyword, " " + keyword), "vpm facet", "vpm\nfacet"),
+                "a.stl", 0.5);
+  const std::string other = as_ascii_stl(moved(make_cube(0.5), {2, 0, 0}));
+  EXPECT_NEAR(solid_of(replaced(stl + other, "\n", " "), "a.stl").facts.volume, 0.25, 1e-12);
+}
+
+TEST(AsciiStl, NamesHoldAnyWords) {
+  const std::string stl = as_ascii_stl(make_cube(0.5));
+  const std::string facets =
+      stl.substr(stl.find("facet"), stl.find("endsolid") - stl.find("facet"));
+  for (const std::string name : {"", " vertex facet endfacet", " solid", " facet normal", " end"})
+    expect_cube("solid" + name + "\n" + facets + "endsolid" + name + "\n", "a.stl", 0.5);
+}
+
+TEST(AsciiStl, MayLackItsLastLine) {
+  const std::string stl = as_ascii_stl(make_cube(0.5));
+  const std::string cut = stl.substr(0, stl.find("endsolid"));
+  expect_cube(cut, "a.stl", 0.5, "the file ends without 'endsolid', after 12 whole facets");
+  // Where facets are missing, that is what is wrong with the mesh.
+  expect_refusal(cut.substr(0, cut.rfind("facet normal")), "a.stl",
+                 "the file ends without 'endsolid', after 11 whole facets", "the mesh is open");
+  EXPECT_NE(refusal_of(cut.substr(0, cut.rfind("endfacet")), "a.stl").find("truncated"), cut.npos);
+}
+
+TEST(AsciiStl, MayBePadded) {
+  const std::string stl = as_ascii_stl(make_cube(0.5));
+  for (const std::size_t count : {1, 100, 5000})
+    expect_cube(stl + std::string(count, '\0'), "a.stl", 0.5);
+  expect_cube(stl + "\x1a", "a.stl", 0.5);
+  expect_cube(stl + "\x1a\r\n", "standard input", 0.5);
+}
+
 TEST(AsciiStl, SeveralSolidsAreAllRead) {
   const std::string stl = as_ascii_stl(make_cube(0.5)),
                     other = as_ascii_stl(moved(make_cube(0.5), {2, 0, 0}));
   const CheckedSolid both = solid_of(stl + other, "a.stl");
   EXPECT_NEAR(both.facts.volume, 0.25, 1e-12);
   EXPECT_EQ(all_of(both.notes), "2 solids stand one after the other; all were read\n");
-  EXPECT_NE(refusal_of(stl + other.substr(0, other.find("endsolid")), "a.stl"), "");
+  EXPECT_NEAR(solid_of(stl + other.substr(0, other.find("endsolid")), "a.stl").facts.volume, 0.25,
+              1e-12);
   EXPECT_NE(refusal_of(stl + "solid x\n", "a.stl"), "");
 }
 

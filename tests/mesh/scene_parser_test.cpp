@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <new>
 #include <span>
 
 #include "libvpm/core/error.h"
 #include "libvpm/mesh/child_process.h"
+#include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/synthetic/shapes.h"
 #include "tests/mesh/mesh_files.h"
 
@@ -72,8 +75,35 @@ RawMesh node_of(const std::string& content, const std::string& name) {
   return parse_mesh(std::as_bytes(std::span(content)), "a", name);
 }
 
-void append_number(std::string& bytes, std::uint32_t number) {
-  for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 0xFF);
+std::string all_notes(const RawMesh& mesh) {
+  std::string text;
+  for (const std::string& note : mesh.notes) text += note + "\n";
+  return text;
+}
+
+void expect_note(const RawMesh& mesh, const std::string& note) {
+  EXPECT_NE(all_notes(mesh).find(note), std::string::npos) << all_notes(mesh);
+}
+
+void expect_refusal(const std::string& content, const std::string& name, const std::string& words) {
+  const std::string refusal = refusal_of(content, name);
+  EXPECT_NE(refusal.find(words), refusal.npos) << refusal;
+  EXPECT_NE(refusal.find(name), refusal.npos) << refusal;
+}
+
+void append_number(std::string& bytes, std::uint32_t number, int size = 4) {
+  for (int k = 0; k < size; ++k) bytes += static_cast<char>(number >> 8 * k & 0xFF);
+}
+
+std::string as_glb(std::string json, const std::string& buffer) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string bytes = "glTF";
+  append_number(bytes, 2);
+  append_number(bytes, static_cast<std::uint32_t>(28 + json.size() + buffer.size()));
+  append_number(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON" + json;
+  append_number(bytes, static_cast<std::uint32_t>(buffer.size()));
+  return bytes + std::string("BIN\0", 4) + buffer;
 }
 
 // Returns a binary glTF file of a cube of edge 0.5, with more members in its JSON, its node and its
@@ -94,7 +124,7 @@ std::string glb(const std::string& members, const std::string& of_node = "",
   for (const Triangle& t : cube.triangles)
     for (const std::uint32_t corner : t) append_number(buffer, corner);
   const auto text = [](std::size_t number) { return std::to_string(number); };
-  std::string json =
+  const std::string json =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"skin","mesh":0)" +
       of_node + "}" + nodes +
       R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)" +
@@ -103,26 +133,115 @@ std::string glb(const std::string& members, const std::string& of_node = "",
       R"({"buffer":0,"byteLength":)" + text(points) + R"(},{"buffer":0,"byteOffset":)" +
       text(points) + R"(,"byteLength":)" + text(buffer.size() - points) +
       R"(}],"buffers":[{"byteLength":)" + text(buffer.size()) + "}]" + members + "}";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::string bytes = "glTF";
-  append_number(bytes, 2);
-  append_number(bytes, static_cast<std::uint32_t>(28 + json.size() + buffer.size()));
-  append_number(bytes, static_cast<std::uint32_t>(json.size()));
-  bytes += "JSON" + json;
-  append_number(bytes, static_cast<std::uint32_t>(buffer.size()));
-  return bytes + std::string("BIN\0", 4) + buffer;
+  return as_glb(json, buffer);
 }
 
-TEST(Gltf, SkinsArePassedOver) {
+TEST(Gltf, SkinsThatAssimpCannotReadAreSaid) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
   const std::string joint = R"(,{"name":"joint"})";
   for (const std::string skins :
        {R"(,"skins":[{"joints":[1]}])", R"(, "skins" : [{"joints":[]}])"}) {
-    const CheckedSolid solid = solid_of(glb(skins, R"(,"skin":0)", joint), "a.glb");
-    EXPECT_NEAR(solid.facts.volume, 0.125, 1e-9);
+    const std::string content = glb(skins, R"(,"skin":0)", joint);
+    EXPECT_NEAR(solid_of(content, "a.glb").facts.volume, 0.125, 1e-9);
+    expect_note(parse(content, "a.glb"), "it has a skin, which is not applied: check its size");
   }
   // A name stays as it is.
-  EXPECT_EQ(node_of(glb(""), "skin").polygon_count(), 12U);
+  const RawMesh named = node_of(glb(""), "skin");
+  EXPECT_EQ(named.polygon_count(), 12U);
+  EXPECT_EQ(named.notes.size(), 1U) << all_notes(named);
+}
+
+// Returns a binary glTF file of a triangle, its node and its joint with the given members. All of
+// its vertices follow the joint.
+std::string skinned_gltf(const std::string& of_node, const std::string& of_joint) {
+  // Vertices, corners, joints (0 0 0 0 of each), weights (1 0 0 0), the matrix of the joint.
+  std::string buffer;
+  const auto add = [&](std::initializer_list<float> numbers) {
+    for (const float number : numbers) {
+      std::uint32_t bits = 0;
+      std::memcpy(&bits, &number, sizeof bits);
+      append_number(buffer, bits);
+    }
+  };
+  add({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  for (std::uint32_t k = 0; k < 3; ++k) append_number(buffer, k);
+  buffer += std::string(12, '\0');
+  for (int k = 0; k < 3; ++k) add({1, 0, 0, 0});
+  add({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"skins":[{"joints":[1],"inverseBindMatrices":4}],
+"nodes":[{"name":"n","mesh":0,"skin":0)" +
+      of_node + R"(},{"name":"j")" + of_joint +
+      R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":2,"WEIGHTS_0":3},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":3,"type":"SCALAR"},
+{"bufferView":2,"componentType":5121,"count":3,"type":"VEC4"},{"bufferView":3,"componentType":5126,"count":3,"type":"VEC4"},
+{"bufferView":4,"componentType":5126,"count":1,"type":"MAT4"}],"bufferViews":[{"buffer":0,"byteLength":36},
+{"buffer":0,"byteOffset":36,"byteLength":12},{"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":48},
+{"buffer":0,"byteOffset":108,"byteLength":64}],"buffers":[{"byteLength":172}]})";
+  return as_glb(json, buffer);
+}
+
+TEST(Gltf, JointsPlaceAMeshWithASkinNotItsNode) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string scale = R"(,"scale":[0.01,0.01,0.01])";
+  const auto edge = [](const std::string& content) {
+    const RawMesh mesh = parse(content, "a.glb");
+    expect_note(mesh, "it has a skin: the joints place its mesh");
+    return mesh.vertices.at(1).x;
+  };
+  EXPECT_NEAR(edge(skinned_gltf("", "")), 1, 1e-6);
+  EXPECT_NEAR(edge(skinned_gltf(scale, "")), 1, 1e-6);
+  EXPECT_NEAR(edge(skinned_gltf("", scale)), 0.01, 1e-8);
+  EXPECT_NEAR(edge(skinned_gltf(scale, scale)), 0.01, 1e-8);
+}
+
+TEST(Gltf, WhatIsNotAppliedIsSaid) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  expect_note(parse(glb("", R"(,"weights":[1.0])"), "a.glb"),
+              "its morph targets have weights, which are not applied");
+  EXPECT_EQ(parse(glb("", R"(,"weights":[0])"), "a.glb").notes.size(), 1U);
+  expect_note(parse(glb(R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"])"), "a.glb"),
+              "instances (EXT_mesh_gpu_instancing), which are not applied");
+}
+
+// Returns a glTF file in text whose buffer is another file, and the content of that.
+std::pair<std::string, std::string> gltf_of_two_files(const std::string& uri) {
+  const std::string bytes = glb("");
+  const std::size_t begin = 20, end = bytes.find(std::string("BIN\0", 4)) - 4;
+  std::string json = bytes.substr(begin, end - begin);
+  const std::size_t buffer = json.find("\"buffers\":[{") + 12;
+  json.insert(buffer, "\"uri\":\"" + uri + "\",");
+  return {json, bytes.substr(end + 8)};
+}
+
+TEST(Gltf, FilesThatItNeedsAreFoundOrNamed) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const auto folder = std::filesystem::path(testing::TempDir()) / "vpm_gltf_files";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const std::string& name, const std::string& content) {
+    std::ofstream(folder / name, std::ios::binary) << content;
+    return (folder / name).string();
+  };
+  const auto [json, buffer] = gltf_of_two_files("my%20buffer.bin");
+  write("my buffer.bin", buffer);
+  EXPECT_EQ(read_mesh(write("a.gltf", json)).polygon_count(), 12U);
+  EXPECT_EQ(read_mesh(write("a.txt", json)).polygon_count(), 12U);  // by its content
+  const std::string missing = gltf_of_two_files("missing.bin").first;
+  expect_refusal(missing, write("b.gltf", missing),
+                 "it needs the file 'missing.bin' beside it, which is not there");
+  expect_refusal(missing, "standard input",
+                 "it needs the file 'missing.bin' beside it, whose folder a pipe does not tell");
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Scenes, TextIsToldByItsContent) {
+  const auto format_of = [](const std::string& text) { return scene_by_content(text); };
+  EXPECT_EQ(format_of("\xEF\xBB\xBF {\"nodes\":[],\"asset\":{\"version\":\"2.0\"}}"),
+            MeshFormat::gltf);
+  EXPECT_EQ(format_of("; FBX 7.3.0 project file\n"), MeshFormat::fbx);
+  EXPECT_EQ(format_of("FBXHeaderExtension:  {\n"), MeshFormat::fbx);
+  EXPECT_EQ(format_of("{\"asset\":{\"version\":\"1.0\"},\"root\":{}}"), std::nullopt);  // 3D tiles
+  EXPECT_EQ(format_of("{\"spheres\":[]}"), std::nullopt);
 }
 
 TEST(Gltf, RequiredExtensionsAreNamed) {
@@ -153,6 +272,29 @@ std::string dae(const std::string& unit, const std::string& nodes) {
          R"(</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
+// Returns what stands in a COLLADA file's root before the scene: a skin of the triangle by one
+// joint.
+std::string dae_skin(const std::string& bind_shape) {
+  const std::string unit_matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+  const auto source = [](const std::string& id, const std::string& list, const std::string& param,
+                         const std::string& stride) {
+    return "<source id=\"" + id + "\">" + list + "<technique_common><accessor source=\"#" + id +
+           "a\" count=\"1\" stride=\"" + stride + "\">" + param +
+           "</accessor></technique_common></source>";
+  };
+  return "<library_controllers><controller id=\"c\"><skin source=\"#g\"><bind_shape_matrix>" +
+         bind_shape + "</bind_shape_matrix>" +
+         source("j", R"(<Name_array id="ja" count="1">b</Name_array>)",
+                R"(<param name="JOINT" type="name"/>)", "1") +
+         source("m", R"(<float_array id="ma" count="16">)" + unit_matrix + "</float_array>",
+                R"(<param name="TRANSFORM" type="float4x4"/>)", "16") +
+         source("w", R"(<float_array id="wa" count="1">1</float_array>)",
+                R"(<param name="WEIGHT" type="float"/>)", "1") +
+         R"(<joints><input semantic="JOINT" source="#j"/><input semantic="INV_BIND_MATRIX" source="#m"/></joints>
+<vertex_weights count="3"><input semantic="JOINT" source="#j" offset="0"/><input semantic="WEIGHT" source="#w" offset="1"/>
+<vcount>1 1 1</vcount><v>0 0 0 0 0 0</v></vertex_weights></skin></controller></library_controllers>)";
+}
+
 std::string node(const std::string& id, const std::string& name, double x,
                  const std::string& below = "") {
   return "<node id=\"" + id + "\" name=\"" + name + "\"><translate>" + std::to_string(x) +
@@ -168,6 +310,158 @@ TEST(Collada, ItsUnitIsSaid) {
   const RawMesh none = parse(dae("", one), "a.dae");
   EXPECT_EQ(none.notes.at(0).substr(0, 63),
             "its coordinates are taken to be metres, as it names no unit; tr");
+}
+
+TEST(Collada, OnlyTheUnitOfItsAssetCounts) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string one = node("a", "a", 0);
+  const auto edge = [&](const std::string& unit) {
+    return parse(dae(unit, one), "a.dae").vertices.at(1).x;
+  };
+  EXPECT_NEAR(edge("<unit meter=\" 0.001\t\"/>"), 0.001, 1e-9);
+  EXPECT_NEAR(edge("<unit meter=\"1e-3\" name='a>b'></unit>"), 0.001, 1e-9);
+  EXPECT_EQ(edge("<!-- <unit meter=\"0.001\"/> --><unit meter=\"2\"/>"), 2);
+  EXPECT_EQ(edge("<extra><technique><unit meter=\"0.5\"/></technique></extra>"), 1);
+  EXPECT_NEAR(edge("<extra><unit meter=\"0.5\"/></extra><comments>" + std::string(100'000, 'x') +
+                   "</comments><unit meter=\"0.01\"/>"),
+              0.01, 1e-8);
+  expect_note(parse(dae("<!-- <unit meter=\"0.001\"/> --><unit meter=\"2\"/>", one), "a.dae"),
+              "its unit of 2 m was applied");
+  expect_note(parse(dae("<unit name=\"inch\"/>", one), "a.dae"),
+              "taken to be metres, as its unit 'inch' has no length");
+}
+
+TEST(Collada, AUnitWithoutALengthThatIsANumberIsRefused) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  for (const std::string length : {"0,01", "-0.001", "0", "mm", "", "nan", "inf", "0.001 m"}) {
+    expect_refusal(dae("<unit meter=\"" + length + "\"/>", node("a", "a", 0)), "a.dae",
+                   "its unit has the length meter=\"" + length + "\", which is no positive number");
+  }
+}
+
+TEST(Collada, NodesWithoutFacesAreNoMesh) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  for (const std::string nodes :
+       {"<node id=\"a\"><translate>0 0 1</translate></node>", "<node id=\"a\"/>"})
+    expect_refusal(dae("", nodes), "a.dae", "it has no faces, only nodes");
+}
+
+TEST(Collada, ACoordinateThatIsNotFiniteIsRefusedWithTheFile) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  std::string content = dae("", node("a", "a", 0));
+  content.replace(content.find(">0 0 0 1"), 4, ">NaN 0");
+  expect_refusal(content, "a.dae", "not finite");
+}
+
+TEST(Collada, JointsPlaceAMeshWithASkin) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const auto with_skin = [](const std::string& bind_shape, const std::string& joint) {
+    std::string content = dae(
+        "", R"(<node id="n" name="n"><scale>5 5 5</scale><instance_controller url="#c"/></node>)"
+            R"(<node id="b" sid="b" name="b" type="JOINT">)" +
+                joint + "</node>");
+    content.insert(content.find("<library_visual_scenes>"), dae_skin(bind_shape));
+    return parse(content, "a.dae");
+  };
+  const std::string as_is = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+  EXPECT_NEAR(with_skin(as_is, "").vertices.at(1).x, 1, 1e-6);
+  EXPECT_NEAR(with_skin(as_is, "<scale>.5 .5 .5</scale>").vertices.at(1).x, 0.5, 1e-6);
+  const RawMesh bound = with_skin(".1 0 0 0 0 .1 0 0 0 0 .1 0 0 0 0 1", "");
+  EXPECT_NEAR(bound.vertices.at(1).x, 0.1, 1e-6);
+  expect_note(bound, "it has a skin: the joints place its mesh");
+}
+
+std::uint32_t crc_of(const std::string& bytes) {
+  std::uint32_t crc = ~0U;
+  for (const char c : bytes) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int k = 0; k < 8; ++k) crc = crc >> 1 ^ (crc & 1U) * 0xEDB88320U;
+  }
+  return ~crc;
+}
+
+// Returns a zip archive of files that are not packed.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string bytes, directory;
+  for (const auto& [path, content] : files) {
+    std::string head;
+    for (const std::uint32_t number : {20U, 0U, 0U, 0U, 0U}) append_number(head, number, 2);
+    append_number(head, crc_of(content));
+    for (int k = 0; k < 2; ++k) append_number(head, static_cast<std::uint32_t>(content.size()));
+    append_number(head, static_cast<std::uint32_t>(path.size()), 2);
+    append_number(head, 0, 2);
+    directory += std::string("PK\x01\x02\x14\0", 6) + head + std::string(10, '\0');
+    append_number(directory, static_cast<std::uint32_t>(bytes.size()));
+    directory += path;
+    bytes += "PK\x03\x04" + head + path + content;
+  }
+  std::string end("PK\x05\x06\0\0\0\0", 8);
+  for (int k = 0; k < 2; ++k) append_number(end, static_cast<std::uint32_t>(files.size()), 2);
+  append_number(end, static_cast<std::uint32_t>(directory.size()));
+  append_number(end, static_cast<std::uint32_t>(bytes.size()));
+  append_number(end, 0, 2);
+  return bytes + directory + end;
+}
+
+const std::string kBody =
+    R"(<object id="1" type="model"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+<vertex x="0" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>)";
+
+// Returns a 3MF file of a model with these attributes, objects and items.
+std::string threemf(const std::string& attributes, const std::string& objects = kBody,
+                    const std::string& items = R"(<item objectid="1"/>)",
+                    const std::string& path = "3D/3dmodel.model", const std::string& before = "") {
+  return zip(
+      {{"_rels/.rels",
+        R"(<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/)" +
+            path +
+            R"(" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
+       {path, before +
+                  R"(<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" )" +
+                  attributes + "><resources>" + objects + "</resources><build>" + items +
+                  "</build></model>"}});
+}
+
+TEST(Threemf, OnlyTheUnitOfItsModelCounts) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  EXPECT_NEAR(parse(threemf(R"(unit=" inch ")"), "a.3mf").vertices.at(1).x, 0.0254, 1e-9);
+  const std::string comment = R"(<?xml version="1.0"?><!-- <model unit="inch"> -->)";
+  EXPECT_NEAR(parse(threemf(R"(unit="meter")", kBody, R"(<item objectid="1"/>)", "3D/3dmodel.model",
+                            comment),
+                    "a.3mf")
+                  .vertices.at(1)
+                  .x,
+              1, 1e-9);
+}
+
+TEST(Threemf, TheModelMayHaveAnyName) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string content = threemf("", kBody, R"(<item objectid="1"/>)", "3D/part.model");
+  EXPECT_EQ(parse(content, "a.3mf").polygon_count(), 1U);
+  EXPECT_EQ(parse(content, "a").format, MeshFormat::threemf);
+  expect_refusal(zip({{"a.txt", "a"}}), "a.3mf", "no 3D model in UTF-8 can be unpacked from it");
+}
+
+TEST(Threemf, BodiesThatAreNotReadAreRefused) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string production =
+      R"(xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p")";
+  const std::string elsewhere =
+      R"(<object id="2" type="model"><components><component p:path="/3D/b.model" objectid="1"/></components></object>)";
+  const std::string both = R"(<item objectid="1"/><item objectid="2"/>)";
+  const std::string words = "its parts lie in other files of the archive";
+  expect_refusal(threemf(production, kBody + elsewhere, both), "a.3mf", words);
+  expect_refusal(threemf(production, kBody, R"(<item objectid="1" p:path="/3D/b.model"/>)"),
+                 "a.3mf", words);
+  // The extension also names parts that are all in one file.
+  EXPECT_EQ(parse(threemf(production, kBody, R"(<item objectid="1" p:UUID="x"/>)"), "a.3mf")
+                .polygon_count(),
+            1U);
+  expect_refusal(threemf(R"(xmlns:s="http://x/slice/2015/07" requiredextensions="s")"), "a.3mf",
+                 "it requires the 3MF extension http://x/slice/2015/07");
+  const std::string boolean = R"(<object id="2"><bo:booleanshape objectid="1"/></object>)";
+  expect_refusal(threemf(R"(xmlns:bo="x")", kBody + boolean, both), "a.3mf",
+                 "one of its objects is of 'booleanshape'");
 }
 
 TEST(Nodes, OfOneNameAreToldApart) {

@@ -52,6 +52,126 @@ TEST(PoseReader, ALineOfNamesTellsTheOrder) {
   EXPECT_EQ(first_pose("# ground truth trajectory\n1 2 3 1 0 0 0\n").numbers, kTurned);
 }
 
+// Returns the first pose of a file with this first line and numbers in its order.
+std::vector<double> named(const std::string& names, const std::string& numbers) {
+  return first_pose(names + "\n" + numbers + "\n").numbers;
+}
+
+TEST(PoseReader, PassesOverOtherWordsAndUnitsBesideTheNames) {
+  for (const char* names :
+       {"# Format: timestamp tx ty tz qw qx qy qz", "# timestamp tx ty tz qw qx qy qz (metres)",
+        "# timestamp [s] tx [m] ty [m] tz [m] qw [] qx qy qz", "# [timestamp tx ty tz qw qx qy qz]",
+        "# (timestamp tx ty tz qw qx qy qz)", "#(timestamp, tx, ty, tz, qw, qx, qy, qz)",
+        "# Format: timestamp, tx, ty, tz, qw, qx, qy, qz in metres", "# timestamp tx ty tz w x y z",
+        "# timestamp, (tx, ty, tz), (qw, qx, qy, qz)", "# time stamp tx ty tz qw qx qy qz",
+        "# <timestamp> <tx> <ty> <tz> <qw> <qx> <qy> <qz>", "timestamp x y z q[w] q[x] q[y] q[z]",
+        "# time position (x y z) orientation (w x y z)", "  # tx ty tz qw qx qy qz",
+        "# time, pose.position.x, pose.position.y, pose.position.z, pose.orientation.w, "
+        "pose.orientation.x, pose.orientation.y, pose.orientation.z",
+        "# Each line is: timestamp tx ty tz and qw qx qy qz, blanks between",
+        "# t;x;y;z;qw;qx;qy;qz"})
+    EXPECT_EQ(named(names, "7 1 2 3 0 1 0 0"), kTurned) << names;
+  for (const char* names : {"# pose tx ty tz qw qx qy qz", "# (tx ty tz w x y z)",
+                            "# tx ty tz qw qx qy qz (w first)", "# Format: tx ty tz qw qx qy qz"})
+    EXPECT_EQ(named(names, "1 2 3 0 1 0 0"), kTurned) << names;
+  EXPECT_EQ(named("# w x y z tx ty tz", "0 1 0 0 1 2 3"), kTurned);
+  EXPECT_EQ(named("# rotation: w x y z, translation: x y z", "0 1 0 0 1 2 3"), kTurned);
+  EXPECT_EQ(named("# tx ty tz x y z w", "1 2 3 1 0 0 0"), kTurned);
+  EXPECT_EQ(named("", "1 2 3 0 1 0 0 # tx ty tz qw qx qy qz"), kTurned);
+  EXPECT_EQ(named("# tx ty tz qw qx qy qz", "[1, 2, 3, 0, 1, 0, 0]"), kTurned);
+}
+
+TEST(PoseReader, NamesInTheUsualOrderAreOnlyACommentWhereTheyDoNotFit) {
+  for (const char* names :
+       {"# Format: timestamp tx ty tz qx qy qz qw", "# timestamp tx ty tz qx qy qz qw (metres)",
+        "# a quaternion, w last", "# real poses first",
+        "# tx ty tz qx qy qz qw, where q is a unit quaternion", "# position and quaternion",
+        "# x y z x y z w", "# position in m, orientation as a unit quaternion (x, y, z, w)"}) {
+    EXPECT_EQ(named(names, "1 2 3 1 0 0 0"), kTurned) << names;
+    EXPECT_EQ(first_pose(std::string(names) + "\n7 1 2 3 1 0 0 0\n").time, 7) << names;
+  }
+}
+
+TEST(PoseReader, PassesOverColumnsThatAreNoneOfThePoses) {
+  for (const char* names : {"# id tx ty tz qw qx qy qz", "frame,tx,ty,tz,qw,qx,qy,qz",
+                            "# anything, tx, ty, tz, qw, qx, qy, qz"}) {
+    EXPECT_EQ(named(names, "7 1 2 3 0 1 0 0"), kTurned) << names;
+    EXPECT_EQ(first_pose(std::string(names) + "\n7 1 2 3 0 1 0 0\n").time, 0) << names;
+  }
+  EXPECT_EQ(named("# tx ty tz qw qx qy qz confidence", "1 2 3 0 1 0 0 1"), kTurned);
+  EXPECT_EQ(named("# tx ty tz and qw qx qy qz", "7 1 2 3 0 1 0 0"), kTurned);
+}
+
+TEST(PoseReader, RefusesAnEighthNumberThatMayBeATimeOrNone) {
+  for (const char* names : {"# tx ty tz qx qy qz qw metres", "# anything tx ty tz qw qx qy qz",
+                            "# tx ty tz qw qx qy qz metres"}) {
+    EXPECT_TRUE(says(test::refusal([&] { named(names, "7 1 2 3 0 0 0 1"); }), "not clearly"))
+        << names;
+    EXPECT_NO_THROW(named(names, "1 2 3 0 0 0 1")) << names;
+  }
+  EXPECT_TRUE(
+      says(test::refusal([] { named("# the first tx ty tz qw qx qy qz", "7 1 2 3 0 0 0 1"); }),
+           "found 8 numbers where the line of names has 7 (line 1)"));
+}
+
+TEST(PoseReader, TheUnitOfTheTimeIsTaken) {
+  const std::string rest = " tx ty tz qx qy qz qw\n2000 1 2 3 1 0 0 0\n";
+  EXPECT_EQ(first_pose("# timestamp [s]" + rest).time, 2000);
+  EXPECT_EQ(first_pose("# timestamp [ms]" + rest).time, 2);
+  EXPECT_EQ(first_pose("# timestamp (us)" + rest).time, 0.002);
+  EXPECT_EQ(first_pose("# timestamp[ns]" + rest).time, 1e-9 * 2000);
+}
+
+TEST(PoseReader, RefusesNamesThatDoNotTellTheOrder) {
+  for (const char* names :
+       {"# tx ty tz q0 q1 q2 q3", "# tx ty tz q[0] q[1] q[2] q[3]", "# tx ty tz qi qj qk qr",
+        "# x y z w x y z", "# pose as xyz wxyz", "# quaternions are scalar first",
+        "# the quaternion begins with its w: w first", "# tx ty tz quaternion",
+        "# tx ty tz qw qx qy", "tx,ty,tz,q0,q1,q2,q3", "# (x, y, z), (q1, q2, q3, q4)"}) {
+    const std::string text = std::string("# poses\n") + names + "\n1 2 3 0 1 0 0\n";
+    const auto fault = test::refusal([&] { first_pose(names[0] == '#' ? text : text.substr(8)); });
+    EXPECT_TRUE(says(fault, "seems to tell the order")) << names;
+    EXPECT_TRUE(says(fault, names[0] == '#' ? "line 2 seems" : "line 1 seems")) << names;
+    EXPECT_TRUE(says(fault, "qx qy qz qw, or qw qx qy qz")) << names;
+  }
+  const auto fault =
+      test::refusal([] { first_pose("# poses\n# time tx ty tz qw qx qy qz\n1 2 3 0 1 0 0\n"); });
+  EXPECT_TRUE(says(fault, "found 7 numbers where the line of names has 8 (line 2)"));
+}
+
+TEST(PoseReader, AClearLineOfNamesWinsOverAnUnclearOne) {
+  const std::string clear = "# tx ty tz qw qx qy qz\n", unclear = "# tx ty tz q0 q1 q2 q3\n";
+  EXPECT_EQ(first_pose(clear + unclear + "1 2 3 0 1 0 0\n").numbers, kTurned);
+  EXPECT_EQ(first_pose(unclear + clear + "1 2 3 0 1 0 0\n").numbers, kTurned);
+}
+
+TEST(PoseReader, TakesTheUsualNamesOfTheTimeInJson) {
+  for (const char* key : {"time", "timestamp", "t", "stamp"})
+    EXPECT_EQ(first_pose("{\"" + std::string(key) + "\": 2, \"pose\": [1,2,3,1,0,0,0]}\n").time, 2);
+  const auto fault =
+      test::refusal([] { first_pose("{\"time\": 2, \"stamp\": 2, \"pose\": [1,2,3,1,0,0,0]}\n"); });
+  EXPECT_TRUE(says(fault, "both \"time\" and \"stamp\""));
+}
+
+TEST(PoseReader, TakesMatricesOfThreeRows) {
+  const std::string numbers = "1 0 0 1 0 -1 0 2 0 0 -1 3";
+  EXPECT_EQ(first_pose(numbers + "\n").numbers, kTurned);
+  EXPECT_EQ(first_pose("# tx ty tz qw qx qy qz\n" + numbers + "\n").numbers, kTurned);
+  EXPECT_EQ(first_pose("{\"matrix\": [[1,0,0,1],[0,-1,0,2],[0,0,-1,3]]}\n").numbers, kTurned);
+  EXPECT_TRUE(says(test::refusal([] { first_pose("1 0 0 1 0 -1 0 2 0 0 1 3\n"); }), "mirrors"));
+  EXPECT_TRUE(says(test::refusal([] { first_pose("[[1,0,0],[0,1,0],[0,0,1],[1,2,3]]\n"); }),
+                   "a row of a matrix must have four numbers"));
+}
+
+TEST(PoseReader, OnlyTheFirstMatrixMayLackItsLastRow) {
+  const std::string rows = "1 0 0 1\n0 1 0 2\n0 0 1 3\n";
+  const file::TemporaryFolder folder;
+  file::write_all(folder.path("poses.txt"), rows + "0 0 0 1\n" + rows);
+  PoseReader reader(folder.path("poses.txt"));
+  EXPECT_TRUE(reader.next());
+  EXPECT_TRUE(says(test::refusal([&] { reader.next(); }), "ends inside of a 4x4 matrix"));
+}
+
 TEST(PoseReader, MessagesEscapeWhatIsNoText) {
   EXPECT_TRUE(says(test::refusal([] { first_pose("\x1b[31m 2 3\n"); }), "not a number: \\x1b[31m"));
 }
@@ -64,12 +184,44 @@ TEST(CameraPoseFile, ReadsOnePose) {
       camera_pose("{\n \"transform_matrix\": [[1,0,0,1],[0,1,0,2],\n [0,0,1,3],[0,0,0,1]]}\n"),
       there);
   EXPECT_EQ(camera_pose("{\"extrinsic\": [1,0,0,0, 0,1,0,0, 0,0,1,0, -1,-2,-3,1]}"), there);
+  EXPECT_EQ(camera_pose("{\"extrinsic\": [[1,0,0,-1],\n [0,1,0,-2],\n [0,0,1,-3],\n [0,0,0,1]]}"),
+            there);
+  EXPECT_EQ(camera_pose("1 0 0 1\n0 1 0 2\n0 0 1 3\n"), there);
+  EXPECT_EQ(camera_pose("1 0 0 1 0 1 0 2 0 0 1 3\n"), there);
+}
+
+TEST(CameraPoseFile, ReadsListsOverSeveralLines) {
+  const std::vector<double> there{1, 2, 3};
+  for (const char* text :
+       {"[[1,0,0,1],\n [0,1,0,2],\n [0,0,1,3],\n [0,0,0,1]]",
+        "[1,0,0,1,\n0,1,0,2,\n0,0,1,3,\n0,0,0,1]\n",
+        "[[1. 0. 0. 1.]\n [0. 1. 0. 2.]\n [0. 0. 1. 3.]\n [0. 0. 0. 1.]]\n",
+        "[[1., 0., 0., 1.],\n [0., 1., 0., 2.],\n [0., 0., 1., 3.]]",
+        "[\n1,\n2,\n3,\n0,\n0,\n0,\n1\n]\n", "[1. 2. 3. 0. 0. 0. 1.]\n",
+        "\n [[1e0 0 0 1]\n[0 1 0 2]\n[0 0 1 3]\n[0 0 0 1]]", "[7, 1, 2, 3, 0, 0, 0, 1]\n"})
+    EXPECT_EQ(camera_pose(text), there) << text;
+}
+
+TEST(CameraPoseFile, RefusesListsThatAreNoPose) {
+  for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+           {"[[1. 0. 0.]\n [0. 1. 0.]\n [0. 0. 1.]\n [1. 2. 3.]]", "four numbers"},
+           {"[[1,0,0,1],\n[0,1,0,2],\n[0,0,1,3],\n[0,0,1,1]]", "0 0 0 1"},
+           {"[[1. 0. ... 0.]\n [0. 1. ... 0.]]", "not JSON"},
+           {"[1,2,3,0,0,0,1]\n[1,2,3,0,0,0,1]\n", "several poses"},
+           {"{\"extrinsic\": [1,0,0,0,0,1,0,0,0,0,1,0]}", "nor lists of rows"},
+           {"{\"extrinsic\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[1,2,3,1]]}", "0 0 0 1"}})
+    EXPECT_TRUE(says(test::refusal([&] { camera_pose(text); }), message)) << text;
 }
 
 TEST(CameraPoseFile, RefusesSeveral) {
   EXPECT_TRUE(
       says(test::refusal([] { camera_pose("1 2 3 0 0 0 1\n1 2 3 0 0 0 1\n"); }), "several poses"));
   EXPECT_TRUE(says(test::refusal([] { camera_pose("\n"); }), "no pose"));
+}
+
+TEST(PoseReader, DecimalCommasAreRefused) {
+  for (const char* const line : {"0,1 0 1 0 0 0 1", "0,0 0 1,0 0 0 0 1", "5 0,1 0 1 0 0 0 1"})
+    EXPECT_TRUE(says(test::refusal([&] { camera_pose(line); }), "decimals with a point")) << line;
 }
 
 }  // namespace

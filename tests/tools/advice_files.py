@@ -100,6 +100,12 @@ def write_meshes(folder):
     files["packed.gltf"] = '{"asset": {"version": "2.0"}, "extensionsRequired": ["EXT_meshopt_compression"]}'
     write_all(folder, files)
     scene_files.write_all(folder)
+    cube = (folder / "cube.dae").read_text()
+    (folder / "comma.dae").write_text(cube.replace('meter="0.001"', 'meter="0,001"'))
+    (folder / "nodes.dae").write_text(cube.replace('<instance_geometry url="#g"/>', ""))
+    scene_files.threemf(folder / "parts.3mf", 1000, unit=' unit="millimeter" requiredextensions="slice"')
+    skinned = (folder / "cube.gltf").read_text().replace('"mesh": 0', '"mesh": 0, "skin": 0')
+    (folder / "skin.gltf").write_text(skinned.replace('"scene": 0', '"scene": 0, "skins": [{"joints": [0]}]'))
     (folder / "cut.glb").write_bytes((folder / "cube.glb").read_bytes()[:500])
 
 

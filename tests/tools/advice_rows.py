@@ -63,6 +63,10 @@ MESHES = [
     ("cube.obj --node hand", "leave --node out", "cube.obj", 1),
     ("cut.glb", "save it again, or as OBJ", "cube.glb", 1),
     ("packed.gltf", "save it without compression, quantization and instancing, or as OBJ, PLY or STL", "cube.glb", 1),
+    ("comma.dae", "write the metres of one unit there, 0.001 for millimetres", "cube.dae", 1),
+    ("nodes.dae", "export it with its mesh", "cube.dae", 1),
+    ("parts.3mf", "export it as STL or OBJ", "cube.obj", 1),
+    ("skin.gltf", "check its size, or export it without the skin", "cube.gltf", 1),
     ("points.obj", "save it with its faces; a cloud of points is for vpm-normals", "cube.obj", 1),
     ("blank.obj", "give the file that was meant, as OBJ, PLY or STL", "cube.obj", 1),
     ("points.xyz", "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals", "cube.obj", 1),
@@ -239,6 +243,8 @@ COMMANDS = [
     ("vpm-pack small.off --spheres 5 -o out.vpmp --link hand",
      r"name in (\S+), (\S+) and (\S+); give (--export) with one of these",
      "for e in {0} {1} {2}; do vpm-pack small.off --spheres 5 --link hand {3} out$e || exit; done"),
+    ("vpm-pack small.off --spheres 5 --spheres 6 -o out.vpmp", "has several values; leave all but one out",
+     "vpm-pack small.off --spheres 6 -o out.vpmp"),
     ("vpm-pack small.off --spheres 5 --export out.csv --link hand", r"give --export with one of these",
      "vpm-pack small.off --spheres 5 --export out.urdf --link hand"),
     # Options and configurations
@@ -257,9 +263,11 @@ COMMANDS = [
     ("vpm-graph cube.vpmp -o out.vpmg --epsilon 1mm", "is not a number greater than 0",
      "vpm-graph cube.vpmp -o out.vpmg --epsilon 0.001"),
     ("vpm-graph cube.vpmp", "--output is required", "vpm-graph cube.vpmp --output out.vpmg"),
+    ("cat beside.gltf | vpm-pack - --spheres 5 -o out.vpmp", "give the path of the glTF file, or save it as GLB, which is one file",
+     "vpm-pack beside.gltf --spheres 5 -o out.vpmp"),
     ("echo '{\"sphere\": 5}' | vpm-pack small.off -o out.vpmp --config -",
      r"there is no option 'sphere'; is '(spheres)' meant\?",
-     "echo '{{\"{0}\": 5}}' | vpm-pack small.off -o out.vpmp --config -"),
+     "echo '{\"{0}\": 5}' | vpm-pack small.off -o out.vpmp --config -"),
     ("echo '{\"grow\": 2}' | vpm-pack small.off --spheres 5 -o out.vpmp --config -", r"must be (true) or false",
      "echo '{\"grow\": {0}}' | vpm-pack small.off --spheres 5 -o out.vpmp --config -"),
     ("echo '[1]' | vpm-pack small.off --spheres 5 -o out.vpmp --config -", "must be a JSON object of options",
@@ -423,12 +431,26 @@ COMMANDS = [
     (f"{COUPLED.replace('device.txt', 'some_timed.txt')} --coupling stiffness=500,damping=5",
      "either every pose has a time or none",
      f"{COUPLED.replace('device.txt', 'timed.txt')} --coupling stiffness=500,damping=5"),
+    ("echo '{\"time\": 0, \"t\": 0, \"pose\": [0,0,0.95,0,0,0,1]}' | " + f"{TOOL} --poses -", "give one time",
+     "echo '{\"time\": 0, \"pose\": [0,0,0.95,0,0,0,1]}' | " + f"{TOOL} --poses -", WALL),
+    (f"echo '0,0 0 0.95 0 0 0 1' | {TOOL} --poses -", "write decimals with a point",
+     f"echo '0.0 0 0.95 0 0 0 1' | {TOOL} --poses -", WALL),
+    (f"printf '# tx ty tz q0 q1 q2 q3\\n0 0 0.95 0 0 0 1\\n' | {TOOL} --poses -", "name the columns in a comment: (# tx ty tz qx qy qz qw)",
+     f"printf '{{0}}\\n0 0 0.95 0 0 0 1\\n' | {TOOL} --poses -", WALL),
+    # Scans whose bytes or frame are doubted
+    ("python3 -c \"import sys; sys.stdout.buffer.write(b'P5 20 20 65535\\n' + bytes(b for k in range(400) for b in (100 + k // 10, 0)))\" "
+     f"> bytes.pgm; vpm-normals bytes.pgm {CAMERA} -o out.vpmc", "give (--decode swapped)",
+     f"vpm-normals bytes.pgm {CAMERA} -o out.vpmc {{0}}"),
+    ("(printf 'VERSION 0.7\\nFIELDS x y z normal_x normal_y normal_z\\nSIZE 4 4 4 4 4 4\\nTYPE F F F F F F\\nWIDTH 400\\n"
+     "HEIGHT 1\\nVIEWPOINT 0 0 5 1 0 0 0\\nPOINTS 400\\nDATA ascii\\n'; for k in $(seq 400); do echo 0.0$((k % 20)) 0.0$((k / 20)) 1 0 0 1; done) "
+     "> world.pcd; vpm-normals world.pcd -o out.vpmc", r"VIEWPOINT there; (--camera-pose \S+) takes them",
+     "vpm-normals world.pcd -o out.vpmc {0}"),
     # Scenes and tools that do not meet
     (f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,0,0.9659258,0.258819,0,0 -o - | "
-     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227,0,0,0,1",
+     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227241,0.258819,0,0,0.9659258",
      "the quaternion of the camera's pose begins with w: give vpm-normals (--camera-pose) tx,ty,tz,qx,qy,qz,qw",
      f"vpm-normals wall.pgm {CAMERA} {{0}} 0,0,0,0.258819,0,0,0.9659258 -o - | "
-     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227,0,0,0,1",
+     "vpm-query --tool small.vpmg --cloud - --pose 0,-0.475,0.8227241,0.258819,0,0,0.9659258",
      WALL),
     (f"{TOOL} --poses inverted.txt", "it would be there if the poses are inverted", f"{TOOL} --poses poses.txt", WALL),
     (f"vpm-normals wall.pgm {CAMERA} --camera-pose 0,0,-3,0,0,0,1 -o - | "

@@ -18,6 +18,19 @@ $ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "ri
 $ echo '{"K": [60, 1, 31.5, 0, 60, 23.5, 0, 0, 1], "D": [0.1, 0, 0, 0, 0]}' > i.json; vpm-normals wall.pgm -o skewed.vpmc --intrinsics i.json
 2> vpm-normals: warning: i.json: the skew in its matrix is not used
 2> vpm-normals: warning: i.json: the lens's distortion in it is not used: the depth image must be a rectified one
+$ printf '60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n' > scannet.txt; printf '\357\273\27760 60 31.5 23.5\n' > mark.txt; echo '{"cameraMatrix": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' > key.json; printf 'camera_model: pinhole\nintrinsics: [60, 60, 31.5, 23.5]\n' > kalibr.yaml; for k in scannet.txt mark.txt key.json kalibr.yaml; do vpm-normals wall.pgm -o $k.vpmc --intrinsics $k && cmp $k.vpmc wall.vpmc; done
+$ for t in '60 0 31.5 45 0 60 23.5 0 0 0 1 0' '<?xml version="1.0"?><opencv_storage></opencv_storage>' '\377\3766\0000\000' '{"M1": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1], "M2": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' '{"camera_model": "omni", "intrinsics": [1, 60, 60, 31.5, 23.5]}'; do printf "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
+2> vpm-normals: error: i.txt: the last column of its matrix is not 0, or the last row not 0 0 0 1, as if it were of another camera beside this one, or a pose; if fx, fy, cx and cy in it are those of this image, give --intrinsics 60,60,31.5,23.5
+2> vpm-normals: error: i.txt: this is XML, which is not read for intrinsics; write it as .yml, which OpenCV does where the file's name ends so
+2> vpm-normals: error: i.txt: this is text in UTF-16; save it as UTF-8
+2> vpm-normals: error: i.txt: it holds several cameras: M1, M2; give the numbers of one as --intrinsics fx,fy,cx,cy
+2> vpm-normals: error: i.txt: its camera_model is omni, and only pinhole is read; rectify the images and give the numbers of the camera that they have then as --intrinsics fx,fy,cx,cy
+[1]
+$ echo '{"fx": 60, "fy": 60, "cx": 31.5, "cy": 23.5, "k1": 0.1, "depth_scale": 0.1}' > bop.json; printf 'Camera.fx: 60.0\nCamera.fy: 60.0\nCamera.cx: 31.5\nCamera.cy: 23.5\nDepthMapFactor: 5000.0\n' > orb.yaml; for o in bop.json orb.yaml 'orb.yaml --depth-scale 5000' 'orb.yaml --unit mm'; do vpm-normals wall.pgm -o factor.vpmc --force --intrinsics $o; done
+2> vpm-normals: warning: bop.json: the lens's distortion in it is not used: the depth image must be a rectified one
+2> vpm-normals: warning: bop.json: it tells a depth factor, depth_scale 0.1, which is not used; if it is in millimetres per unit, give --depth-scale 10000
+2> vpm-normals: warning: orb.yaml: it tells a depth factor, DepthMapFactor 5000, which is not used; give --depth-scale 5000
+2> vpm-normals: note: orb.yaml: it tells a depth factor, DepthMapFactor 5000, which is not used: 1000 units per metre were given
 
 # Poses of the camera
 $ for p in 0,0,0,0,0,0,2 0,0,0,0,0,0,nan 0,0,inf,0,0,0,1 0,0,0,0,0,0,one 0,0,0; do vpm-normals wall.pgm -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose $p; done
@@ -27,13 +40,15 @@ $ for p in 0,0,0,0,0,0,2 0,0,0,0,0,0,nan 0,0,inf,0,0,0,1 0,0,0,0,0,0,one 0,0,0; 
 2> vpm-normals: error: --camera-pose: 'one' is not a number in '0,0,0,0,0,0,one'
 2> vpm-normals: error: --camera-pose: expected 7 numbers tx,ty,tz,qx,qy,qz,qw but found 3 in '0,0,0'
 [2]
-$ for t in '1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n' '1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n' '0 0 0 0 0 0 1\n0 0 1 0 0 0 1\n' '' '{"matrix": [1, 0, 0, 0]}' '{"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}'; do printf "$t" > p.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose p.txt; done
+$ for t in '1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n' '1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n' '0 0 0 0 0 0 1\n0 0 1 0 0 0 1\n' '' '{"matrix": [1, 0, 0, 0]}' '{"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}' '{"extrinsic": [1, 0, 0, 0]}' '[[1,0,0,0],\n [0,1,0,0],\n [0,0,1,0],\n [0,0,1,1]]'; do printf "$t" > p.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose p.txt; done
 2> vpm-normals: error: p.txt, line 4: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
 2> vpm-normals: error: p.txt, line 4: pose: the 3x3 block is 3.000000 away from a rotation matrix
 2> vpm-normals: error: p.txt: it holds several poses; give a file with the one of this image, or its numbers
 2> vpm-normals: error: p.txt: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
 2> vpm-normals: error: p.txt: a camera's matrix has 4x4 numbers by rows, the last row 0 0 0 1
 2> vpm-normals: error: p.txt: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
+2> vpm-normals: error: p.txt: "extrinsic" has neither 16 numbers by columns, as Open3D writes it, nor lists of rows
+2> vpm-normals: error: p.txt: the last row of a 4x4 pose must be 0 0 0 1
 [1]
 $ vpm-normals wall.pgm -o rounded.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0,0,0,0.707,0.707
 2> vpm-normals: note: --camera-pose: its rotation is not exact and has been normalised
@@ -49,9 +64,16 @@ $ for t in '0 0 1 0 0 0 2' '0 0 1 0 0 0 nan' '1 0 0 0\n0 1 0 0\n0 0 1 1\n0 0 1 1
 2> vpm-query: error: standard input, line 1: a pose must be a list of numbers
 2> vpm-query: error: standard input, line 1: a pose must be a list of numbers
 2> vpm-query: error: standard input, line 1: not JSON; a line must be one whole pose
-2> vpm-query: error: standard input, line 2: found 6 numbers where the line of names has 7
+2> vpm-query: error: standard input, line 2: found 6 numbers where the line of names has 7 (line 1); let the names in it be those of the numbers, in their order
 2> vpm-query: error: standard input, line 1: not a number: one
 2> vpm-query: error: standard input, line 1: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
+[1]
+$ for t in '# tx ty tz q0 q1 q2 q3\n0 0 1 1 0 0 0' '# Format: timestamp tx ty tz qw qx qy qz\n0 0 1 1 0 0 0' '{"time": 0, "stamp": 0, "pose": [0, 0, 1, 0, 0, 0, 1]}' '1 0 0 0 0 1 0 0 0 0 -1 1' '1 2 3 4 5'; do printf "$t\n" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
+2> vpm-query: error: standard input, line 2: line 1 seems to tell the order of the numbers, but not clearly: # tx ty tz q0 q1 q2 q3; name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz where w is first, after timestamp if there are times
+2> vpm-query: error: standard input, line 2: found 7 numbers where the line of names has 8 (line 1); let the names in it be those of the numbers, in their order
+2> vpm-query: error: standard input, line 1: both "time" and "stamp" in the object; give one time
+2> vpm-query: error: standard input, line 1: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
+2> vpm-query: error: standard input, line 1: found 5 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row), or 12 without the last row
 [1]
 $ (head -c 1100000 /dev/zero | tr '\0' 1; echo) | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
 2> vpm-query: error: standard input, line 1: a line of more than a million bytes is no text

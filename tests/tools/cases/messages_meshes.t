@@ -24,6 +24,14 @@ $ for t in 'OFX\n' 'OFF 3 1\n' 'OFF\n3 one 0\n' 'OFF\n-3 1 0\n' 'nOFF 4 3 1 0\n'
 2> vpm-pack: error: a.off: line 5: the face's number of corners is negative
 2> vpm-pack: error: a.off: line 4: a coordinate is not finite
 [1]
+$ cube='OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n'; printf "$cube$cube" | vpm-pack - --spheres 5 --report - | grep volume_mesh; printf "${cube}4 3 2 1 0\n" | vpm-pack - --spheres 5 --report - | grep volume_mesh; printf "${cube/6 0/5 0}" | vpm-pack - -o x.vpmp; printf "${cube/8 6/9 6}" | vpm-pack - -o x.vpmp
+  "volume_mesh": 1.0,
+  "volume_mesh": 1.0,
+2> vpm-pack: note: standard input: another OFF file follows in line 17, which is not read
+2> vpm-pack: note: standard input: the header counts 6 faces, but more follows in line 17, which is not read
+2> vpm-pack: error: standard input: the header counts 5 faces, but more follows in line 16, which is not read; so the mesh is open: 4 edges *. save it again, or fetch all of it (glob)
+2> vpm-pack: error: standard input: the header counts 9 vertices, but line 11 does not look like one; so the mesh is open: 4 edges *. save it again, or fetch all of it (glob)
+[1]
 $ printf 'OFF BINARY\n\0\0\0\011\0\0\0\0\0\0\0\0' | vpm-pack - -o x.vpmp
 2> vpm-pack: error: standard input: the counts of this binary OFF file do not fit its 12 bytes in either byte order; it is truncated or damaged
 [1]
@@ -54,6 +62,12 @@ $ head='ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty floa
 [1]
 $ printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n123456789012' | vpm-pack - -o x.vpmp
 2> vpm-pack: error: standard input: the header says 1 x vertex, 1 x face, but the file has only 184 bytes; it is truncated or damaged
+[1]
+
+$ head='ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n'; for t in '3 0 1 2\n3 0 1 2\n' '3 0 1 2\nply\n' '3 0 1 2 0\n'; do printf "$head$t" | vpm-pack - -o x.vpmp; done
+2> vpm-pack: error: standard input: the header counts 1 face, but more follows in line 14, which is not read; so the mesh is open: * (glob)
+2> vpm-pack: error: standard input: another PLY file follows in line 14, which is not read; so the mesh is open: * (glob)
+2> vpm-pack: error: standard input: line 13 holds more numbers than the header says; they are not read; so the mesh is open: * (glob)
 [1]
 
 # STL

@@ -1,0 +1,186 @@
+// The JSON of glTF files: what they need, and what of them is not applied.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
+#include "libvpm/mesh/scene_header.h"
+
+namespace vpm {
+namespace {
+
+using nlohmann::json;
+
+// Returns the number of four little-endian bytes, which lie within.
+std::size_t number_at(std::string_view bytes, std::size_t at) {
+  std::size_t value = 0;
+  for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+// Returns the JSON of a glTF file, which is the first chunk of a binary one.
+std::string_view json_of(std::string_view gltf) {
+  constexpr std::size_t kHeader = 20;
+  if (!gltf.starts_with("glTF")) return gltf;
+  return gltf.size() < kHeader ? "" : gltf.substr(kHeader, number_at(gltf, 12));
+}
+
+// Returns the member, empty where there is none or it is of another kind.
+const json& member(const json& object, const char* key) {
+  static const json none;
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  return object.is_object() && found != object.end() ? *found : none;
+}
+
+// Returns the element that an index of the file names, empty where there is none.
+const json& element(const json& list, const json& index) {
+  static const json none;
+  if (!list.is_array() || !index.is_number_unsigned()) return none;
+  const auto at = index.get<std::uint64_t>();
+  return at < list.size() ? list[at] : none;
+}
+
+std::string text_of(const json& value) {
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
+// True for extensions that say how a surface looks, or what stands beside it, and for the
+// compression that assimp may unpack; where it cannot, it says so.
+bool is_readable(const std::string& extension) {
+  if (extension == "KHR_draco_mesh_compression") return true;
+  const std::string name = file::in_lower_case(extension);
+  for (const char* const part : {"material", "texture", "light", "image", "xmp", "audio"})
+    if (name.find(part) != name.npos) return true;
+  return false;
+}
+
+void check_required(const json& content, const std::string& name) {
+  for (const json& extension : member(content, "extensionsRequired")) {
+    if (!extension.is_string() || is_readable(text_of(extension))) continue;
+    refuse("it requires the glTF extension " + file::shown(text_of(extension)) +
+               ", which is not read here",
+           name, "save it without compression, quantization and instancing, or as OBJ, PLY or STL");
+  }
+}
+
+bool is_file(const std::filesystem::path& path) {
+  std::error_code fault;
+  return std::filesystem::is_regular_file(path, fault);
+}
+
+// Refuses a file whose buffers lie in files that are not there: assimp names them only, and of a
+// pipe nobody knows where they are.
+void check_buffers(const json& content, const std::string& name) {
+  constexpr const char* kOneFile = "save it as GLB, which is one file";
+  const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+  for (const json& buffer : member(content, "buffers")) {
+    const std::string uri = text_of(member(buffer, "uri"));
+    if (uri.empty() || uri.starts_with("data:")) continue;
+    const std::string needed = "it needs the file '" + file::shown(uri, 200) + "'";
+    if (uri.find("://") != uri.npos) refuse(needed + ", which is not fetched", name, kOneFile);
+    if (!is_file(name)) {
+      refuse(needed + " beside it, whose folder a pipe does not tell", name,
+             std::string("give the path of the glTF file, or ") + kOneFile);
+    }
+    if (is_file(folder / uri) || is_file(folder / percent_decoded(uri))) continue;
+    refuse(needed + " beside it, which is not there", name,
+           std::string("put it there, or ") + kOneFile);
+  }
+}
+
+// True if assimp can read the skin that a node gives its mesh: it crashes where matrices or weights
+// are missing.
+bool is_whole_skin(const json& content, const json& node) {
+  const json& skin = element(member(content, "skins"), member(node, "skin"));
+  const json& accessors = member(content, "accessors");
+  const auto has_data = [&](const json& index) {
+    return member(element(accessors, index), "bufferView").is_number_unsigned();
+  };
+  const json& joints = member(skin, "joints");
+  if (!joints.is_array() || joints.empty() || !has_data(member(skin, "inverseBindMatrices")))
+    return false;
+  for (const json& joint : joints)
+    if (!element(member(content, "nodes"), joint).is_object()) return false;
+  const json& mesh = element(member(content, "meshes"), member(node, "mesh"));
+  for (const json& primitive : member(mesh, "primitives")) {
+    const json& attributes = member(primitive, "attributes");
+    if (!has_data(member(attributes, "JOINTS_0")) || !has_data(member(attributes, "WEIGHTS_0")))
+      return false;
+  }
+  return true;
+}
+
+void take_skins(const json& content, GltfHeader& header) {
+  header.keeps_skin = true;
+  for (const json& node : member(content, "nodes")) {
+    if (member(node, "skin").is_null()) continue;
+    header.has_skin = header.has_skin || !member(node, "mesh").is_null();
+    header.keeps_skin = header.keeps_skin && is_whole_skin(content, node);
+  }
+  header.keeps_skin = header.keeps_skin && header.has_skin;
+}
+
+// True if a mesh or a node gives a morph target a weight.
+bool has_morph(const json& content) {
+  for (const char* const list : {"meshes", "nodes"})
+    for (const json& holder : member(content, list))
+      for (const json& weight : member(holder, "weights"))
+        if (weight.is_number() && weight.get<double>() != 0) return true;
+  return false;
+}
+
+}  // namespace
+
+std::string percent_decoded(std::string_view text) {
+  const auto digit = [](char c) {
+    const std::string_view digits = "0123456789abcdef";
+    const std::string lower = file::in_lower_case({&c, 1});
+    return digits.find(lower[0]);
+  };
+  std::string decoded;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool is_code = text[k] == '%' && k + 2 < text.size() && digit(text[k + 1]) != text.npos &&
+                         digit(text[k + 2]) != text.npos;
+    decoded += is_code ? static_cast<char>(digit(text[k + 1]) * 16 + digit(text[k + 2])) : text[k];
+    if (is_code) k += 2;
+  }
+  return decoded;
+}
+
+GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
+  GltfHeader header;
+  const json content = json::parse(json_of(bytes), nullptr, false);
+  if (!content.is_object()) return header;  // assimp says what is wrong
+  check_required(content, name);
+  check_buffers(content, name);
+  take_skins(content, header);
+  if (has_morph(content))
+    header.notes.push_back(
+        "its morph targets have weights, which are not applied: check its shape");
+  for (const json& extension : member(content, "extensionsUsed")) {
+    const bool places = text_of(extension) == "EXT_mesh_gpu_instancing";
+    if (places) {
+      header.notes.push_back(
+          "its nodes have instances (EXT_mesh_gpu_instancing), which are not applied: one of each "
+          "is read");
+    }
+  }
+  return header;
+}
+
+std::string without_skins(std::string_view gltf) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  std::string changed(gltf);
+  const std::string_view json = json_of(gltf);
+  const auto first = static_cast<std::size_t>(json.data() - gltf.data());
+  for (const std::string_view key : {"\"skins\"", "\"skin\""}) {
+    for (std::size_t at = json.find(key); at != json.npos; at = json.find(key, at + 1)) {
+      const std::size_t colon = json.find_first_not_of(kBlank, at + key.size());
+      if (colon != json.npos && json[colon] == ':') changed[first + at + 1] = '_';
+    }
+  }
+  return changed;
+}
+
+}  // namespace vpm
