@@ -11,7 +11,7 @@ namespace vpm {
 
 struct ColladaHeader {
   std::optional<double> metres;  // length of the unit, where the file names one
-  std::string unit_name;         // of a unit without a length
+  std::string unit_name;         // names a unit without a length
   char up = 'y';
   bool has_morph = false;
 };

@@ -264,8 +264,8 @@ void add_nodes(const aiScene& scene, const NodeChoice& choice,
   if (without_pose > 0) result.notes.push_back(kSkinIsNotApplied);
 }
 
-// What the file says of itself: how long its unit is in metres, as told, which axis is up, and
-// notes about what is not applied.
+// Holds what the file says of itself: how long its unit is in metres, as told, which axis is up,
+// and notes about what is not applied.
 struct FileFacts {
   double metres = 1;
   std::string unit;

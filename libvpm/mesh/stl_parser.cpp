@@ -169,7 +169,7 @@ class Text {
   }
 
   void parse() {
-    std::size_t line = 0;  // of the word before
+    std::size_t line = 0;  // counts to the word before
     for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
       const bool begins_line = lines_.line_number() != line;
       // Words after a statement are passed over: a normal, which may be no number, or a colour.

@@ -25,8 +25,8 @@ enum class Part {
 
 struct Name {
   Part part = Part::other;
-  std::size_t axis = 0;         // of x, y, z, w
-  Part letters = Part::letter;  // what single letters after this label are
+  std::size_t axis = 0;         // counts x, y, z, w from 0
+  Part letters = Part::letter;  // tells what single letters after this label are
 };
 
 constexpr std::string_view kAxes = "xyzw", kSeparators = "._/-";

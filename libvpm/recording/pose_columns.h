@@ -34,7 +34,7 @@ struct PoseNames {
   std::size_t line = 0;
   std::string text;
   std::vector<PoseColumns> orders;
-  std::optional<std::size_t> open_count;  // of numbers, which leaves the order open
+  std::optional<std::size_t> open_count;  // count of numbers that leaves the order open
 };
 
 // Returns what a line says of the columns, such as "# timestamp tx ty tz qw qx qy qz" or the header

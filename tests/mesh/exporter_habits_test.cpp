@@ -171,7 +171,7 @@ TEST(Off, AFaceReadAsAVertexIsSaid) {
   const std::string off = as_off(make_cube(0.5));
   const std::string cause = "the header counts 9 vertices, but line 11 does not look like one";
   expect_refusal(replaced(off, "8 12 0", "9 11 0"), "a.off", cause, "the mesh is open");
-  // By words, all numbers may fit by chance.
+  // All numbers may fit by chance where they are read as words.
   const std::string quads =
       "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n"
       "4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";

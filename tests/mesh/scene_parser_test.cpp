@@ -225,7 +225,7 @@ TEST(Gltf, FilesThatItNeedsAreFoundOrNamed) {
   const auto [json, buffer] = gltf_of_two_files("my%20buffer.bin");
   write("my buffer.bin", buffer);
   EXPECT_EQ(read_mesh(write("a.gltf", json)).polygon_count(), 12U);
-  EXPECT_EQ(read_mesh(write("a.txt", json)).polygon_count(), 12U);  // by its content
+  EXPECT_EQ(read_mesh(write("a.txt", json)).polygon_count(), 12U) << "told by its content";
   const std::string missing = gltf_of_two_files("missing.bin").first;
   expect_refusal(missing, write("b.gltf", missing),
                  "it needs the file 'missing.bin' beside it, which is not there");
