@@ -120,7 +120,7 @@ $ echo '{"name": "part#3", "time": 5, "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-q
 $ for p in '[0, 0, 0.95, 0, 0, 0, 1]' '[7, 0, 0, 0.95, 0, 0, 0, 1]' '0 0 0.95 0 0 0 1 # here'; do echo "$p" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | md5sum; done | uniq | wc -l
 1
 $ echo '{"time": 1, "pose": [1, 0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
-2> vpm-query: error: standard input, line 1: found 8 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them), 12 (3x4, row by row) or 16 (4x4, row by row)
+2> vpm-query: error: standard input, line 1: found 8 numbers; a pose has 7 (tx ty tz qx qy qz qw), 8 (with a time before them) or 16 (4x4, row by row), or 12 without the last row
 [1]
 $ echo '{"time": "now", "pose": [0, 0, 0.95, 0, 0, 0, 1]}' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -
 2> vpm-query: error: standard input, line 1: "time" must be a number of seconds

@@ -1,7 +1,8 @@
 # vpm-pack --export: other programs read each format.
 
 $ printf 'OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n' > cube.off
-$ for f in csv json ply points.ply vtk yaml urdf srdf; do vpm-pack cube.off --spheres 9 --link 'left "hand"' --export all.$f || echo $f; done
+$ for f in csv json ply points.ply vtk; do vpm-pack cube.off --spheres 9 --export all.$f || echo $f; done
+$ for f in yaml urdf srdf; do vpm-pack cube.off --spheres 9 --link 'left "hand"' --export all.$f || echo $f; done
 $ python3 -c 'import json; p = json.load(open("all.json")); print(len(p["centers"]), len(p["radii"]), round(p["radii"][0], 9), [round(c, 9) for c in p["centers"][0]])'
 9 9 0.5 [0.5, 0.5, 0.5]
 $ python3 -c 'import xml.etree.ElementTree as t; r = t.parse("all.urdf").getroot(); c = r.findall("link/collision"); print(r.find("link").get("name"), len(c), c[0].find("origin").get("xyz"), c[0].find("geometry/sphere").get("radius"))'
