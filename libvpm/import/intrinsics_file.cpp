@@ -351,10 +351,8 @@ Candidate from_calibration(std::string_view text, const std::string& name) {
 
 IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::size_t kLargest = std::size_t{1} << 20;  // bytes
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";      // UTF-8's, written by some editors
-  if (file::as_text(bytes).starts_with(kMark)) bytes = bytes.subspan(kMark.size());
-  refuse_foreign(bytes, name);
-  const std::string_view text = file::as_text(bytes);
+  const std::string_view text = file::without_byte_order_mark(file::as_text(bytes));
+  refuse_foreign(bytes.last(text.size()), name);
   if (text.size() > kLargest || text.find('\0') != text.npos)
     refuse("not a text with a camera's intrinsics", name);
   const std::vector<double> numbers = plain_numbers(text);

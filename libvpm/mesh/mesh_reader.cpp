@@ -116,7 +116,7 @@ bool looks_like_threemf(std::string_view bytes) {
 }  // namespace
 
 std::optional<MeshFormat> scene_by_content(std::string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark of UTF-8
+  text = file::without_byte_order_mark(text);
   const std::string_view start = text.substr(0, 4096);
   if (start.starts_with("glTF")) return MeshFormat::gltf;
   if (start.starts_with("Kaydara FBX Binary") || start.starts_with("; FBX") ||
@@ -167,17 +167,13 @@ void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
 
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
   if (bytes.empty()) refuse("the file is empty", name);
-  const std::string_view content(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  std::string_view text = content;
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // UTF-8's, written by some editors
-  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
-    text.remove_prefix(kByteOrderMark.size());
+  const std::string_view text = file::without_byte_order_mark(file::as_text(bytes));
   const std::string extension = extension_of(name);
   if (looks_like_ply(text)) return parse_ply(text, name);
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
-  if (const auto scene = scene_by_content(content)) return parse_scene(text, name, *scene, node);
+  if (const auto scene = scene_by_content(text)) return parse_scene(text, name, *scene, node);
   const bool is_named_threemf = extension == "3mf" && text.starts_with("PK\x03\x04");
   if (!is_named_threemf) refuse_foreign(bytes, name);
   if (const auto scene = scene_by_extension(extension))

@@ -1,6 +1,9 @@
 // The JSON of glTF files: what they need, and what of them is not applied.
+#include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <system_error>
 
 #include "libvpm/core/error.h"
@@ -29,8 +32,9 @@ std::string_view json_of(std::string_view gltf) {
 // Returns the member, empty where there is none or it is of another kind.
 const json& member(const json& object, const char* key) {
   static const json none;
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return object.is_object() && found != object.end() ? *found : none;
+  if (!object.is_object()) return none;
+  const auto found = object.find(key);
+  return found != object.end() ? *found : none;
 }
 
 // Returns the element that an index of the file names, empty where there is none.
@@ -89,35 +93,43 @@ void check_buffers(const json& content, const std::string& name) {
   }
 }
 
-// True if assimp can read the skin that a node gives its mesh: it crashes where matrices or weights
-// are missing.
-bool is_whole_skin(const json& content, const json& node) {
-  const json& skin = element(member(content, "skins"), member(node, "skin"));
-  const json& accessors = member(content, "accessors");
-  const auto has_data = [&](const json& index) {
-    return member(element(accessors, index), "bufferView").is_number_unsigned();
-  };
-  const json& joints = member(skin, "joints");
-  if (!joints.is_array() || joints.empty() || !has_data(member(skin, "inverseBindMatrices")))
-    return false;
-  for (const json& joint : joints)
-    if (!element(member(content, "nodes"), joint).is_object()) return false;
-  const json& mesh = element(member(content, "meshes"), member(node, "mesh"));
-  for (const json& primitive : member(mesh, "primitives")) {
-    const json& attributes = member(primitive, "attributes");
-    if (!has_data(member(attributes, "JOINTS_0")) || !has_data(member(attributes, "WEIGHTS_0")))
-      return false;
-  }
-  return true;
+bool has_data(const json& content, const json& accessor) {
+  return member(element(member(content, "accessors"), accessor), "bufferView").is_number_unsigned();
 }
 
+bool has_joints(const json& content, const json& skin) {
+  const json& joints = member(skin, "joints");
+  if (!joints.is_array() || joints.empty() ||
+      !has_data(content, member(skin, "inverseBindMatrices")))
+    return false;
+  const json& nodes = member(content, "nodes");
+  return std::all_of(joints.begin(), joints.end(),
+                     [&](const json& joint) { return element(nodes, joint).is_object(); });
+}
+
+bool has_weights(const json& content, const json& mesh) {
+  const json& primitives = member(mesh, "primitives");
+  return std::all_of(primitives.begin(), primitives.end(), [&](const json& primitive) {
+    const json& attributes = member(primitive, "attributes");
+    return has_data(content, member(attributes, "JOINTS_0")) &&
+           has_data(content, member(attributes, "WEIGHTS_0"));
+  });
+}
+
+// Tells whether assimp can read the skins that nodes give their meshes: it crashes where matrices
+// or weights are missing. Looks at a skin or mesh once, however many nodes have it.
 void take_skins(const json& content, GltfHeader& header) {
-  header.keeps_skin = true;
+  std::set<const json*> skins, meshes;
   for (const json& node : member(content, "nodes")) {
     if (member(node, "skin").is_null()) continue;
     header.has_skin = header.has_skin || !member(node, "mesh").is_null();
-    header.keeps_skin = header.keeps_skin && is_whole_skin(content, node);
+    skins.insert(&element(member(content, "skins"), member(node, "skin")));
+    meshes.insert(&element(member(content, "meshes"), member(node, "mesh")));
   }
+  header.keeps_skin = std::all_of(skins.begin(), skins.end(),
+                                  [&](const json* skin) { return has_joints(content, *skin); }) &&
+                      std::all_of(meshes.begin(), meshes.end(),
+                                  [&](const json* mesh) { return has_weights(content, *mesh); });
   header.keeps_skin = header.keeps_skin && header.has_skin;
 }
 
@@ -133,16 +145,15 @@ bool has_morph(const json& content) {
 }  // namespace
 
 std::string percent_decoded(std::string_view text) {
-  const auto digit = [](char c) {
-    const std::string_view digits = "0123456789abcdef";
-    const std::string lower = file::in_lower_case({&c, 1});
-    return digits.find(lower[0]);
-  };
   std::string decoded;
   for (std::size_t k = 0; k < text.size(); ++k) {
-    const bool is_code = text[k] == '%' && k + 2 < text.size() && digit(text[k + 1]) != text.npos &&
-                         digit(text[k + 2]) != text.npos;
-    decoded += is_code ? static_cast<char>(digit(text[k + 1]) * 16 + digit(text[k + 2])) : text[k];
+    unsigned code = 0;
+    const std::string_view digits = text.substr(k + 1, 2);
+    const auto [end, fault] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
+    const bool is_code = text[k] == '%' && digits.size() == 2 && fault == std::errc() &&
+                         end == digits.data() + digits.size();
+    decoded += is_code ? static_cast<char>(code) : text[k];
     if (is_code) k += 2;
   }
   return decoded;
@@ -159,8 +170,7 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
     header.notes.push_back(
         "its morph targets have weights, which are not applied: check its shape");
   for (const json& extension : member(content, "extensionsUsed")) {
-    const bool places = text_of(extension) == "EXT_mesh_gpu_instancing";
-    if (places) {
+    if (text_of(extension) == "EXT_mesh_gpu_instancing") {
       header.notes.push_back(
           "its nodes have instances (EXT_mesh_gpu_instancing), which are not applied: one of each "
           "is read");

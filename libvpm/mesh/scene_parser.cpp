@@ -17,7 +17,6 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -29,12 +28,12 @@
 #include "libvpm/mesh/child_process.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/scene_header.h"
+#include "libvpm/mesh/scene_nodes.h"
 #include "libvpm/mesh/scene_skin.h"
 
 namespace vpm {
 namespace {
 
-constexpr std::size_t kNamesShown = 12;
 constexpr const char* kSaveAgain = "save it again, or as OBJ, PLY or STL";
 
 const char* hint_of(MeshFormat format, std::string_view bytes) {
@@ -93,122 +92,9 @@ const aiScene* import_scene(Assimp::Importer& importer, std::string_view bytes,
   return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, hint);
 }
 
-std::string name_of(const aiNode& node) {
-  return file::shown({node.mName.C_Str(), node.mName.length});
-}
-
-bool has_faces(const aiScene& scene, const aiNode& node) {
-  for (unsigned k = 0; k < node.mNumMeshes; ++k)
-    if (scene.mMeshes[node.mMeshes[k]]->mNumFaces > 0) return true;
-  return false;
-}
-
-struct PlacedNode {
-  const aiNode* node;
-  aiMatrix4x4 to_world;
-  std::size_t parent, end;  // index of the parent, its own for the root; one after the last below
-  bool holds_faces;         // itself, or a node below
-};
-
-// Returns all nodes, each before those below it.
-std::vector<PlacedNode> placed_nodes(const aiScene& scene, const aiMatrix4x4& of_root) {
-  std::vector<PlacedNode> nodes;
-  std::vector<PlacedNode> open{{scene.mRootNode, of_root, 0, 0, false}};
-  while (!open.empty()) {
-    const PlacedNode here = open.back();
-    open.pop_back();
-    const std::size_t at = nodes.size();
-    nodes.push_back(here);
-    nodes[at].end = at + 1;
-    nodes[at].holds_faces = has_faces(scene, *here.node);
-    for (unsigned k = here.node->mNumChildren; k-- > 0;) {
-      const aiNode* const child = here.node->mChildren[k];
-      open.push_back({child, here.to_world * child->mTransformation, at, 0, false});
-    }
-  }
-  for (std::size_t k = nodes.size(); k-- > 1;) {
-    PlacedNode& parent = nodes[nodes[k].parent];
-    parent.end = std::max(parent.end, nodes[k].end);
-    parent.holds_faces = parent.holds_faces || nodes[k].holds_faces;
-  }
-  return nodes;
-}
-
-// Chooses among the nodes that hold faces. Where several have one name, they are called NAME[1],
-// NAME[2], ... in the order of the file.
-class NodeChoice {
- public:
-  NodeChoice(const aiScene& scene, const aiMatrix4x4& of_root, const std::string& file)
-      : scene_(scene), file_(file), nodes_(placed_nodes(scene, of_root)) {
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      if (nodes_[k].holds_faces) named_[nodes_[k].node->mName.C_Str()].push_back(k);
-  }
-
-  // Returns those with faces of their own: all, or that of the given name and those below it.
-  std::vector<std::size_t> choose(const std::string& name) const {
-    const std::size_t top = name.empty() ? 0 : find(name);
-    std::vector<std::size_t> chosen;
-    for (std::size_t k = top; k < nodes_[top].end; ++k)
-      if (has_faces(scene_, *nodes_[k].node)) chosen.push_back(k);
-    return chosen;
-  }
-
-  const PlacedNode& operator[](std::size_t k) const { return nodes_[k]; }
-
-  PlacesByName places() const {
-    PlacesByName places;
-    for (const PlacedNode& placed : nodes_)
-      places[placed.node->mName.C_Str()].push_back(placed.to_world);
-    return places;
-  }
-
-  // Returns the names by which they are chosen.
-  std::string names_of(const std::vector<std::size_t>& nodes) const {
-    std::string names;
-    for (std::size_t k = 0; k < std::min(nodes.size(), kNamesShown); ++k)
-      names += (k > 0 ? ", " : "") + label_of(nodes[k]);
-    return names + (nodes.size() > kNamesShown ? ", …" : "");
-  }
-
- private:
-  std::size_t find(const std::string& name) const {
-    const auto found = named_.find(name);
-    if (found == named_.end()) return find_numbered(name);
-    const std::vector<std::size_t>& same = found->second;
-    if (same.back() < nodes_[same[0]].end) return same[0];  // the others lie below it
-    refuse(std::to_string(same.size()) + " nodes have the name '" + file::shown(name) + "'", file_,
-           "give `node` one of " + names_of(same) + ", or the name of a node above");
-  }
-
-  std::size_t find_numbered(const std::string& name) const {
-    const std::size_t bracket = name.rfind('[');
-    const auto found = named_.find(name.substr(0, bracket));
-    if (bracket != name.npos && name.ends_with(']') && found != named_.end()) {
-      const auto number = file::to_count(name.substr(bracket + 1, name.size() - bracket - 2));
-      if (number && *number >= 1 && *number <= found->second.size())
-        return found->second[*number - 1];
-    }
-    refuse("it has no node '" + file::shown(name) + "'; nodes with faces: " + names_of(choose("")),
-           file_);
-  }
-
-  std::string label_of(std::size_t k) const {
-    const std::vector<std::size_t>& same = named_.at(nodes_[k].node->mName.C_Str());
-    const std::string name = name_of(*nodes_[k].node);
-    if (same.size() == 1) return name;
-    const auto place = std::lower_bound(same.begin(), same.end(), k) - same.begin();
-    return name + "[" + std::to_string(place + 1) + "]";
-  }
-
-  const aiScene& scene_;
-  const std::string& file_;
-  std::vector<PlacedNode> nodes_;
-  std::map<std::string, std::vector<std::size_t>> named_;  // those that hold faces, in order
-};
-
 // Appends the mesh with its vertices where they are placed; a mirrored one is turned over, as its
 // surface is.
-void add_mesh(const aiMesh& mesh, const RestPose& placed, RawMesh& result) {
+void add_mesh(const aiMesh& mesh, const PlacedVertices& placed, RawMesh& result) {
   const std::size_t first = result.vertices.size();
   if (mesh.mNumVertices > kMaxVertices - first) refuse("more than 2^32 - 2 vertices", result.name);
   for (const aiVector3D& p : placed.vertices) {
@@ -225,14 +111,6 @@ void add_mesh(const aiMesh& mesh, const RestPose& placed, RawMesh& result) {
     }
     result.end_polygon();
   }
-}
-
-RestPose moved(const aiMesh& mesh, const aiMatrix4x4& to_world) {
-  RestPose placed;
-  placed.is_mirrored = to_world.Determinant() < 0;
-  for (unsigned k = 0; k < mesh.mNumVertices; ++k)
-    placed.vertices.push_back(to_world * mesh.mVertices[k]);
-  return placed;
 }
 
 constexpr const char* kSkinIsNotApplied =
@@ -442,10 +320,6 @@ RawMesh scene_from_bytes(std::string_view bytes) {
   mesh.notes = head["notes"];
   return mesh;
 }
-
-}  // namespace
-
-namespace {
 
 // Reads in a process of its own; nothing if that crashes.
 std::optional<RawMesh> read_apart(std::string_view bytes, const std::string& name,

@@ -31,25 +31,24 @@ std::optional<std::vector<aiMatrix4x4>> moves_of(const aiMesh& mesh, const Place
   return moves;
 }
 
-RestPose moved_as_a_whole(const aiMesh& mesh, aiMatrix4x4 move) {
-  if (are_same(move, aiMatrix4x4())) move = aiMatrix4x4();
-  RestPose pose;
-  pose.is_mirrored = move.Determinant() < 0;
-  for (unsigned k = 0; k < mesh.mNumVertices; ++k)
-    pose.vertices.push_back(move * mesh.mVertices[k]);
-  return pose;
-}
-
 }  // namespace
 
-std::optional<RestPose> rest_pose(const aiMesh& mesh, const PlacesByName& places) {
+PlacedVertices moved(const aiMesh& mesh, const aiMatrix4x4& move) {
+  PlacedVertices placed;
+  placed.is_mirrored = move.Determinant() < 0;
+  for (unsigned k = 0; k < mesh.mNumVertices; ++k)
+    placed.vertices.push_back(move * mesh.mVertices[k]);
+  return placed;
+}
+
+std::optional<PlacedVertices> rest_pose(const aiMesh& mesh, const PlacesByName& places) {
   const auto moves = moves_of(mesh, places);
   if (!moves || moves->empty()) return std::nullopt;
   const aiMatrix4x4& first = moves->front();
   if (std::all_of(moves->begin(), moves->end(),
                   [&](const aiMatrix4x4& move) { return are_same(first, move); }))
-    return moved_as_a_whole(mesh, first);
-  RestPose pose;
+    return moved(mesh, are_same(first, aiMatrix4x4()) ? aiMatrix4x4() : first);
+  PlacedVertices pose;
   pose.is_mirrored = first.Determinant() < 0;
   pose.vertices.resize(mesh.mNumVertices);
   std::vector<float> total(mesh.mNumVertices, 0.0F);

@@ -12,6 +12,8 @@ namespace {
 // rounded by as much.
 constexpr double kRounding = 1e-3;
 
+}  // namespace
+
 double median_interval(const std::vector<RecordedFrame>& frames) {
   std::vector<double> intervals;
   for (std::size_t k = 1; k < frames.size(); ++k)
@@ -21,8 +23,6 @@ double median_interval(const std::vector<RecordedFrame>& frames) {
   std::nth_element(intervals.begin(), middle, intervals.end());
   return *middle;
 }
-
-}  // namespace
 
 FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& options)
     : recording_(recording),

@@ -8,6 +8,9 @@
 
 namespace vpm {
 
+// Returns the median of the times from one frame to the next, s; infinity for less than two frames.
+double median_interval(const std::vector<RecordedFrame>& frames);
+
 struct ScheduleOptions {
   double rate = 1000;     // steps per second
   std::size_t steps = 0;  // number of steps of the loop

@@ -308,18 +308,6 @@ bool is_usual(const PoseColumns& columns) {
   return true;
 }
 
-// Returns the order of a line with so many numbers; empty if none fits, or several that differ.
-std::optional<PoseColumns> fitting_order(const std::vector<PoseColumns>& orders,
-                                         std::size_t count) {
-  std::optional<PoseColumns> fitting;
-  for (const PoseColumns& order : orders) {
-    if (order.count != count) continue;
-    if (fitting && *fitting != order) return std::nullopt;
-    fitting = order;
-  }
-  return fitting;
-}
-
 // Returns the order of a line that has a time before the numbers that are named, which no other
 // word may stand before; empty if it has not.
 std::optional<PoseColumns> order_after_time(const std::vector<PoseColumns>& orders,
@@ -336,6 +324,17 @@ constexpr const char* kNamesHint =
     "timestamp if there are times";
 
 }  // namespace
+
+std::optional<PoseColumns> fitting_order(const std::vector<PoseColumns>& orders,
+                                         std::size_t count) {
+  std::optional<PoseColumns> fitting;
+  for (const PoseColumns& order : orders) {
+    if (order.count != count) continue;
+    if (fitting && *fitting != order) return std::nullopt;
+    fitting = order;
+  }
+  return fitting;
+}
 
 std::optional<PoseNames> names_in(const std::string& line, std::size_t number) {
   std::optional<double> unit;

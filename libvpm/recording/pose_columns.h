@@ -41,6 +41,9 @@ struct PoseNames {
 // of EuRoC's ground truth; empty if it says nothing of them.
 std::optional<PoseNames> names_in(const std::string& line, std::size_t number);
 
+// Returns the order of a line with so many numbers; empty if none fits, or several that differ.
+std::optional<PoseColumns> fitting_order(const std::vector<PoseColumns>& orders, std::size_t count);
+
 // Returns time (if there is one), position and quaternion x, y, z, w of a line with these names.
 // Throws Error(refused) for numbers that do not fit them, unless they have the usual order anyway.
 std::vector<double> in_usual_order(const std::vector<double>& numbers, const PoseNames& names);

@@ -24,7 +24,6 @@ constexpr std::size_t kQuaternionPose = 7, kTimedPose = 8, kThreeRows = 12, kMat
                       kMatrixRow = 4;
 
 constexpr const char* kBlank = " \t\r";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // written first by some editors
 
 bool is_json(const std::string& line) {
   const std::size_t first = line.find_first_not_of(kBlank);
@@ -221,8 +220,8 @@ std::optional<std::string> PoseReader::any_line() {
   ++line_;
   try {
     std::optional<std::string> line = lines_.next();
-    if (line && line_ == 1 && line->starts_with(kByteOrderMark))
-      line->erase(0, kByteOrderMark.size());
+    if (line && line_ == 1)
+      line->erase(0, line->size() - file::without_byte_order_mark(*line).size());
     if (!line) --line_;
     return line;
   } catch (const Error& fault) {

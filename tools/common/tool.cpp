@@ -23,6 +23,7 @@
 #include "tools/common/error_text.h"
 #include "tools/common/json_config.h"
 #include "tools/common/number_checks.h"
+#include "tools/common/parse_message.h"
 
 namespace vpm::tools {
 namespace {
@@ -90,92 +91,6 @@ void flush_output() {
 void die_of_closed_pipe() {
   std::signal(SIGPIPE, SIG_DFL);
   std::raise(SIGPIPE);
-}
-
-// Returns how many letters must be changed, added or left out to make one word of the other.
-std::size_t edits_between(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = std::exchange(row[k + 1], std::min({changed, row[k + 1] + 1, row[k] + 1}));
-    }
-  }
-  return row[b.size()];
-}
-
-// Returns the option, with its dashes, that is nearly the one given or begins as it does; empty if
-// none is near.
-std::string nearest_option(const CLI::App& app, const std::string& given) {
-  constexpr std::size_t kMostEdits = 2, kShortest = 5;  // letters, with the dashes
-  if (given.size() < kShortest) return {};
-  std::string best;
-  std::size_t fewest = kMostEdits + 1;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      const std::string full = "--" + name;
-      const std::size_t edits = full.starts_with(given) ? 0 : edits_between(given, full);
-      if (edits < fewest) best = full, fewest = edits;
-    }
-  }
-  return best;
-}
-
-// Returns "there is no option --tol; is --tool meant?", or CLI11's words if none is near.
-std::string unknown_option(const CLI::App& app, const std::string& what) {
-  const std::size_t begin = what.find("--");
-  if (begin == what.npos) return what;
-  const std::string given = what.substr(begin, what.find_first_of(" =", begin) - begin);
-  const std::string best = nearest_option(app, given);
-  return best.empty() ? what : "there is no option " + given + "; is " + best + " meant?";
-}
-
-// Returns the message of an option of one value that has several, in CLI11's words "--scale: At
-// Most 1 required but received 2", in ours.
-std::string too_many_values(const std::string& what) {
-  const std::size_t end = what.find(": At Most 1 required");
-  return end == what.npos ? what
-                          : what.substr(0, end) + " has several values; leave all but one out";
-}
-
-// Returns the message of a value that is no number, in CLI11's words "Could not convert: --scale =
-// mm", in ours.
-std::string no_number(const CLI::App& app, const std::string& what) {
-  const std::size_t begin = what.find("--"), equals = what.find(" = ");
-  if (begin == what.npos || equals == what.npos || equals < begin) return what;
-  const std::string name = what.substr(begin, equals - begin);
-  const std::string value = what.substr(equals + 3);
-  const CLI::Option* const option = app.get_option_no_throw(name);
-  const bool is_whole = option != nullptr && option->get_type_name().find("INT") != name.npos;
-  const char* const wanted = is_whole               ? "a whole number"
-                             : value.ends_with('%') ? "a fraction, such as 0.95"
-                                                    : "a number without a unit, such as 0.001";
-  return name + " " + value + ": give " + wanted;
-}
-
-std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
-                       const std::string& config) {
-  constexpr std::string_view kUnknownKey = "INI was not able to parse ";
-  std::string what = fault.what();
-  if (dynamic_cast<const CLI::FileError*>(&fault) != nullptr) {
-    if (what.ends_with("was not readable (missing?)")) {
-      errno = 0;
-      const bool opens = ::access(config.c_str(), R_OK) == 0;
-      return "--config: cannot read " + config + (opens ? "" : ": ") +
-             (opens ? "" : std::strerror(errno));
-    }
-    return "--config " + config + ": " + what;
-  }
-  if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return unknown_option(app, what);
-  if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr) return no_number(app, what);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr) return too_many_values(what);
-  if (what.rfind(kUnknownKey, 0) != 0) return what;
-  const std::string key = what.substr(kUnknownKey.size());
-  const std::string best = nearest_option(app, "--" + key);
-  return "--config " + config + ": there is no option '" + key + "'" +
-         (best.empty() ? "" : "; is '" + best.substr(2) + "' meant?");
 }
 
 std::string check_device(const std::string& text) {

@@ -1,6 +1,5 @@
 // Mode of vpm-query that moves the tool, or a haptic device that holds it, through recorded frames,
 // step by step.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "libvpm/haptics/virtual_coupling.h"
 #include "libvpm/query/level_tool_query.h"
 #include "libvpm/recording/frame_feed.h"
+#include "libvpm/recording/frame_schedule.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
 #include "tools/query/arguments.h"
@@ -208,16 +208,11 @@ void Replay::note_sources() const {
 
 void Replay::warn_of_improbable_times() const {
   constexpr double kShortest = 0.0015, kLongest = 5;  // s
-  const auto& frames = recording_.frames;
-  if (frames.size() < 3) return;
-  std::vector<double> gaps;
-  for (std::size_t k = 1; k < frames.size(); ++k)
-    gaps.push_back(frames[k].time - frames[k - 1].time);
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  if (*middle >= kShortest && *middle <= kLongest) return;
+  if (recording_.frames.size() < 3) return;
+  const double interval = median_interval(recording_.frames);
+  if (interval >= kShortest && interval <= kLongest) return;
   char apart[32];
-  std::snprintf(apart, sizeof apart, "%.2g", *middle);
+  std::snprintf(apart, sizeof apart, "%.2g", interval);
   tool_.warn(
       "the frames are " + std::string(apart) + " s apart, as their names or their list " +
       (recording_.has_clock ? "tell their times" : "number them") +
