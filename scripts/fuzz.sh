@@ -6,6 +6,7 @@
 # than they do. A crash, a foreign exception, more than 5 s of the processor for an input, more than
 # 320 MB in one piece or 2 GB in all is a finding, kept in build/fuzz/findings/TARGET. Several targets run at once, one on each
 # core; VPM_FUZZ_JOBS says how many. Executions, coverage and findings are added to tests/results/fuzz.json.
+# VPM_FUZZ_LONGEST is the length in bytes of the longest input (16384).
 # Exit status: 0 if nothing was found, 1 otherwise.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -25,7 +26,7 @@ else
   read -ra targets <<<"$(VPM_FUZZ_TARGET='' "$program" 2>&1 | sed 's/^[^:]*: *//')"
 fi
 
-export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0:malloc_context_size=1:quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
+export UBSAN_OPTIONS=print_stacktrace=1
 fuzz() {
   local target=$1 corpus=$build/corpus/$1 found=$build/findings/$1 findings=()
   mkdir -p "$corpus" "$found"
@@ -35,7 +36,7 @@ fuzz() {
   : >"$build/$target.log"
   while left=$((end - SECONDS)) && ((left > 0)); do
     VPM_FUZZ_TARGET=$target nice "$program" "$corpus" "$build/seeds/$target" "${findings[@]}" \
-      -max_total_time=$left -timeout=120 -report_slow_units=120 -malloc_limit_mb=320 -rss_limit_mb=2048 -max_len=16384 -entropic=0 \
+      -max_total_time=$left -timeout=120 -report_slow_units=120 -rss_limit_mb=2048 -max_len=${VPM_FUZZ_LONGEST:-16384} -entropic=0 \
       -dict=tests/fuzz/words.dict -artifact_prefix="$found/" -print_final_stats=1 -close_fd_mask=1 \
       >>"$build/$target.log" 2>&1 && break
   done

@@ -20,7 +20,7 @@ constexpr Target kTargets[] = {
     {"ply", run_ply},
     {"stl", run_stl},
     {"om", run_om},
-    {"scene", run_scene},
+    {"scene", run_scene, nullptr, true},
     {"solid", run_solid},
     {"vpmp", run_vpmp, mutate_container},
 #endif

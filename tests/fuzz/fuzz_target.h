@@ -21,6 +21,7 @@ struct Target {
   // blindly.
   std::size_t (*mutate)(std::uint8_t* data, std::size_t size, std::size_t most,
                         unsigned seed) = nullptr;
+  bool may_crash = false;  // true if a library that it uses crashes on some inputs
 };
 
 // Returns the target of this name, or null.
