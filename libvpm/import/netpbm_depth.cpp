@@ -50,18 +50,18 @@ class NetpbmReader {
     refuse("not a depth image in PGM or PFM: " + defect, name_);
   }
 
-  // Returns the next word of the header, after comments.
-  std::string_view header_word() {
+  // Returns the next word outside comments; empty at the end.
+  std::string_view next_word() {
     std::string_view word = cursor_.word();
     while (word.starts_with('#')) {
       cursor_.line();
       word = cursor_.word();
     }
-    if (word.empty()) fail("the header is truncated");
     return word;
   }
   double number() {
-    const std::string_view word = header_word();
+    const std::string_view word = next_word();
+    if (word.empty()) fail("the header is truncated");
     const std::optional<double> value = file::to_number(word);
     if (!value || !std::isfinite(*value)) fail("'" + file::shown(word) + "' is not a number");
     return *value;
@@ -98,7 +98,7 @@ class NetpbmReader {
     if (count > (cursor_.remaining() + 1) / 2) fail("the file is truncated");
     image_.values.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::string_view word = cursor_.word();
+      const std::string_view word = next_word();
       const std::optional<std::uint64_t> value = file::to_count(word);
       if (!value || *value > 65535)
         fail("pixel " + std::to_string(i) + ": '" + file::shown(word) + "' is no value");

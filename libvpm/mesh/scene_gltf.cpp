@@ -29,6 +29,17 @@ std::string_view json_of(std::string_view gltf) {
   return gltf.size() < kHeader ? "" : gltf.substr(kHeader, number_at(gltf, 12));
 }
 
+// Says what follows a binary file, such as a second one that `cat` has joined to it.
+void note_rest(std::string_view gltf, GltfHeader& header) {
+  constexpr std::size_t kLengthAt = 8, kHeader = 12, kMostPadding = 3;
+  if (!gltf.starts_with("glTF") || gltf.size() < kHeader) return;
+  const std::size_t length = number_at(gltf, kLengthAt);
+  if (gltf.size() > length + kMostPadding) {
+    header.notes.push_back("the " + std::to_string(gltf.size() - length) +
+                           " bytes after the length in its header are not read");
+  }
+}
+
 // Returns the member, empty where there is none or it is of another kind.
 const json& member(const json& object, const char* key) {
   static const json none;
@@ -165,6 +176,7 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
   if (!content.is_object()) return header;  // assimp says what is wrong
   check_required(content, name);
   check_buffers(content, name);
+  note_rest(bytes, header);
   take_skins(content, header);
   if (has_morph(content))
     header.notes.push_back(

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/recording/median_interval.h"
 
 namespace vpm {
 namespace {
@@ -15,13 +16,9 @@ constexpr double kRounding = 1e-3;
 }  // namespace
 
 double median_interval(const std::vector<RecordedFrame>& frames) {
-  std::vector<double> intervals;
-  for (std::size_t k = 1; k < frames.size(); ++k)
-    intervals.push_back(frames[k].time - frames[k - 1].time);
-  if (intervals.empty()) return HUGE_VAL;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  std::vector<double> times;
+  for (const RecordedFrame& frame : frames) times.push_back(frame.time);
+  return median_interval(times);
 }
 
 FrameSchedule::FrameSchedule(const Recording& recording, const ScheduleOptions& options)

@@ -199,6 +199,12 @@ void place_by_path(const std::string& name, Recording& recording) {
       frame.camera = path.at(frame.time);
     }
   }
+  const std::optional<PoseGap> gap = path.improbable_gap();
+  const auto is_within = [&](const RecordedFrame& frame) {
+    return frame.time > gap->start && frame.time < gap->end;
+  };
+  if (gap && std::any_of(recording.frames.begin(), recording.frames.end(), is_within))
+    recording.camera_gap = gap;
 }
 
 fs::path pose_beside(const RecordedFrame& frame) {

@@ -17,6 +17,7 @@
 
 #include "libvpm/cloud/camera.h"
 #include "libvpm/import/intrinsics_file.h"
+#include "libvpm/recording/timed_path.h"
 
 namespace vpm {
 
@@ -38,7 +39,8 @@ struct Recording {
   std::string camera_source;  // source of the camera poses, for notes; may be empty
   // Read from camera-intrinsics.txt (3x3) in the folder.
   std::optional<IntrinsicsFile> intrinsics;
-  double largest_deviation = 0;  // largest of the camera rotations, before normalisation
+  std::optional<PoseGap> camera_gap;  // improbable time without a camera pose, if frames lie in it
+  double largest_deviation = 0;       // largest of the camera rotations, before normalisation
 };
 
 struct RecordingOptions {

@@ -5,6 +5,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
+#include "libvpm/recording/median_interval.h"
 
 namespace vpm {
 
@@ -32,6 +33,17 @@ Pose TimedPath::at(double time) const {
   const double part = (time - times_[next - 1]) / (times_[next] - times_[next - 1]);
   return {interpolate(from.rotation, to.rotation, part),
           from.translation + part * (to.translation - from.translation)};
+}
+
+std::optional<PoseGap> TimedPath::improbable_gap() const {
+  constexpr double kShortest = 0.5, kMedians = 10;
+  PoseGap longest;
+  for (std::size_t k = 1; k < times_.size(); ++k)
+    if (times_[k] - times_[k - 1] > longest.end - longest.start)
+      longest = {times_[k - 1], times_[k]};
+  const double length = longest.end - longest.start;
+  if (length > kShortest && length > kMedians * median_interval(times_)) return longest;
+  return std::nullopt;
 }
 
 SampledPath::SampledPath(TimedPath path, double rate) : path_(std::move(path)), rate_(rate) {

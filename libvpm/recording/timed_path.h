@@ -1,12 +1,18 @@
 // Recorded motions, interpolated between poses.
 #pragma once
 
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
 
 namespace vpm {
+
+// Time from one pose to the next.
+struct PoseGap {
+  double start = 0, end = 0;  // s
+};
 
 // All poses of a reader, with their times if they have any.
 class TimedPath {
@@ -26,6 +32,10 @@ class TimedPath {
   // Returns the pose at a time, interpolated along the straight line and the shortest rotation, or
   // the first or last pose outside the path's times. Needs has_times().
   Pose at(double time) const;
+
+  // Returns the longest time without a pose if it is improbable of a sensor: more than half a
+  // second, and more than ten times the median.
+  std::optional<PoseGap> improbable_gap() const;
 
  private:
   std::vector<double> times_;  // empty if poses have no times

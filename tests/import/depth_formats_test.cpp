@@ -115,6 +115,7 @@ TEST(NetpbmDepth, ReadsPgmAndPfm) {
   EXPECT_EQ(netpbm(pgm).values, kRows);
   EXPECT_TRUE(netpbm(pgm).are_16_bit);
   EXPECT_EQ(netpbm("P2 3 2 4095 1 2 3\n4 5 6\n").values, kRows);
+  EXPECT_EQ(netpbm("P2 3 2 4095 1 2 3 # 9\n# row 2\n4 5 6\n#").values, kRows);
   std::string pfm = "Pf\n3 2\n-1.0\n";
   for (const float value : {4.F, 5.F, 6.F, 1.F, 2.F, 3.F}) append(pfm, value);
   EXPECT_EQ(netpbm(pfm).values, kRows);

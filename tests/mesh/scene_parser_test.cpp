@@ -244,6 +244,15 @@ TEST(Scenes, TextIsToldByItsContent) {
   EXPECT_EQ(format_of("{\"spheres\":[]}"), std::nullopt);
 }
 
+TEST(Gltf, BytesBehindTheFileAreSaid) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string one = glb("");
+  for (const std::string& padded : {one, one + std::string(3, '\0')})
+    EXPECT_EQ(all_notes(parse(padded, "a.glb")).find("bytes after"), std::string::npos);
+  expect_note(parse(one + one, "a.glb"), "the " + std::to_string(one.size()) +
+                                             " bytes after the length in its header are not read");
+}
+
 TEST(Gltf, RequiredExtensionsAreNamed) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
   for (const std::string name :

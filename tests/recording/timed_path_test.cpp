@@ -54,6 +54,19 @@ TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
   EXPECT_EQ(untimed.time(1), 0.001);
 }
 
+TEST_F(ATimedPath, KnowsATimeWithoutPosesThatIsImprobable) {
+  const auto path_at = [](const std::vector<double>& times) {
+    return TimedPath(times, std::vector<Pose>(times.size()));
+  };
+  const auto gap = path_at({1, 1.1, 1.2, 3.5, 3.6, 3.7}).improbable_gap();
+  ASSERT_TRUE(gap);
+  EXPECT_EQ(gap->start, 1.2);
+  EXPECT_EQ(gap->end, 3.5);
+  for (const std::vector<double>& usual :
+       {std::vector<double>{}, {1}, {1, 9}, {1, 2, 3, 12}, {0, 0.01, 0.02, 0.3, 0.31}, {1, 5, 9}})
+    EXPECT_FALSE(path_at(usual).improbable_gap());
+}
+
 TEST_F(ATimedPath, RefusesTimesThatAreNone) {
   for (const char* text :
        {"", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",

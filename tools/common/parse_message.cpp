@@ -75,10 +75,38 @@ std::string no_number(const CLI::App& app, const std::string& what) {
   return name + " " + value + ": give " + wanted;
 }
 
+// True if the command line has the option, which passes over a configuration's value for it then.
+bool is_on(std::span<const char* const> arguments, const CLI::Option& option) {
+  return std::any_of(arguments.begin(), arguments.end(), [&](const std::string_view argument) {
+    const std::string name(argument.substr(0, argument.find('=')));
+    const bool is_long = name.starts_with("--");
+    return option.check_name(is_long ? name : name.substr(0, 2));
+  });
+}
+
+// Returns "--config FILE: " if the message begins with an option that only the configuration has.
+std::string source_of(const CLI::App& app, const std::string& message, const std::string& config,
+                      std::span<const char* const> arguments) {
+  const std::string name = message.substr(0, message.find_first_of(" :"));
+  const CLI::Option* const option =
+      name.starts_with("--") ? app.get_option_no_throw(name) : nullptr;
+  if (config.empty() || option == nullptr || is_on(arguments, *option)) return "";
+  return "--config " + config + ": ";
+}
+
+// Returns the message of a value that is refused, in our words where CLI11's are none.
+std::string refused_value(const CLI::App& app, const CLI::ParseError& fault) {
+  if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr)
+    return no_number(app, fault.what());
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr)
+    return too_many_values(fault.what());
+  return fault.what();
+}
+
 }  // namespace
 
-std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
-                       const std::string& config) {
+std::string message_of(const CLI::App& app, const CLI::ParseError& fault, const std::string& config,
+                       std::span<const char* const> arguments) {
   constexpr std::string_view kUnknownKey = "INI was not able to parse ";
   std::string what = fault.what();
   if (dynamic_cast<const CLI::FileError*>(&fault) != nullptr) {
@@ -91,9 +119,10 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& fault,
     return "--config " + config + ": " + what;
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&fault) != nullptr) return unknown_option(app, what);
-  if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr) return no_number(app, what);
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&fault) != nullptr) return too_many_values(what);
-  if (what.rfind(kUnknownKey, 0) != 0) return what;
+  if (what.rfind(kUnknownKey, 0) != 0) {
+    what = refused_value(app, fault);
+    return source_of(app, what, config, arguments) + what;
+  }
   const std::string key = what.substr(kUnknownKey.size());
   const std::string best = nearest_option(app, "--" + key);
   return "--config " + config + ": there is no option '" + key + "'" +

@@ -172,8 +172,10 @@ int Tool::run(int argc, char** argv, const std::function<void()>& job) {
     if (errno == EPIPE && dies_of_closed_pipes) die_of_closed_pipe();
     return fail(ErrorKind::cannot_write, "cannot write to standard output");
   } catch (const CLI::ParseError& fault) {
-    return fail(ErrorKind::invalid_argument,
-                message_of(app_, fault, config_name()) + " (see " + name_ + " --help)");
+    return fail(
+        ErrorKind::invalid_argument,
+        message_of(app_, fault, config_name(), std::span(argv, static_cast<std::size_t>(argc))) +
+            " (see " + name_ + " --help)");
   } catch (const file::ClosedPipe& fault) {
     if (dies_of_closed_pipes) die_of_closed_pipe();
     return fail(fault.kind(), fault.what());

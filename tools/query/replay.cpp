@@ -156,10 +156,22 @@ std::string name_of(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+// Warns of a time without poses, across which they are interpolated.
+void warn_of_gap(const Tool& tool, const std::string& name, const std::optional<PoseGap>& gap) {
+  if (!gap) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                ": no pose from %.3f to %.3f s, more than ten times as long as from one pose to "
+                "the next elsewhere; poses in between are interpolated",
+                gap->start, gap->end);
+  tool.warn(name + text);
+}
+
 SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
   PoseReader reader(name);
   SampledPath path(TimedPath(reader), rate);
   note_deviation(tool, name, reader.largest_deviation());
+  warn_of_gap(tool, name, path.path().improbable_gap());
   return path;
 }
 
@@ -201,6 +213,7 @@ void Replay::note_sources() const {
     tool_.detail("poses of the camera: " + recording_.camera_source);
   }
   note_deviation(tool_, recording_.camera_source, recording_.largest_deviation);
+  warn_of_gap(tool_, recording_.camera_source, recording_.camera_gap);
   warn_of_improbable_times();
   if (!recording_.has_clock && path_.path().has_times())
     tool_.note("frames have numbers, not times: they begin with the path, at --frame-rate");

@@ -72,9 +72,11 @@ $ echo '{"count": 5, "flag": true, "count": 6}' | vpm-probe --config - in.off -o
 $ echo '{"flag": false, "count": 5}' | vpm-probe --config - in.off -o -
 in.off none 5 0.100000 []
 $ echo '{"count": "five"}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: --config standard input: --count five: give a whole number (see vpm-probe --help)
+[2]
+$ echo '{"count": 3}' | vpm-probe --config - --count five in.off -o -
 2> vpm-probe: error: --count five: give a whole number (see vpm-probe --help)
 [2]
-
 
 # No text of a configuration may end early for the system, and none is read without end.
 $ echo '{"output": "out.txt\u0000.vpmp"}' | vpm-probe --config - in.off

@@ -103,6 +103,12 @@ $ vpm-query --tool cube.vpmg --frames gone --trajectory still.txt
 $ mkdir dates && for k in 0 1 2; do cp steps/frame-00000$k.depth.png dates/2024010112000$k.png; done && vpm-query --tool cube.vpmg --frames dates --trajectory still.txt --align-starts --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
 2> vpm-query: warning: the frames are 0.001 s apart, as their names or their list tell their times, which is unusual; if that is wrong, give --frames a list of "seconds file" lines
 
+# A time without poses, across which they are interpolated, is said: of the tool, and of the camera where frames lie in it.
+$ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' '0.02 0 0 0.95 0 0 0 1' '1 0 0 0.95 0 0 0 1' > gap.txt && vpm-query --tool cube.vpmg --frames steps --trajectory gap.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
+2> vpm-query: warning: gap.txt: no pose from 0.020 to 1.000 s, more than ten times as long as from one pose to the next elsewhere; poses in between are interpolated
+$ sed 's/0.95/0/' gap.txt > camera.txt && vpm-query --tool cube.vpmg --frames steps --trajectory still.txt --camera-poses camera.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
+2> vpm-query: warning: camera.txt: no pose from 0.020 to 1.000 s, more than ten times as long as from one pose to the next elsewhere; poses in between are interpolated
+
 # A path that misses what the frames see is warned about like poses in a cloud, with the cure.
 $ printf '%s\n' '0 0 0 -0.95 0 0 0 1' '0.2 0 0 -0.95 0 0 0 1' > behind.txt && printf '%s\n' '0 0 0 0.3 0 0 0 1' '0.2 0 0 0.3 0 0 0 1' > before.txt && printf '%s\n' '0 9 0 0.95 0 0 0 1' '0.2 9 0 0.95 0 0 0 1' > beside.txt
 $ for t in behind before beside; do vpm-query --tool cube.vpmg --frames steps --trajectory $t.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null; done
