@@ -319,6 +319,11 @@ std::optional<PoseColumns> order_after_time(const std::vector<PoseColumns>& orde
   return all.time || first > 0 ? std::nullopt : fitting_order(orders, count - 1);
 }
 
+// True if the line, in lower case, has a letter of an axis or quaternion, or tells what is first.
+bool may_hold_names(const std::string& line) {
+  return line.find_first_of("qwxyz") != line.npos || line.find("first") != line.npos;
+}
+
 constexpr const char* kNamesHint =
     "name the columns in a comment: # tx ty tz qx qy qz qw, or qw qx qy qz where w is first, after "
     "timestamp if there are times";
@@ -337,8 +342,10 @@ std::optional<PoseColumns> fitting_order(const std::vector<PoseColumns>& orders,
 }
 
 std::optional<PoseNames> names_in(const std::string& line, std::size_t number) {
+  const std::string lower = file::in_lower_case(line);
+  if (!may_hold_names(lower)) return std::nullopt;
   std::optional<double> unit;
-  const std::string text = without_brackets(file::in_lower_case(line), unit);
+  const std::string text = without_brackets(lower, unit);
   PoseNames found{number, line, {}, {}};
   if (text.find(',') != text.npos)
     if (const auto cells = names_of_cells(text)) found.orders = orders_of(*cells, unit);
