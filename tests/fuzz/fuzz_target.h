@@ -28,8 +28,10 @@ struct Target {
 const Target* find_target(std::string_view name);
 std::span<const Target> all_targets();
 
-// Runs a target on an input, which may take five seconds of the processor's time: other work of the
-// machine does not count.
+// Most seconds of the processor that an input may take: other work of the machine does not count.
+inline constexpr int kMostSeconds = 5;
+
+// Runs a target on an input, which may take kMostSeconds.
 void run_in_time(const Target& target, Bytes input);
 
 // Ends the process by SIGABRT: a promise is broken.

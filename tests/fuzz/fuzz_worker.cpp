@@ -35,7 +35,6 @@ namespace {
 
 constexpr std::size_t kMostBytes = 1 << 20;  // longest input
 constexpr std::size_t kMostRuns = 10'000;    // inputs of one worker, as assimp may leak
-constexpr timeval kMostSeconds = {5, 0};     // processor time for an input
 
 std::byte* shared_memory(std::size_t size) {
   void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -76,7 +75,7 @@ void handle_ends() {
   handle_ends();
   std::size_t size = 0;
   while (::read(requests, &size, sizeof size) == sizeof size) {
-    const itimerval limit = {{}, kMostSeconds}, none = {};
+    const itimerval limit = {{}, {kMostSeconds, 0}}, none = {};
     ::setitimer(ITIMER_PROF, &limit, nullptr);
     target.run({input, size});
     ::setitimer(ITIMER_PROF, &none, nullptr);
