@@ -1,23 +1,36 @@
 #include "libvpm/file/json_text.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text.h"
 
 namespace vpm::file {
 
-nlohmann::json parse_json(std::string_view text,
-                          const std::function<void(const std::string& key)>& on_key) {
-  using nlohmann::json;
+using nlohmann::json;
+
+json::parser_callback_t refusing_doubt() {
   constexpr int kDeepest = 32;  // values are copied recursively and could fill the stack
-  const auto look = [&](int depth, json::parse_event_t event, const json& parsed) {
+  std::vector<std::set<std::string>> keys;  // those so far of the objects that are open
+  return [keys](int depth, json::parse_event_t event, const json& parsed) mutable {
     if (depth > kDeepest) refuse("nested too deeply");
-    if (on_key && depth == 1 && event == json::parse_event_t::key)
-      on_key(parsed.get_ref<const std::string&>());
+    if (event == json::parse_event_t::object_start) keys.emplace_back();
+    if (event == json::parse_event_t::object_end) keys.pop_back();
+    if (event == json::parse_event_t::key &&
+        !keys.back().insert(parsed.get_ref<const std::string&>()).second) {
+      refuse("ambiguous: it gives \"" + shown(parsed.get_ref<const std::string&>()) + "\" twice",
+             {}, "leave one of them out");
+    }
     return true;
   };
+}
+
+json parse_json(std::string_view text) {
   try {
-    return json::parse(text, look);
+    return json::parse(text, refusing_doubt());
   } catch (const json::parse_error& fault) {
     const auto at = static_cast<std::ptrdiff_t>(std::min(fault.byte, text.size()));
     refuse("not JSON: it cannot be read from line " +

@@ -1,16 +1,18 @@
-// Reads a file of JSON that people write.
+// Reads JSON that people and programs write.
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <string_view>
 
 namespace vpm::file {
 
-// Returns the value of the text, and gives the keys of its outermost object to `on_key`, which may
-// throw. Throws Error(refused) whose problem follows "it is": "not JSON: …" with the line.
-nlohmann::json parse_json(std::string_view text,
-                          const std::function<void(const std::string& key)>& on_key = {});
+// Returns a callback for one call of nlohmann::json::parse. It throws Error(refused), whose problem
+// follows "it is", where an object has a key twice, of which a parser would take one in silence,
+// and where values are nested too deeply.
+nlohmann::json::parser_callback_t refusing_doubt();
+
+// Returns the value of the text. Throws as refusing_doubt(), and for a text that is not JSON, with
+// the line: "not JSON: …".
+nlohmann::json parse_json(std::string_view text);
 
 }  // namespace vpm::file

@@ -307,7 +307,7 @@ json parse_calibration(std::string_view text, const std::string& name) {
   try {
     return file::parse_json(text);
   } catch (const Error& fault) {
-    refuse(fault.problem(), name);
+    refuse(fault.problem(), name, fault.hint());
   }
 }
 

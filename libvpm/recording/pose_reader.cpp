@@ -12,6 +12,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/lengths.h"
+#include "libvpm/file/json_text.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 
@@ -262,7 +263,7 @@ std::optional<Pose> PoseReader::next() {
 }
 
 Pose PoseReader::parse_json(const std::string& line) {
-  json value = json::parse(line, nullptr, false);
+  json value = json::parse(line, file::refusing_doubt(), false);
   if (value.is_discarded()) value = json_of_print(line);
   if (value.is_discarded()) refuse("not JSON", {}, "a line must be one whole pose");
   if (value.is_array()) return from_numbers(numbers_of(value));
@@ -308,12 +309,11 @@ Pose PoseReader::from_numbers(std::vector<double> n) {
 Pose read_camera_pose(const std::string& path, double* deviation) {
   const std::vector<std::byte> bytes = file::read_all(path);
   const std::string_view text = file::as_text(bytes);
-  json value = json::parse(
-      text, [](int depth, json::parse_event_t, const json&) { return depth < 16; }, false);
   const std::string_view blank = " \t\r\n";
   const std::size_t first = std::min(text.find_first_not_of(blank), text.size());
-  if (value.is_discarded() && text.substr(first).starts_with('[')) value = json_of_print(text);
   try {
+    json value = json::parse(text, file::refusing_doubt(), false);
+    if (value.is_discarded() && text.substr(first).starts_with('[')) value = json_of_print(text);
     if (value.is_object())
       if (const auto pose = from_object(value, deviation)) return *pose;
     if (value.is_array())

@@ -219,6 +219,17 @@ TEST(CameraPoseFile, RefusesSeveral) {
   EXPECT_TRUE(says(test::refusal([] { camera_pose("\n"); }), "no pose"));
 }
 
+TEST(PoseReader, KeysGivenTwiceAreRefused) {
+  for (const char* const text :
+       {R"({"pose": [1, 2, 3, 0, 0, 0, 1], "pose": [1, 2, 4, 0, 0, 0, 1]})",
+        R"({"t": 1, "pose": [1, 2, 3, 0, 0, 0, 1], "t": 2})",
+        R"({"head": {"a": 1, "a": 2}, "pose": [1, 2, 3, 0, 0, 0, 1]})"})
+    EXPECT_TRUE(says(test::refusal([&] { camera_pose(text); }), "twice; leave one of them out"))
+        << text;
+  // Keys of different objects may be the same.
+  camera_pose(R"({"a": {"t": 1}, "b": [{"t": 1}, {"t": 2}], "pose": [1, 2, 3, 0, 0, 0, 1]})");
+}
+
 TEST(PoseReader, DecimalCommasAreRefused) {
   for (const char* const line : {"0,1 0 1 0 0 0 1", "0,0 0 1,0 0 0 0 1", "5 0,1 0 1 0 0 0 1"})
     EXPECT_TRUE(says(test::refusal([&] { camera_pose(line); }), "decimals with a point")) << line;

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
@@ -90,16 +89,12 @@ std::string JsonConfig::to_config(const CLI::App* app, bool default_also, bool, 
 
 std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const {
   const std::string text = whole_text(input);
-  std::set<std::string> keys;
-  const auto look = [&](const std::string& key) {
-    if (!keys.insert(key).second)
-      throw CLI::FileError("the configuration gives '" + key + "' twice; leave one of them out");
-  };
   json config;
   try {
-    config = file::parse_json(text, look);
+    config = file::parse_json(text);
   } catch (const Error& fault) {
-    throw CLI::FileError("the configuration is " + fault.problem());
+    throw CLI::FileError("the configuration is " + fault.problem() +
+                         (fault.hint().empty() ? "" : "; " + fault.hint()));
   }
   if (!config.is_object())
     throw CLI::FileError("the configuration must be a JSON object of options");

@@ -68,6 +68,8 @@ std::string no_number(const CLI::App& app, const std::string& what) {
   const std::string name = what.substr(begin, equals - begin);
   const std::string value = what.substr(equals + 3);
   const CLI::Option* const option = app.get_option_no_throw(name);
+  if (option != nullptr && option->get_expected_max() == 0)  // a flag in a configuration
+    return name + " " + value + ": give true or false";
   const bool is_whole = option != nullptr && option->get_type_name().find("INT") != name.npos;
   const char* const wanted = is_whole               ? "a whole number"
                              : value.ends_with('%') ? "a fraction, such as 0.95"

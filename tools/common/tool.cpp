@@ -68,15 +68,15 @@ void open_standard_streams() {
   }
 }
 
+constexpr const char* kEmptyValue = "its value is empty; give one, or leave the option out";
+
 // Refuses "--report=" with an empty value (a script's unset variable); CLI11 would take the next
 // argument for the value.
 void refuse_cut_options(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view argument = argv[k];
     if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
-      throw Error(ErrorKind::invalid_argument,
-                  std::string(argument.substr(0, argument.size() - 1)) +
-                      ": its value is empty; give one, or leave the option out");
+      throw CLI::ValidationError(std::string(argument.substr(0, argument.size() - 1)), kEmptyValue);
   }
 }
 
@@ -214,8 +214,7 @@ void Tool::refuse_senseless_values() const {
     const std::vector<std::string>& values = option->results();
     if (option->get_expected_max() > 0 &&
         std::find(values.begin(), values.end(), "") != values.end())
-      throw Error(ErrorKind::invalid_argument,
-                  option->get_name() + ": its value is empty; give one, or leave the option out");
+      throw CLI::ValidationError(option->get_name(), kEmptyValue);
     for (const std::string& value : values) {  // as "-o $OUT --report" has it without OUT
       if (value.size() > 1 && value[0] == '-' && app_.get_option_no_throw(value) != nullptr)
         refuse_usage(option->get_name() + ": its value is missing; " + value + " is an option");
@@ -224,7 +223,7 @@ void Tool::refuse_senseless_values() const {
       return v != "true" && v != "false";
     });
     if (option->get_expected_max() == 0 && is_nonsense)
-      refuse_usage("--config: " + config_key(*option) + " must be true or false");
+      throw CLI::ValidationError(option->get_name(), "give true or false");
   }
 }
 

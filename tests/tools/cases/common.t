@@ -67,7 +67,7 @@ $ vpm-probe --config missing.json in.off -o -
 2> vpm-probe: error: --config: cannot read missing.json: No such file or directory (see vpm-probe --help)
 [2]
 $ echo '{"count": 5, "flag": true, "count": 6}' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: --config standard input: the configuration gives 'count' twice; leave one of them out (see vpm-probe --help)
+2> vpm-probe: error: --config standard input: the configuration is ambiguous: it gives "count" twice; leave one of them out (see vpm-probe --help)
 [2]
 $ echo '{"flag": false, "count": 5}' | vpm-probe --config - in.off -o -
 in.off none 5 0.100000 []
@@ -100,7 +100,10 @@ $ vpm-probe --version=2
 2> vpm-probe: error: --version takes no value; leave out =2
 [2]
 $ echo '{"flag": 2}' | vpm-probe --config - in.off -o -
-2> vpm-probe: error: --config: flag must be true or false
+2> vpm-probe: error: --config standard input: --flag: give true or false (see vpm-probe --help)
+[2]
+$ echo '{"flag": "maybe"}' | vpm-probe --config - in.off -o -
+2> vpm-probe: error: --config standard input: --flag maybe: give true or false (see vpm-probe --help)
 [2]
 
 # Each kind of error has its exit code.

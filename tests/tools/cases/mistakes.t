@@ -40,16 +40,16 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt -o /dev/null --s
 
 # An empty variable is not a value.
 $ vpm-normals wall.png -o new.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose "$POSE"
-2> vpm-normals: error: --camera-pose: its value is empty; give one, or leave the option out
+2> vpm-normals: error: --camera-pose: its value is empty; give one, or leave the option out (see vpm-normals --help)
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --max-error ''
-2> vpm-query: error: --max-error: its value is empty; give one, or leave the option out
+2> vpm-query: error: --max-error: its value is empty; give one, or leave the option out (see vpm-query --help)
 [2]
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses path.txt --level=
-2> vpm-query: error: --level: its value is empty; give one, or leave the option out
+2> vpm-query: error: --level: its value is empty; give one, or leave the option out (see vpm-query --help)
 [2]
 $ echo '{"output": ""}' > empty.json; vpm-pack cube.off --spheres 3 --report - --config empty.json
-2> vpm-pack: error: --output: its value is empty; give one, or leave the option out
+2> vpm-pack: error: --config empty.json: --output: its value is empty; give one, or leave the option out (see vpm-pack --help)
 [2]
 
 # A file without poses is refused.
@@ -163,7 +163,7 @@ $ vpm-graph voxels.vpmp -o voxels.vpmg --mesh cube.off
 # A value that a script has left empty is refused, whatever follows it.
 $ vpm-pack cube.off -o x.vpmp --report= --quiet; ls ./--quiet 2>&1 | wc -l
 1
-2> vpm-pack: error: --report: its value is empty; give one, or leave the option out
+2> vpm-pack: error: --report: its value is empty; give one, or leave the option out (see vpm-pack --help)
 [2]
 $ vpm-pack cube.off --spheres 5 -o x.vpmp --link part
 2> vpm-pack: error: --link is a name in .yml, .urdf and .srdf; give --export with one of these
