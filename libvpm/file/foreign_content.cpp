@@ -23,6 +23,8 @@ struct Start {
 constexpr const char* kExport = "export it as OBJ, PLY or STL";
 constexpr const char* kExportMesh = "export a mesh from it, as OBJ, PLY or STL";
 
+constexpr const char* kExportPly = "export it as PLY";
+
 constexpr Start kStarts[] = {
     {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
      "fetch it with: git lfs pull"},
@@ -37,6 +39,10 @@ constexpr Start kStarts[] = {
     {"\xff\xd8\xff"sv, "a JPEG picture, which holds no exact values",
      "give the 16-bit or float image", Holds::scan},
     {"gif8"sv, "a GIF picture", "give the 16-bit or float image", Holds::scan},
+    {"riff"sv, "a WebP picture or a film", "give the 16-bit or float image", Holds::scan},
+    {"#?r"sv, "a Radiance picture", "give the 16-bit or float image", Holds::scan},
+    {"p7\n"sv, "a PAM picture", "save it as PGM, or as 16-bit PNG", Holds::scan},
+    {"\x80\x04\x95"sv, "a pickle of Python", "save its array as .npy", Holds::scan},
     {"%pdf"sv, "a PDF document", "give the file that was meant"},
     {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG", Holds::scan},
     {"matlab 5.0"sv, "a MATLAB file", "save one of its arrays as 16-bit PNG", Holds::scan},
@@ -48,6 +54,8 @@ constexpr Start kStarts[] = {
     {"iso-10303-21"sv, "a STEP file of CAD", kExportMesh, Holds::mesh},
     {"blender"sv, "a Blender file", kExportMesh, Holds::mesh},
     {"7z\xbc\xaf"sv, "compressed by 7-Zip", "unpack it first: 7z x"},
+    {"\x28\xb5\x2f\xfd"sv, "compressed by zstd", "unpack it first: unzstd"},
+    {"\x04\x22\x6d\x18"sv, "compressed by LZ4", "unpack it first: unlz4"},
     {"\xd0\xcf\x11\xe0"sv, "a file of SolidWorks or of an office program", kExportMesh,
      Holds::mesh},
     {"#usda"sv, "a scene in USD", kExport, Holds::mesh},
@@ -55,6 +63,14 @@ constexpr Start kStarts[] = {
     {"#vrml"sv, "a scene in VRML", kExport, Holds::mesh},
     {"#x3d"sv, "a scene in X3D", kExport, Holds::mesh},
     {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
+    {"# vtk datafile"sv, "a file of VTK", kExportPly},
+    {"<vtkfile"sv, "a file of VTK", kExportPly},
+    {"draco"sv, "compressed by Draco", "decode it to PLY: draco_decoder"},
+    {"$meshformat"sv, "a mesh of Gmsh", kExport, Holds::mesh},
+    {"meshversionformatted"sv, "a mesh of MEDIT", kExport, Holds::mesh},
+    {"3d geometry file format"sv, "a file of Rhino", kExportMesh, Holds::mesh},
+    {"xof 0"sv, "a mesh of DirectX", kExport, Holds::mesh},
+    {"**abcdefgh"sv, "a file of CAD in Parasolid", kExportMesh, Holds::mesh},
     {"autocad binary dxf"sv, "a drawing in DXF", kExportMesh, Holds::mesh},
     {"ac10"sv, "a drawing in DWG", kExportMesh, Holds::mesh},
     {"\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
@@ -114,7 +130,50 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
   return ForeignContent{names_of(kind).what, next};
 }
 
+// Splits a line of a table at blanks, commas and semicolons.
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  constexpr std::string_view kBetween = " \t,;";
+  for (std::size_t at = line.find_first_not_of(kBetween); at != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
+    cells.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kBetween, end);
+  }
+  return cells;
+}
+
+// True for a comment, names of columns, or a count of points.
+bool is_heading(std::string_view line, const std::vector<std::string_view>& cells) {
+  if (line.starts_with('#') || line.starts_with("//")) return true;
+  if (cells.size() == 1) return to_count(cells[0]).has_value();
+  return cells.size() >= 3 && std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
+           return to_number(cell).has_value();
+         });
+}
+
 }  // namespace
+
+bool is_table_of_numbers(std::string_view text) {
+  constexpr int kLooked = 4;                     // lines
+  constexpr std::size_t kMostBytes = 1U << 16U;  // a line of a wide image
+  const auto is_number = [](std::string_view cell) { return to_number(cell).has_value(); };
+  TextCursor cursor(text.substr(0, kMostBytes));
+  std::size_t columns = 0;
+  int rows = 0;
+  for (int k = 0; k < kLooked; ++k) {
+    const std::optional<std::string_view> line = cursor.line();
+    const bool is_cut = cursor.remaining() == 0 && text.size() > kMostBytes;
+    if (!line || is_cut) break;
+    const std::vector<std::string_view> cells = cells_of(*line);
+    if (k == 0 && is_heading(*line, cells)) continue;
+    if (k > 0 && cells.empty()) break;
+    if (cells.size() < 3 || !std::all_of(cells.begin(), cells.end(), is_number)) return false;
+    if (rows > 0 && cells.size() != columns) return false;
+    columns = cells.size();
+    ++rows;
+  }
+  return rows > 1;
+}
 
 std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) {
   constexpr std::size_t kMostBlanks = 64, kLongestStart = 32;
@@ -124,8 +183,8 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   const std::string start = in_lower_case(text.substr(begin));
   for (const Start& known : kStarts)
     if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next, known.holds};
-  if (const auto xml = xml_kind(bytes)) return xml;
-  if (const auto other = kind_by_layout(as_text(bytes))) return other;
+  if (auto xml = xml_kind(bytes)) return xml;
+  if (auto other = kind_by_layout(as_text(bytes))) return other;
   return own_kind(bytes);
 }
 

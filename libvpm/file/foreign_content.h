@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace vpm::file {
 
@@ -21,5 +22,10 @@ struct ForeignContent {
 // web pages, archives, pictures, recordings, CAD and robot descriptions, meshes and scenes of
 // formats that are not read here, text in UTF-16, files of this library of any kind.
 std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes);
+
+// True if the first lines are three numbers or more each, as many in each, after a heading or count
+// perhaps: files of points (XYZ, PTS, CSV), or images as text. OFF files may begin with three
+// counts, too, without their keyword; these have lines of other lengths.
+bool is_table_of_numbers(std::string_view text);
 
 }  // namespace vpm::file

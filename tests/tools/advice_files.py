@@ -213,6 +213,7 @@ def write_clouds(folder):
         "away.pcd": pcd(points, normals=away, **one_row), "points.ply": ply(points, toward), "bare.ply": ply(points),
         "zero.ply": ply(points, none), "far_point.ply": ply([*points, (1e7, 0, 0)], [*toward, (0, 0, -1)]),
         "coarse.ply": binary_ply([(x + 1e5, y, z) for x, y, z in points], toward),
+        "points.xyz": ply(points, toward).split("end_header\n")[1],
         "double.ply": ply([(x + 1e5, y, z) for x, y, z in points], toward, "double"),
     }
     write_all(folder, files)
@@ -279,18 +280,25 @@ def write_recordings(folder):
 MESH_STARTS = {
     b"<mujoco>": "give one of the files that it names", b"ISO-10303-21;": "export a mesh from it",
     b"BLENDER-v300": "export a mesh from it, as OBJ, PLY or STL", b"#usda 1.0\n": "export it as OBJ, PLY or STL",
-    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it",
+    b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it", b"3D Geometry File Format": "export a mesh from it",
+    b"**ABCDEFGHIJKLM": "export a mesh from it", b"$MeshFormat\n": "export it as OBJ, PLY or STL",
+    b"MeshVersionFormatted 2\n": "export it as OBJ, PLY or STL", b"xof 0303txt": "export it as OBJ, PLY or STL",
 }
 SCAN_STARTS = {
     b"\xff\xd8\xff\xe0": "give the 16-bit or float image", b"GIF89a": "give the 16-bit or float image",
     b"\x89HDF\r\n\x1a\n": "save one of its arrays as .npy or 16-bit PNG",
     b"MATLAB 5.0 MAT-file": "save one of its arrays as 16-bit PNG",
     b"#ROSBAG V2.0": "extract its images or clouds first", b"\x89MCAP0\r\n": "extract its images or clouds first",
+    b"RIFF\x10\0\0\0WEBP": "give the 16-bit or float image", b"#?RADIANCE\n": "give the 16-bit or float image",
+    b"P7\nWIDTH 64\n": "save it as PGM, or as 16-bit PNG", b"\x80\x04\x95\x10": "save its array as .npy",
     b"LASF": "convert it to PLY with normals, for example by PDAL",
     b"ASTM-E57": "convert it to PLY with normals, for example by PDAL",
 }
 OTHER_STARTS = {
     b"<!DOCTYPE html>": "download the file itself", b"<html>": "download the file itself",
+    b"# vtk DataFile Version 3.0\n": "export it as PLY", b"<VTKFile>": "export it as PLY",
+    b"DRACO\x02\x02": "decode it to PLY: draco_decoder", b"\x28\xb5\x2f\xfd": "unpack it first: unzstd",
+    b"\x04\x22\x4d\x18": "unpack it first: unlz4",
     b"%PDF-1.7": "give the file that was meant", b"7z\xbc\xaf\x27\x1c": "unpack it first: 7z x",
     b"version https://git-lfs.github.com/spec/v1\n": "fetch it with: git lfs pull",
     b'<?xml version="1.0"?>\n<svg/>': "give the file that was meant", b"\xff\xfev\0": "save it as UTF-8",
