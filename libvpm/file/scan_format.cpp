@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libvpm/file/ply_header.h"
 #include "libvpm/file/text.h"
 
 namespace vpm::file {
@@ -19,8 +20,7 @@ constexpr Start kStarts[] = {
     {"\x89PNG"sv, ScanFormat::png},   {"\x76\x2f\x31\x01"sv, ScanFormat::exr},
     {"II*\0"sv, ScanFormat::tiff},    {"MM\0*"sv, ScanFormat::tiff},
     {"II+\0"sv, ScanFormat::tiff},    {"MM\0+"sv, ScanFormat::tiff},
-    {"\x93NUMPY"sv, ScanFormat::npy}, {"ply\n"sv, ScanFormat::ply},
-    {"ply\r"sv, ScanFormat::ply},     {"# .PCD"sv, ScanFormat::pcd},
+    {"\x93NUMPY"sv, ScanFormat::npy}, {"# .PCD"sv, ScanFormat::pcd},
     {"VERSION"sv, ScanFormat::pcd},   {"FIELDS"sv, ScanFormat::pcd},
 };
 
@@ -45,7 +45,8 @@ bool is_netpbm(std::string_view text) {
 }  // namespace
 
 std::optional<ScanFormat> scan_format(std::span<const std::byte> bytes) {
-  const std::string_view text = as_text(bytes);
+  const std::string_view text = without_byte_order_mark(as_text(bytes));
+  if (looks_like_ply(text)) return ScanFormat::ply;
   for (const Start& start : kStarts)
     if (text.starts_with(start.bytes)) return start.format;
   if (is_netpbm(text)) return ScanFormat::netpbm;

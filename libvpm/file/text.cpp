@@ -10,6 +10,10 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\v\f";
 
+char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
 bool ends_first_line_in_cr(std::string_view text) {
   const std::size_t end = text.find_first_of("\r\n");
   return end != text.npos && text[end] == '\r' && text.substr(end + 1, 1) != "\n";
@@ -35,11 +39,21 @@ std::optional<std::uint64_t> to_count(std::string_view word) {
   return number_from_text<std::uint64_t>(word);
 }
 
+std::string cure_of_number(std::string_view word) {
+  // Some countries write decimals so, and some programs lists.
+  if (word.find(',') == word.npos) return "";
+  return "; decimals have a point, and numbers a blank between them";
+}
+
 std::string in_lower_case(std::string_view text) {
   std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  std::transform(lower.begin(), lower.end(), lower.begin(), lower_case);
   return lower;
+}
+
+bool is_word(std::string_view text, std::string_view word) {
+  return std::equal(text.begin(), text.end(), word.begin(), word.end(),
+                    [](char a, char b) { return lower_case(a) == b; });
 }
 
 std::string shown(std::string_view text, std::size_t most) {

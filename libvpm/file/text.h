@@ -28,9 +28,13 @@ std::vector<std::string_view> split_words(std::string_view line);
 // Returns the whole word as a number, by number_from_text(); empty if it is none.
 std::optional<double> to_number(std::string_view word);
 std::optional<std::uint64_t> to_count(std::string_view word);
+// Returns what may be added to "is not a number": how to mend a decimal comma; often empty.
+std::string cure_of_number(std::string_view word);
 
 // Returns the text in lower case, of ASCII letters only.
 std::string in_lower_case(std::string_view text);
+// True if the text is this word, which is given in lower case, in letters of either case.
+bool is_word(std::string_view text, std::string_view word);
 
 // Returns the text as a message may show it, by printable(); what is beyond `most` bytes of it is
 // replaced by "…".

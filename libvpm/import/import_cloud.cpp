@@ -10,6 +10,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
 #include "libvpm/file/scan_format.h"
+#include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/point_files.h"
 #include "libvpm/import/point_scan.h"
@@ -28,6 +29,10 @@ ScanFormat format_of(std::span<const std::byte> bytes, const std::string& name) 
                ? "give a depth image or a cloud, or the mesh to vpm-pack"
                : other->next);
   if (const auto format = file::scan_format(bytes)) return *format;
+  if (file::is_table_of_numbers(file::as_text(bytes)))
+    refuse("this is a table of numbers in text", name,
+           "save points as PLY or PCD, with their normals, and a depth image as NPY, PFM, TIFF or "
+           "16-bit PNG");
   refuse("neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY by its content", name,
          "give a depth image or a cloud");
 }

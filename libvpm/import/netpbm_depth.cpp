@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 namespace {
@@ -89,7 +89,7 @@ class NetpbmReader {
     const std::byte* from = data(2);
     image_.values.resize(std::size_t{image_.width} * image_.height);
     for (std::size_t i = 0; i < image_.values.size(); ++i)
-      image_.values[i] = static_cast<float>(read_scalar(from + 2 * i, {'U', 2}, true));
+      image_.values[i] = static_cast<float>(file::read_scalar(from + 2 * i, {'U', 2}, true));
     image_.may_be_swapped = true;
   }
 
@@ -116,7 +116,7 @@ class NetpbmReader {
       for (std::size_t u = 0; u < image_.width; ++u) {
         const std::size_t row = image_.height - 1 - v;
         image_.values[v * image_.width + u] = static_cast<float>(
-            read_scalar(from + 4 * (row * image_.width + u), {'F', 4}, scale > 0));
+            file::read_scalar(from + 4 * (row * image_.width + u), {'F', 4}, scale > 0));
       }
     }
     if (std::abs(scale) != 1) {

@@ -3,15 +3,15 @@
 #include <charconv>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 namespace {
 
 struct NpyHeader {
-  ScalarType type;
+  file::ScalarType type;
   bool big_endian = false, by_columns = false;
   std::vector<std::uint64_t> shape;
   std::size_t data = 0;  // offset of the first value
@@ -30,7 +30,7 @@ std::string_view value_of(std::string_view header, std::string_view key, const s
   return header.substr(begin);
 }
 
-ScalarType type_of(std::string_view text, bool& big_endian, const std::string& name) {
+file::ScalarType type_of(std::string_view text, bool& big_endian, const std::string& name) {
   const bool is_quoted = text.starts_with('\'') && text.find('\'', 1) != text.npos;
   const std::string_view word = is_quoted ? text.substr(1, text.find('\'', 1) - 1) : text;  // <f4
   const auto refuse_type = [&] {
@@ -41,9 +41,9 @@ ScalarType type_of(std::string_view text, bool& big_endian, const std::string& n
   if (!is_quoted || word.size() != 3) refuse_type();
   big_endian = word[0] == '>';
   const char kind = word[1] == 'f' ? 'F' : word[1] == 'i' ? 'I' : word[1] == 'u' ? 'U' : '?';
-  const ScalarType type{kind, static_cast<std::uint8_t>(word[2] - '0')};
+  const file::ScalarType type{kind, static_cast<std::uint8_t>(word[2] - '0')};
   const bool is_half = type.kind == 'F' && type.size == 2;
-  if (!(is_known(type) || is_half) || type.size == 1) refuse_type();
+  if (!(file::is_known(type) || is_half) || type.size == 1) refuse_type();
   return type;
 }
 
@@ -73,8 +73,8 @@ NpyHeader read_header(std::string_view text, const std::string& name) {
   const std::size_t length_bytes = text.size() > 6 && text[6] >= 2 ? 4 : 2;
   if (text.size() < kBeforeLength + length_bytes) fail("the file is truncated", name);
   const auto length = static_cast<std::size_t>(
-      read_scalar(reinterpret_cast<const std::byte*>(text.data()) + kBeforeLength,
-                  {'U', static_cast<std::uint8_t>(length_bytes)}, false));
+      file::read_scalar(reinterpret_cast<const std::byte*>(text.data()) + kBeforeLength,
+                        {'U', static_cast<std::uint8_t>(length_bytes)}, false));
   NpyHeader header;
   header.data = kBeforeLength + length_bytes + length;
   if (header.data > text.size()) fail("the file is truncated", name);
@@ -105,7 +105,7 @@ RawDepth parse_npy_depth(std::span<const std::byte> bytes, const std::string& na
   for (std::size_t v = 0; v < image.height; ++v) {
     for (std::size_t u = 0; u < image.width; ++u) {
       const std::size_t k = header.by_columns ? u * image.height + v : v * image.width + u;
-      image.values[v * image.width + u] = static_cast<float>(read_scalar(
+      image.values[v * image.width + u] = static_cast<float>(file::read_scalar(
           bytes.data() + header.data + k * header.type.size, header.type, header.big_endian));
     }
   }

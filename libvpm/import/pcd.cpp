@@ -1,13 +1,15 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstring>
 #include <optional>
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/import/point_files.h"
-#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 
@@ -45,7 +47,7 @@ namespace {
 
 struct Field {
   std::string name;
-  ScalarType type;
+  file::ScalarType type;
   std::uint64_t count = 1;   // values of the field per point
   std::uint64_t offset = 0;  // bytes from the start of a point
   std::uint64_t first = 0;   // index of its first value in a point
@@ -59,16 +61,21 @@ struct Header {
   std::string encoding;
 };
 
-// The columns used.
-constexpr std::array<const char*, 6> kColumns{"x", "y", "z", "normal_x", "normal_y", "normal_z"};
 // Limits fields and values per point, far above any sensor's, so that products of sizes cannot
 // overflow.
 constexpr std::uint64_t kMaxFields = 4096;
 
+std::string in_capitals(std::string_view word) {
+  std::string capitals(word);
+  std::transform(word.begin(), word.end(), capitals.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return capitals;
+}
+
 class PcdParser {
  public:
-  PcdParser(std::span<const std::byte> bytes, const std::string& name)
-      : bytes_(bytes), name_(name), cursor_(file::as_text(bytes)) {}
+  PcdParser(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), cursor_(bytes) {}
 
   PointSet parse() {
     read_header();
@@ -79,6 +86,7 @@ class PcdParser {
     if (header_.encoding == "ascii") read_ascii();
     if (header_.encoding == "binary") read_binary();
     if (header_.encoding == "binary_compressed") read_compressed();
+    say_unread();
     return std::move(points_);
   }
 
@@ -95,16 +103,17 @@ class PcdParser {
   void read_ascii();
   void read_binary();
   void read_compressed();
+  void say_unread();
   // Reads the values of all points: field f of point i is at `data + start[f] + i * step[f]`.
   void read_values(const std::byte* data, bool by_field);
   std::uint64_t count_of(std::string_view word, const std::string& entry) const;
-  double& value(std::size_t column, std::size_t point);
 
-  std::span<const std::byte> bytes_;
+  std::string_view bytes_;
   const std::string& name_;
   file::TextCursor cursor_;
+  std::size_t end_ = 0;  // offset of the first byte after the points
   Header header_;
-  std::array<const Field*, 6> column_{};
+  std::array<const Field*, kPointColumns> column_{};
   PointSet points_;
 };
 
@@ -127,7 +136,7 @@ void PcdParser::read_header() {
 }
 
 void PcdParser::read_entry(const std::vector<std::string_view>& words) {
-  const std::string entry(words[0]);
+  const std::string entry = in_capitals(words[0]);
   if (entry == "VERSION") {
     const std::string_view version = words[1].substr(words[1].find('.') + 1);
     if (version != "7" && version != "6")
@@ -144,14 +153,14 @@ void PcdParser::read_entry(const std::vector<std::string_view>& words) {
   } else if (entry == "VIEWPOINT") {
     read_viewpoint(words);
   } else if (entry == "DATA") {
-    header_.encoding = words[1];
+    header_.encoding = file::in_lower_case(words[1]);
   } else {
-    fail("header: unknown entry '" + file::shown(entry) + "'");
+    fail("header: unknown entry '" + file::shown(words[0]) + "'");
   }
 }
 
 void PcdParser::read_fields(const std::vector<std::string_view>& words) {
-  const std::string entry(words[0]);
+  const std::string entry = in_capitals(words[0]);
   const std::size_t count = words.size() - 1;
   if (entry == "FIELDS" || entry == "COLUMNS") {
     if (count > kMaxFields) fail("header: " + std::to_string(count) + " fields are too many");
@@ -168,7 +177,7 @@ void PcdParser::read_fields(const std::vector<std::string_view>& words) {
       field.type.size =
           static_cast<std::uint8_t>(std::min<std::uint64_t>(count_of(word, entry), 255));
     } else if (entry == "TYPE") {
-      field.type.kind = word.size() == 1 ? word[0] : '?';
+      field.type.kind = word.size() == 1 ? in_capitals(word)[0] : '?';
     } else if (entry == "COUNT") {
       field.count = count_of(word, entry);
       if (field.count > kMaxFields)
@@ -207,7 +216,7 @@ void PcdParser::check_header() {
   Header& h = header_;
   if (h.fields.empty()) fail("header names no FIELDS");
   for (Field& field : h.fields) {
-    if (!is_known(field.type)) {
+    if (!file::is_known(field.type)) {
       fail("header: field '" + file::shown(field.name) + "' has TYPE " +
            file::shown({&field.type.kind, 1}) + " of SIZE " + std::to_string(field.type.size) +
            ", which is no number");
@@ -235,14 +244,12 @@ void PcdParser::check_header() {
 }
 
 void PcdParser::find_columns() {
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
-    for (const Field& field : header_.fields) {
-      if (field.name == kColumns[c] && field.count == 1) column_[c] = &field;
-    }
-    if (c < 3 && column_[c] == nullptr) fail(std::string("has no field ") + kColumns[c]);
-  }
-  // Ignores incomplete normals.
-  if (!column_[3] || !column_[4] || !column_[5]) column_[3] = column_[4] = column_[5] = nullptr;
+  std::vector<std::string> names;
+  for (const Field& field : header_.fields)
+    names.push_back(field.count == 1 ? field.name : std::string());
+  const PointColumns columns = point_columns(names, name_);
+  for (std::size_t c = 0; c < kPointColumns; ++c)
+    if (columns[c]) column_[c] = &header_.fields[*columns[c]];
   points_.are_float32 =
       header_.encoding != "ascii" && column_[0]->type.kind == 'F' && column_[0]->type.size == 4;
 }
@@ -250,11 +257,6 @@ void PcdParser::find_columns() {
 void PcdParser::allocate() {
   points_.positions.resize(header_.points);
   if (column_[3] != nullptr) points_.normals.resize(header_.points);
-}
-
-double& PcdParser::value(std::size_t column, std::size_t point) {
-  Vec3& vector = column < 3 ? points_.positions[point] : points_.normals[point];
-  return column % 3 == 0 ? vector.x : column % 3 == 1 ? vector.y : vector.z;
 }
 
 void PcdParser::read_ascii() {
@@ -268,28 +270,40 @@ void PcdParser::read_ascii() {
     if (words.size() != header_.point_values)
       fail("point " + std::to_string(i) + " has " + std::to_string(words.size()) +
            " numbers in its line, the header says " + std::to_string(header_.point_values));
-    for (std::size_t c = 0; c < kColumns.size(); ++c) {
+    for (std::size_t c = 0; c < kPointColumns; ++c) {
       if (column_[c] == nullptr) continue;
       const std::string_view word = words[column_[c]->first];
       const std::optional<double> number = file::to_number(word);
       if (!number) {
-        fail("point " + std::to_string(i) + ": '" + file::shown(word) + "' is not a number");
+        fail("point " + std::to_string(i) + ": '" + file::shown(word) + "' is not a number" +
+             file::cure_of_number(word));
       }
-      value(c, i) = *number;
+      points_.at(c, i) = *number;
     }
   }
-  if (!cursor_.row().empty()) fail("has more points than its header says");
+  end_ = cursor_.offset();
+}
+
+// Remarks on what follows the points, such as another file joined to this one.
+void PcdParser::say_unread() {
+  std::string_view rest = bytes_.substr(end_);
+  if (header_.encoding == "ascii") rest = file::without_padding(rest);
+  if (file::is_padding(rest)) return;
+  points_.remarks.push_back({true, "the header counts " + std::to_string(header_.points) +
+                                       (header_.points == 1 ? " point" : " points") + ", but " +
+                                       std::to_string(rest.size()) +
+                                       " bytes more follow, which are not read"});
 }
 
 void PcdParser::read_values(const std::byte* data, bool by_field) {
   allocate();
-  for (std::size_t c = 0; c < kColumns.size(); ++c) {
+  for (std::size_t c = 0; c < kPointColumns; ++c) {
     if (column_[c] == nullptr) continue;
     const Field& field = *column_[c];
     const std::byte* from = data + field.offset * (by_field ? header_.points : 1);
     const std::size_t step = by_field ? field.type.size : header_.point_size;
     for (std::size_t i = 0; i < header_.points; ++i)
-      value(c, i) = read_scalar(from + i * step, field.type, false);
+      points_.at(c, i) = file::read_scalar(from + i * step, field.type, false);
   }
 }
 
@@ -299,13 +313,14 @@ void PcdParser::read_binary() {
     fail("is truncated: " + std::to_string(size) + " bytes of points promised, " +
          std::to_string(cursor_.remaining()) + " there");
   }
-  read_values(bytes_.data() + cursor_.offset(), false);
+  read_values(reinterpret_cast<const std::byte*>(bytes_.data()) + cursor_.offset(), false);
+  end_ = cursor_.offset() + size;
 }
 
 void PcdParser::read_compressed() {
   std::uint32_t sizes[2];  // compressed, uncompressed
   if (cursor_.remaining() < sizeof sizes) fail("is truncated before its compressed data");
-  const std::span<const std::byte> body = bytes_.subspan(cursor_.offset());
+  const std::string_view body = bytes_.substr(cursor_.offset());
   std::memcpy(sizes, body.data(), sizeof sizes);
   const std::uint64_t compressed = sizes[0], uncompressed = sizes[1];
   if (compressed > body.size() - sizeof sizes) {
@@ -319,15 +334,16 @@ void PcdParser::read_compressed() {
   if (uncompressed > compressed * kMaxLzfRatio)
     fail("is corrupt: the compressed data is too short");
   std::vector<std::byte> data(uncompressed);
-  if (!decode_lzf(body.subspan(sizeof sizes, compressed), data))
+  if (!decode_lzf(std::as_bytes(std::span(body.substr(sizeof sizes, compressed))), data))
     fail("is corrupt: the compressed data cannot be decoded");
   read_values(data.data(), true);
+  end_ = cursor_.offset() + sizeof sizes + compressed;
 }
 
 }  // namespace
 
 PointSet parse_pcd(std::span<const std::byte> bytes, const std::string& name) {
-  return PcdParser(bytes, name).parse();
+  return PcdParser(file::without_byte_order_mark(file::as_text(bytes)), name).parse();
 }
 
 }  // namespace vpm

@@ -117,8 +117,8 @@ double median_radius(const Cloud& cloud) {
 
 void refuse_missing_normals(const PointSet& points, const std::string& name) {
   if (points.normals.empty()) {
-    refuse("points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz)",
-           name, "estimate them first, or give the depth image");
+    refuse("points without a grid need normals (normal_x normal_y normal_z, or nx ny nz)", name,
+           "estimate them first, or give the depth image");
   }
   if (std::all_of(points.normals.begin(), points.normals.end(),
                   [](const Vec3& n) { return n == Vec3{}; })) {
@@ -345,7 +345,7 @@ ImportedScan scan_of_points(PointSet points, const std::string& name,
                             const ImportOptions& options) {
   const double units_per_metre = options.depth.units_per_metre.value_or(1);
   ToldPose told = told_pose(points, options, units_per_metre);
-  Remarks remarks;
+  Remarks remarks = std::move(points.remarks);
   std::optional<OrganisedView> view;
   if (points.organised()) {
     if (!has_any_point(points)) throw NothingMeasured("no pixel holds a measurement", name);

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/import/depth_files.h"
-#include "libvpm/import/scalar_type.h"
 
 namespace vpm {
 namespace {
@@ -140,7 +140,7 @@ class TiffReader {
   void store(const std::byte* from, std::uint32_t u, std::uint32_t v, std::uint32_t count) {
     for (std::uint32_t k = 0; k < count; ++k)
       image_.values[std::size_t{v} * image_.width + u + k] =
-          static_cast<float>(read_scalar(from + std::size_t{k} * type_.size, type_, false));
+          static_cast<float>(file::read_scalar(from + std::size_t{k} * type_.size, type_, false));
   }
 
   void read_rows() {
@@ -181,7 +181,7 @@ class TiffReader {
   const std::string& name_;
   TiffSource source_;
   TiffFile file_;
-  ScalarType type_;
+  file::ScalarType type_;
   RawDepth image_;
 };
 

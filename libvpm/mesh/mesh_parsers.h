@@ -21,16 +21,10 @@ RawMesh parse_stl(std::string_view bytes, const std::string& name);
 std::optional<MeshFormat> scene_by_content(std::string_view text);
 bool looks_like_off(std::string_view text);
 bool looks_like_om(std::string_view bytes);
-bool looks_like_ply(std::string_view bytes);
 bool looks_like_stl(std::string_view bytes);
 
 // Indices have 32 bits; the largest stands for "none".
 inline constexpr std::size_t kMaxVertices = 0xfffffffe;
-
-// Throws Error(refused) if the header promises more than the file can hold: `least_bytes` for
-// `what`.
-void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
-                         std::size_t file_bytes);
 
 // Notes, if there are such vertices, that they were divided by a w other than 1.
 void note_division(std::size_t vertices, RawMesh& mesh);

@@ -10,11 +10,12 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
+#include "libvpm/file/ply_header.h"
 #include "libvpm/file/scan_format.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/mesh/mesh_parsers.h"
-#include "libvpm/mesh/text_lines.h"
 
 namespace vpm {
 namespace {
@@ -30,7 +31,7 @@ std::string extension_of(const std::string& name) {
 
 // True if the first statement is one with which OBJ files begin; OBJ has no magic.
 bool looks_like_obj(std::string_view text) {
-  TextLines lines(text.substr(0, 65536), "", '#');
+  file::TextLines lines(text.substr(0, 65536), "", '#');
   if (!lines.next_line()) return false;
   const std::string_view first = lines.word();
   const auto known = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
@@ -65,15 +66,6 @@ const char* name_of(MeshFormat format) {
 
 bool lists_corners(MeshFormat format) {
   return format == MeshFormat::stl || format >= MeshFormat::dae;
-}
-
-void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
-                         std::size_t file_bytes) {
-  if (least_bytes > static_cast<double>(file_bytes)) {
-    refuse("the header says " + what + ", but the file has only " + std::to_string(file_bytes) +
-               " bytes; it is truncated or damaged",
-           name);
-  }
 }
 
 void note_division(std::size_t vertices, RawMesh& mesh) {
@@ -138,23 +130,6 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
   return std::nullopt;
 }
 
-// True if each of the first lines is three numbers or more, as in files of points (XYZ). OFF files
-// may begin with three counts, too, without their keyword; these have lines of other lengths.
-bool is_table_of_points(std::string_view text) {
-  constexpr int kLooked = 4;  // lines
-  file::TextCursor cursor(text.substr(0, 4096));
-  std::size_t columns = 0;
-  for (int k = 0; k < kLooked; ++k) {
-    const std::vector<std::string_view> row = cursor.row();
-    if (row.empty()) return k > 1;
-    if (row.size() < 3 || (k > 0 && row.size() != columns)) return false;
-    columns = row.size();
-    for (const std::string_view word : row)
-      if (!file::to_number(word)) return false;
-  }
-  return true;
-}
-
 // Refuses what is known to be something else than a mesh, by name.
 void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
   const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
@@ -169,7 +144,7 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (bytes.empty()) refuse("the file is empty", name);
   const std::string_view text = file::without_byte_order_mark(file::as_text(bytes));
   const std::string extension = extension_of(name);
-  if (looks_like_ply(text)) return parse_ply(text, name);
+  if (file::looks_like_ply(text)) return parse_ply(text, name);
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
@@ -184,7 +159,7 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (extension == "stl") return parse_stl(text, name);
   if (extension == "om") return parse_om(text, name);
   if (looks_like_obj(text)) return parse_obj(text, name);
-  if (is_table_of_points(text)) {
+  if (file::is_table_of_numbers(text)) {
     refuse("this is a table of points, without faces", name,
            "give a mesh, as OBJ, PLY or STL; a cloud is for vpm-normals, as PLY with normals");
   }

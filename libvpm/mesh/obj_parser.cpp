@@ -2,8 +2,8 @@
 #include <charconv>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/mesh/mesh_parsers.h"
-#include "libvpm/mesh/text_lines.h"
 
 namespace vpm {
 namespace {
@@ -16,7 +16,8 @@ constexpr std::string_view kWithNumbers[] = {
 
 // Returns the vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", which counts from 1, or
 // backwards from the last vertex so far.
-std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::size_t so_far) {
+std::uint32_t corner_vertex(const file::TextLines& lines, std::string_view word,
+                            std::size_t so_far) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const std::string_view digits = word.substr(0, word.find('/'));
   std::int64_t index = 0;
@@ -26,14 +27,15 @@ std::uint32_t corner_vertex(const TextLines& lines, std::string_view word, std::
   const std::int64_t from_zero = index > 0 ? index - 1 : static_cast<std::int64_t>(so_far) + index;
   if (fault != std::errc() || index == 0 || from_zero < 0 ||
       from_zero >= static_cast<std::int64_t>(kMaxVertices)) {
-    lines.refuse_here("vertex index " + std::string(digits) + " is out of range");
+    lines.refuse_here("vertex index " + file::shown(digits, 40) + " is out of range" +
+                      (index == 0 ? "; OBJ counts from 1" : ""));
   }
   return static_cast<std::uint32_t>(from_zero);
 }
 
 // Returns the point of a line "v x y z", or, as the format says of "v x y z w", divided by w.
 // Colours may follow in place of w.
-Vec3 vertex(TextLines& lines, std::size_t& divided) {
+Vec3 vertex(file::TextLines& lines, std::size_t& divided) {
   const Vec3 p = lines.point();
   if (lines.rest().empty()) return p;
   const std::string_view fourth = lines.word();
@@ -54,7 +56,7 @@ RawMesh parse_obj(std::string_view text, const std::string& name) {
   std::uint32_t largest = 0;  // a face may name a later vertex
   std::size_t largest_line = 0;
   std::size_t divided = 0;
-  TextLines lines(text, name, '#', {'\\', kWithNumbers});
+  file::TextLines lines(text, name, '#', {'\\', kWithNumbers});
   while (lines.next_line()) {
     const std::string_view keyword = lines.word();
     if (keyword == "v") {

@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/mesh/mesh_parsers.h"
-#include "libvpm/mesh/text_lines.h"
 
 namespace vpm {
 namespace {
@@ -123,7 +123,8 @@ std::optional<Keyword> parse_keyword(std::string_view prefix) {
 // none. Counts may follow without a blank: "OFF8 12 0".
 std::size_t keyword_length(std::string_view text) {
   constexpr std::size_t kLongestPrefix = 6;  // STCN4n
-  const std::size_t at = text.substr(0, kLongestPrefix + kOff.size()).find(kOff);
+  std::size_t at = text.substr(0, kLongestPrefix + kOff.size()).find(kOff);
+  if (file::is_word(text.substr(0, kOff.size()), "off")) at = 0;
   if (at == text.npos || !parse_keyword(text.substr(0, at))) return 0;
   const std::size_t length = at + kOff.size();
   const char next = length < text.size() ? text[length] : ' ';
@@ -136,16 +137,16 @@ struct Header {
 };
 
 // Takes the third count, of edges, which some files leave out. It may stand on a line of its own.
-void pass_edge_count(TextLines& lines) {
+void pass_edge_count(file::TextLines& lines) {
   lines.cross_lines(false);
-  TextLines ahead = lines;
+  file::TextLines ahead = lines;
   const bool is_on_line = !lines.rest().empty();
   if (!is_on_line && !ahead.next_line()) return;
   const std::string_view count = ahead.word();
   if (file::to_count(count) && (is_on_line || ahead.rest().empty())) lines = ahead;
 }
 
-Header parse_header(TextLines& lines, const Keyword& keyword) {
+Header parse_header(file::TextLines& lines, const Keyword& keyword) {
   Header header{.keyword = keyword};
   lines.cross_lines(true);
   if (keyword.states_dimension) {
@@ -161,7 +162,7 @@ Header parse_header(TextLines& lines, const Keyword& keyword) {
 }
 
 // Returns the number of words left in the line, or many if they are more than of any vertex.
-std::size_t words_left(TextLines lines) {
+std::size_t words_left(file::TextLines lines) {
   constexpr std::size_t kMany = 100;
   std::size_t count = 0;
   while (count < kMany && !lines.word().empty()) ++count;
@@ -169,7 +170,7 @@ std::size_t words_left(TextLines lines) {
 }
 
 // True if the rest of the line begins with a face of three corners or more.
-bool holds_face(TextLines lines) {
+bool holds_face(file::TextLines lines) {
   lines.cross_lines(false);
   const auto corners = file::to_count(lines.word());
   return corners && *corners >= 3 && words_left(lines) >= *corners;
@@ -185,7 +186,7 @@ class Body {
 
   // Takes each vertex and face from a line of its own, and passes over what else is in it. Says
   // whether lines are left.
-  RawMesh by_lines(TextLines lines, bool& has_more) {
+  RawMesh by_lines(file::TextLines lines, bool& has_more) {
     lines.cross_lines(false);
     std::size_t extras_of_first = 0;
     for (std::int64_t k = 0; k < header_.vertices; ++k) {
@@ -207,7 +208,7 @@ class Body {
 
   // Takes words wherever lines end, with `extras` numbers after each vertex. Colours after a face,
   // if there are any, end with its line. Empty if words are left.
-  std::optional<RawMesh> by_words(TextLines lines, int extras, bool faces_have_colors) {
+  std::optional<RawMesh> by_words(file::TextLines lines, int extras, bool faces_have_colors) {
     lines.cross_lines(true);
     std::int64_t cut_lines = 0;  // those that go on after a vertex
     for (std::int64_t k = 0; k < header_.vertices; ++k) {
@@ -226,7 +227,7 @@ class Body {
   }
 
  private:
-  void add_vertex(TextLines& lines) {
+  void add_vertex(file::TextLines& lines) {
     Vec3 p = lines.point();
     if (header_.keyword.has_w) {
       const double w = lines.number("w");
@@ -238,7 +239,7 @@ class Body {
     mesh_.vertices.push_back(p);
   }
 
-  void add_face(TextLines& lines) {
+  void add_face(file::TextLines& lines) {
     const std::int64_t corners = lines.integer("the face's number of corners");
     if (corners < 0) lines.refuse_here("the face's number of corners is negative");
     for (std::int64_t c = 0; c < corners; ++c) {
@@ -254,12 +255,12 @@ class Body {
   }
 
   // Says that the last vertex differs from those before it: the header may count a face as one.
-  void suspect_vertex(const TextLines& lines) {
+  void suspect_vertex(const file::TextLines& lines) {
     say("the header counts " + std::to_string(header_.vertices) + " vertices, but line " +
         std::to_string(lines.line_number()) + " does not look like one");
   }
 
-  void say_unread(const TextLines& lines) {
+  void say_unread(const file::TextLines& lines) {
     const std::string in_line = " in line " + std::to_string(lines.line_number());
     if (keyword_length(lines.rest()) > 0) {
       say("another OFF file follows" + in_line + ", which is not read");
@@ -287,7 +288,7 @@ class Body {
 
 // Reads by words in the ways that the keyword allows; empty if none uses up the file. Colours have
 // four numbers by the format, and three in many files.
-std::optional<RawMesh> read_by_words(const TextLines& lines, const Header& header,
+std::optional<RawMesh> read_by_words(const file::TextLines& lines, const Header& header,
                                      const RawMesh& empty) {
   const Keyword& keyword = header.keyword;
   const int others = (keyword.has_texture ? 2 : 0) + (keyword.has_normal ? 3 : 0);
@@ -308,7 +309,7 @@ std::optional<RawMesh> read_by_words(const TextLines& lines, const Header& heade
 }  // namespace
 
 bool looks_like_off(std::string_view text) {
-  TextLines lines(text.substr(0, 65536), "", '#');
+  file::TextLines lines(text.substr(0, 65536), "", '#');
   return lines.next_line() && keyword_length(lines.rest()) > 0;
 }
 
@@ -316,7 +317,7 @@ RawMesh parse_off(std::string_view text, const std::string& name) {
   RawMesh empty;
   empty.format = MeshFormat::off;
   empty.name = name;
-  TextLines lines(without_padding(text), name, '#');
+  file::TextLines lines(file::without_padding(text), name, '#');
   lines.require_line("the keyword OFF");
   const std::size_t length = keyword_length(lines.rest());
   // Geomview reads files that begin with the counts, too.
@@ -325,14 +326,14 @@ RawMesh parse_off(std::string_view text, const std::string& name) {
   const std::string_view before = lines.rest().substr(0, length == 0 ? 0 : length - kOff.size());
   const Keyword keyword = *parse_keyword(before);
   lines.pass(length);
-  if (lines.rest().starts_with("BINARY")) {
+  if (file::is_word(lines.rest().substr(0, 6), "binary")) {
     if (!before.empty())
       lines.refuse_here("binary OFF is read with three coordinates only; save it as text");
     return parse_off_binary(text.substr(lines.offset()), name);
   }
   const Header header = parse_header(lines, keyword);
   // A vertex takes at least "0 0 0\n", a face "0\n".
-  check_header_counts(
+  file::check_header_counts(
       name,
       std::to_string(header.vertices) + " vertices and " + std::to_string(header.faces) + " faces",
       6.0 * static_cast<double>(header.vertices) + 2.0 * static_cast<double>(header.faces) - 1,

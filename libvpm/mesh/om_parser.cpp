@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/mesh/mesh_parsers.h"
 
 namespace vpm {
@@ -196,11 +197,11 @@ RawMesh parse_om(std::string_view bytes, const std::string& name) {
   if (!looks_like_om(bytes)) refuse("an OM file must begin with OMT, OMQ or OMP", name);
   const Header header = header_of(bytes);
   // A vertex takes three floats, a face at least one byte, an edge six indices.
-  check_header_counts(name,
-                      std::to_string(header.vertices) + " vertices, " +
-                          std::to_string(header.faces) + " faces and " +
-                          std::to_string(header.edges) + " edges",
-                      12.0 * header.vertices + header.faces + 6.0 * header.edges, bytes.size());
+  file::check_header_counts(
+      name,
+      std::to_string(header.vertices) + " vertices, " + std::to_string(header.faces) +
+          " faces and " + std::to_string(header.edges) + " edges",
+      12.0 * header.vertices + header.faces + 6.0 * header.edges, bytes.size());
   if (header.version < OpenMesh::IO::OMFormat::mk_version(2, 0))
     refuse("an OM file of a version before 2.0", name, "save it again with a newer OpenMesh");
   constexpr std::uint32_t kMostElements = 0x3fffffff;  // half-edges are numbered by int

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/text_lines.h"
 #include "libvpm/mesh/mesh_parsers.h"
-#include "libvpm/mesh/text_lines.h"
 
 namespace vpm {
 namespace {
@@ -101,10 +101,10 @@ Facets facets_by_size(std::string_view bytes, const std::string& name) {
            name);
   }
   if (rest != 0 && count > held) {
-    check_header_counts(name, counted(count, "triangle"),
-                        static_cast<double>(kFacetsAt) +
-                            static_cast<double>(kFacetBytes) * static_cast<double>(count),
-                        bytes.size());
+    file::check_header_counts(name, counted(count, "triangle"),
+                              static_cast<double>(kFacetsAt) +
+                                  static_cast<double>(kFacetBytes) * static_cast<double>(count),
+                              bytes.size());
   }
   Facets facets;
   add_facets(kFacetsAt, rest == 0 ? held : count, facets.at);
@@ -133,7 +133,7 @@ Facets find_facets(std::string_view bytes, const std::string& name) {
 
 bool looks_like_ascii(std::string_view bytes) {
   constexpr std::size_t kLooked = 4096;  // a "solid" line, then "facet" or at once "endsolid"
-  const std::string_view start = without_padding(bytes).substr(0, kLooked);
+  const std::string_view start = file::without_padding(bytes).substr(0, kLooked);
   const std::size_t word = start.find_first_not_of(" \t\r\n");
   return word != std::string_view::npos && file::in_lower_case(start.substr(word, 5)) == "solid" &&
          start.find('\0') == std::string_view::npos;
@@ -153,18 +153,11 @@ void add_corner(RawMesh& mesh, Vec3 p) {
   mesh.vertices.push_back(p);
 }
 
-// True if the word is the keyword, in small or capital letters.
-bool is_keyword(std::string_view word, std::string_view keyword) {
-  return word.size() == keyword.size() &&
-         std::equal(word.begin(), word.end(), keyword.begin(),
-                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
-}
-
 // Reads ASCII files by words, wherever lines end. Only names end with their line.
 class Text {
  public:
   Text(std::string_view text, RawMesh& mesh)
-      : lines_(without_padding(text), mesh.name, 0), mesh_(mesh) {
+      : lines_(file::without_padding(text), mesh.name, 0), mesh_(mesh) {
     lines_.cross_lines(true);
   }
 
@@ -183,34 +176,35 @@ class Text {
  private:
   // Takes the statement that begins with the word; false if none does.
   bool take(std::string_view word) {
-    if (is_keyword(word, "vertex")) {
+    if (file::is_word(word, "vertex")) {
       add_vertex();
-    } else if (is_keyword(word, "facet")) {
+    } else if (file::is_word(word, "facet")) {
       begin_facet();
-    } else if (is_keyword(word, "end")) {  // "end loop", as some programs write
+    } else if (file::is_word(word, "end")) {  // "end loop", as some programs write
       return take_end(lines_.word());
-    } else if (word.size() > 3 && is_keyword(word.substr(0, 3), "end")) {
+    } else if (word.size() > 3 && file::is_word(word.substr(0, 3), "end")) {
       return take_end(word.substr(3));
-    } else if (is_keyword(word, "solid")) {
+    } else if (file::is_word(word, "solid")) {
       is_ended_ = false;
       facets_of_solid_ = 0;
       pass_name();
     } else {
-      return is_keyword(word, "normal") || is_keyword(word, "outer") || is_keyword(word, "loop");
+      return file::is_word(word, "normal") || file::is_word(word, "outer") ||
+             file::is_word(word, "loop");
     }
     return true;
   }
 
   bool take_end(std::string_view what) {
-    if (is_keyword(what, "facet")) {
+    if (file::is_word(what, "facet")) {
       end_facet();
-    } else if (is_keyword(what, "solid")) {
+    } else if (file::is_word(what, "solid")) {
       is_ended_ = true;
       facets_of_solid_ = 0;
       ++solids_;
       pass_name();
     } else {
-      return is_keyword(what, "loop");
+      return file::is_word(what, "loop");
     }
     return true;
   }
@@ -244,19 +238,19 @@ class Text {
   // its normal in the same line.
   void pass_name() {
     lines_.cross_lines(false);
-    TextLines ahead = lines_;
+    file::TextLines ahead = lines_;
     for (std::string_view word = ahead.word(); !word.empty(); word = ahead.word()) {
-      if (is_keyword(word, "facet") && is_facet(ahead)) break;
+      if (file::is_word(word, "facet") && is_facet(ahead)) break;
       lines_ = ahead;
     }
     lines_.cross_lines(true);
   }
 
   // True if "normal" and a number follow, or "outer loop".
-  static bool is_facet(TextLines lines) {
+  static bool is_facet(file::TextLines lines) {
     const std::string_view first = lines.word(), second = lines.word();
-    return (is_keyword(first, "normal") && file::to_number(second)) ||
-           (is_keyword(first, "outer") && is_keyword(second, "loop"));
+    return (file::is_word(first, "normal") && file::to_number(second)) ||
+           (file::is_word(first, "outer") && file::is_word(second, "loop"));
   }
 
   void finish() {
@@ -273,7 +267,7 @@ class Text {
                             " stand one after the other; all were read");
   }
 
-  TextLines lines_;
+  file::TextLines lines_;
   RawMesh& mesh_;
   std::size_t corners_ = 0;  // number read of the facet
   std::size_t facets_of_solid_ = 0, solids_ = 0;

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "libvpm/import/point_files.h"
@@ -148,15 +149,47 @@ TEST(Pcd, SaysWhatIsWrong) {
   // A surplus number must not shift the numbers of the points after it.
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3 4\n5 6\n"), "point 0 has 4 numbers"));
   EXPECT_TRUE(says(refused(plain + "ascii\n1 2\n3 4 5 6\n"), "point 0 has 2 numbers"));
-  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 5 6\n7 8 9\n"), "more points"));
+  EXPECT_TRUE(says(refused(plain + "ascii\n1 2 3\n4 5,5 6\n"), "decimals have a point"));
   EXPECT_TRUE(says(refused(plain + "zip\n"), "DATA 'zip'"));
-  EXPECT_TRUE(says(refused(header("x y", "4 4", "F F", "1 1", 1) + "ascii\n1 2\n"), "no field z"));
+  EXPECT_TRUE(says(refused(header("x y z X", "4 4 4 4", "F F F F", "1 1 1 1", 1) + "ascii\n"),
+                   "two fields hold x of its points: x and X"));
+  EXPECT_TRUE(says(refused(header("x y", "4 4", "F F", "1 1", 1) + "ascii\n1 2\n"),
+                   "no field holds z of its points; its fields are x, y"));
   EXPECT_TRUE(
       says(refused(header("x y z", "4 4 3", "F F F", "1 1 1", 1) + "ascii\n1 2 3\n"), "no number"));
   EXPECT_TRUE(says(refused("VERSION 0.8\n"), "version 0.8"));
   EXPECT_TRUE(says(refused("VERSION 0.7\nFIELDS x y z\nSIZE 4 4\n"), "SIZE names 2 fields"));
   EXPECT_TRUE(says(refused("VERSION 0.7\nWIDTH -1\n"), "is not a count"));
   EXPECT_TRUE(says(refused("VERSION 0.7\nWIDTH"), "has no value"));
+}
+
+TEST(Pcd, WordsMayBeInEitherCaseAndNormalsHaveTheNamesOfPly) {
+  const PointSet told = parse(ascii_file());
+  std::string small = ascii_file();
+  for (char& c : small) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string types = header(kFields, kSizes, "f u f f i f u f", kCounts, 2);
+  const std::string ply = header("nz rgb Y X Z NX hist ny", kSizes, kTypes, kCounts, 2) + "ASCII\n";
+  const std::string rows = ascii_file().substr(ascii_file().find("ascii\n") + 6);
+  for (const std::string& file :
+       {small, "\xEF\xBB\xBF" + ascii_file(), types + "ascii\n" + rows, ply + rows}) {
+    const PointSet points = parse(file);
+    EXPECT_EQ(points.positions, told.positions) << file;
+    EXPECT_EQ(points.normals, told.normals) << file;
+    EXPECT_TRUE(points.remarks.empty());
+  }
+}
+
+TEST(Pcd, WhatFollowsThePointsIsSaid) {
+  for (const std::string& file : {ascii_file(), binary_file(), compressed_file()}) {
+    const PointSet joined = parse(file + file);
+    EXPECT_EQ(joined.positions, parse(file).positions);
+    ASSERT_EQ(joined.remarks.size(), 1U);
+    EXPECT_TRUE(says(
+        joined.remarks[0].text,
+        "the header counts 2 points, but " + std::to_string(file.size()) + " bytes more follow"));
+    for (const std::string& end : {std::string("\n"), std::string("\r\n"), std::string(3, '\0')})
+      EXPECT_TRUE(parse(file + end).remarks.empty());
+  }
 }
 
 TEST(Pcd, CountsAreCheckedBeforeMemoryIsTaken) {

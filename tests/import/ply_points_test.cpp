@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "libvpm/import/point_files.h"
 #include "tests/import/test_files.h"
@@ -50,6 +51,11 @@ std::string binary_file(bool big) {
   return f;
 }
 
+// A header of two points without normals.
+const std::string kTwo =
+    "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+    "property float z\nend_header\n";
+
 TEST(PlyPoints, EveryFormatGivesTheSamePoints) {
   for (const std::string& file : {ascii_file(), binary_file(false), binary_file(true)}) {
     const PointSet points = parse(file);
@@ -72,22 +78,60 @@ TEST(PlyPoints, EveryDamageIsRefused) {
 TEST(PlyPoints, SaysWhatIsWrong) {
   const std::string start =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
-  EXPECT_TRUE(says(refused(start + "end_header\n1 2\n"), "no property z"));
-  EXPECT_TRUE(says(refused(start + "property quaternion z\n"), "unknown type"));
+  EXPECT_TRUE(says(refused(start + "end_header\n1 2\n"), "no field holds z"));
+  EXPECT_TRUE(says(refused(start + "property float Y\nproperty float z\nend_header\n1 2 3 4\n"),
+                   "two fields hold y of its points"));
+  EXPECT_TRUE(says(refused(start + "property quaternion z\n"), "line 6: quaternion is not a type"));
   EXPECT_TRUE(says(refused(start + "property float z\nend_header\n1 2 three\n"),
-                   "vertex 0: 'three' is not a number"));
-  const std::string two =
-      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
-      "property float z\nend_header\n";
+                   "line 8: a value is 'three', which is not a number"));
   // A surplus number must not shift the numbers of the points after it.
-  EXPECT_TRUE(says(refused(two + "1 2 3 4\n5 6\n"), "vertex 0 has more numbers"));
-  EXPECT_TRUE(says(refused(two + "1 2\n3 4 5 6\n"), "vertex 0 has fewer numbers"));
-  EXPECT_TRUE(says(refused(two + "1 2 3\n4 5 6\n7 8 9\n"), "more rows"));
+  EXPECT_TRUE(says(refused(kTwo + "1 2 3 4\n5 6\n"), "line 9: a value is missing"));
+  EXPECT_TRUE(says(refused(kTwo + "1 2\n3 4 5 6\n"), "line 8: a value is missing"));
   EXPECT_TRUE(
-      says(refused("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), "no element vertex"));
-  EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nelement vertex many\n"), "is not a count"));
-  EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nproperty float x\n"), "malformed"));
-  EXPECT_TRUE(says(refused("ply\nformat xml 1.0\nelement vertex 1\nend_header\n"), "no format"));
+      says(refused("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), "no element 'vertex'"));
+  EXPECT_TRUE(
+      says(refused("ply\nformat ascii 1.0\nelement vertex many\n"), "is not a whole number"));
+  EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nproperty float x\n"),
+                   "a property before the first element"));
+  EXPECT_TRUE(says(refused("ply\nformat xml 1.0\nelement vertex 1\nend_header\n"),
+                   "line 2: unknown format"));
+  EXPECT_TRUE(says(refused(kTwo), "it is truncated"));
+  const std::string again = "element vertex 1\nproperty float x\nend_header\n0 0 0\n0\n";
+  EXPECT_TRUE(says(refused(start + "property float z\n" + again), "two elements 'vertex'"));
+}
+
+TEST(PlyPoints, WhatTheHeaderDoesNotCountIsSaid) {
+  const auto only_remark = [](const std::string& file) {
+    const PointSet points = parse(file);
+    EXPECT_EQ(points.positions.size(), 2U);
+    return points.remarks.size() == 1 ? points.remarks[0].text : "";
+  };
+  EXPECT_TRUE(says(only_remark(kTwo + "1 2 3 255 0 0\n4 5 6 255 0 0\n"),
+                   "2 lines, the first of them line 8, hold more numbers"));
+  EXPECT_TRUE(
+      says(only_remark(kTwo + "1 2 3\n4 5 6\n7 8 9\n"), "counts 2 x vertex, but more follows"));
+  for (const std::string& file : {ascii_file(), binary_file(false), binary_file(true)}) {
+    EXPECT_TRUE(says(only_remark(file + file), "another PLY file follows"));
+    EXPECT_TRUE(parse(file + "\n").remarks.empty());
+  }
+}
+
+TEST(PlyPoints, WordsMayBeInEitherCaseAndNormalsHaveTheNamesOfPcd) {
+  const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+      text.replace(at, from.size(), to);
+    return text;
+  };
+  std::string capitals = ascii_file();
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  const std::string file = ascii_file();
+  const PointSet told = parse(file);
+  for (const std::string& other :
+       {capitals, "\xEF\xBB\xBF" + file, replaced(file, "ply\n", "ply \n"),
+        replaced(file, "float n", "float normal_")}) {
+    EXPECT_EQ(parse(other).positions, told.positions) << other;
+    EXPECT_EQ(parse(other).normals, told.normals) << other;
+  }
 }
 
 TEST(PlyPoints, CountsAreCheckedBeforeMemoryIsTaken) {

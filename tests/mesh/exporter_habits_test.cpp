@@ -13,7 +13,9 @@ namespace {
 
 using synthetic::make_cube;
 
+// Returns the text with all of `what`, which it must hold, replaced.
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  EXPECT_NE(text.find(what), text.npos) << what;
   for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += by.size())
     text.replace(at, what.size(), by);
   return text;
@@ -94,7 +96,7 @@ TEST(Off, IsReadByWords) {
   expect_cube("OFF\n" + replaced(rest, " ", "\n"), "a.off", 0.5);
   expect_cube("OFF\n8\n12 " + rest.substr(7), "a.off", 0.5);  // without the count of edges
   expect_cube(rest, "a.off", 0.5);                            // without the keyword
-  expect_cube("OFF 8 12 0\n" + replaced(rest.substr(7), "0 \n", "0\n"), "standard input", 0.5);
+  expect_cube("OFF 8 12 0\n" + rest.substr(7), "standard input", 0.5);
 }
 
 // Returns the cube with `extras` after each vertex and `colors` after each face.
@@ -245,9 +247,9 @@ TEST(Obj, WIsDividedAndColoursAreNot) {
 TEST(Numbers, MayHaveAPlus) {
   const Solid cube = make_cube(0.5);
   expect_cube(replaced(as_obj(cube), " 0", " +0"), "a.obj", 0.5);
-  expect_cube(replaced(as_off(cube), "0.5", "+0.5"), "a.off", 0.5);
-  expect_cube(replaced(as_ascii_ply(cube), "0.5", "+.5e+0"), "a.ply", 0.5);
-  expect_cube(replaced(as_ascii_stl(cube), "vertex 0.5", "vertex +0.5"), "a.stl", 0.5);
+  expect_cube(replaced(as_off(cube), " 0.25", " +0.25"), "a.off", 0.5);
+  expect_cube(replaced(as_ascii_ply(cube), " 0.25", " +2.5e-1"), "a.ply", 0.5);
+  expect_cube(replaced(as_ascii_stl(cube), "vertex 0.25", "vertex +0.25"), "a.stl", 0.5);
   EXPECT_EQ(parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nf +1 +2/+2 +3\n", "a.obj").polygon_count(), 1U);
 }
 
@@ -272,6 +274,30 @@ TEST(AsciiStl, KeywordsAreReadAsProgramsWriteThem) {
   expect_cube(in_capitals(apart), "a.stl", 0.5);
 }
 
+TEST(Keywords, MayBeInEitherCase) {
+  const Solid cube = make_cube(0.5);
+  const std::string ply = as_ascii_ply(cube), binary = as_binary_ply(cube, true);
+  const std::size_t body = binary.find("end_header\n");
+  for (const std::string name : {"a.ply", "standard input"}) {
+    expect_cube(in_capitals(ply), name, 0.5);
+    expect_cube(in_capitals(binary.substr(0, body)) + binary.substr(body), name, 0.5);
+    expect_cube(replaced(ply, "ply\n", "ply \n"), name, 0.5);
+  }
+  expect_cube(replaced(as_off(cube), "OFF", "off"), "standard input", 0.5);
+}
+
+TEST(Messages, TellOfDecimalCommasAndOfCountingFromZero) {
+  const auto expect_cure = [](const std::string& content, const std::string& name,
+                              const std::string& cure) {
+    const std::string message = refusal_of(content, name);
+    EXPECT_NE(message.find(cure), message.npos) << message;
+  };
+  const std::string obj = as_obj(make_cube(0.5)), stl = as_ascii_stl(make_cube(0.5));
+  expect_cure(replaced(obj, "0.25", "0,25"), "a.obj", "decimals have a point");
+  expect_cure(replaced(stl, "0.25", "0,25"), "a.stl", "decimals have a point");
+  expect_cure(obj + "f 0 1 2\n", "a.obj", "vertex index 0 is out of range; OBJ counts from 1");
+}
+
 TEST(AsciiStl, IsReadByWords) {
   const std::string stl = as_ascii_stl(make_cube(0.5));
   for (const std::string& text : {stl, in_capitals(stl)}) {
@@ -282,8 +308,9 @@ TEST(AsciiStl, IsReadByWords) {
       expect_cube(text.substr(0, begin) + facets + text.substr(end), name, 0.5);
     }
   }
-  for (const std::string keyword : {"vertex", "endloop", "endfacet", "facet", "outer"})
-    expect_cube(replaced(replaced(stl, "\n" + keyword, " " + keyword), "vpm facet", "vpm\nfacet"),
+  const std::size_t second = stl.find('\n') + 1;
+  for (const std::string line : {"  vertex", " endloop", "endfacet", "facet", " outer"})
+    expect_cube(stl.substr(0, second) + replaced(stl.substr(second), "\n" + line, " " + line),
                 "a.stl", 0.5);
   const std::string other = as_ascii_stl(moved(make_cube(0.5), {2, 0, 0}));
   EXPECT_NEAR(solid_of(replaced(stl + other, "\n", " "), "a.stl").facts.volume, 0.25, 1e-12);
@@ -408,6 +435,15 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       {std::string("II*\0", 4), "a TIFF image; give the mesh"},
       {"\x93NUMPY\x01", "an array of NumPy; give the mesh"},
       {"P5\n2 2\n65535\n", "a PGM, PPM or PFM image; give the mesh"},
+      {"# vtk DataFile Version 3.0\n", "a file of VTK; export it as PLY"},
+      {"<VTKFile type=\"PolyData\">", "a file of VTK; export it as PLY"},
+      {"$MeshFormat\n4.1 0 8\n", "a mesh of Gmsh; export it as OBJ, PLY or STL"},
+      {"MeshVersionFormatted 2\n", "a mesh of MEDIT; export it"},
+      {"3D Geometry File Format", "a file of Rhino; export a mesh"},
+      {"DRACO\x02\x02", "compressed by Draco; decode it to PLY"},
+      {"\x28\xb5\x2f\xfd", "compressed by zstd; unpack it first"},
+      {"RIFF\x10", "a WebP picture or a film; give the mesh"},
+      {"P7\nWIDTH 2\n", "a PAM picture; give the mesh"},
       {"# made by x\nVERSION .7\n", "a cloud of points"},
       {"# .PCD v0.7", "a cloud of points"}};
   for (const auto& [content, message] : cases) {
@@ -415,8 +451,11 @@ TEST(NotAMesh, IsNamedWithTheNextStep) {
       EXPECT_NE(refusal_of(content, name).find(message), std::string::npos)
           << name << ": " << refusal_of(content, name);
   }
-  const std::string points = refusal_of("0 0 0\n0.5 0.2 0.3\n1 1 1\n", "a.xyz");
-  EXPECT_NE(points.find("a table of points, without faces; give a mesh"), points.npos) << points;
+  for (const char* const table :
+       {"0 0 0\n0.5 0.2 0.3\n1 1 1\n", "x,y,z\n0,0,0\n0.5,0.2,0.3\n", "2\n0 0 0 9\n1 1 1 9\n"}) {
+    const std::string points = refusal_of(table, "a.xyz");
+    EXPECT_NE(points.find("a table of points, without faces; give a mesh"), points.npos) << points;
+  }
 }
 
 }  // namespace

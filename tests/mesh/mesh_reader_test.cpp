@@ -143,7 +143,7 @@ TEST(MeshReader, RefusesNamingFileAndPlace) {
       {"a.off", "COFF BINARY\n", "binary OFF is read with three coordinates only"},
       {"a.off", "OFF\n3 2 0\n0 0 0.00000000\n1 0 0\n0 1 0\n3 0 1 2\n", "truncated"},
       {"a.off", "OFFER\n3 1 0\n", "expected the keyword OFF"},
-      {"a.ply", "plY\n", "must begin with 'ply'"},
+      {"a.ply", "plx\n", "must begin with 'ply'"},
       {"a.ply", "ply\nformat ascii 1.0\n", "the file ends after line 2"},
       {"a.ply", "ply\nformat text 1.0\nend_header\n", "line 2: unknown format"},
       {"a.ply", ply + "element vertex 1\nproperty real x\nend_header\n", "real is not a type"},

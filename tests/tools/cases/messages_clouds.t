@@ -18,7 +18,7 @@ $ head='VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n'; for t in 'WIDTH tw
 2> vpm-normals: error: standard input: PCD is truncated: 2 points cannot fit into the file
 2> vpm-normals: error: standard input: PCD is truncated: 1 points cannot fit into the file
 2> vpm-normals: error: standard input: PCD point 0: 'one' is not a number
-2> vpm-normals: error: standard input: PCD has more points than its header says
+2> vpm-normals: error: standard input: points without a grid need normals (normal_x normal_y normal_z, or nx ny nz); estimate them first, or give the depth image
 2> vpm-normals: error: standard input: PCD is truncated before its compressed data
 2> vpm-normals: error: standard input: PCD is truncated: 9 compressed bytes promised, 0 there
 2> vpm-normals: error: standard input: PCD holds 9 bytes uncompressed; its points need 12
@@ -27,30 +27,31 @@ $ head='VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n'; for t in 'WIDTH tw
 $ for t in 'VERSION 0.5\n' 'VERSION 0.7\nDATA ascii\n' 'VERSION 0.7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n0 0\n' 'VERSION 0.7\nFIELDS x y z\nSIZE 4 4 3\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n0 0 0\n'; do printf "$t" | vpm-normals - -o x.vpmc; done
 2> vpm-normals: error: standard input: PCD version 0.5 is not known; write version 0.7
 2> vpm-normals: error: standard input: PCD header names no FIELDS
-2> vpm-normals: error: standard input: PCD has no field z
+2> vpm-normals: error: standard input: no field holds z of its points; its fields are x, y
 2> vpm-normals: error: standard input: PCD header: field 'z' has TYPE F of SIZE 3, which is no number
 [1]
 
 # PLY
-$ for t in 'element vertex many\n' 'elements\n' 'element vertex 1\nproperty float x\nend_header\n' 'property float x\n' 'format ascii 1.0\nelement vertex 1\nproperty quad x\n' 'format ascii 1.0\nelement vertex 1\nproperty list float int x\n' 'format ascii 1.0\nend_header\n' 'format ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n' 'format ascii 1.0\nelement vertex 1\nend_header\n' 'format ascii 1.0\nelement vertex 9000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n'; do printf "ply\n$t" | vpm-normals - -o x.vpmc; done
-2> vpm-normals: error: standard input: PLY header: 'many' is not a count
-2> vpm-normals: error: standard input: PLY header: cannot read 'elements'
-2> vpm-normals: error: standard input: PLY header names no format that is known: ascii or binary, 1.0
-2> vpm-normals: error: standard input: PLY header: a property is malformed
-2> vpm-normals: error: standard input: PLY header: property 'x' has an unknown type
-2> vpm-normals: error: standard input: PLY header: the length of list 'x' is not an integer
-2> vpm-normals: error: standard input: PLY has no element vertex
-2> vpm-normals: error: standard input: PLY vertices have no property y
-2> vpm-normals: error: standard input: PLY vertices have no property x
-2> vpm-normals: error: standard input: PLY header promises 9000000000 vertices; at most 67108864 are read
+$ for t in 'element vertex many\n' 'elements\n' 'element vertex 1\nproperty float x\nend_header\n' 'property float x\n' 'format ascii 1.0\nelement vertex 1\nproperty quad x\n' 'format ascii 1.0\nelement vertex 1\nproperty list float int x\n' 'format ascii 1.0\nend_header\n' 'format ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n' 'format ascii 1.0\nelement vertex 1\nend_header\n' 'format ascii 1.0\nelement vertex 9000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n' 'format ascii 1.0\nelement vertex 1\nproperty float x\nproperty float X\nend_header\n0 0\n'; do printf "ply\n$t" | vpm-normals - -o x.vpmc; done
+2> vpm-normals: error: standard input: line 2: the element's count is 'many', which is not a whole number
+2> vpm-normals: error: standard input: line 2: not a statement of a PLY header
+2> vpm-normals: error: standard input: the header has no 'format' line
+2> vpm-normals: error: standard input: line 2: a property before the first element
+2> vpm-normals: error: standard input: line 4: quad is not a type of a PLY property
+2> vpm-normals: error: standard input: line 4: the length of a list must be an integer
+2> vpm-normals: error: standard input: the header has no element 'vertex'
+2> vpm-normals: error: standard input: no field holds y of its points; its fields are x
+2> vpm-normals: error: standard input: the element 'vertex' has no properties
+2> vpm-normals: error: standard input: the header says 9000000000 x vertex, but the file has only 109 bytes; it is truncated or damaged
+2> vpm-normals: error: standard input: two fields hold x of its points: x and X
 [1]
-$ head='ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n'; for t in '' '0 0 1 0 0 -1\n' '0 0 1 0 0 -1\n0 0 1 0 0\n' '0 0 1 0 0 -1\n0 0 1 0 0 up\n' '0 0 1 0 0 -1\n0 1 1 0 0 -1 7\n' '0 0 1 0 0 -1\n0 1 1 0 0 -1\n0 2 1 0 0 -1\n' '0 0 1 0 0 -1\n0 0 1 0 0 -1\n' 'nan 0 1 0 0 -1\nnan 0 1 0 0 -1\n' '0 0 1 0 0 0\n0 1 1 0 0 0\n'; do printf "$head$t" | vpm-normals - -o x.vpmc; done
-2> vpm-normals: error: standard input: PLY is truncated: 2 of element 'vertex' cannot fit into the file
-2> vpm-normals: error: standard input: PLY is truncated: 2 of element 'vertex' cannot fit into the file
-2> vpm-normals: error: standard input: PLY vertex 1 has fewer numbers in its line than the header says
-2> vpm-normals: error: standard input: PLY vertex 1: 'up' is not a number
-2> vpm-normals: error: standard input: PLY vertex 1 has more numbers in its line than the header says
-2> vpm-normals: error: standard input: PLY has more rows than its header says
+$ head='ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n'; for t in '' '0 0 1 0 0 -1\n' '0 0 1 0 0 -1\n0 0 1 0 0\n' '0 0 1 0 0 -1\n0 0 1 0 0 up\n' '0 0 1 0 0 -1\n0 1 1 0 0 -1 7\n' '0 0 1 0 0 -1\n0 1 1 0 0 -1\n0 2 1 0 0 -1\n' '0 0 1 0 0 -1\n0 0 1 0 0 -1\n' 'nan 0 1 0 0 -1\nnan 0 1 0 0 -1\n' '0 0 1 0 0 0\n0 1 1 0 0 0\n'; do printf "$head$t" | vpm-normals - -o x.vpmc --force; done
+2> vpm-normals: error: standard input: the header says 2 x vertex, but the file has only 154 bytes; it is truncated or damaged
+2> vpm-normals: error: standard input: the header says 2 x vertex, but the file has only 167 bytes; it is truncated or damaged
+2> vpm-normals: error: standard input: line 12: a value is missing
+2> vpm-normals: error: standard input: line 12: a value is 'up', which is not a number
+2> vpm-normals: warning: standard input: line 12 holds more numbers than the header says; they are not read
+2> vpm-normals: warning: standard input: the header counts 2 x vertex, but more follows in line 13, which is not read
 2> vpm-normals: error: standard input: all points are at one place; their spacing, which tells the size of the surface that each stands for, is not known
 2> vpm-normals: error: standard input: no point with a finite position and normal
 2> vpm-normals: error: standard input: all its normals are zero, as in files of 3D Gaussian splats; estimate them first, or give the depth image

@@ -83,7 +83,7 @@ $ echo hello | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: standard input: neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY by its content; give a depth image or a cloud
 [1]
 $ printf 'ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n' | vpm-normals - -o x.vpmc
-2> vpm-normals: error: standard input: points without a grid need normals (PCD: normal_x normal_y normal_z; PLY: nx ny nz); estimate them first, or give the depth image
+2> vpm-normals: error: standard input: points without a grid need normals (normal_x normal_y normal_z, or nx ny nz); estimate them first, or give the depth image
 [1]
 $ printf 'VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1000000\nHEIGHT 60\nPOINTS 60000000\nDATA binary\n' | vpm-normals - -o x.vpmc
 2> vpm-normals: error: standard input: PCD is truncated: 720000000 bytes of points promised, 0 there

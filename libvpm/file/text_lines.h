@@ -10,11 +10,19 @@
 #include "libvpm/core/vec3.h"
 #include "libvpm/file/text.h"
 
-namespace vpm {
+namespace vpm::file {
 
 // Returns the text without the NULs and Ctrl-Zs at its end, and the blanks among them. Some
 // programs pad files with NULs, and those of DOS mark the end of a text with Ctrl-Z.
 std::string_view without_padding(std::string_view text);
+// True if binary data may be followed by these bytes, which mean nothing: ends of lines and
+// padding.
+bool is_padding(std::string_view bytes);
+
+// Throws Error(refused) if the header promises more than the file can hold: `least_bytes` for
+// `what`.
+void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
+                         std::size_t file_bytes);
 
 // A character at the end of a line that goes on in the next one.
 struct Continuation {
@@ -29,7 +37,7 @@ class TextLines {
   TextLines(std::string_view text, std::string name, char comment, Continuation continuation = {});
 
   // Moves to the next line that has a word; false at the end of the text. Lines end in LF, CRLF or
-  // CR (file::TextCursor).
+  // CR (TextCursor).
   bool next_line();
   // Moves like next_line(), but throws Error(refused) at the end: "ends where <what> should
   // follow".
@@ -60,7 +68,7 @@ class TextLines {
   bool may_continue(std::string_view line) const;
   [[noreturn]] void refuse_missing(const char* what) const;
 
-  file::TextCursor cursor_;
+  TextCursor cursor_;
   std::string name_;
   char comment_;
   Continuation continuation_;
@@ -70,4 +78,4 @@ class TextLines {
   std::string_view rest_;  // rest of the line
 };
 
-}  // namespace vpm
+}  // namespace vpm::file

@@ -1,4 +1,4 @@
-#include "libvpm/import/scalar_type.h"
+#include "libvpm/file/scalar_type.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace vpm {
+namespace vpm::file {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
@@ -61,4 +61,4 @@ double read_scalar(const std::byte* from, ScalarType type, bool big_endian) {
   }
 }
 
-}  // namespace vpm
+}  // namespace vpm::file

@@ -1,4 +1,4 @@
-#include "libvpm/mesh/text_lines.h"
+#include "libvpm/file/text_lines.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,7 +9,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/core/number_list.h"
 
-namespace vpm {
+namespace vpm::file {
 namespace {
 
 constexpr std::size_t kLongestShown = 40;
@@ -35,7 +35,7 @@ std::string_view first_word(std::string_view line) {
 }
 
 std::string quoted(std::string_view word) {
-  return "'" + file::shown(word, kLongestShown) + "'";
+  return "'" + shown(word, kLongestShown) + "'";
 }
 
 }  // namespace
@@ -45,6 +45,20 @@ std::string_view without_padding(std::string_view text) {
   const std::size_t last = text.find_last_not_of(kPaddingOrBlank);
   const std::size_t end = last == text.npos ? 0 : last + 1;
   return text.substr(0, text.find_first_of(kPadding, end));
+}
+
+bool is_padding(std::string_view bytes) {
+  constexpr std::string_view kPadding("\0\x1a\r\n", 4);
+  return bytes.find_first_not_of(kPadding) == bytes.npos;
+}
+
+void check_header_counts(const std::string& name, const std::string& what, double least_bytes,
+                         std::size_t file_bytes) {
+  if (least_bytes > static_cast<double>(file_bytes)) {
+    refuse("the header says " + what + ", but the file has only " + std::to_string(file_bytes) +
+               " bytes; it is truncated or damaged",
+           name);
+  }
 }
 
 TextLines::TextLines(std::string_view text, std::string name, char comment,
@@ -114,7 +128,8 @@ double TextLines::to_number(std::string_view given, const char* what) const {
   double value = 0;
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || fault == std::errc::invalid_argument) {
-    refuse_here(std::string(what) + " is " + quoted(given) + ", which is not a number");
+    refuse_here(std::string(what) + " is " + quoted(given) + ", which is not a number" +
+                cure_of_number(given));
   }
   // Beyond the range of doubles, strtod tells tiny numbers (rounded) from huge ones (infinite).
   if (fault == std::errc::result_out_of_range)
@@ -155,4 +170,4 @@ void TextLines::refuse_here(const std::string& defect) const {
   refuse(defect, name_ + ": line " + std::to_string(line_number_));
 }
 
-}  // namespace vpm
+}  // namespace vpm::file

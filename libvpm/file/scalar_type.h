@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vpm {
+namespace vpm::file {
 
 // Type of a binary number: kind 'F' (float), 'I' (signed), 'U' (unsigned); size in bytes.
 struct ScalarType {
@@ -17,4 +17,4 @@ bool is_known(ScalarType type);
 // Returns the number at `from`; also a half float, which is no known type of clouds.
 double read_scalar(const std::byte* from, ScalarType type, bool big_endian);
 
-}  // namespace vpm
+}  // namespace vpm::file
