@@ -10,9 +10,9 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/foreign_content.h"
-#include "libvpm/file/json_text.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/calibration_fields.h"
+#include "libvpm/import/calibration_text.h"
 #include "libvpm/import/scan_facts.h"
 
 namespace vpm {
@@ -28,10 +28,11 @@ struct Candidate {
   std::string hint;   // how to mend that
 };
 
-// Returns the numbers of a list, of a list of lists, or of an object's "data".
+// Returns the numbers of a list, of a list of lists, of an object's "data", or of a text "1 0 0".
 std::vector<double> numbers_of(const json& value) {
   if (value.is_object())
     return value.contains("data") ? numbers_of(value["data"]) : std::vector<double>{};
+  if (value.is_string()) return plain_numbers(value.get_ref<const std::string&>());
   std::vector<double> numbers;
   if (value.is_number()) numbers.push_back(value.get<double>());
   if (!value.is_array()) return numbers;
@@ -112,19 +113,30 @@ struct Affixes {
   std::string before, behind;
 };
 
-std::optional<Intrinsics> from_numbers(const Fields& fields, const std::string& before) {
+// Sets the candidate to the camera of four numbers with names; returns false if one is missing.
+bool take_numbers(const Fields& fields, const std::string& before, Candidate& candidate) {
   const auto fx = fields.number({before + "fx", before + "flx", before + "focalx"}),
              fy = fields.number({before + "fy", before + "fly", before + "focaly"}),
              cx = fields.number({before + "cx", before + "ppx"}),
              cy = fields.number({before + "cy", before + "ppy"});
-  if (!fx || !fy || !cx || !cy) return std::nullopt;
-  return Intrinsics{*fx, *fy, *cx, *cy};
+  if (!fx || !fy || !cx || !cy) return false;
+  candidate.file.intrinsics = {*fx, *fy, *cx, *cy};
+  if (!fields.number({before + "fx"}) && fields.number({before + "flx"})) {
+    candidate.file.intrinsics.cx -= 0.5;
+    candidate.file.intrinsics.cy -= 0.5;
+    candidate.file.remarks.push_back(
+        {false,
+         "fl_x is a key of nerfstudio, to which the first pixel's centre is 0.5, 0.5 and not "
+         "0, 0: its intrinsics are " +
+             intrinsics_text(candidate.file.intrinsics) + " here"});
+  }
+  return true;
 }
 
 // Sets the candidate to the first matrix, or list, of one camera; returns false if there is none.
 bool take_matrices(const Fields& fields, const std::string& behind, Candidate& candidate) {
   for (const char* key : {"k", "m", "cameramatrix", "intrinsicmatrix", "camk", "camera.k",
-                          "intrinsics", "intrinsic"}) {
+                          "intrinsics", "intrinsic", "p"}) {
     const Fields::Field* const field = fields.find({key + behind});
     if (!field) continue;
     const std::vector<double> numbers = numbers_of(*field->value);
@@ -236,16 +248,14 @@ void append_candidate(const Fields& fields, const Affixes& camera, Candidate can
 void find_in_object(const Fields& fields, const std::string& path, std::vector<Candidate>& found) {
   const std::size_t before = found.size();
   for (const std::string prefix : {"", "camera.", "camera1.", "camera2."}) {
-    const auto intrinsics = from_numbers(fields, prefix);
-    if (!intrinsics) continue;
     Candidate candidate;
     candidate.path = path;
-    candidate.file.intrinsics = *intrinsics;
+    if (!take_numbers(fields, prefix, candidate)) continue;
     if (!prefix.empty())
       candidate.path += (path.empty() ? "" : ".") + prefix.substr(0, prefix.find('.'));
     append_candidate(fields, {prefix, ""}, std::move(candidate), found);
   }
-  for (const std::string suffix : {"", "0", "1", "2", "3", "4"}) {
+  for (const std::string suffix : {"", "0", "1", "2", "3", "4", "00", "01", "02", "03"}) {
     if (found.size() > before && (suffix.empty() || found.back().path == path)) return;
     Candidate candidate;
     candidate.path = path;
@@ -282,33 +292,6 @@ const Candidate& chosen(const std::vector<Candidate>& candidates, const std::str
     refuse("it holds several cameras: " + file::shown(paths, 200), name,
            "give the numbers of one as `intrinsics` fx,fy,cx,cy");
   return *depth.front();
-}
-
-// Returns the numbers of a text that holds nothing else; empty otherwise.
-std::vector<double> plain_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  file::TextCursor cursor(text);
-  while (const auto line = cursor.line()) {
-    std::string row(line->substr(0, line->find('#')));
-    for (char& c : row)
-      if (c == ',' || c == ';' || c == '[' || c == ']') c = ' ';
-    for (const std::string_view word : file::split_words(row)) {
-      const std::optional<double> number = file::to_number(word);
-      if (!number) return {};
-      numbers.push_back(*number);
-    }
-  }
-  return numbers;
-}
-
-json parse_calibration(std::string_view text, const std::string& name) {
-  const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
-  if (!text.substr(first).starts_with('{')) return parse_yaml(text, name);
-  try {
-    return file::parse_json(text);
-  } catch (const Error& fault) {
-    refuse(fault.problem(), name, fault.hint());
-  }
 }
 
 // Refuses what is no calibration by its first bytes: XML of OpenCV, UTF-16, archives, web pages.

@@ -31,7 +31,8 @@ struct IntrinsicsFile {
 
 // Parses one of these, in UTF-8 with or without a byte order mark:
 //   text   four numbers fx fy cx cy, or a matrix of 3x3, 3x4 or 4x4, separated by blanks, commas
-//          and line ends
+//          and line ends; or these with names: lines "fx = 150", "K: 150 0 …" (KITTI), or a line of
+//          names over one of numbers
 //   JSON   or YAML of which an object has fx, fy, cx, cy (RealSense: ppx, ppy; ORB-SLAM:
 //          Camera.fx; nerfstudio: fl_x, fl_y), a matrix called K, camera_matrix, intrinsic_matrix
 //          or intrinsics (ROS camera_info, Open3D, OpenCV; M1 of a pair), or a list intrinsics of

@@ -39,6 +39,33 @@ TEST(IntrinsicsFile, ReadsText) {
       "525 526 319.5 239.5\n");
 }
 
+TEST(IntrinsicsFile, ReadsNumbersWithNames) {
+  expect_camera("fx = 525\nfy = 526\ncx = 319.5\ncy = 239.5\n");
+  expect_camera("fx 525\r\nfy 526\r\n\r\ncx 319.5\r\ncy 239.5  # px\r\nwidth 640\r\nheight 480",
+                640, 480);
+  expect_camera("width,height,fx,fy,cx,cy\n640,480,525,526,319.5,239.5\n", 640, 480);
+  expect_camera("fx: 525, fy: 526, cx: 319.5, cy: 239.5");
+  const std::string p = "525 0 319.5 ", q = " 0 526 239.5 0 0 0 1 ";
+  expect_camera("calibrated: 9\nP0: " + p + "0" + q + "0\n");  // KITTI
+  expect_camera("K_00: 525 0 319.5 0 526 239.5 0 0 1\nD_00: 0 0 0 0 0\n");
+#ifdef VPM_TESTS_YAML
+  expect_camera("calib_time: 09-Jan-2012 13:57:47\nK_00: 525 0 319.5 0 526 239.5 0 0 1\n");
+#endif
+  EXPECT_TRUE(says(refused("P2: " + p + "45" + q + "0.003\n"), "`intrinsics` 525,526,319.5,239.5"));
+  EXPECT_TRUE(says(refused("P0: " + p + "0" + q + "0\nP1: " + p + "-386" + q + "0\n"),
+                   "several cameras: P0, P1"));
+  EXPECT_TRUE(says(refused("fx 1\nfx 2\nfy 1\ncx 1\ncy 1\n"), "gives fx twice"));
+}
+
+TEST(IntrinsicsFile, PixelsOfNerfstudioHaveTheirCentresAtHalves) {
+  const IntrinsicsFile read = parse(R"({"fl_x": 525, "fl_y": 526, "cx": 320, "cy": 240})");
+  EXPECT_EQ(read.intrinsics.cx, 319.5);
+  EXPECT_EQ(read.intrinsics.cy, 239.5);
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_FALSE(read.remarks[0].is_warning);
+  EXPECT_TRUE(says(read.remarks[0].text, "525,526,319.5,239.5 here"));
+}
+
 TEST(IntrinsicsFile, RefusesMatricesOfDisplacedCameras) {
   for (const char* text :
        {"525 0 319.5 45  0 526 239.5 0  0 0 1 0", "525 0 319.5 0  0 526 239.5 0  0 0 1 0.1",
