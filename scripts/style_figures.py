@@ -11,10 +11,10 @@ import collections
 import pathlib
 import re
 import statistics
-import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOURCES = ("examples", "libvpm", "tests", "tools")
 ENDINGS = {".h", ".cpp", ".cu", ".cuh"}
 FRAGMENTS = ("Of", "What", "Whether", "By", "Nor")
 QUERY_FOLDERS = ("measure", "scene", "backend", "temporal", "query", "surface")
@@ -23,10 +23,9 @@ STRING = re.compile(r'"(?:\\.|[^"\\])*"|(?<!\w)\'(?:\\.|[^\'\\])+\'')
 
 
 def source_files(folders):
-    """Returns the paths, relative to ROOT, of all C++ and CUDA files that git knows."""
-    names = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "--", *folders], cwd=ROOT,
-                           check=True, capture_output=True, text=True).stdout.splitlines()
-    return [name for name in names if pathlib.Path(name).suffix in ENDINGS and (ROOT / name).exists()]
+    """Returns the paths, relative to ROOT, of all C++ and CUDA files in the folders, or in all that hold sources."""
+    paths = [path for folder in folders or SOURCES for path in (ROOT / folder).rglob("*")]
+    return sorted(str(path.relative_to(ROOT)) for path in paths if path.suffix in ENDINGS)
 
 
 def read_lines(name):
