@@ -13,6 +13,7 @@
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
 #include "libvpm/import/import_cloud.h"
+#include "libvpm/import/normal_checks.h"
 #include "libvpm/import/pinhole_fit.h"
 #include "libvpm/import/point_files.h"
 #include "libvpm/import/remark.h"
@@ -101,20 +102,6 @@ struct ScatteredScan {
   Remarks remarks;
 };
 
-std::string percent_text(std::size_t part, std::size_t whole) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.3g %%",
-                100 * static_cast<double>(part) / static_cast<double>(whole));
-  return text;
-}
-
-double median_radius(const Cloud& cloud) {
-  std::vector<float> radii = cloud.radii;
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  return *middle;
-}
-
 void refuse_missing_normals(const PointSet& points, const std::string& name) {
   if (points.normals.empty()) {
     refuse("points without a grid need normals (normal_x normal_y normal_z, or nx ny nz)", name,
@@ -125,84 +112,6 @@ void refuse_missing_normals(const PointSet& points, const std::string& name) {
     refuse("all its normals are zero, as in files of 3D Gaussian splats", name,
            "estimate them first, or give the depth image");
   }
-}
-
-// True if all points lie before a camera at the origin, within 60 degrees of its axis.
-bool are_as_of_a_camera(const PointSet& points) {
-  constexpr double kSlowest = 0.5;
-  return std::all_of(points.positions.begin(), points.positions.end(),
-                     [](const Vec3& p) { return !is_finite(p) || p.z >= kSlowest * norm(p); });
-}
-
-constexpr double kNearlyAll = 0.9;  // share of normals
-
-// Numbers of normals that face a place and that face away from it.
-struct Facing {
-  std::size_t towards = 0, away = 0;
-};
-
-Facing facing(const PointSet& points, const Vec3& place) {
-  Facing facing;
-  for (std::size_t i = 0; i < points.normals.size(); ++i) {
-    const double along = dot(place - points.positions[i], points.normals[i]);
-    facing.towards += along > 0 && along < HUGE_VAL;
-    facing.away += along < 0 && along > -HUGE_VAL;
-  }
-  return facing;
-}
-
-// True if points with a viewpoint stand in the world's frame, as some programs write them: nearly
-// all normals face the viewpoint as a point among them, and nearly none the origin, where the
-// sensor would be in the sensor's frame.
-bool are_in_world(const PointSet& points, bool are_flipped) {
-  const auto share = [&](const Vec3& place) {
-    const Facing f = facing(points, place);
-    return static_cast<double>(are_flipped ? f.away : f.towards) /
-           static_cast<double>(points.normals.size());
-  };
-  return points.viewpoint && !points.normals.empty() &&
-         share(points.viewpoint->translation) >= kNearlyAll && share({}) <= 1 - kNearlyAll;
-}
-
-// Returns a warning if nearly all normals face away from the origin, where the sensor was if the
-// file has a viewpoint, and may have been if all points lie before a camera there. Points of no
-// such view cannot be judged.
-Remarks facing_away(const PointSet& points, bool are_flipped) {
-  if (!points.viewpoint && !are_as_of_a_camera(points)) return {};
-  const auto [towards, away] = facing(points, {});
-  const std::size_t all = towards + away;
-  if (all == 0 || static_cast<double>(away) < kNearlyAll * static_cast<double>(all)) return {};
-  const std::string sensor = points.viewpoint
-                                 ? "its VIEWPOINT, and so from the sensor"
-                                 : "the origin, before which all points lie as before a camera";
-  return {{true, percent_text(away, all) + " of its normals face away from " + sensor +
-                     "; normals must point into free space: " +
-                     (are_flipped ? "leave `flip` out" : "give `flip` to turn them")}};
-}
-
-// Returns a warning if many normals are opposite to others in the same small cube.
-Remarks facing_each_other(const Cloud& cloud) {
-  constexpr double kCubeOfRadius = 2, kOpposite = -0.5, kMany = 0.1;
-  const double side = kCubeOfRadius * median_radius(cloud);
-  if (!(side > 0)) return {};
-  const auto key = [&](const Vec3f& p) {
-    std::size_t value = 0;
-    for (const float coordinate : {p.x, p.y, p.z})
-      value = value * 1'000'003 +
-              static_cast<std::size_t>(static_cast<std::int64_t>(std::floor(coordinate / side)));
-    return value;
-  };
-  std::unordered_map<std::size_t, Vec3f> first_of_cube;
-  std::size_t opposite = 0;
-  for (std::size_t k = 0; k < cloud.size(); ++k) {
-    const Vec3f first =
-        first_of_cube.try_emplace(key(cloud.positions[k]), cloud.normals[k]).first->second;
-    opposite += dot(widen(first), widen(cloud.normals[k])) < kOpposite;
-  }
-  if (static_cast<double>(opposite) < kMany * static_cast<double>(cloud.size())) return {};
-  return {{true, "normals of neighbouring points face opposite ways (" +
-                     percent_text(opposite, cloud.size()) +
-                     " do), as if they were never oriented; all must point into free space"}};
 }
 
 // Returns a warning if float32 coordinates of the file are too coarse for the points' spacing.
@@ -234,7 +143,7 @@ ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
   if (scan.without_normal > 0)
     scan.remarks.push_back(
         {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
-  append(scan.remarks, facing_each_other(scan.cloud));
+  append(scan.remarks, improbable_normals(scan.cloud));
   append(scan.remarks, coarse_coordinates(points, scan.cloud));
   return scan;
 }

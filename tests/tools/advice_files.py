@@ -213,6 +213,7 @@ def write_clouds(folder):
         "away.pcd": pcd(points, normals=away, **one_row), "points.ply": ply(points, toward), "bare.ply": ply(points),
         "zero.ply": ply(points, none), "far_point.ply": ply([*points, (1e7, 0, 0)], [*toward, (0, 0, -1)]),
         "coarse.ply": binary_ply([(x + 1e5, y, z) for x, y, z in points], toward),
+        "coded.ply": ply(points, [((x + 1) / 2, (y + 1) / 2, (z + 1) / 2) for x, y, z in toward]),
         "points.xyz": ply(points, toward).split("end_header\n")[1],
         "double.ply": ply([(x + 1e5, y, z) for x, y, z in points], toward, "double"),
     }

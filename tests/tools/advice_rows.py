@@ -137,6 +137,7 @@ SCANS = [
     ("old.pcd", "write version 0.7", "grid.pcd", WALL),
     ("bare.ply", "estimate them first", "points.ply", POINTS),
     ("bare.ply", "or give the depth image", f"wall.pgm {CAMERA}", WALL),
+    ("coded.ply", "Give them in the frame of the points, as -1 to 1", "points.ply", POINTS),
     ("points.xyz", "save points as PLY or PCD, with their normals", "points.ply", POINTS),
     ("points.xyz", "and a depth image as NPY, PFM, TIFF or 16-bit PNG", f"wall.pgm {CAMERA}", WALL),
     ("zero.ply", "estimate them first", "points.ply", POINTS),

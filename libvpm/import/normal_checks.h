@@ -1,0 +1,27 @@
+// Judges the normals that other programs gave to points.
+#pragma once
+
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/import/point_files.h"
+#include "libvpm/import/remark.h"
+
+namespace vpm {
+
+// Returns the median of the radii of the cloud's disks, m.
+double median_radius(const Cloud& cloud);
+
+// Returns a warning if normals are opposite to others beside them on the same surface, and one if
+// they lie off the surfaces that the points form.
+Remarks improbable_normals(const Cloud& cloud);
+
+// True if points with a viewpoint stand in the world's frame, as some programs write them: nearly
+// all normals face the viewpoint as a point among them, and nearly none the origin, where the
+// sensor would be in the sensor's frame.
+bool are_in_world(const PointSet& points, bool are_flipped);
+
+// Returns a warning if nearly all normals of the points that are seen from the origin face away
+// from it, where the sensor was if the file has a viewpoint, and may have been if all points lie
+// before a camera there. Points of no such view cannot be judged.
+Remarks facing_away(const PointSet& points, bool are_flipped);
+
+}  // namespace vpm
