@@ -82,7 +82,7 @@ std::size_t count_opposite(const Cloud& cloud, std::span<const std::size_t> poin
 void compare_with_plane(const Cloud& cloud, std::span<const std::size_t> points,
                         std::vector<float>& cosines) {
   constexpr std::size_t kFewest = 6;
-  constexpr float kFlat = 0.01F, kWide = 0.1F;  // of eigenvalues that sum to 1
+  constexpr float kFlat = 0.01F, kWide = 0.1F;  // eigenvalues sum to 1
   if (points.size() < kFewest) return;
   Vec3 mean;
   for (const std::size_t k : points) mean = mean + widen(cloud.positions[k]);

@@ -250,8 +250,6 @@ void PcdParser::find_columns() {
   const PointColumns columns = point_columns(names, name_);
   for (std::size_t c = 0; c < kPointColumns; ++c)
     if (columns[c]) column_[c] = &header_.fields[*columns[c]];
-  points_.are_float32 =
-      header_.encoding != "ascii" && column_[0]->type.kind == 'F' && column_[0]->type.size == 4;
 }
 
 void PcdParser::allocate() {

@@ -44,10 +44,6 @@ const PlyElement& vertices_of(const PlyHeader& header, const std::string& name) 
   return *vertices;
 }
 
-bool is_float32(const PlyProperty& property) {
-  return property.type.kind == 'F' && property.type.size == 4;
-}
-
 }  // namespace
 
 PointSet parse_ply_points(std::span<const std::byte> bytes, const std::string& name) {
@@ -59,9 +55,6 @@ PointSet parse_ply_points(std::span<const std::byte> bytes, const std::string& n
   points.width = static_cast<std::uint32_t>(vertices.count);
   points.positions.resize(vertices.count);
   if (std::ranges::count(columns, 3) > 0) points.normals.resize(vertices.count);
-  const auto x = static_cast<std::size_t>(std::ranges::find(columns, 0) - columns.begin());
-  points.are_float32 =
-      header.encoding != file::PlyEncoding::text && is_float32(vertices.properties[x]);
 
   PlyBody body(text, header, name);
   for (const PlyElement& element : header.elements) {

@@ -21,7 +21,6 @@ struct PointSet {
   std::vector<Vec3> positions;          // width * height
   std::vector<Vec3> normals;            // as many, or none; of any length
   std::optional<Pose> viewpoint;        // frame of the points to world, if the file tells it
-  bool are_float32 = false;             // positions are float32 numbers in the file
   Remarks remarks;                      // warnings of data that the header does not count
 
   bool organised() const { return height > 1; }

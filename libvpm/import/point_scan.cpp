@@ -12,6 +12,7 @@
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
+#include "libvpm/core/rounding.h"
 #include "libvpm/import/import_cloud.h"
 #include "libvpm/import/normal_checks.h"
 #include "libvpm/import/pinhole_fit.h"
@@ -114,19 +115,18 @@ void refuse_missing_normals(const PointSet& points, const std::string& name) {
   }
 }
 
-// Returns a warning if float32 coordinates of the file are too coarse for the points' spacing.
-Remarks coarse_coordinates(const PointSet& points, const Cloud& cloud) {
+// Returns a warning if the numbers that the points were written with, m, are too coarse for their
+// spacing.
+Remarks coarse_coordinates(const Coarseness& numbers, const Cloud& cloud) {
   constexpr double kMostRounding = 1.0 / 16;  // part of the sampling radius
-  if (!points.are_float32) return {};
-  double farthest = 0;
-  for (const Vec3& p : points.positions)
-    if (is_finite(p)) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  const double rounding = 0.5 * std::numeric_limits<float>::epsilon() * farthest;
+  const double rounding = 0.5 * numbers.step;
   if (rounding <= kMostRounding * median_radius(cloud)) return {};
-  return {{true, "its coordinates are float32 up to " + metres_text(farthest) +
-                     " from the origin, rounded there by up to " + metres_text(rounding) +
-                     ", too much for the points' spacing: the shape is lost; write them as double, "
-                     "or nearer to the origin"}};
+  return {{true, std::string("its coordinates are ") + numbers.numbers() + " up to " +
+                     metres_text(numbers.farthest) + " from the origin, rounded there by up to " +
+                     metres_text(rounding) +
+                     ", too much for the points' spacing: the shape is lost; write them " +
+                     (numbers.is_decimal ? "with more digits" : "as double") +
+                     ", or nearer to the origin"}};
 }
 
 // Returns the cloud of points in metres. Throws Error(refused), naming `name`, for points without
@@ -144,7 +144,6 @@ ScatteredScan scan_of_scattered(const PointSet& points, const Pose& to_world,
     scan.remarks.push_back(
         {false, std::to_string(scan.without_normal) + " points have no normal and are left out"});
   append(scan.remarks, improbable_normals(scan.cloud));
-  append(scan.remarks, coarse_coordinates(points, scan.cloud));
   return scan;
 }
 
@@ -213,11 +212,17 @@ ImportedScan scan_of_view(const OrganisedView& view, const ToldPose& told, const
 ImportedScan scan_without_camera(PointSet points, const ToldPose& told, const std::string& name,
                                  const ImportOptions& options, double units_per_metre) {
   const Pose to_world = told.pose ? with_own_axes(*told.pose, options.axes) : Pose{};
+  std::optional<Coarseness> numbers = coarseness_of(points.positions, 0);
   points = in_own_axes(std::move(points), options.axes);
   for (Vec3& p : points.positions) p = p / units_per_metre;
   if (options.flip)
     for (Vec3& n : points.normals) n = -n;
   ScatteredScan read = scan_of_scattered(points, to_world, name);
+  if (numbers) {
+    numbers->farthest /= units_per_metre;
+    numbers->step /= units_per_metre;
+    append(read.remarks, coarse_coordinates(*numbers, read.cloud));
+  }
   // A file with a viewpoint has its sensor at the origin of its frame, which normals must face.
   if (!told.is_among_points) append(read.remarks, facing_away(points, options.flip));
   ImportedScan scan;

@@ -23,7 +23,7 @@ constexpr double kSmallestExtent = 1e-30, kLargestExtent = 1e30;
 // Least volume relative to area times diagonal. Rounding gives a flat closed mesh about 1e-16; the
 // thinnest plate worth packing has far more.
 constexpr double kFlat = 1e-12;
-constexpr const char* kMoveToOrigin = "move it to the origin before it is saved in such floats";
+constexpr const char* kMoveToOrigin = "move it to the origin before it is saved in such numbers";
 constexpr std::size_t kPlacesShown = 3, kRimPlacesShown = 4;
 
 std::string text_of(Vec3 p) {
@@ -499,7 +499,7 @@ CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options,
     throw Error(ErrorKind::invalid_argument,
                 "must lie between 0 and 0.1; it is a share of the mesh's diagonal", "weld");
   }
-  const std::string coarse = coarse_floats(mesh);
+  const std::string coarse = coarse_coordinates(mesh);
   try {
     CheckedSolid checked = Check(mesh, options, progress).run();
     if (!coarse.empty()) checked.warnings.push_back(coarse + "; " + kMoveToOrigin);

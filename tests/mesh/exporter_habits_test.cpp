@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 #include "libvpm/synthetic/shapes.h"
@@ -404,6 +405,24 @@ TEST(FarFromTheOrigin, TheLossOfFloatsIsSaid) {
       solid_of(as_binary_stl(moved(make_cube(0.5), {1 << 20, 0, 0})), "a.stl");
   ASSERT_EQ(coarse.warnings.size(), 1U);
   EXPECT_NE(coarse.warnings[0].find("coarse for a mesh that is 0.866 across"), far.npos);
+  // A ball in text of six digits, as %g and C++ streams write it.
+  const Solid ball = moved(synthetic::make_icosphere(0.1, 3), {1e4, 0, 0});
+  std::string digits;
+  for (const Vec3& p : ball.vertices) {
+    char line[100];
+    std::snprintf(line, sizeof line, "v %g %g %g\n", p.x, p.y, p.z);
+    digits += line;
+  }
+  const std::string faces = as_obj(ball).substr(as_obj(ball).find("f "));
+  try {
+    EXPECT_NE(
+        all_of(solid_of(digits + faces, "a.obj").warnings).find("numbers of six digits are 0.1"),
+        far.npos);
+  } catch (const Error& fault) {
+    EXPECT_NE(std::string(fault.what()).find("numbers of six digits are 0.1"), far.npos)
+        << fault.what();
+  }
+  EXPECT_TRUE(solid_of(as_obj(ball), "a.obj").warnings.empty());
   // Doubles are fine enough there, and floats are near the origin.
   EXPECT_TRUE(solid_of(as_obj(moved(make_cube(0.3), {4.65e6, 1e3, 20})), "a.obj").warnings.empty());
   EXPECT_TRUE(solid_of(as_binary_stl(make_cube(0.3)), "a.stl").warnings.empty());
