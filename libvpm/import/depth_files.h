@@ -54,7 +54,7 @@ void check_image_size(std::uint64_t width, std::uint64_t height, const std::stri
 void check_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t file_bytes,
                         const std::string& name);
 
-// Returns the number as short as "%g" writes it, for messages.
+// Returns the shortest text that reads back as the number, or as the float if it is one.
 std::string number_text(double value);
 
 // Tells of a file that goes on after its first image.

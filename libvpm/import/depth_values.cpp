@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -131,29 +132,52 @@ Remarks coding_suspicions(std::span<const float> values) {
   return {};
 }
 
-// Returns a warning if the largest value, of those up to `farthest`, is on many pixels and far from
-// all others, like a marker for "nothing there" or the range's end.
-Remarks marker_suspicions(std::span<const float> values, double farthest) {
-  constexpr float kFar = 2;            // times the next smaller value
-  constexpr std::size_t kShare = 100;  // one pixel of so many
-  float largest = 0, next = 0;
-  std::size_t count = 0;
+// A value at the end of an image's range, with the next one to it.
+struct EndOfRange {
+  float value = 0, next = 0;  // `next` is 0 if there is no other value
+  std::size_t count = 0;      // pixels with the value
+};
+
+// Returns the end of the values, up to `farthest`, of which none is nearer to the end by
+// `is_beyond`.
+template <class IsBeyond>
+EndOfRange end_of(std::span<const float> values, double farthest, const IsBeyond& is_beyond) {
+  EndOfRange end;
   for (const float value : values) {
-    if (!is_value(value) || value < next || value > farthest) continue;
-    if (value > largest) {
-      next = largest;
-      largest = value;
-      count = 0;
-    } else if (value < largest) {
-      next = value;
+    if (!is_value(value) || value > farthest) continue;
+    if (end.value == 0 || is_beyond(value, end.value)) {
+      end.next = end.value;
+      end.value = value;
+      end.count = 0;
+    } else if (value != end.value && (end.next == 0 || is_beyond(value, end.next))) {
+      end.next = value;
     }
-    count += value == largest;
+    end.count += value == end.value;
   }
-  if (next == 0 || largest < kFar * next || count * kShare < values.size()) return {};
-  const std::string marker = number_text(largest);
-  return {{true, pixels_text(count) + " hold " + marker + ", and no other is above " +
-                     number_text(next) + "; if that marks what was not measured, give `invalid` " +
-                     marker}};
+  return end;
+}
+
+// Returns a warning if the largest value, of those up to `farthest`, or the smallest one is on many
+// pixels and far from all others, like a marker for "nothing there" or the range's end. The
+// smallest must be nearer than a camera measures.
+Remarks marker_suspicions(std::span<const float> values, double farthest, double units_per_metre) {
+  constexpr float kFar = 2, kNear = 10;  // times the next one
+  constexpr double kNearest = 0.1;       // m
+  constexpr std::size_t kShare = 100;    // one pixel of so many
+  const auto warning = [](const EndOfRange& end, const char* side) {
+    const std::string marker = number_text(end.value);
+    return Remarks{{true, pixels_text(end.count) + (end.count == 1 ? " holds " : " hold ") +
+                              marker + ", and no other is " + side + " " + number_text(end.next) +
+                              "; if that marks what was not measured, give `invalid` " + marker}};
+  };
+  const EndOfRange low = end_of(values, farthest, std::less<>());
+  if (low.next > kNear * low.value && low.count * kShare >= values.size() &&
+      low.value < kNearest * units_per_metre)
+    return warning(low, "below");
+  const EndOfRange high = end_of(values, farthest, std::greater<>());
+  if (high.next > 0 && high.value >= kFar * high.next && high.count * kShare >= values.size())
+    return warning(high, "above");
+  return {};
 }
 
 // The largest 16-bit integer, the largest half, Blender's background, the largest float.
@@ -261,8 +285,11 @@ void along_optical_axis(DepthImage& image, const Intrinsics& intrinsics) {
 
 std::string number_text(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+  const auto as_float = static_cast<float>(value);
+  const auto [end, fault] = double{as_float} == value
+                                ? std::to_chars(text, text + sizeof text, as_float)
+                                : std::to_chars(text, text + sizeof text, value);
+  return {text, end};
 }
 
 DepthDecoding decoding_from_text(const std::string& text) {
@@ -304,7 +331,7 @@ DepthImage depth_in_metres_of(const RawDepth& raw, const Intrinsics& intrinsics,
   const double usual = reading.decoding.disparity ? 1 : raw.usual_units_per_metre();
   const double units_per_metre = reading.units_per_metre.value_or(usual);
   if (reading.looks_for_mistakes && !look_coded)
-    append(remarks, marker_suspicions(values, reading.farthest * units_per_metre));
+    append(remarks, marker_suspicions(values, reading.farthest * units_per_metre, units_per_metre));
   DepthImage image{raw.width, raw.height, std::move(values)};
   for (float& depth : image.depth) depth = depth_in_metres(depth, units_per_metre);
   if (reading.along_ray) along_optical_axis(image, intrinsics);

@@ -22,6 +22,22 @@ std::string size_text(const Camera& camera) {
   return std::to_string(camera.width) + " x " + std::to_string(camera.height) + " pixels";
 }
 
+// Returns what the principal point tells of an image in whose middle it is: its size, and the
+// intrinsics after that was scaled to this one's.
+std::string other_size_text(const Camera& camera) {
+  constexpr double kSameShape = 0.02;
+  const Intrinsics& k = camera.intrinsics;
+  const double across = (2 * k.cx + 1) / camera.width, down = (2 * k.cy + 1) / camera.height;
+  if (!(across > 0 && down > 0) || std::abs(across / down - 1) > kSameShape)
+    return "; are these the intrinsics of this image?";
+  const Intrinsics scaled{k.fx / across, k.fy / across, (k.cx + 0.5) / across - 0.5,
+                          (k.cy + 0.5) / across - 0.5};
+  return text_of(
+             "; it is the middle of %.0f x %.0f pixels, and if the image was scaled from that, ",
+             2 * k.cx + 1, 2 * k.cy + 1) +
+         "give `intrinsics` " + intrinsics_text(scaled);
+}
+
 // True if the numbers are parts of the image's size, as some programs write them.
 bool are_normalised(const Intrinsics& k) {
   constexpr double kLargestFocal = 5, kLargestCentre = 1;
@@ -84,6 +100,8 @@ Remarks improbable_depths(const ScanFacts& facts, const std::optional<double>& u
 
 Remarks improbable_intrinsics(const Camera& camera) {
   constexpr double kShortest = 0.2, kLongest = 5;  // times the image's width
+  constexpr double kOffCentre = 0.2;               // times the image's width or height
+  constexpr double kMostUnequal = 1.3;
   const Intrinsics& k = camera.intrinsics;
   const double width = camera.width, height = camera.height;
   if (are_normalised(k) && camera.width > 1) {
@@ -93,10 +111,18 @@ Remarks improbable_intrinsics(const Camera& camera) {
                        "size, give `intrinsics` " + intrinsics_text(pixels)}};
   }
   Remarks remarks;
-  if (!(k.cx >= 0 && k.cy >= 0 && k.cx < width && k.cy < height)) {
-    remarks.push_back({true, "the principal point of " + intrinsics_text(k) +
-                                 " lies outside of the image of " + size_text(camera) +
-                                 "; are these the intrinsics of this image's size?"});
+  const bool is_outside = !(k.cx >= 0 && k.cy >= 0 && k.cx < width && k.cy < height);
+  if (is_outside || std::abs(k.cx - (width - 1) / 2) > kOffCentre * width ||
+      std::abs(k.cy - (height - 1) / 2) > kOffCentre * height) {
+    remarks.push_back({true, "the principal point of " + intrinsics_text(k) + " lies " +
+                                 (is_outside ? "outside" : "far from the middle") +
+                                 " of the image of " + size_text(camera) +
+                                 other_size_text(camera)});
+  }
+  if (std::max(k.fx, k.fy) > kMostUnequal * std::min(k.fx, k.fy)) {
+    remarks.push_back(
+        {true, "the focal lengths of " + intrinsics_text(k) +
+                   " differ more than those of cameras; is their order fx,fy,cx,cy?"});
   }
   if (std::min(k.fx, k.fy) < kShortest * width || std::max(k.fx, k.fy) > kLongest * width) {
     remarks.push_back({true, "the focal lengths of " + intrinsics_text(k) +

@@ -73,6 +73,20 @@ TEST(DepthValues, AFarValueOnManyPixelsIsSaid) {
   EXPECT_TRUE(metres(image_of({1, 1, 1, 1}, 4, false)).remarks.empty()) << "a wall";
 }
 
+TEST(DepthValues, ANearValueOnManyPixelsIsSaid) {
+  const Metres read = metres(image_of({0.01F, 1, 0.01F, 1.5F}, 4, false));
+  ASSERT_EQ(read.remarks.size(), 1U);
+  EXPECT_TRUE(says(read.remarks[0].text, "2 pixels hold 0.01"));
+  EXPECT_TRUE(says(read.remarks[0].text, "`invalid` 0.01"));
+  // A flat wall is no marker beside one.
+  const Metres flat = metres(image_of({0.001F, 1, 1, 1}, 4, false));
+  ASSERT_EQ(flat.remarks.size(), 1U);
+  EXPECT_TRUE(says(flat.remarks[0].text, "`invalid` 0.001"));
+  EXPECT_TRUE(says(metres(image_of({10, 1000, 1500, 1200}, 4, true)).remarks.at(0).text,
+                   "1 pixel holds 10"));
+  EXPECT_TRUE(metres(image_of({0.3F, 1, 0.3F, 1.5F}, 4, false)).remarks.empty()) << "a box";
+}
+
 TEST(DepthValues, RotatedValuesAreNamedAndRead) {
   std::vector<float> values = slope(200);
   for (float& value : values) value *= 8;

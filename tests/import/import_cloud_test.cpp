@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "libvpm/core/error.h"
 #include "tests/import/test_files.h"
@@ -151,6 +152,53 @@ std::string said(const std::string& file, const ImportOptions& options = {}) {
 TEST(ImportCloud, CommentsAloneMakeNoPcd) {
   EXPECT_TRUE(says(refused("# made by hand\nmtllib a.mtl\nv 0 0 0\n"), "neither PNG"));
   EXPECT_TRUE(says(refused("# made by hand\n\nVERSION 0.7\n"), "PCD header"));
+}
+
+TEST(ImportCloud, SaysThatIntrinsicsAreThoseOfAnotherImage) {
+  const auto said_with = [](const Intrinsics& k) {
+    ImportOptions options;
+    options.intrinsics = k;
+    return said(depth_png(), options);
+  };
+  // The image has 20 x 16 pixels.
+  EXPECT_FALSE(says(said_with({15, 15, 9.5, 7.5}), "intrinsics"));
+  EXPECT_FALSE(says(said_with({15, 16, 11, 6}), "intrinsics"));
+  EXPECT_TRUE(
+      says(said_with({30, 30, 19.5, 15.5}),
+           "lies far from the middle of the image of 20 x 16 pixels; it is the middle of 40 "
+           "x 32 pixels, and if the image was scaled from that, give `intrinsics` "
+           "15,15,9.5,7.5"));
+  EXPECT_TRUE(says(said_with({60, 60, 39.5, 31.5}), "lies outside of the image"));
+  EXPECT_TRUE(says(said_with({60, 60, 39.5, 31.5}), "give `intrinsics` 15,15,9.5,7.5"));
+  EXPECT_TRUE(says(said_with({7.5, 7.5, 4.5, 3.5}), "give `intrinsics` 15,15,9.5,7.5"));
+  EXPECT_TRUE(says(said_with({15, 15, 0, 0}), "lies far from the middle"));
+  EXPECT_TRUE(says(said_with({15, 9.5, 15, 7.5}), "is their order fx,fy,cx,cy?"));
+}
+
+// Returns a PLY of a wall whose points are 10 mm apart, moved by `offset`, in this format of
+// printf.
+std::string wall_text(Vec3 offset, const char* format) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 400\nproperty double x\nproperty double y\n"
+      "property double z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n";
+  for (int k = 0; k < 400; ++k) {
+    const Vec3 p = offset + Vec3{0.01 * (k % 20), 0.01 * (k / 20), 1};
+    for (const double c : {p.x, p.y, p.z}) {
+      char number[40];
+      std::snprintf(number, sizeof number, format, c);
+      text += number + std::string(" ");
+    }
+    text += "0 0 -1\n";
+  }
+  return text;
+}
+
+TEST(ImportCloud, SaysThatNumbersAreTooCoarseForThePoints) {
+  const Vec3 far{10000.123, 5000.321, 0.5};
+  EXPECT_TRUE(says(said(wall_text(far, "%.6g")), "numbers of six digits up to 1e+04 m"));
+  EXPECT_TRUE(says(said(wall_text(far, "%.6g")), "write them with more digits"));
+  EXPECT_EQ(said(wall_text(far, "%.12g")), "");
+  EXPECT_EQ(said(wall_text({0.123, 0.321, 0.5}, "%.6g")), "");
 }
 
 TEST(ImportCloud, SaysWhichOptionsAreNotUsed) {

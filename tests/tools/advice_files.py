@@ -180,12 +180,12 @@ def pcd(points, width=WIDTH, height=HEIGHT, normals=None, viewpoint="0 0 0 1 0 0
     return head + "".join(" ".join(f"{x:.9g}" for x in row) + "\n" for row in rows)
 
 
-def ply(points, normals=None, kind="float"):
+def ply(points, normals=None, kind="float", digits=17):
     names = "x y z nx ny nz".split()[:6 if normals else 3]
     head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n"
     head += "".join(f"property {kind} {name}\n" for name in names) + "end_header\n"
     rows = [(*p, *n) for p, n in zip(points, normals)] if normals else points
-    return head + "".join(" ".join(f"{x:.17g}" for x in row) + "\n" for row in rows)
+    return head + "".join(" ".join(f"{x:.{digits}g}" for x in row) + "\n" for row in rows)
 
 
 def binary_ply(points, normals):
@@ -213,6 +213,7 @@ def write_clouds(folder):
         "away.pcd": pcd(points, normals=away, **one_row), "points.ply": ply(points, toward), "bare.ply": ply(points),
         "zero.ply": ply(points, none), "far_point.ply": ply([*points, (1e7, 0, 0)], [*toward, (0, 0, -1)]),
         "coarse.ply": binary_ply([(x + 1e5, y, z) for x, y, z in points], toward),
+        "digits.ply": ply([(x + 1e5, y, z) for x, y, z in points], toward, "double", 6),
         "coded.ply": ply(points, [((x + 1) / 2, (y + 1) / 2, (z + 1) / 2) for x, y, z in toward]),
         "points.xyz": ply(points, toward).split("end_header\n")[1],
         "double.ply": ply([(x + 1e5, y, z) for x, y, z in points], toward, "double"),

@@ -26,7 +26,7 @@ $ vpm-normals marked.pgm -o marked.vpmc --intrinsics 60,60,31.5,23.5
 $ vpm-normals marked.pgm -o marked.vpmc --intrinsics 60,60,31.5,23.5 --invalid none --force
 2> vpm-normals: warning: marked.pgm: 48 pixels hold 65535, and no other is above 1062; if that marks what was not measured, give --invalid 65535
 $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: warning: far.npy: 48 pixels hold 9, and no other is above 1.06200004; if that marks what was not measured, give --invalid 9
+2> vpm-normals: warning: far.npy: 48 pixels hold 9, and no other is above 1.062; if that marks what was not measured, give --invalid 9
 $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --invalid 9 --force
 $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --range 0.1,5 --force 2>&1 | wc -l
 0

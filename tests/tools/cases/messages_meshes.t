@@ -88,7 +88,7 @@ $ head -c 83 /dev/zero > a.stl; vpm-pack a.stl -o x.vpmp; head -c 100 /dev/zero 
 
 # Solids that are none
 $ mesh() { echo "OFF $1 $2 0"; }; (mesh 3 1; printf '1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n') | vpm-pack - -o x.vpmp; (mesh 3 1; printf '0 0 0\n1 0 0\n0 1 0\n2 0 1\n') | vpm-pack - -o x.vpmp; (mesh 3 1; printf '0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n') | vpm-pack - -o x.vpmp; (mesh 3 2; printf '0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n') | vpm-pack - -o x.vpmp; (mesh 5 1; printf '0 0 0\n2 2 0\n2 0 0\n0 2 0\n-1 1 0\n5 0 1 2 3 4\n') | vpm-pack - -o x.vpmp
-2> vpm-pack: error: standard input: its coordinates lie up to 1 from the origin, where floats of 32 bits are 1.2e-07 apart, which is coarse for a mesh that is 0 across; so all triangles lie in one point; move it to the origin before it is saved in such floats
+2> vpm-pack: error: standard input: its coordinates lie up to 1 from the origin, where floats of 32 bits are 1.2e-07 apart, which is coarse for a mesh that is 0 across; so all triangles lie in one point; move it to the origin before it is saved in such numbers
 2> vpm-pack: error: standard input: the mesh has no faces of three corners or more
 2> vpm-pack: error: standard input: every triangle has two equal corners; the mesh has no surface
 2> vpm-pack: error: standard input: the mesh is degenerate: it is closed, but encloses no volume (0 m^3)

@@ -66,7 +66,7 @@ $ vpm-normals wall.png -o wall.vpmc --intrinsics 60,60,31.5,23.5 --report wall.v
 2> vpm-normals: error: --output and --report would both be written to wall.vpmc; name two files
 [2]
 $ vpm-normals wall.png -o outside.vpmc --intrinsics 600,600,319.5,239.5
-2> vpm-normals: warning: wall.png: the principal point of 600,600,319.5,239.5 lies outside of the image of 64 x 48 pixels; are these the intrinsics of this image's size?
+2> vpm-normals: warning: wall.png: the principal point of 600,600,319.5,239.5 lies outside of the image of 64 x 48 pixels; it is the middle of 640 x 480 pixels, and if the image was scaled from that, give --intrinsics 60,60,31.5,23.5
 2> vpm-normals: warning: wall.png: the focal lengths of 600,600,319.5,239.5 are improbable for an image of 64 x 48 pixels; are these the intrinsics of this image's size?
 
 # Unsuitable inputs are refused.
