@@ -59,9 +59,9 @@ RawMesh parse_mesh(std::span<const std::byte> bytes, const std::string& name,
 // Reads a mesh from a file, or from standard input ("-"); throws as parse_mesh does.
 RawMesh read_mesh(const std::string& path);
 
-// Returns what is wrong with a mesh so far from the origin that its numbers, floats of 32 bits or of
-// six digits, have lost its shape, with lengths in the file's unit: neighbours of the farthest one
-// are more than 1/10 000 of the mesh's diagonal apart. Otherwise returns an empty text.
+// Returns what is wrong with a mesh so far from the origin that its numbers, floats of 32 bits or
+// of six digits, have lost its shape, with lengths in the file's unit: neighbours of the farthest
+// one are more than 1/10 000 of the mesh's diagonal apart. Otherwise returns an empty text.
 std::string coarse_coordinates(const RawMesh& mesh);
 
 }  // namespace vpm
