@@ -6,6 +6,7 @@
 
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/scene/prepared_cloud.h"
+#include "tools/query/measured_check.h"
 #include "tools/query/query_setup.h"
 #include "tools/query/setup_check.h"
 
@@ -20,12 +21,14 @@ class CloudScene {
   const PreparedCloud& cloud() const { return *cloud_; }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
-  // Returns the check that is to see all answers.
-  SetupCheck& check() { return *check_; }
+  // Shows the answer at a pose of the k-th tool to the checks, which warn at the end.
+  void see(const Pose& pose, std::size_t k, const Result& result);
+  void warn_at_end() const;
 
  private:
   std::optional<PreparedCloud> cloud_;
-  std::optional<SetupCheck> check_;
+  std::optional<SetupCheck> setup_check_;
+  std::optional<MeasuredCheck> measured_check_;
   double prepare_seconds_ = 0;
 };
 

@@ -84,7 +84,7 @@ CoupledRun follow(const SampledPath& path, VirtualCoupling coupling, LevelToolQu
   for (std::size_t k = 0; k < path.steps(); ++k) {
     CoupledStep step{k, path.time(k), path.pose(k), coupling.tool(), {}, {}, {}};
     step.contact = query.run(scene.cloud(), step.tool);
-    scene.check().see(step.tool, 0, step.contact);
+    scene.see(step.tool, 0, step.contact);
     run.seconds.push_back(query.seconds());
     if (view) view->add(0, step.tool, step.contact, query.query());
     step.rendered = coupling.advance(step.device, step.contact.wrench);
@@ -168,7 +168,7 @@ void run_coupling(QuerySetup& setup) {
                           scene, setup.view, output);
   output.finish();
   note_deviation(setup.tool, "", reader.largest_deviation());
-  scene.check().warn_at_end();
+  scene.warn_at_end();
   nlohmann::json stats =
       query_stats(std::move(run.seconds), scene.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = scene.cloud().positions().size();

@@ -13,7 +13,7 @@ class PoseQueries {
   PoseQueries(QuerySetup& setup, CloudScene& scene, const Pose& first_pose, file::Output& output)
       : setup_(setup),
         cloud_(scene.cloud()),
-        check_(scene.check()),
+        scene_(scene),
         output_(output),
         query_(setup.models.front(), setup.options, setup.level, scene.cloud(), first_pose) {}
 
@@ -42,7 +42,7 @@ class PoseQueries {
 
  private:
   void write(const Pose& pose, const Result& result) {
-    check_.see(pose, 0, result);
+    scene_.see(pose, 0, result);
     output_.append(result_line(seconds_.size(), result, query_.query().level(),
                                setup_.options.measure, query_.reason(), {}));
     seconds_.push_back(query_.seconds());
@@ -50,7 +50,7 @@ class PoseQueries {
 
   QuerySetup& setup_;
   const PreparedCloud& cloud_;
-  SetupCheck& check_;
+  CloudScene& scene_;
   file::Output& output_;
   LevelToolQuery query_;
   std::vector<double> seconds_;
@@ -71,7 +71,7 @@ void run_poses(QuerySetup& setup) {
     together ? queries.ask_together(poses) : queries.ask(poses.front());
   output.finish();
   note_deviation(setup.tool, "", source.largest_deviation());
-  scene.check().warn_at_end();
+  scene.warn_at_end();
   if (together && !a.spheres_out.empty()) queries.ask_last_again();
   nlohmann::json stats = query_stats(queries.seconds(), scene.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = scene.cloud().positions().size();

@@ -13,7 +13,6 @@
 namespace vpm::tools {
 namespace {
 
-constexpr std::size_t kMostKept = 512;      // poses
 constexpr std::size_t kMostScenes = 64;     // chosen from those that the kept poses were in
 constexpr std::size_t kMostPixels = 20000;  // chosen from a scan
 
@@ -210,6 +209,7 @@ SetupCheck::SetupCheck(const Tool& tool, std::span<const ToolModel> models,
     tools_.push_back({model.center_of_mass, model.reach});
     const double size = 2 * model.reach;
     if (scene > 0 && (size > kMuch * scene || scene > kMuch * size)) {
+      doubts_sizes_ = true;
       tool_.warn("the tool is " + metres_text(size) + " across and the scene " +
                  metres_text(scene) +
                  ": is one of them in other units than metres? vpm-pack --scale and " +
@@ -220,17 +220,12 @@ SetupCheck::SetupCheck(const Tool& tool, std::span<const ToolModel> models,
 
 void SetupCheck::see(const Pose& pose, std::size_t k, const Result& result, std::size_t scene) {
   has_touched_ = has_touched_ || result.volume > 0 || result.boundary > 0 || result.inside > 0;
-  if (has_touched_ || seen_++ % stride_ != 0) return;
-  kept_.push_back({pose, k, scene});
-  if (kept_.size() < kMostKept) return;
-  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-  kept_.resize(kept_.size() / 2);
-  stride_ *= 2;
+  if (!has_touched_) kept_.add({pose, k, scene});
 }
 
 std::map<std::size_t, PlacedScene> SetupCheck::places() const {
   std::set<std::size_t> scenes;
-  for (const Kept& kept : kept_) scenes.insert(kept.scene);
+  for (const Kept& kept : kept_.kept()) scenes.insert(kept.scene);
   const std::size_t every = (scenes.size() + kMostScenes - 1) / kMostScenes;
   std::map<std::size_t, PlacedScene> places;
   std::size_t number = 0;
@@ -245,7 +240,7 @@ std::map<std::size_t, PlacedScene> SetupCheck::places() const {
 PoseFit SetupCheck::fit_of(const std::map<std::size_t, PlacedScene>& places,
                            const std::optional<Suspicion>& suspicion) const {
   PoseFit fit;
-  for (const Kept& kept : kept_) {
+  for (const Kept& kept : kept_.kept()) {
     const auto found = places.find(kept.scene);
     if (found == places.end()) continue;
     const PlacedScene& place = found->second;
@@ -287,11 +282,11 @@ std::string SetupCheck::hint(const std::map<std::size_t, PlacedScene>& places) c
 }
 
 void SetupCheck::warn_at_end() const {
-  if (has_touched_ || kept_.empty()) return;
+  if (has_touched_ || kept_.kept().empty()) return;
   const std::map<std::size_t, PlacedScene> places = this->places();
   const PoseFit now = fit_of(places, std::nullopt);
   if (places.empty() || now.near > 0) return;
-  const bool are_behind = std::ranges::all_of(kept_, [&](const Kept& kept) {
+  const bool are_behind = std::ranges::all_of(kept_.kept(), [&](const Kept& kept) {
     const auto place = places.find(kept.scene);
     if (place == places.end()) return true;
     const auto& [center, radius] = tools_[kept.tool];

@@ -14,6 +14,7 @@
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/tool_query.h"
 #include "tools/common/tool.h"
+#include "tools/query/even_sample.h"
 
 namespace vpm::tools {
 
@@ -63,6 +64,8 @@ class SetupCheck {
   // Warns if at no pose a tool was in the camera's view, or none came near the surface, and says
   // what else would bring it there.
   void warn_at_end() const;
+  // True if a tool and the scene differ so much in size that this was warned of.
+  bool doubts_sizes() const { return doubts_sizes_; }
 
  private:
   // Pose that is kept, of a tool in a scene.
@@ -82,9 +85,8 @@ class SetupCheck {
   SceneSource source_;
   SceneOf scene_of_;
   std::vector<ToolBall> tools_;  // in their own coordinates
-  std::vector<Kept> kept_;       // every stride_-th pose
-  std::size_t seen_ = 0, stride_ = 1;
-  bool has_touched_ = false;
+  EvenSample<Kept> kept_;
+  bool has_touched_ = false, doubts_sizes_ = false;
 };
 
 }  // namespace vpm::tools

@@ -15,7 +15,7 @@ namespace {
 class SeveralTools {
  public:
   SeveralTools(QuerySetup& setup, CloudScene& scene, const Pose& first_pose)
-      : setup_(setup), cloud_(scene.cloud()), check_(scene.check()) {
+      : setup_(setup), cloud_(scene.cloud()), scene_(scene) {
     for (const ToolModel& model : setup.models) {
       queries_.emplace_back(model, setup.options, setup.level, cloud_, first_pose);
       together_.push_back(&queries_.back().query());
@@ -29,7 +29,7 @@ class SeveralTools {
     const std::size_t tools = queries_.size();
     for (std::size_t k = 0; k < results.size(); ++k) {
       const std::size_t tool = k % tools;
-      check_.see(poses[k / tools], tool, results[k]);
+      scene_.see(poses[k / tools], tool, results[k]);
       output.append(result_line(poses_asked_ + k / tools, results[k], together_[tool]->level(),
                                 setup_.options.measure, queries_[tool].reason(), {}, tool));
     }
@@ -68,7 +68,7 @@ class SeveralTools {
 
   QuerySetup& setup_;
   const PreparedCloud& cloud_;
-  SetupCheck& check_;
+  CloudScene& scene_;
   std::deque<LevelToolQuery> queries_;
   std::vector<ToolQuery*> together_;
   std::size_t poses_asked_ = 0;
@@ -88,7 +88,7 @@ void run_several_tools(QuerySetup& setup) {
     tools.ask(poses, output);
   output.finish();
   note_deviation(setup.tool, "", source.largest_deviation());
-  scene.check().warn_at_end();
+  scene.warn_at_end();
   nlohmann::json stats = query_stats(tools.seconds(), scene.prepare_seconds(), {});
   stats["cloud_points"] = scene.cloud().positions().size();
   stats["levels"] = tools.levels();

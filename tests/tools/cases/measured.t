@@ -1,0 +1,50 @@
+# A tool that is behind the surface where the camera measured nothing, which counts for nothing, is warned about.
+
+$ cp $SOURCE/tests/tools/inputs/cube.off .
+$ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
+$ cat > walls.py <<< $'import struct\nfor name, is_seen in {"whole": lambda u, v: True, "specks": lambda u, v: (7 * u + 13 * v) % 3 > 0, "hole": lambda u, v: max(abs(u - 31.5), abs(v - 23.5)) > 8, "half": lambda u, v: u < 32, "rows": lambda u, v: v % 4 < 2, "step": lambda u, v: 2 if u >= 32 else 1}.items():\n    depths = [1000 * int(is_seen(u, v)) for v in range(48) for u in range(64)]\n    open(name + ".pgm", "wb").write(b"P5\\n64 48\\n65535\\n" + struct.pack(">3072H", *depths))'
+$ python3 walls.py && for n in whole specks hole half rows step; do vpm-normals $n.pgm -o $n.vpmc --intrinsics 60,60,31.5,23.5; done
+2> vpm-normals: warning: step.pgm: 1536 pixels hold 2000, and no other is above 1000; if that marks what was not measured, give --invalid 2000
+
+# The cube is a quarter in the wall.
+$ for n in whole specks hole half rows; do echo $n; vpm-query --tool cube.vpmg --cloud $n.vpmc --pose 0,0,0.95,0,0,0,1 2>&1 | grep -o '"volume_fraction":0.[0-9]\|vpm-query: warning.*'; done
+whole
+"volume_fraction":0.2
+specks
+"volume_fraction":0.2
+hole
+"volume_fraction":0.0
+vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+half
+"volume_fraction":0.1
+vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+rows
+"volume_fraction":0.1
+vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+
+# In the part that the image does not show next to the half that it does, and half out of the camera's view.
+$ for p in 0.15,0,0.95 0.3,0,0.95; do vpm-query --tool cube.vpmg --cloud half.vpmc --pose $p,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
+"volume_fraction":0.0
+"volume_fraction":0.0
+2> vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+2> vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+$ for p in 0.3 0.5; do vpm-query --tool cube.vpmg --cloud whole.vpmc --pose $p,0,0.95,0,0,0,1 | grep -o '"volume_fraction":0.[0-9]'; done
+"volume_fraction":0.2
+"volume_fraction":0.1
+2> vpm-query: warning: at 1 of 1 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+
+# Nothing is said of tools that wait: before the wall, before its hole, and beside the image.
+$ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 0.7 0 0 0 1' '0.45 0 0.7 0 0 0 1' '0.7 0 0.7 0 0 0 1' '0.7 0 -0.3 0 0 0 1' > wait.txt
+$ vpm-query --tool cube.vpmg --cloud whole.vpmc --poses wait.txt -o /dev/null
+$ tail -n +2 wait.txt > free.txt; for n in hole half step; do (cat free.txt; echo '-0.3 0 0.95 0 0 0 1') | vpm-query --tool cube.vpmg --cloud $n.vpmc --poses - -o /dev/null; done
+
+# Poses are counted, of several tools too, of many every n-th; the measure as printed has its own rules.
+$ cat free.txt wait.txt > both.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null
+2> vpm-query: warning: at 1 of 9 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+$ vpm-query --tool cube.vpmg --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null
+2> vpm-query: warning: at 2 of 18 poses of tools a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+$ for k in $(seq 200); do cat wait.txt; done | vpm-query --tool cube.vpmg --cloud hole.vpmc --poses - -o /dev/null
+2> vpm-query: warning: at 100 of 500 poses that were looked at a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+$ vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null --measure paper
+$ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' > device.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o /dev/null --quiet
+2> vpm-query: warning: at 11 of 11 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it

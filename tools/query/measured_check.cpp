@@ -1,0 +1,103 @@
+#include "tools/query/measured_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace vpm::tools {
+namespace {
+
+constexpr std::size_t kMostPieces = 256;  // at most this many, evenly chosen from a tool
+
+}  // namespace
+
+ContinuedDepth::ContinuedDepth(const DepthSurface& surface, double length)
+    : k_(surface.k), width_(surface.width), height_(surface.height), length_(length) {
+  depth_.reserve(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  for (std::int32_t v = 0; v < height_; ++v) {
+    for (std::int32_t u = 0; u < width_; ++u) {
+      const double inverse = surface.measured_at(u, v);
+      depth_.push_back(inverse > 0 ? 1 / inverse : 0);
+    }
+  }
+  for (std::int32_t v = 0; v < height_; ++v)
+    continue_line([&](std::int32_t u) -> double& { return at(u, v); }, width_, k_.fx* length);
+  for (std::int32_t u = 0; u < width_; ++u)
+    continue_line([&](std::int32_t v) -> double& { return at(u, v); }, height_, k_.fy* length);
+}
+
+template <class At>
+void ContinuedDepth::continue_line(const At& at, std::int32_t count, double size) {
+  for (std::int32_t begin = 0; begin < count; ++begin) {
+    if (at(begin) > 0) continue;
+    std::int32_t end = begin;
+    while (end < count && !(at(end) > 0)) ++end;
+    const double before = begin > 0 ? at(begin - 1) : 0, after = end < count ? at(end) : 0;
+    const bool is_hole = before > 0 && after > 0;
+    for (std::int32_t i = begin; i < end; ++i) {
+      const bool near_before = before > 0 && (i - begin + 1) * before <= size;
+      const bool near_after = after > 0 && (end - i) * after <= size;
+      if (is_hole) {
+        at(i) = std::max(before, after);
+      } else if (near_before || near_after) {
+        at(i) = near_before ? before : after;
+      }
+    }
+    begin = end;
+  }
+}
+
+double ContinuedDepth::toward(Vec3 place) const {
+  if (!(place.z > 0)) return 0;
+  const double u = k_.fx * place.x / place.z + k_.cx, v = k_.fy * place.y / place.z + k_.cy;
+  const double in_u = std::clamp(u, 0.0, width_ - 1.0), in_v = std::clamp(v, 0.0, height_ - 1.0);
+  const bool is_near = std::abs(u - in_u) * place.z <= k_.fx * length_ &&
+                       std::abs(v - in_v) * place.z <= k_.fy * length_;
+  if (!is_near) return 0;
+  const auto row = static_cast<std::size_t>(in_v + 0.5),
+             column = static_cast<std::size_t>(in_u + 0.5);
+  return depth_[row * static_cast<std::size_t>(width_) + column];
+}
+
+bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDepth& continued,
+                                  const ToolPose& at) const {
+  constexpr double kLittle = 1e-3;  // part of the tool's volume
+  const ToolModel& model = models_[at.tool];
+  const Pose to_camera = inverse(cloud_.camera_to_world()) * at.pose;
+  const std::vector<CellSample>& pieces = model.levels.back().samples;
+  const std::size_t every = pieces.size() / kMostPieces + 1;
+  double all = 0, inside = 0, inside_unknown = 0;
+  for (std::size_t k = 0; k < pieces.size(); k += every) {
+    const CellSample& piece = pieces[k];
+    all += piece.weight;
+    const Vec3 place = to_camera * (model.center_of_mass + widen(piece.center));
+    const SurfaceSample sample = surface.sample(place);
+    const double depth = sample.known ? 0 : continued.toward(place);
+    if (!sample.known && depth == 0) continue;
+    const double distance = sample.known ? sample.distance : depth - place.z;
+    if (distance < -2 * model.reach) continue;
+    const double part = piece.weight * std::clamp(0.5 - 0.5 * distance / piece.radius, 0.0, 1.0);
+    inside += part;
+    if (!sample.known) inside_unknown += part;
+  }
+  return 4 * inside_unknown > inside && inside_unknown > kLittle * all;
+}
+
+void MeasuredCheck::warn_at_end() const {
+  if (!cloud_.is_organised() || poses_.kept().empty()) return;
+  const DepthSurface surface = cloud_.depth_surface();
+  double reach = 0;
+  for (const ToolModel& model : models_) reach = std::max(reach, model.reach);
+  const ContinuedDepth continued(surface, 2 * reach);
+  const auto found = std::ranges::count_if(
+      poses_.kept(), [&](const ToolPose& at) { return is_unmeasured(surface, continued, at); });
+  if (found == 0) return;
+  tool_.warn("at " + std::to_string(found) + " of " + std::to_string(poses_.kept().size()) +
+             (models_.size() > 1 ? " poses of tools" : " poses") +
+             (poses_.stride() > 1 ? " that were looked at" : "") +
+             " a quarter or more of what the tool has behind the surface lies where the camera "
+             "measured nothing (holes of the image, or out of its view), if the surface goes on "
+             "there: no volume is counted for it");
+}
+
+}  // namespace vpm::tools
