@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -134,6 +135,13 @@ Pose from_matrix(std::vector<double> m, const char* otherwise, double* deviation
           {m[3], m[7], m[11]}};
 }
 
+// True if a number is not finite, or all are zero.
+bool are_undefined(const std::vector<double>& numbers) {
+  const auto is_infinite = [](double number) { return !std::isfinite(number); };
+  return std::any_of(numbers.begin(), numbers.end(), is_infinite) ||
+         std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0; });
+}
+
 // Returns the pose of 7 numbers, or of a matrix by rows.
 Pose from_untimed(const std::vector<double>& n, double* deviation) {
   Pose pose;
@@ -254,6 +262,7 @@ std::optional<Pose> PoseReader::next() {
   const std::optional<std::string> line = next_line();
   if (!line) return std::nullopt;
   time_.reset();
+  is_undefined_ = false;
   try {
     return is_json(*line) ? parse_json(*line) : parse_text(*line);
   } catch (const Error& fault) {
@@ -300,6 +309,7 @@ Pose PoseReader::from_numbers(std::vector<double> n) {
     time_ = seconds_of_stamp(n.front());
     n.erase(n.begin());
   }
+  is_undefined_ = are_undefined(n);
   double deviation = 0;
   const Pose pose = from_untimed(n, &deviation);
   largest_deviation_ = std::max(largest_deviation_, deviation);

@@ -37,6 +37,9 @@ class PoseReader {
 
   // Returns the time of the last pose in seconds; empty if its line has none.
   std::optional<double> time() const { return time_; }
+  // True if the last line that was read has numbers that are not finite, or only zeros, which
+  // trackers write where they are lost. Also after next() has refused it.
+  bool is_undefined() const { return is_undefined_; }
   // Returns the name and line of the last pose, for messages.
   std::string place() const { return name_ + ", line " + std::to_string(line_); }
   // Throws Error(refused) that there is no pose.
@@ -64,6 +67,7 @@ class PoseReader {
   file::LineStream lines_;
   std::optional<PoseNames> names_;
   bool is_first_ = true;  // no pose has been read
+  bool is_undefined_ = false;
   std::size_t line_ = 0;
   std::optional<double> time_;
   double largest_deviation_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <set>
 
@@ -163,11 +164,30 @@ void number_frames(const std::vector<fs::path>& files, double frame_rate, Record
     recording.missing = (numbered.back().first - first) / stride + 1 - numbered.size();
 }
 
+// Refuses a folder whose frames lie in a folder in it, as ScanNet's in depth/.
+void refuse_if_frames_lie_below(const fs::path& folder) {
+  std::vector<fs::path> found;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end;
+       entry.increment(fault)) {
+    const bool is_of_depths = entry->path().filename().string().find("depth") != std::string::npos;
+    if (is_of_depths && fs::is_directory(status_of(entry->path())) &&
+        !files_of(entry->path()).empty())
+      found.push_back(entry->path());
+  }
+  if (found.empty()) return;
+  const fs::path first = *std::min_element(found.begin(), found.end());
+  refuse("no frames in it, but " + std::to_string(files_of(first).size()) + " in its folder " +
+             first.filename().string(),
+         folder.string(), "give `frames` " + first.string());
+}
+
 void read_folder(const fs::path& folder, double frame_rate, Recording& recording) {
   for (const char* list : {"depth.txt", "associations.txt"}) {
     if (is_file(folder / list)) return read_list(folder / list, recording);
   }
   const std::vector<fs::path> files = files_of(folder);
+  if (files.empty()) refuse_if_frames_lie_below(folder);
   if (files.empty())
     refuse("no frames in it", folder.string(),
            "wanted are .png, .exr, .tif, .pgm, .pfm, .npy, .pcd or .ply files, or depth.txt with "
@@ -179,26 +199,48 @@ void read_folder(const fs::path& folder, double frame_rate, Recording& recording
     recording.frames.push_back({*time_in(path), path.string(), {}, false});
 }
 
+bool are_all_lost(const Recording& recording) {
+  return std::all_of(recording.frames.begin(), recording.frames.end(),
+                     [](const RecordedFrame& frame) { return frame.is_lost; });
+}
+
+// Refuses a path of the camera without a pose for any frame.
+[[noreturn]] void refuse_other_times(const TimedPath& path, const std::string& name,
+                                     const Recording& recording) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "no frame (%.3f to %.3f s) lies in the time of the camera's path (%.3f to %.3f s)",
+                recording.frames.front().time, recording.frames.back().time, path.start(),
+                path.end());
+  refuse(text, name,
+         recording.has_clock
+             ? "give `camera_poses` of the frames' clock, or without times one for each frame"
+             : "numbered frames begin at 0 s; give a pose without a time for each frame");
+}
+
 void place_by_path(const std::string& name, Recording& recording) {
   PoseReader reader(name);
-  const TimedPath path(reader);
+  const TimedPath path(reader, UndefinedPoses::skipped);
   recording.largest_deviation = reader.largest_deviation();
   recording.camera_source = name;
+  recording.camera_undefined = path.undefined();
+  recording.camera_doubled = path.doubled();
   if (!path.has_times() && path.poses().size() != recording.frames.size())
     refuse(std::to_string(path.poses().size()) + " poses without times for " +
                std::to_string(recording.frames.size()) + " frames",
            name, "give one for each, or times");
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
     RecordedFrame& frame = recording.frames[k];
-    if (!path.has_times()) {
-      frame.camera = path.poses()[k];
-    } else if (frame.time < path.start() - kPoseTolerance ||
-               frame.time > path.end() + kPoseTolerance) {
-      frame.is_lost = true;
+    if (path.has_times()) {
+      frame.is_lost =
+          frame.time < path.start() - kPoseTolerance || frame.time > path.end() + kPoseTolerance;
+      if (!frame.is_lost) frame.camera = path.at(frame.time);
     } else {
-      frame.camera = path.at(frame.time);
+      frame.is_lost = path.is_undefined(k);
+      if (!frame.is_lost) frame.camera = path.poses()[k];
     }
   }
+  if (path.has_times() && are_all_lost(recording)) refuse_other_times(path, name, recording);
   const std::optional<PoseGap> gap = path.improbable_gap();
   const auto is_within = [&](const RecordedFrame& frame) {
     return frame.time > gap->start && frame.time < gap->end;
@@ -207,11 +249,18 @@ void place_by_path(const std::string& name, Recording& recording) {
     recording.camera_gap = gap;
 }
 
+// Returns the file of a frame's pose: beside it, or as ScanNet has it in pose/ beside its folder.
 fs::path pose_beside(const RecordedFrame& frame) {
-  const fs::path path(frame.path);
-  fs::path whole = path.parent_path() / (path.stem().string() + ".pose.txt");
-  if (is_decimal(path) || fs::exists(status_of(whole))) return whole;
-  return path.parent_path() / (stem_of(path) + ".pose.txt");
+  const fs::path path(frame.path), folder = path.parent_path();
+  const std::string name = path.stem().string();
+  std::vector<fs::path> places{folder / (name + ".pose.txt")};
+  if (!is_decimal(path)) places.push_back(folder / (stem_of(path) + ".pose.txt"));
+  const fs::path beside = places.back();
+  for (const char* const other : {"pose", "poses"})
+    places.push_back(folder / ".." / other / (name + ".txt"));
+  for (const fs::path& place : places)
+    if (fs::exists(status_of(place))) return place;
+  return beside;
 }
 
 void place_by_files(Recording& recording) {
@@ -227,10 +276,11 @@ void place_by_files(Recording& recording) {
     }
     frame.is_lost = !frame.camera;
   }
-  const bool are_all_lost = std::all_of(recording.frames.begin(), recording.frames.end(),
-                                        [](const RecordedFrame& frame) { return frame.is_lost; });
-  if (are_all_lost && first_fault) throw *first_fault;
-  recording.camera_source = ".pose.txt beside the frames";
+  if (are_all_lost(recording) && first_fault) throw *first_fault;
+  recording.camera_source = pose_beside(recording.frames.front()).parent_path() ==
+                                    fs::path(recording.frames.front().path).parent_path()
+                                ? ".pose.txt beside the frames"
+                                : "pose/ beside the folder of the frames";
 }
 
 void place_cameras(const fs::path& folder, const RecordingOptions& options, Recording& recording) {

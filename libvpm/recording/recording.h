@@ -39,6 +39,9 @@ struct Recording {
   std::string camera_source;  // source of the camera poses, for notes; may be empty
   // Read from camera-intrinsics.txt (3x3) in the folder.
   std::optional<IntrinsicsFile> intrinsics;
+  // Lines of the camera's path that were skipped for numbers that are not finite or only zeros, and
+  // that were dropped since they give the line before again.
+  std::size_t camera_undefined = 0, camera_doubled = 0;
   std::optional<PoseGap> camera_gap;  // improbable time without a camera pose, if frames lie in it
   double largest_deviation = 0;       // largest of the camera rotations, before normalisation
 };
@@ -48,7 +51,7 @@ struct RecordingOptions {
   // File of camera poses: TUM text, interpolated at the frames' times, or one pose per frame. If
   // empty, `camera` holds for all frames. Without that, poses are read from NAME.pose.txt beside
   // each frame (4x4; NAME is the frame's name without its ending, or up to the first dot if it is
-  // no time), or from groundtruth.txt in the folder.
+  // no time), from ../pose/NAME.txt or ../poses/NAME.txt, or from groundtruth.txt in the folder.
   std::string camera_poses;
   std::optional<Pose> camera;
 };
@@ -58,8 +61,8 @@ struct RecordingOptions {
 inline constexpr double kPoseTolerance = 0.02;  // seconds
 
 // Reads the recording at `path`, a folder or a list. Throws Error(refused) if there is no frame, a
-// name is no time, or the list or camera_poses is faulty. A .pose.txt that is missing or no pose
-// only loses its frame, unless all are.
+// name is no time, the list or camera_poses is faulty, or no frame lies in the time of those. A
+// .pose.txt that is missing or no pose only loses its frame, unless all are.
 Recording read_recording(const std::string& path, const RecordingOptions& options);
 
 }  // namespace vpm

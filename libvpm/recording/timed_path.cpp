@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
@@ -9,19 +11,68 @@
 
 namespace vpm {
 
-TimedPath::TimedPath(PoseReader& reader) {
-  while (const std::optional<Pose> pose = reader.next()) {
-    if (reader.time()) {
-      times_.push_back(*reader.time());
-      if (!std::isfinite(times_.back())) refuse("the time is not finite", reader.place());
-      if (times_.size() > 1 && !(times_.back() > times_[times_.size() - 2]))
-        refuse("times must ascend", reader.place());
-    }
-    poses_.push_back(*pose);
-    if (!times_.empty() && times_.size() != poses_.size())
-      refuse("either every pose has a time or none", reader.place());
+namespace {
+
+bool are_equal(const Pose& a, const Pose& b) {
+  return a.translation == b.translation && a.rotation.row0 == b.rotation.row0 &&
+         a.rotation.row1 == b.rotation.row1 && a.rotation.row2 == b.rotation.row2;
+}
+
+[[noreturn]] void refuse_order(double before, double time, const std::string& place) {
+  char text[96];
+  if (time == before) {
+    std::snprintf(text, sizeof text, "times must ascend, but %.6f s has two poses", time);
+    refuse(text, place, "remove one of the two lines");
   }
+  std::snprintf(text, sizeof text, "times must ascend, but %.6f s comes after %.6f s", time,
+                before);
+  refuse(text, place, "sort the lines by their times");
+}
+
+}  // namespace
+
+TimedPath::TimedPath(PoseReader& reader, UndefinedPoses undefined) {
+  while (const std::optional<Pose> pose = next(reader, undefined)) add(reader, *pose);
+  if (undefined_ > 0 && poses_.size() == places_.size())
+    refuse("none of its " + std::to_string(undefined_) + " poses has finite numbers",
+           reader.place());
   if (poses_.empty()) reader.refuse_empty();
+}
+
+std::optional<Pose> TimedPath::next(PoseReader& reader, UndefinedPoses undefined) {
+  while (true) {
+    try {
+      std::optional<Pose> pose = reader.next();
+      if (!pose || !reader.time() || std::isfinite(*reader.time())) return pose;
+      if (undefined == UndefinedPoses::refused) refuse("the time is not finite", reader.place());
+    } catch (const Error&) {
+      if (undefined == UndefinedPoses::refused || !reader.is_undefined()) throw;
+    }
+    ++undefined_;
+    if (reader.time()) continue;
+    places_.push_back(poses_.size());
+    return Pose{};
+  }
+}
+
+void TimedPath::add(const PoseReader& reader, const Pose& pose) {
+  if (const std::optional<double> time = reader.time()) {
+    const bool is_again = !times_.empty() && *time == times_.back();
+    if (is_again && times_.size() == poses_.size() && are_equal(pose, poses_.back())) {
+      ++doubled_;
+      return;
+    }
+    if (!times_.empty() && !(*time > times_.back()))
+      refuse_order(times_.back(), *time, reader.place());
+    times_.push_back(*time);
+  }
+  poses_.push_back(pose);
+  if (!times_.empty() && times_.size() != poses_.size())
+    refuse("either every pose has a time or none", reader.place());
+}
+
+bool TimedPath::is_undefined(std::size_t k) const {
+  return std::binary_search(places_.begin(), places_.end(), k);
 }
 
 Pose TimedPath::at(double time) const {

@@ -14,12 +14,17 @@ struct PoseGap {
   double start = 0, end = 0;  // s
 };
 
+// Tells what becomes of lines that PoseReader::is_undefined(). Skipped ones with a time give no
+// pose; without times they keep their place.
+enum class UndefinedPoses { refused, skipped };
+
 // All poses of a reader, with their times if they have any.
 class TimedPath {
  public:
-  // Reads all poses. Throws Error(refused) if there is none, if times do not ascend, if only some
-  // poses have one, and for errors of the reader.
-  explicit TimedPath(PoseReader& reader);
+  // Reads all poses. A line that gives the one before again, with its time, is dropped. Throws
+  // Error(refused) if there is no pose, if times do not ascend, if only some poses have one, and
+  // for errors of the reader.
+  explicit TimedPath(PoseReader& reader, UndefinedPoses undefined = UndefinedPoses::refused);
   // Needs at least one pose, and as many ascending times (s) or none.
   TimedPath(std::vector<double> times, std::vector<Pose> poses)
       : times_(std::move(times)), poses_(std::move(poses)) {}
@@ -28,6 +33,11 @@ class TimedPath {
   double start() const { return times_.front(); }  // s; needs has_times()
   double end() const { return times_.back(); }
   const std::vector<Pose>& poses() const { return poses_; }
+  // Returns the number of lines that were dropped, and of those that were skipped.
+  std::size_t doubled() const { return doubled_; }
+  std::size_t undefined() const { return undefined_; }
+  // True if the k-th pose keeps the place of one that is undefined.
+  bool is_undefined(std::size_t k) const;
 
   // Returns the pose at a time, interpolated along the straight line and the shortest rotation, or
   // the first or last pose outside the path's times. Needs has_times().
@@ -38,8 +48,15 @@ class TimedPath {
   std::optional<PoseGap> improbable_gap() const;
 
  private:
+  // Returns the next pose, as the reader does, and skips lines that are undefined.
+  std::optional<Pose> next(PoseReader& reader, UndefinedPoses undefined);
+  // Adds the pose that was read last.
+  void add(const PoseReader& reader, const Pose& pose);
+
   std::vector<double> times_;  // empty if poses have no times
   std::vector<Pose> poses_;
+  std::vector<std::size_t> places_;  // ascending; indices of poses that are undefined
+  std::size_t doubled_ = 0, undefined_ = 0;
 };
 
 // Path sampled at the rate of a loop.

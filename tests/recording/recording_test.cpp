@@ -170,6 +170,78 @@ TEST_F(ARecording, TakesTheCamerasPathAtTheFramesTimes) {
   EXPECT_EQ(read({30, path("mine.txt"), {}}).frames[2].camera->translation, (Vec3{8, 0, 0}));
 }
 
+TEST_F(ARecording, WhoseCameraHasNoPoseInItsTimeSaysBothTimes) {
+  write("depth.txt", "1000 a.png\n1001.5 a.png\n");
+  write("a.png");
+  for (const char* const path : {"1 0 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n", "3000 0 0 0 0 0 0 1\n"}) {
+    write("groundtruth.txt", path);
+    const std::string why = refusal([&] { read(); });
+    EXPECT_TRUE(says(why, "groundtruth.txt: no frame (1000.000 to 1001.500 s)")) << why;
+    EXPECT_TRUE(says(why, std::string(path).starts_with('1') ? "(1.000 to 2.000 s)"
+                                                             : "(3000.000 to 3000.000 s)"))
+        << why;
+  }
+  write("groundtruth.txt", "1001 0 0 0 0 0 0 1\n3000 2 0 0 0 0 0 1\n");
+  EXPECT_TRUE(read().frames[0].is_lost);
+  EXPECT_FALSE(read().frames[1].is_lost);
+}
+
+TEST_F(ARecording, SkipsLinesOfTheCamerasPathWithoutAPose) {
+  write("depth.txt", "1 a.png\n2 a.png\n3 a.png\n");
+  write("a.png");
+  for (const char* const lost :
+       {"2 nan nan nan nan nan nan nan", "2 9 9 9 nan nan nan nan", "2 inf 9 9 0 0 0 1",
+        "nan 9 9 9 0 0 0 1", "2 0 0 0 0 0 0 0", "2 9 9 9 0 0 0 -inf"}) {
+    write("groundtruth.txt",
+          "1 1 0 0 0 0 0 1\n" + std::string(lost) + "\n3 3 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n");
+    const Recording r = read();
+    EXPECT_EQ(r.camera_undefined, 1u) << lost;
+    EXPECT_EQ(r.camera_doubled, 1u);
+    EXPECT_EQ(r.frames[1].camera->translation, (Vec3{2, 0, 0})) << lost;
+  }
+  write("groundtruth.txt", "1 1 0 0 0 0 0 1\n2 9 9 9 2 0 0 0\n");  // a mistake, not a loss
+  EXPECT_TRUE(says(refusal([&] { read(); }), "line 2"));
+  write("groundtruth.txt", "1 nan nan nan nan nan nan nan\n");
+  EXPECT_TRUE(says(refusal([&] { read(); }), "none of its 1 poses has finite numbers"));
+}
+
+TEST_F(ARecording, LosesTheFrameOfAPoseWithoutTimeThatIsUndefined) {
+  for (const char* const name : {"1.png", "2.png", "3.png"}) write(name);
+  write("mine.txt", "1 0 0 0 0 0 1\nnan nan nan nan nan nan nan\n3 0 0 0 0 0 1\n");
+  const Recording r = read({30, path("mine.txt"), {}});
+  EXPECT_EQ(r.frames[0].camera->translation, (Vec3{1, 0, 0}));
+  EXPECT_TRUE(r.frames[1].is_lost);
+  EXPECT_EQ(r.frames[2].camera->translation, (Vec3{3, 0, 0}));
+  write("mine.txt", "0 0 0 0 0 0 0\n0 0 0 0 0 0 0\n0 0 0 0 0 0 0\n");
+  EXPECT_TRUE(says(refusal([&] { read({30, path("mine.txt"), {}}); }), "none of its 3 poses"));
+}
+
+TEST_F(ARecording, WithFramesInAFolderOfItNamesThat) {
+  write("depth/0.png");
+  write("depth/1.png");
+  write("color/0.png");
+  const std::string why = refusal([&] { read(); });
+  EXPECT_TRUE(says(why, "2 in its folder depth; give `frames`")) << why;
+  EXPECT_TRUE(says(why, "/depth")) << why;
+}
+
+TEST_F(ARecording, TakesPosesFromTheFolderBesideItsOwn) {
+  for (const char* const folder : {"pose", "poses"}) {
+    const std::string scene(std::string(folder) + "_scene/");
+    for (const char* const name : {"0", "1", "2"}) write(scene + "depth/" + name + ".png");
+    write(scene + folder + "/0.txt", "1 0 0 5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+    write(scene + folder + "/1.txt",
+          "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
+    const Recording r = read_recording(path(scene + "depth"), {});
+    ASSERT_EQ(r.frames.size(), 3u);
+    EXPECT_EQ(r.frames[0].camera->translation, (Vec3{5, 0, 0})) << folder;
+    EXPECT_TRUE(r.frames[1].is_lost);
+    EXPECT_TRUE(r.frames[2].is_lost);
+    write(scene + "depth/0.pose.txt", kIdentity);  // nearer, so it wins
+    EXPECT_EQ(read_recording(path(scene + "depth"), {}).frames[0].camera->translation, Vec3{});
+  }
+}
+
 TEST_F(ARecording, KnowsItsCamera) {
   write("1.png");
   EXPECT_FALSE(read().intrinsics);

@@ -6,6 +6,8 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "tests/import/test_files.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace vpm {
@@ -44,6 +46,34 @@ TEST_F(ATimedPath, TakesTimesFromJson) {
   }
 }
 
+TEST_F(ATimedPath, DropsALineThatGivesTheOneBeforeAgain) {
+  const TimedPath path = path_of("1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
+  EXPECT_EQ(path.poses().size(), 2u);
+  EXPECT_EQ(path.doubled(), 1u);
+  const TimedPath untimed = path_of("1 0 0 0 0 0 1\n1 0 0 0 0 0 1\n");  // it stays
+  EXPECT_EQ(untimed.poses().size(), 2u);
+  EXPECT_EQ(untimed.doubled(), 0u);
+}
+
+TEST_F(ATimedPath, WhoseTimesDoNotAscendSaysWhereAndHowToMendIt) {
+  const auto why = [&](const std::string& text) { return test::refusal([&] { path_of(text); }); };
+  const std::string twice = why("1 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n");
+  EXPECT_TRUE(says(twice, "line 2: times must ascend, but 1.000000 s has two poses"));
+  EXPECT_TRUE(says(twice, "remove one of the two lines"));
+  const std::string unsorted = why("1 1 0 0 0 0 0 1\n3 2 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
+  EXPECT_TRUE(says(unsorted, "line 3: times must ascend, but 2.000000 s comes after 3.0"));
+  EXPECT_TRUE(says(unsorted, "sort the lines by their times"));
+}
+
+// Only a camera may be lost for a time: a tool's path must say where it is.
+TEST_F(ATimedPath, RefusesPosesThatAreUndefined) {
+  for (const char* const lost :
+       {"2 nan nan nan nan nan nan nan", "2 0 0 0 0 0 0 0", "inf 0 0 0 0 0 0 1"}) {
+    const std::string text = "1 1 0 0 0 0 0 1\n" + std::string(lost) + "\n";
+    EXPECT_TRUE(says(test::refusal([&] { path_of(text); }), "line 2")) << lost;
+  }
+}
+
 TEST_F(ATimedPath, IsSampledFromTheFirstPoseToTheLast) {
   const SampledPath sampled(path_of("5 0 0 0 0 0 0 1\n5.5 1 0 0 0 0 0 1\n"), 1000);
   ASSERT_EQ(sampled.steps(), 501u);
@@ -69,7 +99,7 @@ TEST_F(ATimedPath, KnowsATimeWithoutPosesThatIsImprobable) {
 
 TEST_F(ATimedPath, RefusesTimesThatAreNone) {
   for (const char* text :
-       {"", "1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
+       {"", "1 0 0 0 0 0 0 1\n1 0 0 1 0 0 0 1\n", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n",
         "1 0 0 0 0 0 0 1\n0 0 0 0 0 0 1\n", "nan 0 0 0 0 0 0 1\n"})
     EXPECT_THROW(path_of(text), Error) << text;
   EXPECT_THROW(SampledPath(path_of("0 0 0 0 0 0 0 1\n1e9 0 0 0 0 0 0 1\n"), 1000), Error);
