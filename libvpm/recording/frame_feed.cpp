@@ -31,6 +31,7 @@ void FrameReader::read(const RecordedFrame& frame, PreparedChange& result) {
   else
     result.cloud = prepared(scan, frame.path);
   result.remarks = scan.remarks;
+  if (scan.image) result.camera = scan.image->camera;
 }
 
 DepthFrame FrameReader::on_device(const ImportedScan& scan, const std::string& name) {

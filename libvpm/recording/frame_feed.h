@@ -36,6 +36,7 @@ struct PreparedChange {
   std::unique_ptr<PreparedCloud> cloud;
   std::optional<DepthFrame> depth;  // frame on a device
   std::size_t frame = 0;            // index in the recording, if there is a frame
+  std::optional<Camera> camera;     // camera of the frame, if it is an image
   std::vector<UnusableFrame> unusable;
   double seconds = 0;  // time from the file to the prepared frame
   Remarks remarks;     // remarks of the reader about the frame

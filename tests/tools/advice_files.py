@@ -268,10 +268,12 @@ def write_recordings(folder):
     files = {
         "bare/readme.txt": "", "named/a.png": wall, "named/b.png": wall, "twice/1.png": wall, "twice/01.png": wall,
         "plain/1.png": wall, "plain/2.png": wall, "plain/3.png": wall,
+        "scan/depth/1.png": wall,
     }
     for name in ("named", "twice", "bare"):
         (folder / name).mkdir()
     (folder / "plain").mkdir()
+    (folder / "scan/depth").mkdir(parents=True)
     write_all(folder, files)
     names = {"named": "a.png", "twice": "1.png"}
     write_all(folder, {f"{name}.txt": f"0 {name}/{file}\n" for name, file in names.items()})

@@ -160,6 +160,7 @@ void run_coupling(QuerySetup& setup) {
   const CouplingParameters parameters =
       coupling_from_text(a.coupling, model, ReplayArguments::kRate);
   const SampledPath path(TimedPath(reader), parameters.rate);
+  note_lines(setup.tool, a.poses, path.path().undefined(), path.path().doubled());
   const Pose first = path.pose(0);
   LevelToolQuery query(model, setup.options, setup.level, scene.cloud(), first);
   note_scale(setup.tool, query);

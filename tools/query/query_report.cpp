@@ -68,4 +68,14 @@ void note_deviation(const Tool& tool, const std::string& what, double deviation)
   tool.note((what.empty() ? "" : what + ": ") + text);
 }
 
+void note_lines(const Tool& tool, const std::string& name, std::size_t undefined,
+                std::size_t doubled) {
+  if (undefined > 0)
+    tool.note(name + ": poses passed over, since their numbers are not finite or all zero: " +
+              std::to_string(undefined));
+  if (doubled > 0)
+    tool.note(name + ": lines passed over, since they give the line before again: " +
+              std::to_string(doubled));
+}
+
 }  // namespace vpm::tools

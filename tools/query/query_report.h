@@ -38,4 +38,9 @@ nlohmann::json query_stats(std::vector<double> seconds_per_pose, double prepare_
 // file; "" leaves it out.
 void note_deviation(const Tool& tool, const std::string& what, double deviation);
 
+// Notes how many lines of a file of poses were skipped since they are undefined, and how many were
+// dropped since they give the line before again.
+void note_lines(const Tool& tool, const std::string& name, std::size_t undefined,
+                std::size_t doubled);
+
 }  // namespace vpm::tools

@@ -20,6 +20,7 @@
 #include "tools/query/mode.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
+#include "tools/query/replay_report.h"
 #include "tools/query/setup_check.h"
 
 namespace vpm::tools {
@@ -63,6 +64,7 @@ class Replay {
   double start_time() const;
   void find_first_cloud();
   void say(const PreparedChange& change);
+  void compare_size(const PreparedChange& change);
   void say_at_end() const;
   std::string frame_name() const;
   // Returns step k, without rendered wrench and energy if there is no coupling.
@@ -83,71 +85,11 @@ class Replay {
   std::optional<LoopClock> clock_;
   Pose last_pose_;
   std::vector<double> query_seconds_;
+  std::optional<Camera> first_camera_;  // camera of the first frame, if it is an image
+  bool sizes_differ_ = false;
   std::size_t said_ = 0, steps_without_frame_ = 0;
   double wall_seconds_ = 0;
 };
-
-constexpr double kMicro = 1e6, kMilli = 1e3;
-
-nlohmann::json quantiles(const Durations& d) {
-  return {{"p50", kMicro * d.quantile(0.5)},
-          {"p99", kMicro * d.quantile(0.99)},
-          {"p99.9", kMicro * d.quantile(0.999)},
-          {"max", kMicro * d.quantile(1)}};
-}
-
-// Returns the number of steps up to 1, 2, 5, 10, ... microseconds, until all are counted.
-nlohmann::json histogram(const Durations& latency) {
-  nlohmann::json bins = nlohmann::json::array();
-  std::size_t left = latency.size();
-  for (double decade = 1; left > 0; decade *= 10) {
-    for (const double factor : {1, 2, 5}) {
-      const std::size_t longer = latency.longer_than(factor * decade / kMicro);
-      bins.push_back({{"up_to_us", factor * decade}, {"steps", left - longer}});
-      left = longer;
-      if (left == 0) break;
-    }
-  }
-  return bins;
-}
-
-// Returns the parts of the field "replay" (formats/schemas/query-stats.json) that the clock knows.
-// `wall` is the time that the loop took and `deadline` that of a step, both in seconds.
-nlohmann::json replay_report(const LoopClock& clock, double rate, double wall, double deadline) {
-  const Durations latency(clock.latencies());
-  const double lasts = static_cast<double>(latency.size()) / rate;
-  nlohmann::json report{{"steps", latency.size()},
-                        {"rate", rate},
-                        {"path_seconds", lasts},
-                        {"wall_seconds", wall},
-                        {"real_time_factor", lasts / wall},
-                        {"load", latency.mean() * rate},
-                        {"deadline_us", kMicro * deadline},
-                        {"deadline_misses", latency.longer_than(deadline)},
-                        {"latency_us", quantiles(latency)},
-                        {"latency_histogram", histogram(latency)},
-                        {"jitter_us", kMicro * latency.deviation()}};
-  if (!clock.delays().empty()) report["start_delay_us"] = quantiles(Durations(clock.delays()));
-  return report;
-}
-
-// Returns the field "frames" of the field "replay".
-nlohmann::json frames_report(const Recording& recording, const FrameCounts& counts) {
-  const Durations preparation(counts.seconds);
-  return {
-      {"listed", recording.frames.size()},
-      {"used", counts.used},
-      {"unseen", counts.unseen},
-      {"missing", recording.missing},
-      {"late", counts.late},
-      {"lost", counts.lost},
-      {"empty", counts.empty},
-      {"broken", counts.broken},
-      {"prepare_ms",
-       {{"median", kMilli * preparation.quantile(0.5)}, {"max", kMilli * preparation.quantile(1)}}},
-      {"waits", counts.waits},
-      {"longest_wait_ms", kMilli * counts.longest_wait}};
-}
 
 // Most warnings about frames that are printed; the report counts all.
 constexpr std::size_t kMostWarnings = 5;
@@ -171,6 +113,7 @@ SampledPath read_path(const Tool& tool, const std::string& name, double rate) {
   PoseReader reader(name);
   SampledPath path(TimedPath(reader), rate);
   note_deviation(tool, name, reader.largest_deviation());
+  note_lines(tool, name, path.path().undefined(), path.path().doubled());
   warn_of_gap(tool, name, path.path().improbable_gap());
   return path;
 }
@@ -213,6 +156,8 @@ void Replay::note_sources() const {
     tool_.detail("poses of the camera: " + recording_.camera_source);
   }
   note_deviation(tool_, recording_.camera_source, recording_.largest_deviation);
+  note_lines(tool_, recording_.camera_source, recording_.camera_undefined,
+             recording_.camera_doubled);
   warn_of_gap(tool_, recording_.camera_source, recording_.camera_gap);
   warn_of_improbable_times();
   if (!recording_.has_clock && path_.path().has_times())
@@ -259,6 +204,7 @@ void Replay::find_first_cloud() {
     looked_at += change->frames.size();
     PreparedChange prepared = reader.prepare(std::move(*change));
     if (!prepared.unusable.empty()) why = prepared.unusable.back().message;
+    first_camera_ = prepared.camera;
     first_cloud_ = std::move(prepared.cloud);
     if (!first_cloud_) continue;
     tools::say(tool_, recording_.frames[prepared.frame].path, prepared.remarks);
@@ -319,6 +265,7 @@ void Replay::run(LevelToolQuery& query, SetupCheck& check, std::optional<Virtual
     if (feed_->frame()) check.see(step.tool, 0, step.contact, *feed_->frame());
     steps_without_frame_ += !feed_->frame();
     if (change) say(*change);
+    if (change && !sizes_differ_) compare_size(*change);
     output.append(coupling ? coupled_line(step, frame_name())
                            : result_line(k, step.contact, query.query().level(), measure,
                                          query.reason(), StepOfReplay{step.time, frame_name()}));
@@ -343,6 +290,20 @@ void Replay::say(const PreparedChange& change) {
   if (change.change.is_late)
     say_one(recording_.frames[change.change.frames.front()].path +
             ": came late; the loop went on with the frame before");
+}
+
+// Warns once of a frame of another size than the first's, where the same intrinsics are used.
+void Replay::compare_size(const PreparedChange& change) {
+  if (!change.camera || !first_camera_) return;
+  const Camera &own = *change.camera, &first = *first_camera_;
+  const Intrinsics &k = own.intrinsics, &l = first.intrinsics;
+  const bool is_same_size = own.width == first.width && own.height == first.height;
+  if (is_same_size || k.fx != l.fx || k.fy != l.fy || k.cx != l.cx || k.cy != l.cy) return;
+  sizes_differ_ = true;
+  tool_.warn(recording_.frames[change.frame].path + ": has " + std::to_string(own.width) + " x " +
+             std::to_string(own.height) + " pixels, and the first frame " +
+             std::to_string(first.width) + " x " + std::to_string(first.height) +
+             ": the same intrinsics hardly fit both");
 }
 
 void Replay::say_at_end() const {
