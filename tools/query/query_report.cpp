@@ -70,11 +70,12 @@ void note_deviation(const Tool& tool, const std::string& what, double deviation)
 
 void note_lines(const Tool& tool, const std::string& name, std::size_t undefined,
                 std::size_t doubled) {
+  const std::string where = name == "-" ? "standard input" : name;
   if (undefined > 0)
-    tool.note(name + ": poses passed over, since their numbers are not finite or all zero: " +
+    tool.note(where + ": poses passed over, since their numbers are not finite or all zero: " +
               std::to_string(undefined));
   if (doubled > 0)
-    tool.note(name + ": lines passed over, since they give the line before again: " +
+    tool.note(where + ": lines passed over, since they give the line before again: " +
               std::to_string(doubled));
 }
 

@@ -51,7 +51,7 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses device.txt --coupling sti
 2> vpm-query: error: --coupling needs --stiffness: give the scene's stiffness in N/m^3
 [2]
 $ sed 1p device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4 2>&1 >doubled.jsonl | grep -v coupling: ; cmp doubled.jsonl steps.jsonl
-vpm-query: note: -: lines passed over, since they give the line before again: 1
+vpm-query: note: standard input: lines passed over, since they give the line before again: 1
 $ printf '%s\n' '1 0 0 0.85 0 0 0 1' '1 0 0 0.9 0 0 0 1' | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - --coupling stiffness=500,damping=5 --stiffness 2e4
 2> vpm-query: error: standard input, line 2: times must ascend, but 1.000000 s has two poses; remove one of the two lines
 [1]
