@@ -25,17 +25,20 @@ CloudScene::CloudScene(QuerySetup& setup) {
                        [scene = checked_scene(cloud)](std::size_t) { return scene; });
   if (setup.options.measure == Measure::refined && !setup_check_->doubts_sizes())
     measured_check_.emplace(setup.tool, setup.models, *cloud_);
+  if (!cloud.sensor) enclosed_check_.emplace(setup.tool, setup.models, cloud);
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 
 void CloudScene::see(const Pose& pose, std::size_t k, const Result& result) {
   setup_check_->see(pose, k, result);
   if (measured_check_) measured_check_->see(pose, k);
+  if (enclosed_check_) enclosed_check_->see(pose, k, result);
 }
 
 void CloudScene::warn_at_end() const {
   setup_check_->warn_at_end();
   if (measured_check_) measured_check_->warn_at_end();
+  if (enclosed_check_) enclosed_check_->warn_at_end();
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {

@@ -6,6 +6,7 @@
 
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/scene/prepared_cloud.h"
+#include "tools/query/enclosed_check.h"
 #include "tools/query/measured_check.h"
 #include "tools/query/query_setup.h"
 #include "tools/query/setup_check.h"
@@ -29,6 +30,7 @@ class CloudScene {
   std::optional<PreparedCloud> cloud_;
   std::optional<SetupCheck> setup_check_;
   std::optional<MeasuredCheck> measured_check_;
+  std::optional<EnclosedCheck> enclosed_check_;
   double prepare_seconds_ = 0;
 };
 

@@ -48,3 +48,19 @@ $ for k in $(seq 200); do cat wait.txt; done | vpm-query --tool cube.vpmg --clou
 $ vpm-query --tool cube.vpmg --cloud hole.vpmc --poses both.txt -o /dev/null --measure paper
 $ printf '%s\n' '0 0 0 0.95 0 0 0 1' '0.01 0 0 0.95 0 0 0 1' > device.txt; vpm-query --tool cube.vpmg --cloud hole.vpmc --poses device.txt --coupling stiffness=500,damping=5 --stiffness 2e4 -o /dev/null --quiet
 2> vpm-query: warning: at 11 of 11 poses a quarter or more of what the tool has behind the surface lies where the camera measured nothing (holes of the image, or out of its view), if the surface goes on there: no volume is counted for it
+
+# Points without a camera tell only of what is near them: a tool in the middle of what they enclose counts for nothing, which is said.
+$ cat > boxes.py <<< $'import itertools\nn = range(-15, 16)\nfaces = [(p, a, s) for a in range(3) for s in (-1, 1) for p in itertools.product(n, n)]\ndef rows(kept):\n    for (u, v), a, s in faces:\n        if kept(a, s):\n            at, to = [0.02 * u, 0.02 * v], [0, 0]\n            at.insert(a, 0.3 * s)\n            to.insert(a, s)\n            yield " ".join(map(str, at + to))\nfor name, kept in {"closed": lambda a, s: True, "wall": lambda a, s: (a, s) == (2, -1)}.items():\n    lines = list(rows(kept))\n    head = ["ply", "format ascii 1.0", f"element vertex {len(lines)}", *("property float " + p for p in "x y z nx ny nz".split()), "end_header"]\n    open(name + ".ply", "w").write("\\n".join(head + lines) + "\\n")'
+$ python3 boxes.py && for n in closed wall; do vpm-normals $n.ply -o $n.vpmc; done
+$ printf '0 0 0 0 0 0 1\n0.05 0 0.1 0 0 0 1\n0 0 -0.3 0 0 0 1\n0 0 0.7 0 0 0 1\n' > inside.txt
+$ vpm-query --tool cube.vpmg --cloud closed.vpmc --poses inside.txt | grep -o '"volume_fraction":0.[0-9]'
+"volume_fraction":0.0
+"volume_fraction":0.0
+"volume_fraction":0.5
+"volume_fraction":0.0
+2> vpm-query: warning: at 2 of the poses the tool is inside of what the points enclose, but points without a camera tell only of what is near them: no volume is counted deeper inside
+$ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses inside.txt | grep -o '"volume_fraction":0.[0-9]'
+"volume_fraction":0.0
+"volume_fraction":0.0
+"volume_fraction":0.5
+"volume_fraction":0.0

@@ -1,0 +1,52 @@
+#include "tools/query/enclosed_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace vpm::tools {
+namespace {
+
+constexpr double kFullTurn = 4 * 3.14159265358979323846;  // the solid angle of all directions
+
+}  // namespace
+
+PointWinding::PointWinding(const Cloud& cloud) : origin_(cloud.origin) {
+  constexpr std::size_t kMostPoints = 2000;
+  const std::size_t every = cloud.size() / kMostPoints + 1;
+  for (std::size_t k = 0; k < cloud.size(); k += every) {
+    // A disk's radius is about the spacing of points, so that its square is the area of one.
+    const double area = double{cloud.radii[k]} * cloud.radii[k] * static_cast<double>(every);
+    dipoles_.push_back({widen(cloud.positions[k]), area * widen(cloud.normals[k])});
+  }
+}
+
+double PointWinding::at(Vec3 place) const {
+  const Vec3 from = place - origin_;
+  double sum = 0;
+  for (const Dipole& dipole : dipoles_) {
+    const Vec3 to = dipole.place - from;
+    // A disk that is near fills a part of the view only.
+    const double squared = dot(to, to) + norm(dipole.area);
+    sum += dot(dipole.area, to) / (squared * std::sqrt(squared));
+  }
+  return sum / kFullTurn;
+}
+
+void EnclosedCheck::see(const Pose& pose, std::size_t k, const Result& result) {
+  if (2 * result.volume < models_[k].volume) doubtful_.add({pose, k});
+}
+
+void EnclosedCheck::warn_at_end() const {
+  constexpr double kInside = 0.75;  // between a wide wall's 1/2 and a closed surface's 1
+  const auto found = std::ranges::count_if(doubtful_.kept(), [&](const ToolPose& at) {
+    return winding_.at(at.pose * models_[at.tool].spheres.front().center) > kInside;
+  });
+  if (found == 0) return;
+  const bool are_all = doubtful_.stride() == 1;
+  tool_.warn("at " + std::to_string(found) + (are_all ? "" : " or more") +
+             " of the poses the tool is inside of what the points enclose, but points without a "
+             "camera tell only of what is near them: no volume is counted deeper inside");
+}
+
+}  // namespace vpm::tools

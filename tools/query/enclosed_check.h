@@ -1,0 +1,60 @@
+// Finds poses at which a tool is wholly inside of what points without a camera enclose.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "libvpm/cloud/cloud.h"
+#include "libvpm/model/tool_model.h"
+#include "libvpm/query/tool_query.h"
+#include "tools/common/tool.h"
+#include "tools/query/even_sample.h"
+
+namespace vpm::tools {
+
+// How often an oriented surface, known by points with normals, encloses a place. Some of the points
+// stand for all, so that it is only told apart whether a place is inside, outside or beside the
+// surface (generalised winding number: Barill et al. 2018, section 3).
+class PointWinding {
+ public:
+  explicit PointWinding(const Cloud& cloud);
+
+  // Returns the winding number at a place in world coordinates: about 1 inside of a closed surface,
+  // 0 outside, 1/2 behind a wide wall.
+  double at(Vec3 place) const;
+
+ private:
+  struct Dipole {
+    Vec3 place, area;  // about the cloud's origin
+  };
+
+  Vec3 origin_;
+  std::vector<Dipole> dipoles_;
+};
+
+class EnclosedCheck {
+ public:
+  // Keeps references to the tool and the models.
+  EnclosedCheck(const Tool& tool, std::span<const ToolModel> models, const Cloud& cloud)
+      : tool_(tool), models_(models), winding_(cloud) {}
+
+  // Notes the answer at a pose of the k-th tool.
+  void see(const Pose& pose, std::size_t k, const Result& result);
+  // Warns if at some poses a tool is inside, though half of it or more did not count: points
+  // without a camera tell only of what is near them.
+  void warn_at_end() const;
+
+ private:
+  struct ToolPose {
+    Pose pose;
+    std::size_t tool = 0;
+  };
+
+  const Tool& tool_;
+  std::span<const ToolModel> models_;
+  PointWinding winding_;
+  EvenSample<ToolPose> doubtful_;  // poses at which half of the tool or more did not count
+};
+
+}  // namespace vpm::tools
