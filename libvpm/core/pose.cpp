@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,25 @@ Rotation nearest_rotation(Rotation m) {
          0.5 * (m.row2 + inverse_transpose.row2)};
   }
   return m;
+}
+
+// Refuses a rotation times a scale, with the scale. Does nothing for other matrices.
+void refuse_scale(const Rotation& m) {
+  const Rotation columns = transpose(m);
+  const Rotation gram = columns * m;
+  const double x = norm(columns.row0), y = norm(columns.row1), z = norm(columns.row2);
+  if (std::abs(gram.row0.y) > kRotationTolerance * x * y ||
+      std::abs(gram.row0.z) > kRotationTolerance * x * z ||
+      std::abs(gram.row1.z) > kRotationTolerance * y * z)
+    return;
+  char scale[96];
+  const bool is_uniform = std::max({x, y, z}) <= (1 + kRotationTolerance) * std::min({x, y, z});
+  if (is_uniform)
+    std::snprintf(scale, sizeof scale, "by %.4g", x);
+  else
+    std::snprintf(scale, sizeof scale, "its columns by %.4g, %.4g and %.4g", x, y, z);
+  refuse("the 3x3 block is not a rotation alone but scales " + std::string(scale), "pose",
+         "divide its columns by that, and scale the mesh instead if that is meant");
 }
 
 }  // namespace
@@ -57,6 +77,7 @@ Rotation rotation_from_matrix(const std::array<double, 9>& m, double* deviation)
            "give a proper rotation");
   }
   if (!(off <= kRotationTolerance)) {
+    refuse_scale(given);
     refuse("the 3x3 block is " + std::to_string(off) + " away from a rotation matrix", "pose");
   }
   if (deviation != nullptr) *deviation = off;

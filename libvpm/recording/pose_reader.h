@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <fstream>
 #include <istream>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,12 +17,13 @@ namespace vpm {
 
 // Reads poses from a stream, one at a time, so that a pipe is answered line by line. Formats, told
 // apart line by line:
-//   JSON Lines   [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
-//                by row]}; "time", "timestamp", "stamp" or "t" in an object, or an eighth number in
-//                front, is the time
+//   JSON         [tx,ty,tz,qx,qy,qz,qw], or {"pose": [7 numbers]}, or {"matrix": [16 numbers, row
+//                by row]}, or {"position": {x, y, z}, "orientation": {x, y, z, w}}; "time",
+//                "timestamp", "stamp" or "t" in an object, or an eighth number in front, is the
+//                time. Also as numpy prints lists, over several lines, and a list of such poses
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   KITTI text   twelve numbers, a 3x4 matrix row by row
-//   4x4 text     four lines of four numbers for each pose; three in a file of one pose
+//   matrix text  four lines of four numbers for each pose, or three for each pose of the file
 // A '#' starts a comment, except in a line of JSON. A line of names, in a comment or first in the
 // file, tells the order of the numbers after it; otherwise quaternions end in w. Words beside the
 // names are passed over; a comment that seems to tell another order, but not clearly, is refused
@@ -41,7 +43,7 @@ class PoseReader {
   // trackers write where they are lost. Also after next() has refused it.
   bool is_undefined() const { return is_undefined_; }
   // Returns the name and line of the last pose, for messages.
-  std::string place() const { return name_ + ", line " + std::to_string(line_); }
+  std::string place() const;
   // Throws Error(refused) that there is no pose.
   [[noreturn]] void refuse_empty() const;
 
@@ -49,27 +51,48 @@ class PoseReader {
   double largest_deviation() const { return largest_deviation_; }
 
  private:
-  std::optional<std::string> next_line();
+  struct TimedPose {
+    Pose pose;
+    std::optional<double> time;
+  };
+  struct Line {
+    std::string text;
+    std::size_t number = 0;
+  };
+
+  // Returns the next line with more than a comment; empty at the end. `stops_at_blank` returns ""
+  // for a blank line.
+  std::optional<std::string> next_line(bool stops_at_blank = false);
   // Returns the next line; empty at the end. Throws Error(refused), naming it, if it is no text.
   std::optional<std::string> any_line();
-  Pose parse_json(const std::string& line);
-  Pose parse_text(const std::string& line);
+  // Returns the poses of a JSON text, several if it is a list of them, and of the lines after it
+  // until its brackets close.
+  std::vector<TimedPose> parse_json(std::string text);
+  void add_lines_of_json(std::string& text);
+  TimedPose parse_value(const nlohmann::json& value);
+  TimedPose parse_text(const std::string& line);
   // Takes the names of columns in the text; false if it has none.
   bool take_names(const std::string& text);
   // Adds the lines of a matrix after its first.
   void add_rows(std::vector<double>& numbers);
   // Takes 7 numbers, 8 with the time first, or a matrix; where columns are named, in their order.
-  Pose from_numbers(std::vector<double> numbers);
+  TimedPose from_numbers(std::vector<double> numbers, std::optional<double> time);
+  // Returns the pose of 7 numbers or a matrix; counts its deviation.
+  Pose rigid(const std::vector<double>& numbers);
 
   std::string name_;
   std::ifstream file_;
   std::istream& stream_;
   file::LineStream lines_;
   std::optional<PoseNames> names_;
-  bool is_first_ = true;  // no pose has been read
-  bool is_undefined_ = false;
-  std::size_t line_ = 0;
+  int rows_ = 0;  // lines of each matrix: 3 or 4, 0 before the first
+  bool has_passed_blank_ = false;
+  std::optional<Line> ahead_;        // has been read already
+  std::size_t read_ = 0, line_ = 0;  // lines read, and the line of the last pose
+  std::vector<TimedPose> list_;      // poses of the last line
+  std::size_t item_ = 0;             // counts those of the list that were returned
   std::optional<double> time_;
+  bool is_undefined_ = false;
   double largest_deviation_ = 0;
 };
 

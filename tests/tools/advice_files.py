@@ -250,7 +250,7 @@ def write_poses(folder):
         "six.txt": "0 0 0.95 0 0 0\n", "nine.txt": "0 0 0.95 0 0 0 1 0 0\n", "comma.txt": "0,0,,0.95,0,0,0,1\n",
         "long.txt": "0,0,0.95,0,0,0,2\n", "wxyz.txt": "0 0 0.95 1 0 0 0\n",
         "header.txt": "# tx ty tz qw qx qy qz\n0 0 0.95 1 0 0 0\n", "header_six.txt": "# tx ty tz qw qx qy qz\n0 0 0.95 1 0 0\n",
-        "pose.jsonl": '{"pose": [0, 0, 0.95, 0, 0, 0, 1]}\n', "split.jsonl": '{"pose":\n[0, 0, 0.95, 0, 0, 0, 1]}\n',
+        "pose.jsonl": '{"pose": [0, 0, 0.95, 0, 0, 0, 1]}\n',
         "list.jsonl": "[0, 0, 0.95, 0, 0, 0, 1]\n", "nameless.jsonl": '{"place": [0, 0, 0.95, 0, 0, 0, 1]}\n',
         "poses_mm.txt": "0 0 950 0 0 0 1\n", "inverted.txt": "0 0 -0.95 0 0 0 1\n",
         "ms.txt": f"0 {pose}\n2000000 {pose}\n", "still.txt": f"0 {pose}\n0.05 {pose}\n",

@@ -89,8 +89,8 @@ $ printf 'VERSION 0.7\nFIELDS x\033[31m\nSIZE 4\nTYPE \033\n' | vpm-normals - -o
 $ python3 -c 'print("VERSION 0.7\nFI" + 100000 * "E" + " 1")' > long.pcd; vpm-normals long.pcd -o x.vpmc
 2> vpm-normals: error: long.pcd: PCD header: unknown entry 'FIEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEE…'
 [1]
-$ head -c 300 wall.vpmc | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - 2>&1 | cut -c1-70
-vpm-query: error: standard input, line 1: not a number: \x89VPM
+$ head -c 300 wall.vpmc | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - 2>&1 | cut -c1-80
+vpm-query: error: standard input, line 1: column 1 is not a number: \x89VPM
 [1]
 
 # What others write by the pages of formats/ is read.

@@ -42,30 +42,35 @@ $ for p in 0,0,0,0,0,0,2 0,0,0,0,0,0,nan 0,0,inf,0,0,0,1 0,0,0,0,0,0,one 0,0,0; 
 [2]
 $ for t in '1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n' '1 0 0 0\n0 1 0 0\n0 0 2 0\n0 0 0 1\n' '0 0 0 0 0 0 1\n0 0 1 0 0 0 1\n' '' '{"matrix": [1, 0, 0, 0]}' '{"matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0], [0, 0, 0, 1]]}' '{"extrinsic": [1, 0, 0, 0]}' '[[1,0,0,0],\n [0,1,0,0],\n [0,0,1,0],\n [0,0,1,1]]'; do printf "$t" > p.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose p.txt; done
 2> vpm-normals: error: p.txt, line 4: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
-2> vpm-normals: error: p.txt, line 4: pose: the 3x3 block is 3.000000 away from a rotation matrix
+2> vpm-normals: error: p.txt, line 4: pose: the 3x3 block is not a rotation alone but scales its columns by 1, 1 and 2; divide its columns by that, and scale the mesh instead if that is meant
 2> vpm-normals: error: p.txt: it holds several poses; give a file with the one of this image, or its numbers
 2> vpm-normals: error: p.txt: no pose in it; each line gives one: tx ty tz qx qy qz qw, or JSON
 2> vpm-normals: error: p.txt: a camera's matrix has 4x4 numbers by rows, the last row 0 0 0 1
 2> vpm-normals: error: p.txt: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
 2> vpm-normals: error: p.txt: "extrinsic" has neither 16 numbers by columns, as Open3D writes it, nor lists of rows
-2> vpm-normals: error: p.txt: the last row of a 4x4 pose must be 0 0 0 1
+2> vpm-normals: error: p.txt: the 4x4 matrix is written by columns: its last column is 0 0 0 1, and its last row 0 0 1 1 ends in 1; transpose it
 [1]
 $ vpm-normals wall.pgm -o rounded.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0,0,0,0.707,0.707
 2> vpm-normals: note: --camera-pose: its rotation is not exact and has been normalised
 
 # Poses of the tool
-$ for t in '0 0 1 0 0 0 2' '0 0 1 0 0 0 nan' '1 0 0 0\n0 1 0 0\n0 0 1 1\n0 0 1 1' '1 0 0 0\n0 1 0 0\n0 0 1' '1 0 0 0\n0 1 0 0' '{"place": [0]}' '{"pose": 7}' '{"pose": ["a"]}' '{"pose":' '# tx ty tz qw qx qy qz\n0 0 1 1 0 0' '0 0 one 0 0 0 1' '1 0 0 0 0 1 0 0 0 0 -1 1 0 0 0 1'; do printf "$t\n" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
+$ for t in '0 0 1 0 0 0 2' '0 0 1 0 0 0 nan' '1 0 0 0\n0 1 0 0\n0 0 1 1\n0 0 0 2' '1 0 0 0\n0 1 0 0\n0 0 1' '1 0 0 0\n0 1 0 0' '{"place": [0]}' '{"pose": 7}' '{"pose": ["a"]}' '{"pose":' '{"pose": one}' '[[0,0,0.95,0,0,0,1], [0,0,0.95,0,0,0,2]]' '2 0 0 0 0 2 0 0 0 0 2 1' '0 0 1 world 0 0 0 1' '1 1 0 0 0 0 0 1 1 a.png' '# tx ty tz qw qx qy qz\n0 0 1 1 0 0' '0 0 one 0 0 0 1' '1 0 0 0 0 1 0 0 0 0 -1 1 0 0 0 1'; do printf "$t\n" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
 2> vpm-query: error: standard input, line 1: pose: the quaternion has length 2.000000 instead of 1; give x,y,z,w of a unit quaternion
 2> vpm-query: error: standard input, line 1: pose: the quaternion is not finite
-2> vpm-query: error: standard input, line 4: the last row of a 4x4 pose must be 0 0 0 1
+2> vpm-query: error: standard input, line 4: the last row of a 4x4 pose must be 0 0 0 1, not 0 0 0 2
 2> vpm-query: error: standard input, line 3: a row of a 4x4 matrix must have four numbers
 2> vpm-query: error: standard input, line 2: the file ends inside of a 4x4 matrix
-2> vpm-query: error: standard input, line 1: neither "pose" nor "matrix" in the object
+2> vpm-query: error: standard input, line 1: no pose in the object; it has "place"; give "pose" (7 numbers) or "matrix" (4x4 by rows), or "position" with x, y, z and "orientation" with x, y, z, w
 2> vpm-query: error: standard input, line 1: a pose must be a list of numbers
 2> vpm-query: error: standard input, line 1: a pose must be a list of numbers
-2> vpm-query: error: standard input, line 1: not JSON; a line must be one whole pose
+2> vpm-query: error: standard input, line 1: a bracket that opens here is not closed; close it, or write a pose on each line
+2> vpm-query: error: standard input, line 1: not JSON; write each pose as [tx,ty,tz,qx,qy,qz,qw], or in an object as "pose"
+2> vpm-query: error: standard input, line 1, pose 2: pose: the quaternion has length 2.000000 instead of 1; give x,y,z,w of a unit quaternion
+2> vpm-query: error: standard input, line 1: pose: the 3x3 block is not a rotation alone but scales by 2; divide its columns by that, and scale the mesh instead if that is meant
+2> vpm-query: error: standard input, line 1: column 4 is not a number: world; leave this column out
+2> vpm-query: error: standard input, line 1: it looks like images.txt of COLMAP, whose poses map the world to the camera, w first; convert each to a line tx ty tz qx qy qz qw of the inverse pose
 2> vpm-query: error: standard input, line 2: found 6 numbers where the line of names has 7 (line 1); let the names in it be those of the numbers, in their order
-2> vpm-query: error: standard input, line 1: not a number: one
+2> vpm-query: error: standard input, line 1: column 3 is not a number: one
 2> vpm-query: error: standard input, line 1: pose: the rotation matrix mirrors (its determinant is not positive); give a proper rotation
 [1]
 $ for t in '# tx ty tz q0 q1 q2 q3\n0 0 1 1 0 0 0' '# Format: timestamp tx ty tz qw qx qy qz\n0 0 1 1 0 0 0' '{"time": 0, "stamp": 0, "pose": [0, 0, 1, 0, 0, 0, 1]}' '1 0 0 0 0 1 0 0 0 0 -1 1' '1 2 3 4 5'; do printf "$t\n" | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses -; done
