@@ -43,10 +43,14 @@ std::optional<std::size_t> sibling(const std::vector<Words>& all, const std::str
   return std::nullopt;
 }
 
+bool is_of_vector(const Words& words, const std::vector<Words>& all) {
+  return sibling(all, words.layer, "x") && sibling(all, words.layer, "y");
+}
+
 // True if the name says depth. A Z beside X and Y is part of a vector, and mist is a fraction.
 bool says_depth(const Words& words, const std::vector<Words>& all) {
   if (has(words.layer, "mist") || has(words.last, "mist")) return false;
-  const bool is_vector = sibling(all, words.layer, "x") && sibling(all, words.layer, "y");
+  const bool is_vector = is_of_vector(words, all);
   if (is_one_of(words.last, {"z", "depth", "zdepth"})) return !is_vector;
   const bool is_red = words.last == "r" && has(words.layer, "depth");
   return is_red || (has(words.layer, "depth") && is_one_of(words.last, {"v", "y"}) && !is_vector);
@@ -86,6 +90,23 @@ std::string names_of(const std::vector<ExrChannelName>& channels) {
   return names_of(channels, all);
 }
 
+std::vector<Words> words_of(const std::vector<ExrChannelName>& channels) {
+  std::vector<Words> words;
+  for (const ExrChannelName& channel : channels) words.push_back(words_of(channel));
+  return words;
+}
+
+[[noreturn]] void refuse_all(const std::vector<ExrChannelName>& channels,
+                             const std::vector<Words>& words, const std::string& name) {
+  std::string defect = "no channel's name says depth (Z, depth.Z)";
+  for (std::size_t i = 0; i < words.size(); ++i)
+    if (words[i].last == "z" && is_of_vector(words[i], words))
+      defect = "no channel is surely depth: " + file::shown(full_name(channels[i])) +
+               " stands beside X and Y, as in a position or a normal";
+  refuse(defect + "; it has " + names_of(channels), name,
+         "name the one that is depth with `channel`, if there is one");
+}
+
 Indices channel_asked_for(const std::vector<ExrChannelName>& channels, const std::string& asked,
                           const std::string& name) {
   Indices found;
@@ -110,8 +131,7 @@ std::string full_name(const ExrChannelName& channel) {
 std::vector<std::size_t> depth_channels(const std::vector<ExrChannelName>& channels,
                                         const std::string& asked, const std::string& name) {
   if (!asked.empty()) return channel_asked_for(channels, asked, name);
-  std::vector<Words> words;
-  for (const ExrChannelName& channel : channels) words.push_back(words_of(channel));
+  const std::vector<Words> words = words_of(channels);
   Indices found;
   for (std::size_t i = 0; i < words.size(); ++i)
     if (says_depth(words[i], words)) found.push_back(i);
@@ -121,10 +141,30 @@ std::vector<std::size_t> depth_channels(const std::vector<ExrChannelName>& chann
   if (found.size() == 1) return with_siblings(found.front(), words);
   if (words.size() == 1 && is_one_of(words.front().last, {"y", "v", "r"})) return {0};
   found = grey_picture(words);
-  if (found.empty())
-    refuse("no channel's name says depth (Z, depth.Z); it has " + names_of(channels), name,
-           "name the one that is depth with `channel`, if there is one");
+  if (found.empty()) refuse_all(channels, words, name);
   return found;
+}
+
+std::string words_of_choice(const std::vector<ExrChannelName>& channels,
+                            const std::vector<std::size_t>& chosen) {
+  if (chosen.size() == 1)
+    return channels.size() == 1 ? "" : "depth is its channel " + names_of(channels, chosen);
+  const std::vector<Words> words = words_of(channels);
+  return says_depth(words[chosen.front()], words)
+             ? "depth is its channels " + names_of(channels, chosen) + ", which are equal"
+             : "no channel's name says depth: R, G and B, which are equal, are taken for it";
+}
+
+void refuse_difference(const std::vector<ExrChannelName>& channels,
+                       const std::vector<std::size_t>& chosen, const std::string& pixel,
+                       const std::string& name) {
+  const std::vector<Words> words = words_of(channels);
+  if (!says_depth(words[chosen.front()], words))
+    refuse("R, G and B differ at pixel " + pixel + ": a colour image, no depth", name);
+  refuse("its channels " + names_of(channels, chosen) + " differ at pixel " + pixel +
+             ", so one of them is depth at most",
+         name,
+         "name it with `channel`, such as " + file::shown(full_name(channels[chosen.front()])));
 }
 
 }  // namespace vpm

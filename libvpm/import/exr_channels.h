@@ -24,4 +24,13 @@ std::string full_name(const ExrChannelName& channel);
 std::vector<std::size_t> depth_channels(const std::vector<ExrChannelName>& channels,
                                         const std::string& asked, const std::string& name);
 
+// Returns what a note may say of the channels chosen; empty if there was no choice.
+std::string words_of_choice(const std::vector<ExrChannelName>& channels,
+                            const std::vector<std::size_t>& chosen);
+
+// Throws Error(refused) that the values of the chosen channels are not equal at a pixel, "(3, 4)".
+[[noreturn]] void refuse_difference(const std::vector<ExrChannelName>& channels,
+                                    const std::vector<std::size_t>& chosen,
+                                    const std::string& pixel, const std::string& name);
+
 }  // namespace vpm

@@ -349,14 +349,13 @@ bool same_measurement(float a, float b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-void expect_equal(const std::vector<float>& a, const std::vector<float>& b, const RawDepth& image,
-                  const std::string& name) {
+// Returns the first pixel in which the images differ, "(3, 4)"; empty if there is none.
+std::string difference(const std::vector<float>& a, const RawDepth& image) {
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (same_measurement(a[i], b[i])) continue;
-    refuse("R, G and B differ at pixel (" + std::to_string(i % image.width) + ", " +
-               std::to_string(i / image.width) + "): a colour image, no depth",
-           name);
+    if (same_measurement(a[i], image.values[i])) continue;
+    return "(" + std::to_string(i % image.width) + ", " + std::to_string(i / image.width) + ")";
   }
+  return "";
 }
 
 RawDepth read_exr(std::span<const std::byte> bytes, const std::string& name,
@@ -373,15 +372,12 @@ RawDepth read_exr(std::span<const std::byte> bytes, const std::string& name,
   RawDepth image = part.in_display_window(part.read(first.name.name));
   image.are_integers = part.has_integers(first.name.name);
   for (std::size_t k = 1; k < chosen.size(); ++k) {
-    expect_equal(part.in_display_window(part.read(channels[chosen[k]].name.name)).values,
-                 image.values, image, name);
+    const auto other = part.in_display_window(part.read(channels[chosen[k]].name.name));
+    const std::string pixel = difference(other.values, image);
+    if (!pixel.empty()) refuse_difference(names, chosen, pixel, name);
   }
-  if (chosen.size() > 1) {
-    image.remarks.push_back(
-        {false, "no channel's name says depth: R, G and B, which are equal, are taken for it"});
-  } else if (channels.size() > 1) {
-    image.remarks.push_back({false, "depth is its channel " + file::shown(full_name(first.name))});
-  }
+  const std::string note = words_of_choice(names, chosen);
+  if (!note.empty()) image.remarks.push_back({false, note});
   return image;
 }
 

@@ -15,16 +15,70 @@ class LineFit {
  public:
   void add(double slope, double pixel) {
     n_ += 1, s_ += slope, p_ += pixel, ss_ += slope * slope, sp_ += slope * pixel;
+    pp_ += pixel * pixel;
   }
   // Returns the variance of slopes times n^2, which is mere rounding if all are equal.
   double spread() const { return n_ * ss_ - s_ * s_; }
   bool solvable() const { return n_ >= 2 && spread() > 1e-12 * n_ * ss_; }
-  double focal() const { return (n_ * sp_ - s_ * p_) / spread(); }
+  double focal() const { return covariance() / spread(); }
   double centre() const { return (p_ - focal() * s_) / n_; }
+  // True if a line tells nearly all of the pixels.
+  bool is_line() const {
+    constexpr double kTold = 0.999;
+    const double pixels = n_ * pp_ - p_ * p_;
+    return solvable() && covariance() * covariance() > kTold * spread() * pixels;
+  }
 
  private:
-  double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0;
+  double covariance() const { return n_ * sp_ - s_ * p_; }
+
+  double n_ = 0, s_ = 0, p_ = 0, ss_ = 0, sp_ = 0, pp_ = 0;
 };
+
+// Columns and rows of a grid as lines of x/z and of y/z.
+struct GridLines {
+  LineFit column_of_x, row_of_y, column_of_y, row_of_x;
+  std::size_t seen = 0;
+};
+
+GridLines lines_of(const PointSet& points) {
+  GridLines lines;
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    const Vec3 p = points.positions[i];
+    if (!is_seen(p)) continue;
+    ++lines.seen;
+    const auto column = static_cast<double>(i % points.width),
+               row = static_cast<double>(i / points.width);
+    lines.column_of_x.add(p.x / p.z, column);
+    lines.column_of_y.add(p.y / p.z, column);
+    lines.row_of_x.add(p.x / p.z, row);
+    lines.row_of_y.add(p.y / p.z, row);
+  }
+  return lines;
+}
+
+// Tells how the grid of a pinhole camera is turned or mirrored, and what may be done.
+struct Arrangement {
+  std::string words;  // "" if it is neither, or no such grid
+  bool is_mirrored = false;
+};
+
+Arrangement arrangement_of(const GridLines& lines) {
+  if (lines.column_of_y.is_line() && lines.row_of_x.is_line()) {
+    const std::string words = "its columns go along y and its rows along x: the grid is ";
+    const bool is_mirrored = lines.column_of_y.focal() * lines.row_of_x.focal() > 0;
+    return {words + (is_mirrored ? "transposed, and so mirrored" : "turned by 90 degrees"),
+            is_mirrored};
+  }
+  if (!lines.column_of_x.is_line() || !lines.row_of_y.is_line()) return {};
+  const bool is_left = lines.column_of_x.focal() < 0, is_up = lines.row_of_y.focal() < 0;
+  if (is_left && is_up)
+    return {"its columns go against x and its rows against y: the grid is turned by 180 degrees",
+            false};
+  if (is_left) return {"its columns go against x: the grid is mirrored left to right", true};
+  if (is_up) return {"its rows go against y: the grid is upside down, and so mirrored", true};
+  return {};
+}
 
 }  // namespace
 
@@ -49,22 +103,34 @@ PinholeFit fit_of(const PointSet& points, const Intrinsics& k) {
 }
 
 PinholeFit fit_pinhole(const PointSet& points) {
-  LineFit across, down;
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    const Vec3 p = points.positions[i];
-    if (!is_seen(p)) continue;
-    const std::size_t column = i % points.width, row = i / points.width;
-    across.add(p.x / p.z, static_cast<double>(column));
-    down.add(p.y / p.z, static_cast<double>(row));
-  }
+  const GridLines lines = lines_of(points);
+  const LineFit &across = lines.column_of_x, &down = lines.row_of_y;
   if (!across.solvable() || !down.solvable()) return {};
   const Intrinsics k{across.focal(), down.focal(), across.centre(), down.centre()};
   return k.fx > 0 && k.fy > 0 ? fit_of(points, k) : PinholeFit{k, HUGE_VAL, 0};
 }
 
+std::string cure_of(const PointSet& points, bool is_placed) {
+  const Arrangement arrangement = arrangement_of(lines_of(points));
+  if (arrangement.words.empty()) {
+    return is_placed ? "points of a lidar need normals"
+                     : "points in the world's frame need their camera's `camera_pose`, and those "
+                       "of a lidar normals";
+  }
+  if (arrangement.is_mirrored) return "mirror the grid back, or give its depth image";
+  return is_placed ? "turn the grid back, or give its depth image"
+                   : "turn the grid back, or give its depth image, or for points in the world's "
+                     "frame their camera's `camera_pose`";
+}
+
 std::string words_of(const PinholeFit& fit, const PointSet& points) {
   const Intrinsics& k = fit.intrinsics;
-  if (k.fx == 0) return "too few of its points have z > 0 to tell the camera";
+  const GridLines lines = lines_of(points);
+  if (const std::string words = arrangement_of(lines).words; !words.empty()) return words;
+  if (!lines.column_of_x.solvable() || !lines.row_of_y.solvable()) {
+    return std::to_string(lines.seen) + " of its " + std::to_string(points.positions.size()) +
+           " points have z > 0, and their directions are too few to tell the camera";
+  }
   char text[256];
   if (fit.residual == HUGE_VAL) {
     std::snprintf(text, sizeof text,

@@ -69,10 +69,7 @@ void refuse_other_axes(const PointSet& points, const PointFrame& frame,
            name, "leave `intrinsics` out to have them recovered");
   refuse("the organised cloud fits no pinhole camera with x right, y down, z forward: " +
              words_of(failed, points),
-         name,
-         frame.to_world ? "points of a lidar need normals"
-                        : "points in the world's frame need their camera's `camera_pose`, and "
-                          "those of a lidar normals");
+         name, cure_of(points, frame.to_world.has_value()));
 }
 
 // Returns the view of the camera with these intrinsics, or else of one that is fitted. Points that
@@ -93,6 +90,7 @@ std::optional<OrganisedView> find_view(const PointSet& points, const PointFrame&
   }
   refuse_other_axes(points, frame, intrinsics, name);
   if (!points.normals.empty() && !intrinsics) return std::nullopt;
+  if (intrinsics) find_view(points, frame, std::nullopt, name);  // throws where no others fit
   refuse_fit(view.fit, view.points, frame, intrinsics.has_value(), name);
 }
 

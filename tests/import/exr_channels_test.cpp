@@ -33,7 +33,11 @@ TEST(ExrChannels, VectorsAndMistAreNoDepth) {
           {{"", "Normal.X"}, {"", "Normal.Y"}, {"", "Normal.Z"}, {"", "Depth.Z"}, {"", "Mist.Z"}}),
       (Indices{3}));
   EXPECT_TRUE(says(refused({{"", "Normal.X"}, {"", "Normal.Y"}, {"", "Normal.Z"}}),
-                   "no channel's name says depth"));
+                   "no channel is surely depth: Normal.Z stands beside X and Y"));
+  const std::string points = refused({{"", "depth.X"}, {"", "depth.Y"}, {"", "depth.Z"}});
+  EXPECT_TRUE(says(points, "depth.Z stands beside X and Y")) << points;
+  EXPECT_FALSE(says(points, "no channel's name says depth")) << points;
+  EXPECT_TRUE(says(refused({{"", "Mist.Z"}}), "no channel's name says depth"));
 }
 
 TEST(ExrChannels, OtherNamesCountOnlyWhenAlone) {

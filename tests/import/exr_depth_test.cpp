@@ -102,6 +102,29 @@ TEST(ExrDepth, TakesDepthByNameBesideAPicture) {
       says(refused(make_exr(3, 2, false, {{"Z", kValues}, {"depth.Z", grey}})), "Z, depth.Z"));
 }
 
+TEST(ExrDepth, SaysWhichOfALayersChannelsAreDepth) {
+  const std::vector<float> grey(6, 0.5F), none(6, 0);
+  const auto with_layer = [&](const std::vector<float>& others) {
+    return make_exr(3, 2, false,
+                    {{"R", grey},
+                     {"G", grey},
+                     {"B", grey},
+                     {"WorldDepth.R", kValues},
+                     {"WorldDepth.G", others},
+                     {"WorldDepth.B", others}});
+  };
+  const RawDepth image = parse(with_layer(kValues));
+  EXPECT_TRUE(same_values(image.values, kValues));
+  ASSERT_EQ(image.remarks.size(), 1U);
+  EXPECT_EQ(image.remarks[0].text,
+            "depth is its channels WorldDepth.R, WorldDepth.G, WorldDepth.B, which are equal");
+  EXPECT_TRUE(says(refused(with_layer(none)), "name it with `channel`, such as WorldDepth.R"));
+  EXPECT_TRUE(same_values(parse(with_layer(none), "WorldDepth.R").values, kValues));
+  EXPECT_TRUE(
+      says(parse(make_exr(3, 2, false, {{"R", grey}, {"G", grey}, {"B", grey}})).remarks.at(0).text,
+           "no channel's name says depth: R, G and B"));
+}
+
 TEST(ExrDepth, PutsACropIntoItsDisplayWindow) {
   Imf::Header header(Imath::Box2i({0, 0}, {3, 2}), Imath::Box2i({1, 1}, {5, 1}));
   header.channels().insert("Z", Imf::Channel(Imf::FLOAT));

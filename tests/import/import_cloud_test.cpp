@@ -32,6 +32,25 @@ std::string organised_pcd(double bend = 0) {
   return file;
 }
 
+// Returns the same cloud with the coordinates of each point as `change` makes them.
+template <class Change>
+std::string changed_pcd(const Change& change) {
+  std::string file = organised_pcd();
+  const std::size_t data = file.find("ascii\n") + 6;
+  std::string rows = file.substr(data);
+  file.resize(data);
+  for (std::size_t at = 0; at < rows.size(); at = rows.find('\n', at) + 1) {
+    Vec3 p{};
+    char line[128] = "nan nan nan\n";
+    if (std::sscanf(rows.c_str() + at, "%lf %lf %lf", &p.x, &p.y, &p.z) == 3 && p.z > 0) {
+      p = change(p);
+      std::snprintf(line, sizeof line, "%.9g %.9g %.9g\n", p.x, p.y, p.z);
+    }
+    file += line;
+  }
+  return file;
+}
+
 std::string depth_png() {
   std::vector<std::uint16_t> values(std::size_t{kWidth} * kHeight, 2000);
   values[7] = 0;
@@ -116,6 +135,44 @@ TEST(ImportCloud, RefusesAGridThatIsNoPinholeCameras) {
   EXPECT_TRUE(says(refused(organised_pcd(), options), "does not fit the intrinsics given"));
   options.intrinsics = kCamera;
   EXPECT_FALSE(import(organised_pcd(), options).intrinsics_recovered);
+}
+
+TEST(ImportCloud, TellsAGridThatIsTurnedOrMirrored) {
+  const auto said = [](const auto& change) {
+    const std::string without = refused(changed_pcd(change));
+    ImportOptions options;
+    options.intrinsics = kCamera;
+    EXPECT_EQ(refused(changed_pcd(change), options), without) << "no camera would help";
+    return without;
+  };
+  const std::string mirrored = said([](Vec3 p) { return Vec3{-p.x, p.y, p.z}; });
+  EXPECT_TRUE(says(mirrored, "mirrored left to right; mirror the grid back")) << mirrored;
+  EXPECT_TRUE(says(said([](Vec3 p) { return Vec3{p.x, -p.y, p.z}; }), "upside down, and so mir"));
+  EXPECT_TRUE(says(said([](Vec3 p) {
+                     return Vec3{p.y, p.x, p.z};
+                   }),
+                   "is transposed, and so mirrored; mir"));
+  const std::string turned = said([](Vec3 p) { return Vec3{p.y, -p.x, p.z}; });
+  EXPECT_TRUE(says(turned, "turned by 90 degrees; turn the grid back")) << turned;
+  EXPECT_TRUE(says(said([](Vec3 p) { return Vec3{-p.x, -p.y, p.z}; }), "turned by 180 degrees"));
+  // Points in the world's frame may look like a grid that is turned.
+  std::string unplaced = changed_pcd([](Vec3 p) { return Vec3{p.y, -p.x, p.z}; });
+  unplaced.replace(unplaced.find("VIEWPOINT 5"), 11, "VIEWPOINT 0");
+  EXPECT_TRUE(says(refused(unplaced), "their camera's `camera_pose`"));
+  const double half = std::sqrt(0.5);
+  ImportOptions posed;
+  posed.to_world = Pose{rotation_from_quaternion({0, 0, -half, half}), {}};
+  EXPECT_TRUE(import(unplaced, posed).intrinsics_recovered);
+  EXPECT_TRUE(says(said([](Vec3) { return Vec3{0, 0, 1}; }), "319 of its 320 points have z > 0"));
+}
+
+TEST(ImportCloud, LeavingIntrinsicsOutIsAdvisedWhereItHelps) {
+  ImportOptions options;
+  options.intrinsics = Intrinsics{150, 150, 9.5, 7.5};
+  EXPECT_TRUE(says(refused(organised_pcd(), options), "leave `intrinsics` out"));
+  const std::string none = refused(organised_pcd(0.02), options);
+  EXPECT_FALSE(says(none, "leave `intrinsics` out")) << none;
+  EXPECT_TRUE(says(none, "fits no pinhole camera")) << none;
 }
 
 TEST(ImportCloud, DepthImagesNeedIntrinsicsAndTakeScaleAndPose) {

@@ -149,7 +149,7 @@ TEST(PoseForms, ACamerasPoseIsReadAndRefusedAlike) {
   const std::string ros = R"({"position": {"x": 5, "y": 0, "z": 0},
       "orientation": {"x": 1, "y": 0, "z": 0, "w": 0}})";
   for (const std::string& text :
-       {ros, "{\"pose\": " + ros + "}", "[" + ros + "]", "[[5,2,3,0,0,0,1]]",
+       {ros, "{\"pose\": " + ros + "}", "[" + ros + "]", std::string("[[5,2,3,0,0,0,1]]"),
         std::string("1 0 0 5\n0 1 0 2\n0 0 1 3\n\n")})
     EXPECT_EQ(x_of(text), 5) << text;
   for (const auto& [text, words] : std::vector<std::pair<const char*, const char*>>{

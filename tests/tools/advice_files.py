@@ -158,6 +158,7 @@ def write_images(folder):
         "disparity.pgm": depth_files.pgm(disparity), "swapped.png": png(swapped), "wall.png": png(MILLIMETRES),
         "scale.pfm": depth_files.pfm([1000 * z for z in METRES]).replace(b"-1.0", b"-2.0", 1),
         "two.exr": exr({"left.Z": METRES, "right.Z": nearer}), "unnamed.exr": exr({"near": METRES, "far": nearer}),
+        "layer.exr": exr({"WorldDepth.R": METRES, **{f"WorldDepth.{c}": [0] * len(METRES) for c in "GB"}, "R": nearer}),
         "wall.pgm.gz": gzip.compress(depth_files.pgm(MILLIMETRES)), "wall.pgm.bz2": bz2.compress(depth_files.pgm(MILLIMETRES)),
         "wall.pgm.xz": lzma.compress(depth_files.pgm(MILLIMETRES)), "empty.pgm": b"", "unpack.py": UNPACK,
     }
@@ -209,6 +210,7 @@ def write_clouds(folder):
         "grid.pcd": pcd(points), "gl.pcd": pcd(in_gl), "ros.pcd": pcd(in_ros), "world.pcd": pcd(turned),
         "viewpoint.pcd": pcd(points, viewpoint="0 0 0.5 1 0 0 0"), "old.pcd": pcd(points, version="0.5"),
         "two.pcd": pcd(points, viewpoint="0 0 0 2 0 0 0"),
+        "mirrored.pcd": pcd([(-x, y, z) for x, y, z in points]), "twisted.pcd": pcd([(y, -x, z) for x, y, z in points]),
         "lidar.pcd": pcd(lidar), "lidar_normals.pcd": pcd(lidar, normals=toward),
         "away.pcd": pcd(points, normals=away, **one_row), "points.ply": ply(points, toward), "bare.ply": ply(points),
         "zero.ply": ply(points, none), "far_point.ply": ply([*points, (1e7, 0, 0)], [*toward, (0, 0, -1)]),
