@@ -23,6 +23,7 @@ struct Start {
 constexpr const char* kExport = "export it as OBJ, PLY or STL";
 constexpr const char* kExportMesh = "export a mesh from it, as OBJ, PLY or STL";
 
+constexpr const char* kSaveDepths = "save its depths as .npy, PFM or 16-bit PNG";
 constexpr const char* kExportPly = "export it as PLY";
 
 constexpr Start kStarts[] = {
@@ -73,6 +74,15 @@ constexpr Start kStarts[] = {
     {"**abcdefgh"sv, "a file of CAD in Parasolid", kExportMesh, Holds::mesh},
     {"autocad binary dxf"sv, "a drawing in DXF", kExportMesh, Holds::mesh},
     {"ac10"sv, "a drawing in DWG", kExportMesh, Holds::mesh},
+    {"octm"sv, "a mesh of OpenCTM", kExport, Holds::mesh},
+    {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
+    {"dbrep_drawableshape"sv, "a file of CAD in BREP", kExportMesh, Holds::mesh},
+    {"cascade topology"sv, "a file of CAD in BREP", kExportMesh, Holds::mesh},
+    {"*heading"sv, "a model of Abaqus", kExportMesh, Holds::mesh},
+    {"*node"sv, "a model of Abaqus", kExportMesh, Holds::mesh},
+    {"sqlite format 3"sv, "a database of SQLite, such as a bag of ROS 2",
+     "extract its images or clouds first", Holds::scan},
+    {"pieh"sv, "a depth map of Sintel (.dpt) or optical flow (.flo)", kSaveDepths, Holds::scan},
     {"\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
     {"\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
 };
@@ -83,13 +93,46 @@ std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
   const std::string text = in_lower_case(as_text(bytes.first(std::min(bytes.size(), kLooked))));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   if (text.compare(begin, 5, "<?xml") != 0) return std::nullopt;
-  for (const char* const robot : {"<robot", "<mujoco", "<sdf"}) {
-    if (text.find(robot) != text.npos)
-      return ForeignContent{"a robot description (URDF, MJCF, SDF)",
-                            "give one of the files that it names", Holds::mesh};
-  }
-  if (text.find("<x3d") != text.npos) return ForeignContent{"a scene in X3D", kExport, Holds::mesh};
+  constexpr const char* kRobot = "a robot description (URDF, MJCF, SDF)";
+  constexpr const char* kNamed = "give one of the files that it names";
+  constexpr Start kRoots[] = {
+      {"<robot"sv, kRobot, kNamed, Holds::mesh},
+      {"<mujoco"sv, kRobot, kNamed, Holds::mesh},
+      {"<sdf"sv, kRobot, kNamed, Holds::mesh},
+      {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
+      {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
+      {"<vtkfile"sv, "a file of VTK", kExportPly},
+  };
+  for (const Start& root : kRoots)
+    if (text.find(root.bytes) != text.npos) return ForeignContent{root.what, root.next, root.holds};
   return ForeignContent{"an XML file", "give the file that was meant"};
+}
+
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+// True for counts of vertices, normals, texture coordinates and faces that tell the file's size.
+bool is_mesh_of_mujoco(std::string_view bytes) {
+  constexpr std::size_t kCounts = 16, kTriple = 12, kPair = 8;
+  if (bytes.size() < kCounts + 4 * kTriple) return false;
+  const std::uint64_t vertices = number_at(bytes, 0), normals = number_at(bytes, 4),
+                      pairs = number_at(bytes, 8), faces = number_at(bytes, 12);
+  return vertices > 2 &&
+         kTriple * (vertices + normals + faces) + kPair * pairs == bytes.size() - kCounts;
+}
+
+// True for "160&120&1&", width, height and channels, before the values.
+bool is_map_of_colmap(std::string_view bytes) {
+  std::size_t at = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t end = std::min(bytes.find_first_not_of("0123456789", at), bytes.size());
+    if (end == at || end == bytes.size() || bytes[end] != '&') return false;
+    at = end + 1;
+  }
+  return true;
 }
 
 // Tells formats that begin with no word of their own.
@@ -101,11 +144,13 @@ std::optional<ForeignContent> kind_by_layout(std::string_view text) {
   };
   if (is_card(0)) return ForeignContent{"a file of CAD in IGES", kExportMesh, Holds::mesh};
   if (text.size() >= 6 && text.starts_with("MM")) {  // a chunk that is the whole file
-    std::uint32_t size = 0;
-    for (std::size_t k = 6; k-- > 2;) size = size << 8 | static_cast<unsigned char>(text[k]);
-    if (size == text.size())
+    if (number_at(text, 2) == text.size())
       return ForeignContent{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
   }
+  if (is_mesh_of_mujoco(text))
+    return ForeignContent{"a mesh of MuJoCo (.msh)", kExport, Holds::mesh};
+  if (is_map_of_colmap(text.substr(0, 64)))
+    return ForeignContent{"a depth map of COLMAP", kSaveDepths, Holds::scan};
   TextCursor cursor(text.substr(0, 4096));
   std::vector<std::string_view> first = cursor.row();
   while (first.size() == 1 && first[0] == "999") {  // a comment, in the line after

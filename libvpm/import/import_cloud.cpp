@@ -86,12 +86,13 @@ void check_calibrated_size(const RawDepth& image, const ImportOptions& options,
 
 ImportedScan scan_of_image(ScanFormat format, std::span<const std::byte> bytes,
                            const std::string& name, const ImportOptions& options) {
+  // Comes before the intrinsics, which a file that is no depth image must not ask for.
+  const RawDepth raw = parse_depth(format, bytes, name, options);
   if (!options.intrinsics) {
     throw Error(ErrorKind::invalid_argument,
                 "a depth image needs `intrinsics`: fx,fy,cx,cy in pixels, or a file with them",
                 name);
   }
-  const RawDepth raw = parse_depth(format, bytes, name, options);
   check_calibrated_size(raw, options, name);
   const Pose to_world = options.to_world ? with_own_axes(*options.to_world, options.axes) : Pose{};
   ImportedScan scan = scan_of_depth(raw, *options.intrinsics, to_world, name, options.depth);

@@ -17,8 +17,18 @@ struct NpyHeader {
   std::size_t data = 0;  // offset of the first value
 };
 
-[[noreturn]] void fail(const std::string& defect, const std::string& name) {
-  refuse("not a depth image in NPY: " + defect, name);
+[[noreturn]] void fail(const std::string& defect, const std::string& name,
+                       const std::string& hint = {}) {
+  refuse("not a depth image in NPY: " + defect, name, hint);
+}
+
+// Refuses points, one a row, of which an image would be a few pixels wide.
+void refuse_table(const std::vector<std::uint64_t>& shape, const std::string& name) {
+  constexpr std::uint64_t kMostColumns = 8, kRowsPerColumn = 16;
+  if (shape[1] < 3 || shape[1] > kMostColumns || shape[0] < kRowsPerColumn * shape[1]) return;
+  fail("its " + std::to_string(shape[0]) + " rows of " + std::to_string(shape[1]) +
+           " numbers are a table of points",
+       name, "save them as PLY or PCD, with their normals");
 }
 
 // Returns what follows "'key':" in the header's dictionary.
@@ -61,9 +71,11 @@ std::vector<std::uint64_t> shape_of(std::string_view text, const std::string& na
   }
   if (shape.size() == 3 && shape.front() == 1) shape.erase(shape.begin());
   if (shape.size() != 2) {
-    fail("its shape has " + std::to_string(shape.size()) +
-             " dimensions that are not 1; depth has two, rows and columns",
-         name);
+    fail(
+        "its shape has " + std::to_string(shape.size()) +
+            " dimensions that are not 1; depth has two, rows and columns",
+        name,
+        shape.size() == 3 && shape.back() <= 4 ? "save only the z of the point at each pixel" : "");
   }
   return shape;
 }
@@ -89,6 +101,7 @@ NpyHeader read_header(std::string_view text, const std::string& name) {
 
 RawDepth parse_npy_depth(std::span<const std::byte> bytes, const std::string& name) {
   const NpyHeader header = read_header(file::as_text(bytes), name);
+  if (header.type.kind == 'F') refuse_table(header.shape, name);
   check_image_size(header.shape[1], header.shape[0], name);
   RawDepth image;
   image.height = static_cast<std::uint32_t>(header.shape[0]);

@@ -22,6 +22,10 @@ std::size_t number_at(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+void put_number(std::string& bytes, std::size_t at, std::size_t value) {
+  for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<char>(value >> 8 * k & 0xFF);
+}
+
 // Returns the JSON of a glTF file, which is the first chunk of a binary one.
 std::string_view json_of(std::string_view gltf) {
   constexpr std::size_t kHeader = 20;
@@ -70,12 +74,32 @@ bool is_readable(const std::string& extension) {
   return false;
 }
 
+constexpr const char* kSaveUncompressed =
+    "save it without compression, quantization and instancing, or as OBJ, PLY or STL";
+
 void check_required(const json& content, const std::string& name) {
   for (const json& extension : member(content, "extensionsRequired")) {
     if (!extension.is_string() || is_readable(text_of(extension))) continue;
     refuse("it requires the glTF extension " + file::shown(text_of(extension)) +
                ", which is not read here",
-           name, "save it without compression, quantization and instancing, or as OBJ, PLY or STL");
+           name, kSaveUncompressed);
+  }
+}
+
+// Refuses positions of integers, which assimp reads as floats, or not at all.
+void check_positions(const json& content, const std::string& name) {
+  constexpr int kByte = 5120, kUnsignedShort = 5123;  // with unsigned bytes and shorts between
+  for (const json& mesh : member(content, "meshes")) {
+    for (const json& primitive : member(mesh, "primitives")) {
+      const json& accessor = element(member(content, "accessors"),
+                                     member(member(primitive, "attributes"), "POSITION"));
+      const json& type = member(accessor, "componentType");
+      if (!type.is_number_integer() || type < kByte || type > kUnsignedShort) continue;
+      refuse(
+          "its positions are integers, as the glTF extension KHR_mesh_quantization has them, "
+          "which is not read here",
+          name, kSaveUncompressed);
+    }
   }
 }
 
@@ -144,6 +168,19 @@ void take_skins(const json& content, GltfHeader& header) {
   header.keeps_skin = header.keeps_skin && header.has_skin;
 }
 
+// Returns the indices of the nodes that are no other's children.
+json roots_of(const json& content) {
+  const json& nodes = member(content, "nodes");
+  std::set<std::uint64_t> children;
+  for (const json& node : nodes)
+    for (const json& child : member(node, "children"))
+      if (child.is_number_unsigned()) children.insert(child.get<std::uint64_t>());
+  json roots = json::array();
+  for (std::uint64_t k = 0; nodes.is_array() && k < nodes.size(); ++k)
+    if (!children.contains(k)) roots.push_back(k);
+  return roots;
+}
+
 // True if a mesh or a node gives a morph target a weight.
 bool has_morph(const json& content) {
   for (const char* const list : {"meshes", "nodes"})
@@ -154,6 +191,23 @@ bool has_morph(const json& content) {
 }
 
 }  // namespace
+
+std::string with_scene(std::string_view gltf) {
+  constexpr std::size_t kLengthAt = 8, kJsonLengthAt = 12;
+  const std::string_view text = json_of(gltf);
+  const auto first = static_cast<std::size_t>(text.data() - gltf.data());
+  // Goes before other members, of which none is read that has the same key.
+  std::string members = R"("scene":0,"scenes":[{"nodes":)" +
+                        roots_of(json::parse(text, nullptr, false)).dump() + "}],";
+  members.resize((members.size() + 3) / 4 * 4, ' ');
+  std::string changed(gltf);
+  changed.insert(first + text.find('{') + 1, members);
+  if (gltf.starts_with("glTF")) {
+    put_number(changed, kLengthAt, number_at(gltf, kLengthAt) + members.size());
+    put_number(changed, kJsonLengthAt, text.size() + members.size());
+  }
+  return changed;
+}
 
 std::string percent_decoded(std::string_view text) {
   std::string decoded;
@@ -175,9 +229,13 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
   const json content = json::parse(json_of(bytes), nullptr, false);
   if (!content.is_object()) return header;  // assimp says what is wrong
   check_required(content, name);
+  check_positions(content, name);
   check_buffers(content, name);
   note_rest(bytes, header);
   take_skins(content, header);
+  header.has_scene = !member(content, "scenes").empty() || roots_of(content).empty();
+  if (!header.has_scene)
+    header.notes.push_back("it has no scene, and so all of its nodes are read");
   if (has_morph(content))
     header.notes.push_back(
         "its morph targets have weights, which are not applied: check its shape");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <sstream>
+#include <tuple>
 
 #include "libvpm/file/foreign_content.h"
 
@@ -78,6 +79,48 @@ TEST(ForeignContent, NamesWhatPeopleGiveByMistake) {
   EXPECT_EQ(what("%PDF-1.7"), "a PDF document");
   EXPECT_EQ(what("# .PCD v0.7"), "");
   EXPECT_EQ(what(""), "");
+}
+
+// Returns a mesh of MuJoCo: counts of vertices, normals, texture coordinates and faces, then `rest`
+// bytes.
+std::string mesh_of_mujoco(std::size_t rest) {
+  const std::uint32_t counts[] = {4, 4, 4, 2};
+  return std::string(reinterpret_cast<const char*>(counts), sizeof counts) + std::string(rest, 1);
+}
+
+TEST(ForeignContent, NamesFilesOfOtherPrograms) {
+  constexpr std::size_t kMujoco = 4 * 12 + 4 * 12 + 4 * 8 + 2 * 12;
+  const std::string xml = "<?xml version=\"1.0\"?>\n<!-- made -->\n";
+  for (const auto& [text, what, next, holds] :
+       std::vector<std::tuple<std::string, const char*, const char*, Holds>>{
+           {"160&120&1&....", "a depth map of COLMAP", "save its depths as .npy", Holds::scan},
+           {"PIEH....", "a depth map of Sintel (.dpt) or optical flow", "save its depths",
+            Holds::scan},
+           {std::string("SQLite format 3\0", 16), "a database of SQLite", "extract its images",
+            Holds::scan},
+           {mesh_of_mujoco(kMujoco), "a mesh of MuJoCo", "export it as OBJ", Holds::mesh},
+           {"OCTM\5", "a mesh of OpenCTM", "export it as OBJ", Holds::mesh},
+           {"\nDBRep_DrawableShape\n\nCASCADE Topology V1", "in BREP", "export a mesh",
+            Holds::mesh},
+           {"CASCADE Topology V1, (c) Matra", "in BREP", "export a mesh", Holds::mesh},
+           {"*Heading\n** Job name", "a model of Abaqus", "export a mesh", Holds::mesh},
+           {"*NODE\n1, 0, 0, 0", "a model of Abaqus", "export a mesh", Holds::mesh},
+           {"<amf unit=\"inch\">", "a mesh in AMF", "export it as OBJ", Holds::mesh},
+           {xml + "<amf unit=\"inch\">", "a mesh in AMF", "export it as OBJ", Holds::mesh},
+           {xml + "<VTKFile type=\"PolyData\">", "a file of VTK", "export it as PLY",
+            Holds::anything},
+           {xml + "<sdf version=\"1.6\">", "a robot description", "one of the files",
+            Holds::mesh}}) {
+    const auto found = foreign_content(std::as_bytes(std::span(text.data(), text.size())));
+    ASSERT_TRUE(found) << text;
+    EXPECT_NE(found->what.find(what), std::string::npos) << found->what;
+    EXPECT_NE(found->next.find(next), std::string::npos) << found->next;
+    EXPECT_EQ(found->holds, holds) << text;
+  }
+  for (const std::string& text :
+       {mesh_of_mujoco(kMujoco + 1), std::string("160&120&"), std::string("160&&1&"),
+        std::string("&&&"), std::string("160 120 1"), std::string("*nod")})
+    EXPECT_FALSE(foreign_content(std::as_bytes(std::span(text.data(), text.size())))) << text;
 }
 
 }  // namespace

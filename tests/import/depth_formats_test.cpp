@@ -100,6 +100,15 @@ TEST(NpyDepth, RefusesWhatIsNoDepth) {
   const auto refused = [](const std::string& file) { return test::refusal([&] { npy(file); }); };
   EXPECT_TRUE(says(refused(make_npy<char>("|u1", "False", "(2, 3)", {})), "|u1"));
   EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", "(2, 3, 3)", kRows)), "3 dimensions"));
+  EXPECT_TRUE(
+      says(refused(make_npy<float>("<f4", "False", "(2, 3, 3)", kRows)), "save only the z"));
+  for (const char* const shape : {"(64, 3)", "(64, 4)", "(1000, 6)", "(1, 64, 3)"})
+    EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", shape, kRows)),
+                     "are a table of points; save them as PLY or PCD, with their normals"))
+        << shape;
+  for (const char* const shape : {"(64, 2)", "(64, 9)", "(47, 3)", "(3, 64)"})
+    EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", shape, kRows)), "truncated")) << shape;
+  EXPECT_TRUE(says(refused(make_npy<float>("<i4", "False", "(64, 3)", kRows)), "truncated"));
   EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", "(20, 3)", kRows)), "truncated"));
   expect_damage_is_refused(make_npy<float>("<f4", "False", "(2, 3)", kRows), 300,
                            [](auto bytes) { parse_npy_depth(bytes, "file"); });

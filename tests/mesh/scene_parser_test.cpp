@@ -253,6 +253,42 @@ TEST(Gltf, BytesBehindTheFileAreSaid) {
                                              " bytes after the length in its header are not read");
 }
 
+TEST(Gltf, WithoutASceneAllNodesAreRead) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string of_scene = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+  const std::string moved = R"(,{"name":"up","children":[2]},{"name":"tip","mesh":0})";
+  const auto without = [&](std::string bytes, const std::string& instead) {
+    bytes.replace(bytes.find(of_scene), of_scene.size(),
+                  instead + std::string(of_scene.size() - instead.size(), ' '));
+    return bytes;
+  };
+  for (const char* const instead : {"", R"("scenes":[],)", R"("scene":0,)"}) {
+    const RawMesh mesh = parse(without(glb("", "", moved), instead), "a.glb");
+    EXPECT_EQ(mesh.polygon_count(), 24U) << instead;
+    expect_note(mesh, "it has no scene, and so all of its nodes are read");
+  }
+  EXPECT_EQ(parse(glb("", "", moved), "a.glb").polygon_count(), 12U) << "the scene's node alone";
+  EXPECT_EQ(all_notes(parse(glb(""), "a.glb")).find("no scene"), std::string::npos);
+  const auto [json, buffer] = gltf_of_two_files("buffer.bin");
+  const auto folder = std::filesystem::path(testing::TempDir()) / "vpm_gltf_no_scene";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "buffer.bin", std::ios::binary) << buffer;
+  std::ofstream(folder / "a.gltf", std::ios::binary) << without(json, "");
+  EXPECT_EQ(read_mesh((folder / "a.gltf").string()).polygon_count(), 12U);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Gltf, PositionsOfIntegersAreRefused) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  for (const char* const type : {"5120", "5121", "5122", "5123"}) {
+    std::string bytes = glb(R"(,"extensionsUsed":["KHR_mesh_quantization"])");
+    bytes.replace(bytes.find("5126"), 4, type);
+    expect_refusal(bytes, "a.glb", "integers, as the glTF extension KHR_mesh_quantization");
+  }
+  EXPECT_EQ(parse(glb(R"(,"extensionsUsed":["KHR_mesh_quantization"])"), "a.glb").polygon_count(),
+            12U);
+}
+
 TEST(Gltf, RequiredExtensionsAreNamed) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
   for (const std::string name :

@@ -161,6 +161,8 @@ def write_images(folder):
         "layer.exr": exr({"WorldDepth.R": METRES, **{f"WorldDepth.{c}": [0] * len(METRES) for c in "GB"}, "R": nearer}),
         "wall.pgm.gz": gzip.compress(depth_files.pgm(MILLIMETRES)), "wall.pgm.bz2": bz2.compress(depth_files.pgm(MILLIMETRES)),
         "wall.pgm.xz": lzma.compress(depth_files.pgm(MILLIMETRES)), "empty.pgm": b"", "unpack.py": UNPACK,
+        "rows.npy": depth_files.npy([x for p in points_of_wall() for x in p], WIDTH * HEIGHT, 3),
+        "points.npy": depth_files.npy([x for p in points_of_wall() for x in p], HEIGHT, WIDTH, 3),
     }
     write_all(folder, files)
     with zipfile.ZipFile(folder / "wall.zip", "w") as archive:
@@ -289,6 +291,9 @@ MESH_STARTS = {
     b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1": "export a mesh from it", b"3D Geometry File Format": "export a mesh from it",
     b"**ABCDEFGHIJKLM": "export a mesh from it", b"$MeshFormat\n": "export it as OBJ, PLY or STL",
     b"MeshVersionFormatted 2\n": "export it as OBJ, PLY or STL", b"xof 0303txt": "export it as OBJ, PLY or STL",
+    b"OCTM\5\0\0\0": "export it as OBJ, PLY or STL", b"<amf>": "export it as OBJ, PLY or STL",
+    b'<?xml version="1.0"?>\n<amf>': "export it as OBJ, PLY or STL", b"DBRep_DrawableShape\n": "export a mesh from it",
+    b"*Heading\n": "export a mesh from it",
 }
 SCAN_STARTS = {
     b"\xff\xd8\xff\xe0": "give the 16-bit or float image", b"GIF89a": "give the 16-bit or float image",
@@ -297,7 +302,8 @@ SCAN_STARTS = {
     b"#ROSBAG V2.0": "extract its images or clouds first", b"\x89MCAP0\r\n": "extract its images or clouds first",
     b"RIFF\x10\0\0\0WEBP": "give the 16-bit or float image", b"#?RADIANCE\n": "give the 16-bit or float image",
     b"P7\nWIDTH 64\n": "save it as PGM, or as 16-bit PNG", b"\x80\x04\x95\x10": "save its array as .npy",
-    b"LASF": "convert it to PLY with normals, for example by PDAL",
+    b"160&120&1&": "save its depths as .npy, PFM or 16-bit PNG", b"PIEH": "save its depths as .npy, PFM or 16-bit PNG",
+    b"SQLite format 3\0": "extract its images or clouds first", b"LASF": "convert it to PLY with normals, for example by PDAL",
     b"ASTM-E57": "convert it to PLY with normals, for example by PDAL",
 }
 OTHER_STARTS = {
@@ -307,6 +313,7 @@ OTHER_STARTS = {
     b"\x04\x22\x4d\x18": "unpack it first: unlz4",
     b"%PDF-1.7": "give the file that was meant", b"7z\xbc\xaf\x27\x1c": "unpack it first: 7z x",
     b"version https://git-lfs.github.com/spec/v1\n": "fetch it with: git lfs pull",
+    b'<?xml version="1.0"?>\n<VTKFile/>': "export it as PLY",
     b'<?xml version="1.0"?>\n<svg/>': "give the file that was meant", b"\xff\xfev\0": "save it as UTF-8",
 }
 STARTS = {**MESH_STARTS, **SCAN_STARTS, **OTHER_STARTS}

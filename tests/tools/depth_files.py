@@ -23,8 +23,8 @@ def pfm(metres):
     return b"Pf\n%d %d\n-1.0\n" % (WIDTH, HEIGHT) + b"".join(struct.pack(f"<{WIDTH}f", *row) for row in rows)
 
 
-def npy(metres):
-    header = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }\n" % (HEIGHT, WIDTH)
+def npy(metres, *shape):
+    header = "{'descr': '<f4', 'fortran_order': False, 'shape': %s, }\n" % (shape or (HEIGHT, WIDTH),)
     return b"\x93NUMPY\x01\0" + struct.pack("<H", len(header)) + header.encode() + struct.pack(f"<{len(metres)}f", *metres)
 
 

@@ -138,6 +138,7 @@ def write_all(folder):
     inline = "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()
     (folder / "cube.gltf").write_text(json.dumps({**content, "buffers": [{"byteLength": len(buffer), "uri": inline}]}))
     (folder / "cube.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5))
+    (folder / "short.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5).replace(b"5126", b"5122"))
     (folder / "two.glb").write_bytes(glb([("body", 2, (0, 0, 0)), ("tip", -1, (3, 0, 0))], 0.5))
     threemf(folder / "cube.3mf", 1000)
     threemf(folder / "metre.3mf", 1, unit=' unit="meter"')
