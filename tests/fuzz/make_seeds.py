@@ -189,7 +189,12 @@ def clouds():
         struct.pack("<6f", *p, 0, 0, -1) for p in points)
 
 
-POSES = {"json": '[0,0,1,0,0,0,1]\n{"time": 1.5, "pose": [0.1,0,1,0,0,0,1]}\n',
+ROS = '{"position": {"x": 0, "y": 0, "z": 1}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}'
+POSES = {"three_rows": "1 0 0 0\n0 1 0 0\n0 0 1 1\n\n1 0 0 0\n0 1 0 0\n0 0 1 2\n",
+         "print": "[[1. 0. 0. 0.]\n [0. 1. 0. 0.]\n [0. 0. 1. 1.]\n [0. 0. 0. 1.]]\n",
+         "list": "[[0,0,1,0,0,0,1],\n [5,0,0,1,0,0,0,1]]\n", "semicolons": "0;0;1;0;0;0;1\n",
+         "ros": '{"header": {"stamp": {"sec": 1, "nanosec": 5}}, "pose": ' + ROS + '}\n{"poses": [' + ROS + "]}\n",
+         "json": '[0,0,1,0,0,0,1]\n{"time": 1.5, "pose": [0.1,0,1,0,0,0,1]}\n',
          "matrix_json": '{"matrix": [1,0,0,0, 0,1,0,0, 0,0,1,2, 0,0,0,1]}\n',
          "tum": "# time tx ty tz qx qy qz qw\n0.0 0 0 1 0 0 0 1\n0.1 0 0.1 1 0 0 0.6 0.8\n",
          "matrix": "1 0 0 0\n0 1 0 0\n0 0 1 0.5\n0 0 0 1\n",
