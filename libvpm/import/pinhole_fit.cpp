@@ -47,8 +47,8 @@ GridLines lines_of(const PointSet& points) {
     const Vec3 p = points.positions[i];
     if (!is_seen(p)) continue;
     ++lines.seen;
-    const auto column = static_cast<double>(i % points.width),
-               row = static_cast<double>(i / points.width);
+    const std::size_t u = i % points.width, v = i / points.width;
+    const auto column = static_cast<double>(u), row = static_cast<double>(v);
     lines.column_of_x.add(p.x / p.z, column);
     lines.column_of_y.add(p.y / p.z, column);
     lines.row_of_x.add(p.x / p.z, row);
@@ -126,7 +126,7 @@ std::string cure_of(const PointSet& points, bool is_placed) {
 std::string words_of(const PinholeFit& fit, const PointSet& points) {
   const Intrinsics& k = fit.intrinsics;
   const GridLines lines = lines_of(points);
-  if (const std::string words = arrangement_of(lines).words; !words.empty()) return words;
+  if (std::string words = arrangement_of(lines).words; !words.empty()) return words;
   if (!lines.column_of_x.solvable() || !lines.row_of_y.solvable()) {
     return std::to_string(lines.seen) + " of its " + std::to_string(points.positions.size()) +
            " points have z > 0, and their directions are too few to tell the camera";
