@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libvpm/file/container_layout.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
 
 namespace vpm::file {
@@ -63,9 +64,7 @@ constexpr Start kStarts[] = {
     {"pxr-usdc"sv, "a scene in USD", kExport, Holds::mesh},
     {"#vrml"sv, "a scene in VRML", kExport, Holds::mesh},
     {"#x3d"sv, "a scene in X3D", kExport, Holds::mesh},
-    {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
     {"# vtk datafile"sv, "a file of VTK", kExportPly},
-    {"<vtkfile"sv, "a file of VTK", kExportPly},
     {"draco"sv, "compressed by Draco", "decode it to PLY: draco_decoder"},
     {"$meshformat"sv, "a mesh of Gmsh", kExport, Holds::mesh},
     {"meshversionformatted"sv, "a mesh of MEDIT", kExport, Holds::mesh},
@@ -75,7 +74,6 @@ constexpr Start kStarts[] = {
     {"autocad binary dxf"sv, "a drawing in DXF", kExportMesh, Holds::mesh},
     {"ac10"sv, "a drawing in DWG", kExportMesh, Holds::mesh},
     {"octm"sv, "a mesh of OpenCTM", kExport, Holds::mesh},
-    {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
     {"dbrep_drawableshape"sv, "a file of CAD in BREP", kExportMesh, Holds::mesh},
     {"cascade topology"sv, "a file of CAD in BREP", kExportMesh, Holds::mesh},
     {"*heading"sv, "a model of Abaqus", kExportMesh, Holds::mesh},
@@ -87,39 +85,39 @@ constexpr Start kStarts[] = {
     {"\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
 };
 
+// Elements that a file begins with, or has behind the declaration of XML.
+constexpr Start kElements[] = {
+    {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
+    {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
+    {"<vtkfile"sv, "a file of VTK", kExportPly},
+};
+
+ForeignContent content_of(const Start& known) {
+  return {known.what, known.next, known.holds};
+}
+
 // Tells the kinds of XML by what stands behind the declaration and comments.
 std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
   constexpr std::size_t kLooked = 4096;
   const std::string text = in_lower_case(as_text(bytes.first(std::min(bytes.size(), kLooked))));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   if (text.compare(begin, 5, "<?xml") != 0) return std::nullopt;
-  constexpr const char* kRobot = "a robot description (URDF, MJCF, SDF)";
-  constexpr const char* kNamed = "give one of the files that it names";
-  constexpr Start kRoots[] = {
-      {"<robot"sv, kRobot, kNamed, Holds::mesh},
-      {"<mujoco"sv, kRobot, kNamed, Holds::mesh},
-      {"<sdf"sv, kRobot, kNamed, Holds::mesh},
-      {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
-      {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
-      {"<vtkfile"sv, "a file of VTK", kExportPly},
-  };
-  for (const Start& root : kRoots)
-    if (text.find(root.bytes) != text.npos) return ForeignContent{root.what, root.next, root.holds};
+  for (const char* const robot : {"<robot", "<mujoco", "<sdf"}) {
+    if (text.find(robot) != text.npos)
+      return ForeignContent{"a robot description (URDF, MJCF, SDF)",
+                            "give one of the files that it names", Holds::mesh};
+  }
+  for (const Start& element : kElements)
+    if (text.find(element.bytes) != text.npos) return content_of(element);
   return ForeignContent{"an XML file", "give the file that was meant"};
-}
-
-std::uint32_t number_at(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-  return value;
 }
 
 // True for counts of vertices, normals, texture coordinates and faces that tell the file's size.
 bool is_mesh_of_mujoco(std::string_view bytes) {
   constexpr std::size_t kCounts = 16, kTriple = 12, kPair = 8;
   if (bytes.size() < kCounts + 4 * kTriple) return false;
-  const std::uint64_t vertices = number_at(bytes, 0), normals = number_at(bytes, 4),
-                      pairs = number_at(bytes, 8), faces = number_at(bytes, 12);
+  const std::uint64_t vertices = unsigned_at(bytes, 0), normals = unsigned_at(bytes, 4),
+                      pairs = unsigned_at(bytes, 8), faces = unsigned_at(bytes, 12);
   return vertices > 2 &&
          kTriple * (vertices + normals + faces) + kPair * pairs == bytes.size() - kCounts;
 }
@@ -144,7 +142,7 @@ std::optional<ForeignContent> kind_by_layout(std::string_view text) {
   };
   if (is_card(0)) return ForeignContent{"a file of CAD in IGES", kExportMesh, Holds::mesh};
   if (text.size() >= 6 && text.starts_with("MM")) {  // a chunk that is the whole file
-    if (number_at(text, 2) == text.size())
+    if (unsigned_at(text, 2) == text.size())
       return ForeignContent{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
   }
   if (is_mesh_of_mujoco(text))
@@ -175,25 +173,15 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
   return ForeignContent{names_of(kind).what, next};
 }
 
-// Splits a line of a table at blanks, commas and semicolons.
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  constexpr std::string_view kBetween = " \t,;";
-  for (std::size_t at = line.find_first_not_of(kBetween); at != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
-    cells.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBetween, end);
-  }
-  return cells;
+bool is_number(std::string_view word) {
+  return to_number(word).has_value();
 }
 
 // True for a comment, names of columns, or a count of points.
 bool is_heading(std::string_view line, const std::vector<std::string_view>& cells) {
   if (line.starts_with('#') || line.starts_with("//")) return true;
   if (cells.size() == 1) return to_count(cells[0]).has_value();
-  return cells.size() >= 3 && std::none_of(cells.begin(), cells.end(), [](std::string_view cell) {
-           return to_number(cell).has_value();
-         });
+  return cells.size() >= 3 && std::none_of(cells.begin(), cells.end(), is_number);
 }
 
 }  // namespace
@@ -201,7 +189,6 @@ bool is_heading(std::string_view line, const std::vector<std::string_view>& cell
 bool is_table_of_numbers(std::string_view text) {
   constexpr int kLooked = 4;                     // lines
   constexpr std::size_t kMostBytes = 1U << 16U;  // a line of a wide image
-  const auto is_number = [](std::string_view cell) { return to_number(cell).has_value(); };
   TextCursor cursor(text.substr(0, kMostBytes));
   std::size_t columns = 0;
   int rows = 0;
@@ -209,7 +196,7 @@ bool is_table_of_numbers(std::string_view text) {
     const std::optional<std::string_view> line = cursor.line();
     const bool is_cut = cursor.remaining() == 0 && text.size() > kMostBytes;
     if (!line || is_cut) break;
-    const std::vector<std::string_view> cells = cells_of(*line);
+    const std::vector<std::string_view> cells = split_words(*line, " \t,;");
     if (k == 0 && is_heading(*line, cells)) continue;
     if (k > 0 && cells.empty()) break;
     if (cells.size() < 3 || !std::all_of(cells.begin(), cells.end(), is_number)) return false;
@@ -227,7 +214,9 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   const std::string start = in_lower_case(text.substr(begin));
   for (const Start& known : kStarts)
-    if (start.starts_with(known.bytes)) return ForeignContent{known.what, known.next, known.holds};
+    if (start.starts_with(known.bytes)) return content_of(known);
+  for (const Start& element : kElements)
+    if (start.starts_with(element.bytes)) return content_of(element);
   if (auto xml = xml_kind(bytes)) return xml;
   if (auto other = kind_by_layout(as_text(bytes))) return other;
   return own_kind(bytes);

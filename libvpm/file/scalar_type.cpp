@@ -61,4 +61,11 @@ double read_scalar(const std::byte* from, ScalarType type, bool big_endian) {
   }
 }
 
+std::uint32_t unsigned_at(std::string_view bytes, std::size_t at, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t k = size; k-- > 0;)
+    value = value << 8 | (at + k < bytes.size() ? static_cast<unsigned char>(bytes[at + k]) : 0U);
+  return value;
+}
+
 }  // namespace vpm::file

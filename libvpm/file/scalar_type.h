@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace vpm::file {
 
@@ -16,5 +17,8 @@ struct ScalarType {
 bool is_known(ScalarType type);
 // Returns the number at `from`; also a half float, which is no known type of clouds.
 double read_scalar(const std::byte* from, ScalarType type, bool big_endian);
+// Returns the unsigned integer of `size` little-endian bytes, 4 at most; those beyond the end are
+// 0.
+std::uint32_t unsigned_at(std::string_view bytes, std::size_t at, std::size_t size = 4);
 
 }  // namespace vpm::file

@@ -8,8 +8,6 @@
 namespace vpm::file {
 namespace {
 
-constexpr std::string_view kBlank = " \t\r\n\v\f";
-
 char lower_case(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
@@ -21,12 +19,12 @@ bool ends_first_line_in_cr(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string_view> split_words(std::string_view line) {
+std::vector<std::string_view> split_words(std::string_view line, std::string_view between) {
   std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBlank); at != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBlank, at), line.size());
+  for (std::size_t at = line.find_first_not_of(between); at != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(between, at), line.size());
     words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBlank, end);
+    at = line.find_first_not_of(between, end);
   }
   return words;
 }

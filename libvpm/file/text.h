@@ -23,7 +23,9 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-std::vector<std::string_view> split_words(std::string_view line);
+inline constexpr std::string_view kBlank = " \t\r\n\v\f";
+// Returns the words of the line, which one or several of the characters `between` stand between.
+std::vector<std::string_view> split_words(std::string_view line, std::string_view between = kBlank);
 
 // Returns the whole word as a number, by number_from_text(); empty if it is none.
 std::optional<double> to_number(std::string_view word);

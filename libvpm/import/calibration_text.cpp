@@ -17,10 +17,8 @@ std::vector<double> plain_numbers(std::string_view text) {
   std::vector<double> numbers;
   file::TextCursor cursor(text);
   while (const auto line = cursor.line()) {
-    std::string row(line->substr(0, line->find('#')));
-    for (char& c : row)
-      if (c == ',' || c == ';' || c == '[' || c == ']') c = ' ';
-    for (const std::string_view word : file::split_words(row)) {
+    const std::string_view row = line->substr(0, line->find('#'));
+    for (const std::string_view word : file::split_words(row, " \t\r\n\v\f,;[]")) {
       const std::optional<double> number = file::to_number(word);
       if (!number) return {};
       numbers.push_back(*number);
@@ -38,11 +36,9 @@ struct NamedNumbers {
 
 // Splits a line into names and the numbers behind each; numbers before the first name get none.
 std::vector<NamedNumbers> split_at_names(std::string_view line) {
-  std::string row(line.substr(0, line.find('#')));
-  for (char& c : row)
-    if (std::string_view(",;:=").find(c) != std::string_view::npos) c = ' ';
+  const std::string_view row = line.substr(0, line.find('#'));
   std::vector<NamedNumbers> parts;
-  for (const std::string_view word : file::split_words(row)) {
+  for (const std::string_view word : file::split_words(row, " \t\r\n\v\f,;:=")) {
     const std::optional<double> number = file::to_number(word);
     if (!number || parts.empty()) parts.push_back({number ? "" : std::string(word), {}});
     if (number) parts.back().numbers.push_back(*number);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <numbers>
 #include <span>
 #include <string>
 #include <tuple>
@@ -111,7 +112,7 @@ Remarks off_the_surface(std::vector<float> cosines, const Cloud& cloud) {
   if (cosines.size() < kFewest || kPart * cosines.size() < cloud.size()) return {};
   const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
   std::nth_element(cosines.begin(), middle, cosines.end());
-  const double degrees = std::acos(std::min(*middle, 1.0F)) * 180 / 3.14159265358979;
+  const double degrees = std::acos(std::min(*middle, 1.0F)) * 180 / std::numbers::pi;
   if (degrees <= kMostDegrees) return {};
   return {{true, "its normals lie " + std::to_string(static_cast<int>(degrees)) +
                      " degrees off those of the surfaces that its points form (median): were the "

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <new>
 
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 
@@ -15,19 +16,11 @@ namespace {
 constexpr std::string_view kRecord{"PK\x01\x02", 4}, kEnd{"PK\x05\x06", 4};
 constexpr std::size_t kRecordSize = 46;
 
-// Returns a number of little-endian bytes, 0 beyond the end.
-std::uint32_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t k = size; k-- > 0;)
-    value = value << 8 | (at + k < bytes.size() ? static_cast<unsigned char>(bytes[at + k]) : 0U);
-  return value;
-}
-
 // Returns the place of the directory's first record. Where the archive's end does not tell it, as
 // of large archives (zip64), the first bytes that look like one are taken.
 std::size_t directory_of(std::string_view zip) {
   const std::size_t end = zip.rfind(kEnd);
-  const std::size_t told = end == zip.npos ? zip.size() : number_at(zip, end + 16, 4);
+  const std::size_t told = end == zip.npos ? zip.size() : file::unsigned_at(zip, end + 16, 4);
   return told < zip.size() && zip.substr(told).starts_with(kRecord) ? told : zip.find(kRecord);
 }
 
@@ -56,20 +49,21 @@ std::vector<ZipEntry> zip_entries(std::string_view zip) {
   std::vector<ZipEntry> entries;
   for (std::size_t at = directory_of(zip);
        at < zip.size() && zip.substr(at).starts_with(kRecord) && at + kRecordSize <= zip.size();) {
-    const std::size_t name_size = number_at(zip, at + 28, 2);
+    const std::size_t name_size = file::unsigned_at(zip, at + 28, 2);
     entries.push_back({file::in_lower_case(zip.substr(at + kRecordSize, name_size)), at});
-    at += kRecordSize + name_size + number_at(zip, at + 30, 2) + number_at(zip, at + 32, 2);
+    at += kRecordSize + name_size + file::unsigned_at(zip, at + 30, 2) +
+          file::unsigned_at(zip, at + 32, 2);
   }
   return entries;
 }
 
 std::string unpacked(std::string_view zip, const ZipEntry& entry) {
   constexpr std::size_t kLocalSize = 30;
-  const std::uint32_t method = number_at(zip, entry.record + 10, 2),
-                      size = number_at(zip, entry.record + 20, 4);
-  const std::size_t local = number_at(zip, entry.record + 42, 4);
-  const std::size_t begin =
-      local + kLocalSize + number_at(zip, local + 26, 2) + number_at(zip, local + 28, 2);
+  const std::uint32_t method = file::unsigned_at(zip, entry.record + 10, 2),
+                      size = file::unsigned_at(zip, entry.record + 20, 4);
+  const std::size_t local = file::unsigned_at(zip, entry.record + 42, 4);
+  const std::size_t begin = local + kLocalSize + file::unsigned_at(zip, local + 26, 2) +
+                            file::unsigned_at(zip, local + 28, 2);
   if (begin >= zip.size()) return "";
   const std::string_view packed = zip.substr(begin, size);
   return method == 0 ? std::string(packed) : inflated(packed, file::most_memory(zip.size()));

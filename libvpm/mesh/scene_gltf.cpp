@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
 #include "libvpm/mesh/scene_header.h"
 
@@ -14,13 +15,6 @@ namespace vpm {
 namespace {
 
 using nlohmann::json;
-
-// Returns the number of four little-endian bytes, which lie within.
-std::size_t number_at(std::string_view bytes, std::size_t at) {
-  std::size_t value = 0;
-  for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
-  return value;
-}
 
 void put_number(std::string& bytes, std::size_t at, std::size_t value) {
   for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<char>(value >> 8 * k & 0xFF);
@@ -30,14 +24,14 @@ void put_number(std::string& bytes, std::size_t at, std::size_t value) {
 std::string_view json_of(std::string_view gltf) {
   constexpr std::size_t kHeader = 20;
   if (!gltf.starts_with("glTF")) return gltf;
-  return gltf.size() < kHeader ? "" : gltf.substr(kHeader, number_at(gltf, 12));
+  return gltf.size() < kHeader ? "" : gltf.substr(kHeader, file::unsigned_at(gltf, 12));
 }
 
 // Says what follows a binary file, such as a second one that `cat` has joined to it.
 void note_rest(std::string_view gltf, GltfHeader& header) {
   constexpr std::size_t kLengthAt = 8, kHeader = 12, kMostPadding = 3;
   if (!gltf.starts_with("glTF") || gltf.size() < kHeader) return;
-  const std::size_t length = number_at(gltf, kLengthAt);
+  const std::size_t length = file::unsigned_at(gltf, kLengthAt);
   if (gltf.size() > length + kMostPadding) {
     header.notes.push_back("the " + std::to_string(gltf.size() - length) +
                            " bytes after the length in its header are not read");
@@ -203,7 +197,7 @@ std::string with_scene(std::string_view gltf) {
   std::string changed(gltf);
   changed.insert(first + text.find('{') + 1, members);
   if (gltf.starts_with("glTF")) {
-    put_number(changed, kLengthAt, number_at(gltf, kLengthAt) + members.size());
+    put_number(changed, kLengthAt, file::unsigned_at(gltf, kLengthAt) + members.size());
     put_number(changed, kJsonLengthAt, text.size() + members.size());
   }
   return changed;

@@ -29,16 +29,6 @@ void refuse_empty_cells(const std::string& line, char separator) {
   }
 }
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBetween); at != line.npos;) {
-    const std::size_t end = std::min(line.find_first_of(kBetween, at), line.size());
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBetween, end);
-  }
-  return words;
-}
-
 // True for a line of COLMAP's images.txt: image, quaternion with w first, translation, camera and
 // name.
 bool is_image_of_colmap(const std::vector<std::string_view>& words) {
@@ -93,7 +83,7 @@ std::vector<double> numbers_of_line(const std::string& line) {
   if (has_semicolon && line.find(',') != std::string::npos)
     refuse("semicolons and commas stand between its numbers", {}, kDecimalPoint);
   refuse_empty_cells(line, has_semicolon ? ';' : ',');
-  const std::vector<std::string_view> words = words_of(line);
+  const std::vector<std::string_view> words = file::split_words(line, kBetween);
   std::vector<double> numbers;
   bool has_bare_comma = false, has_bare_blank = false;
   for (std::size_t k = 0; k < words.size(); ++k) {

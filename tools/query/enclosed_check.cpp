@@ -7,7 +7,7 @@
 namespace vpm::tools {
 namespace {
 
-constexpr double kFullTurn = 4 * 3.14159265358979323846;  // the solid angle of all directions
+constexpr double kFullTurn = 4 * kPi;  // the solid angle of all directions
 
 }  // namespace
 
