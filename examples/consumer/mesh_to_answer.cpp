@@ -21,7 +21,7 @@ vpm::Scene scene_of(const std::string& image, const std::string& intrinsics) {
   vpm::Intrinsics k;
   if (std::sscanf(intrinsics.c_str(), "%lf,%lf,%lf,%lf", &k.fx, &k.fy, &k.cx, &k.cy) != 4)
     throw vpm::Error(vpm::ErrorKind::invalid_argument, "needed are fx,fy,cx,cy", intrinsics);
-  return vpm::import_cloud(image, {.intrinsics = k});
+  return vpm::Scene(vpm::import_cloud(image, {.intrinsics = k}));
 }
 
 }  // namespace

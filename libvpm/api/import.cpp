@@ -1,5 +1,6 @@
 #include "libvpm/include/vpm/import.h"
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/import/import_cloud.h"
 
@@ -15,7 +16,7 @@ PointCloud import_cloud(const std::string& path, const ImportParameters& paramet
   if (options.intrinsics) check_intrinsics(*options.intrinsics);
   const std::string name = path == "-" ? "standard input" : path;
   ImportedCloud imported = import_cloud(file::read_all(path), name, options);
-  return PointCloud(std::make_shared<const Cloud>(std::move(imported.cloud)));
+  return HandleAccess::make<PointCloud>(std::move(imported.cloud));
 }
 
 }  // namespace vpm

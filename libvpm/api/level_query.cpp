@@ -1,5 +1,6 @@
 #include "libvpm/include/vpm/level_query.h"
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/api/scene_body.h"
 #include "libvpm/query/level_tool_query.h"
 
@@ -12,34 +13,38 @@ struct LevelQuery::Impl {
 
 LevelQuery::LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
                        const Scene& scene, const Pose& first_pose)
-    : impl_(new Impl{tool,
-                     LevelToolQuery(tool.model(), options, request, view_of(scene), first_pose)}) {}
+    : impl_(new Impl{tool, LevelToolQuery(HandleAccess::held(tool), options, request,
+                                          view_of(scene), first_pose)}) {}
 LevelQuery::~LevelQuery() = default;
 LevelQuery::LevelQuery(LevelQuery&&) noexcept = default;
 LevelQuery& LevelQuery::operator=(LevelQuery&&) noexcept = default;
 
+LevelQuery::Impl& LevelQuery::impl() const {
+  return held_by(impl_, "LevelQuery");
+}
+
 Result LevelQuery::run(const Scene& scene, const Pose& pose) {
-  return impl_->query.run(view_of(scene), pose);
+  return impl().query.run(view_of(scene), pose);
 }
 
 std::uint32_t LevelQuery::level() const {
-  return impl_->query.query().level().sphere_count;
+  return impl().query.query().level().sphere_count;
 }
 
 double LevelQuery::seconds() const {
-  return impl_->query.seconds();
+  return impl().query.seconds();
 }
 
 std::string LevelQuery::reason() const {
-  return impl_->query.reason();
+  return impl().query.reason();
 }
 
 std::optional<SceneScale> LevelQuery::scale() const {
-  return impl_->query.scale();
+  return impl().query.scale();
 }
 
 std::span<const SphereState> LevelQuery::states() const {
-  return impl_->query.query().states();
+  return impl().query.query().states();
 }
 
 }  // namespace vpm

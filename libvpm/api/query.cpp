@@ -2,6 +2,7 @@
 
 #include <deque>
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/api/scene_body.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
@@ -12,7 +13,7 @@ struct Query::Impl {
   Impl(std::span<const Tool> handles, const QueryOptions& options)
       : tools(handles.begin(), handles.end()) {
     if (tools.empty()) throw Error(ErrorKind::invalid_argument, "a query needs a tool");
-    for (const Tool& tool : tools) queries.emplace_back(tool.model(), options);
+    for (const Tool& tool : tools) queries.emplace_back(HandleAccess::held(tool), options);
     for (ToolQuery& query : queries) pointers.push_back(&query);
   }
 
@@ -29,26 +30,30 @@ Query::~Query() = default;
 Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
+Query::Impl& Query::impl() const {
+  return held_by(impl_, "Query");
+}
+
 Result Query::run(const Scene& scene, const Pose& pose) {
-  return impl_->queries.front().run(view_of(scene), pose);
+  return impl().queries.front().run(view_of(scene), pose);
 }
 
 void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
-  ToolQuery::run(impl_->pointers, view_of(scene), jobs, results);
+  ToolQuery::run(impl().pointers, view_of(scene), jobs, results);
 }
 
 void Query::forget() {
-  for (ToolQuery& query : impl_->queries) query.forget();
+  for (ToolQuery& query : impl().queries) query.forget();
 }
 
 std::span<const SphereState> Query::states() const {
-  return impl_->queries.front().states();
+  return impl().queries.front().states();
 }
 
 std::uint32_t Query::level(std::size_t tool) const {
-  if (tool >= impl_->queries.size())
+  if (tool >= impl().queries.size())
     throw Error(ErrorKind::invalid_argument, "the query has no tool " + std::to_string(tool));
-  return impl_->queries[tool].level().sphere_count;
+  return impl().queries[tool].level().sphere_count;
 }
 
 }  // namespace vpm

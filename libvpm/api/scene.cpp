@@ -1,5 +1,6 @@
 #include "libvpm/include/vpm/scene.h"
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/api/scene_body.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
@@ -11,7 +12,7 @@ namespace vpm {
 namespace {
 
 PointCloud handle_of(Cloud cloud) {
-  return PointCloud(std::make_shared<const Cloud>(std::move(cloud)));
+  return HandleAccess::make<PointCloud>(std::move(cloud));
 }
 
 }  // namespace
@@ -43,25 +44,26 @@ PointCloud PointCloud::from_points(std::span<const Vec3> positions, std::span<co
 }
 
 void PointCloud::write(const std::string& path) const {
-  write_cloud(path, *cloud_);
+  write_cloud(path, HandleAccess::held(*this));
 }
 
 std::size_t PointCloud::size() const {
-  return cloud_->size();
+  return HandleAccess::held(*this).size();
 }
 
 std::optional<Camera> PointCloud::camera() const {
-  return cloud_->sensor ? std::optional(cloud_->sensor->camera) : std::nullopt;
+  const Cloud& cloud = HandleAccess::held(*this);
+  return cloud.sensor ? std::optional(cloud.sensor->camera) : std::nullopt;
 }
 
 Body::Body(const PointCloud& cloud, Denoising points)
-    : body_(std::make_shared<const SceneBody>(PreparedCloud(cloud.cloud(), points))) {}
+    : body_(std::make_shared<const SceneBody>(PreparedCloud(HandleAccess::held(cloud), points))) {}
 
 std::size_t Body::points() const {
-  return body_->points();
+  return HandleAccess::held(*this).points();
 }
 
-Scene::Scene(const Body& body) : bodies_(std::make_shared<const std::vector<Body>>(1, body)) {}
+Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
 
 Scene::Scene(std::vector<Body> bodies) {
   if (bodies.empty()) throw Error(ErrorKind::invalid_argument, "a scene needs a body");
@@ -70,7 +72,12 @@ Scene::Scene(std::vector<Body> bodies) {
                 "a scene of " + std::to_string(bodies.size()) +
                     " bodies: this version measures a tool against one body at a time",
                 {}, "query the bodies one by one");
+  for (const Body& body : bodies) HandleAccess::held(body);  // throws if it was moved from
   bodies_ = std::make_shared<const std::vector<Body>>(std::move(bodies));
+}
+
+const std::vector<Body>& Scene::bodies() const {
+  return held_by(bodies_, "Scene");
 }
 
 struct DepthStream::Impl {
@@ -92,16 +99,20 @@ DepthStream::~DepthStream() = default;
 DepthStream::DepthStream(DepthStream&&) noexcept = default;
 DepthStream& DepthStream::operator=(DepthStream&&) noexcept = default;
 
+DepthStream::Impl& DepthStream::impl() const {
+  return held_by(impl_, "DepthStream");
+}
+
 std::span<std::uint16_t> DepthStream::counts() {
-  return impl_->frames.counts();
+  return impl().frames.counts();
 }
 
 std::span<float> DepthStream::metres() {
-  return impl_->frames.metres();
+  return impl().frames.metres();
 }
 
 Body DepthStream::prepare(const Pose& camera_to_world) {
-  return Body(std::make_shared<const SceneBody>(impl_->frames.prepare(camera_to_world)));
+  return HandleAccess::make<Body>(SceneBody(impl().frames.prepare(camera_to_world)));
 }
 
 }  // namespace vpm

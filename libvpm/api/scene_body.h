@@ -3,6 +3,7 @@
 
 #include <variant>
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/include/vpm/scene.h"
 #include "libvpm/scene/depth_frames.h"
 
@@ -27,7 +28,7 @@ class SceneBody {
 
 // Returns the scene's only body.
 inline SceneView view_of(const Scene& scene) {
-  return scene.bodies().front().body().view();
+  return HandleAccess::held(scene.bodies().front()).view();
 }
 
 }  // namespace vpm

@@ -1,5 +1,6 @@
 #include "libvpm/include/vpm/solid.h"
 
+#include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
@@ -14,7 +15,7 @@ namespace vpm {
 namespace {
 
 SolidMesh handle_of(const RawMesh& mesh, const SolidOptions& options) {
-  return SolidMesh(std::make_shared<const CheckedSolid>(make_solid(mesh, options)));
+  return HandleAccess::make<SolidMesh>(make_solid(mesh, options));
 }
 
 // Says who made a file; the provenance of executables also has their options.
@@ -50,35 +51,35 @@ SolidMesh SolidMesh::from_triangles(std::span<const Vec3> vertices,
 }
 
 double SolidMesh::volume() const {
-  return solid_->facts.volume;
+  return HandleAccess::held(*this).facts.volume;
 }
 std::size_t SolidMesh::vertices() const {
-  return solid_->solid.vertices.size();
+  return HandleAccess::held(*this).solid.vertices.size();
 }
 std::size_t SolidMesh::triangles() const {
-  return solid_->solid.triangles.size();
+  return HandleAccess::held(*this).solid.triangles.size();
 }
 std::vector<std::string> SolidMesh::notes() const {
-  return solid_->notes;
+  return HandleAccess::held(*this).notes;
 }
 std::vector<std::string> SolidMesh::warnings() const {
-  return solid_->warnings;
+  return HandleAccess::held(*this).warnings;
 }
 
 SpherePacking SpherePacking::read(const std::string& path) {
-  return SpherePacking(std::make_shared<const Packing>(read_packing(path)));
+  return HandleAccess::make<SpherePacking>(read_packing(path));
 }
 
 void SpherePacking::write(const std::string& path) const {
-  write_packing(path, *packing_);
+  write_packing(path, HandleAccess::held(*this));
 }
 
 std::vector<Sphere> SpherePacking::spheres() const {
-  return packing_->spheres;
+  return HandleAccess::held(*this).spheres;
 }
 
 SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters) {
-  const CheckedSolid& checked = solid.solid();
+  const CheckedSolid& checked = HandleAccess::held(solid);
   PackOptions options;
   options.spheres = parameters.spheres;
   options.coverage = parameters.coverage;
@@ -103,19 +104,20 @@ SpherePacking pack(const SolidMesh& solid, const PackingParameters& parameters) 
                      certify(checked.solid, result.spheres, &checked.enclosure));
   Packing packing{std::move(result.spheres), checked.solid, made_by_library("vpm::pack")};
   packing.provenance["solid_hash"] = content_hash(packing.solid);
-  return SpherePacking(std::make_shared<const Packing>(std::move(packing)));
+  return HandleAccess::make<SpherePacking>(std::move(packing));
 }
 
-Tool build_tool(const SpherePacking& packing, const ToolParameters& parameters) {
+Tool build_tool(const SpherePacking& spheres, const ToolParameters& parameters) {
+  const Packing& packing = HandleAccess::held(spheres);
   GraphOptions options;
   options.epsilon = parameters.epsilon;
   options.levels = parameters.levels;
   options.progress = parameters.progress;
-  ToolModel model = build_tool_model(packing.packing(), options);
-  if (parameters.calibrate) model.calibration = calibrate(model, packing.packing().solid);
+  ToolModel model = build_tool_model(packing, options);
+  if (parameters.calibrate) model.calibration = calibrate(model, packing.solid);
   model.provenance = made_by_library("vpm::build_tool");
-  model.provenance["packing"] = packing.packing().provenance;
-  return Tool(std::make_shared<const ToolModel>(std::move(model)));
+  model.provenance["packing"] = packing.provenance;
+  return HandleAccess::make<Tool>(std::move(model));
 }
 
 }  // namespace vpm

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libvpm/core/error.h"
+#include "libvpm/core/handle.h"
 #include "libvpm/core/lengths.h"
 #include "libvpm/core/pose.h"
 
@@ -77,8 +78,30 @@ double stable_rate(const CouplingParameters& p, double contact_stiffness) {
   return (std::sqrt(p.damping * p.damping + 4 * p.mass * beyond) - p.damping) / (4 * p.mass);
 }
 
-VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass,
-                                 const Pose& device)
+// Holds the state between two steps, and makes them.
+class VirtualCoupling::Impl {
+ public:
+  Impl(const CouplingParameters& parameters, Vec3 center_of_mass, const Pose& device);
+
+  Pose tool() const;
+  Wrench advance(const Pose& device, const Wrench& contact);
+  const CouplingEnergy& energy() const { return energy_; }
+
+ private:
+  double stored() const;
+  Wrench step(const Pose& device, const Wrench& contact);
+
+  CouplingParameters parameters_;
+  Vec3 center_of_mass_;
+  Pose device_;  // pose of the centre of mass that the device holds
+  Pose tool_;    // pose of the tool's centre of mass
+  Vec3 velocity_, angular_velocity_;
+  CouplingEnergy energy_;
+  double controlled_ = 0;  // J removed by the passivity controller
+};
+
+VirtualCoupling::Impl::Impl(const CouplingParameters& parameters, Vec3 center_of_mass,
+                            const Pose& device)
     : parameters_(parameters), center_of_mass_(center_of_mass) {
   validate(parameters);
   check_device(device);
@@ -88,11 +111,11 @@ VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 cent
   tool_ = device_;
 }
 
-Pose VirtualCoupling::tool() const {
+Pose VirtualCoupling::Impl::tool() const {
   return {tool_.rotation, tool_.translation - tool_.rotation * center_of_mass_};
 }
 
-double VirtualCoupling::stored() const {
+double VirtualCoupling::Impl::stored() const {
   const double squared_gyration = parameters_.gyration * parameters_.gyration;
   const Vec3 stretch = device_.translation - tool_.translation;
   const Vec3 twist = rotation_vector(device_.rotation * transpose(tool_.rotation));
@@ -102,11 +125,11 @@ double VirtualCoupling::stored() const {
              (squared_norm(stretch) + squared_gyration * squared_norm(twist));
 }
 
-Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
+Wrench VirtualCoupling::Impl::advance(const Pose& device, const Wrench& contact) {
   check_device(device);
   if (!(is_within(contact.force, kLargestContact) && is_within(contact.torque, kLargestContact)))
     refuse("the contact's force or torque is not finite, or absurdly large", "coupling");
-  VirtualCoupling next = *this;
+  Impl next = *this;
   const Wrench felt = next.step(device, contact);
   if (!is_finite(felt.force) || !is_finite(felt.torque) || !is_in_range(next.tool_.translation))
     refuse("the contact pushes the tool out of all bounds", "coupling", "is its stiffness stable?");
@@ -114,7 +137,7 @@ Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
   return felt;
 }
 
-Wrench VirtualCoupling::step(const Pose& device, const Wrench& contact) {
+Wrench VirtualCoupling::Impl::step(const Pose& device, const Wrench& contact) {
   const CouplingParameters& p = parameters_;
   const double step = 1 / p.rate, squared_gyration = p.gyration * p.gyration;
   const Pose held{device.rotation, device * center_of_mass_};
@@ -158,6 +181,34 @@ Wrench VirtualCoupling::step(const Pose& device, const Wrench& contact) {
   energy_.stored = stored();
   energy_.lost = energy_.supplied - energy_.stored - energy_.dissipated - energy_.absorbed;
   return {-pull.force, -pull.torque};
+}
+
+VirtualCoupling::VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass,
+                                 const Pose& device)
+    : impl_(std::make_unique<Impl>(parameters, center_of_mass, device)) {}
+VirtualCoupling::~VirtualCoupling() = default;
+VirtualCoupling::VirtualCoupling(VirtualCoupling&&) noexcept = default;
+VirtualCoupling& VirtualCoupling::operator=(VirtualCoupling&&) noexcept = default;
+VirtualCoupling::VirtualCoupling(const VirtualCoupling& other)
+    : impl_(std::make_unique<Impl>(other.impl())) {}
+VirtualCoupling& VirtualCoupling::operator=(const VirtualCoupling& other) {
+  return *this = VirtualCoupling(other);
+}
+
+VirtualCoupling::Impl& VirtualCoupling::impl() const {
+  return held_by(impl_, "VirtualCoupling");
+}
+
+Pose VirtualCoupling::tool() const {
+  return impl().tool();
+}
+
+Wrench VirtualCoupling::advance(const Pose& device, const Wrench& contact) {
+  return impl().advance(device, contact);
+}
+
+CouplingEnergy VirtualCoupling::energy() const {
+  return impl().energy();
 }
 
 }  // namespace vpm

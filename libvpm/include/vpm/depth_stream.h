@@ -4,7 +4,7 @@
 //   vpm::DepthStream stream({intrinsics, 640, 480, 1000.0});
 //   camera.read(stream.counts());                                 // 30 times a second
 //   const vpm::Scene scene = stream.prepare(camera_to_world);     // returns at once on a device
-//   const vpm::Result r = query.run(scene, pose);                 // a thousand times a second
+//   const vpm::Result r = query.run(scene, pose);   // a thousand times a second; <vpm/query.h>
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 
 #include "vpm/camera.h"
 #include "vpm/device.h"
+#include "vpm/error.h"
 #include "vpm/scene.h"
 
 namespace vpm {
@@ -53,7 +54,9 @@ class VPM_API DepthStream {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Impl& impl() const;
+
+  std::unique_ptr<Impl> impl_;  // null once moved from
 };
 
 }  // namespace vpm

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "vpm/error.h"
 #include "vpm/export.h"
 
 namespace vpm {

@@ -24,6 +24,8 @@ class VPM_API Error : public std::runtime_error {
   // that could steer a terminal become \xNN, and a text of more than 1000 bytes is cut.
   Error(ErrorKind kind, const std::string& what, const std::string& where = {},
         const std::string& hint = {});
+  Error(const Error&) = default;  // and none that moves: an error that is caught stays whole
+  Error& operator=(const Error&) = default;
 
   // Returns whose fault it is, for programs that go on.
   ErrorKind kind() const noexcept { return kind_; }

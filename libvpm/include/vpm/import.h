@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vpm/camera.h"
+#include "vpm/error.h"
 #include "vpm/scene.h"
 
 namespace vpm {

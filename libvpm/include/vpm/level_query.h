@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "vpm/error.h"
 #include "vpm/query.h"
 
 namespace vpm {
@@ -67,7 +68,9 @@ class VPM_API LevelQuery {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Impl& impl() const;
+
+  std::unique_ptr<Impl> impl_;  // null once moved from
 };
 
 }  // namespace vpm

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "vpm/error.h"
 #include "vpm/export.h"
 
 namespace vpm {

@@ -1,9 +1,9 @@
 // How much of a tool is inside a scene's solid, and which wrench pushes it out.
 //
 //   const vpm::Tool tool = vpm::Tool::read("tool.vpmg");
-//   const vpm::Scene scene = vpm::PointCloud::read("scene.vpmc");   // once per frame
+//   const vpm::Scene scene(vpm::PointCloud::read("scene.vpmc"));   // once per frame
 //   vpm::Query query(tool);
-//   const vpm::Result r = query.run(scene, pose);                   // a thousand times a second
+//   const vpm::Result r = query.run(scene, pose);                  // a thousand times a second
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "vpm/error.h"
 #include "vpm/query_types.h"
 #include "vpm/scene.h"
 #include "vpm/tool.h"
@@ -59,7 +60,9 @@ class VPM_API Query {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Impl& impl() const;
+
+  std::unique_ptr<Impl> impl_;  // null once moved from
 };
 
 }  // namespace vpm

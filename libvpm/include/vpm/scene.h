@@ -9,14 +9,18 @@
 #include <vector>
 
 #include "vpm/camera.h"
+#include "vpm/error.h"
 #include "vpm/export.h"
 
 namespace vpm {
 
-struct Cloud;  // the library's own
-class SceneBody;
+struct Cloud;         // the library's own
+struct HandleAccess;  // the library's own
+class SceneBody;      // the library's own
 
 // Handle of immutable measured points with normals into free space; copies share it. Thread-safe.
+// Whatever is asked of a handle that was moved from throws Error(invalid_argument), as of all
+// handles of this library.
 class VPM_API PointCloud {
  public:
   // Reads a .vpmc file (formats/cloud.md) whole and checks every number in it; "-" is standard
@@ -45,12 +49,11 @@ class VPM_API PointCloud {
   // Returns the camera, if the cloud keeps its depth image.
   std::optional<Camera> camera() const;
 
-  // Makes the handle of a cloud that the library has built.
-  explicit PointCloud(std::shared_ptr<const Cloud> cloud) : cloud_(std::move(cloud)) {}
-  const Cloud& cloud() const { return *cloud_; }
-
  private:
-  std::shared_ptr<const Cloud> cloud_;  // never null
+  friend HandleAccess;
+  explicit PointCloud(std::shared_ptr<const Cloud> cloud) : cloud_(std::move(cloud)) {}
+
+  std::shared_ptr<const Cloud> cloud_;  // null once moved from
 };
 
 // Handle of an immutable body made ready for queries; copies share it. Thread-safe.
@@ -59,17 +62,16 @@ class VPM_API Body {
   // Prepares a cloud for queries: a millisecond for a depth image of 300 000 pixels on one core, a
   // second or two for as many points without a camera. Throws Error(refused) for more than 2^24
   // points, or places further than 2^100 m from the origin.
-  Body(const PointCloud& cloud, Denoising points = Denoising::on);
+  explicit Body(const PointCloud& cloud, Denoising points = Denoising::on);
 
   // Returns the number of points with a normal; waits for a depth image that is being prepared.
   std::size_t points() const;
 
-  // Makes the handle of a body that the library has prepared.
-  explicit Body(std::shared_ptr<const SceneBody> body) : body_(std::move(body)) {}
-  const SceneBody& body() const { return *body_; }
-
  private:
-  std::shared_ptr<const SceneBody> body_;  // never null
+  friend HandleAccess;
+  explicit Body(std::shared_ptr<const SceneBody> body) : body_(std::move(body)) {}
+
+  std::shared_ptr<const SceneBody> body_;  // null once moved from
 };
 
 // List of bodies in one world frame; copies share the bodies. Thread-safe.
@@ -77,16 +79,17 @@ class VPM_API Scene {
  public:
   // Makes a scene of one body.
   Scene(const Body& body);
-  Scene(const PointCloud& cloud) : Scene(Body(cloud)) {}
+  // Prepares a cloud, as Body does, and makes a scene of it: to be done once, not for each pose.
+  explicit Scene(const PointCloud& cloud) : Scene(Body(cloud)) {}
 
   // Makes a scene of several bodies. Throws Error(unavailable) for more than one: this version
   // measures a tool against one body at a time; Error(invalid_argument) for none.
   explicit Scene(std::vector<Body> bodies);
 
-  const std::vector<Body>& bodies() const { return *bodies_; }
+  const std::vector<Body>& bodies() const;
 
  private:
-  std::shared_ptr<const std::vector<Body>> bodies_;  // never null or empty
+  std::shared_ptr<const std::vector<Body>> bodies_;  // never empty; null once moved from
 };
 
 }  // namespace vpm

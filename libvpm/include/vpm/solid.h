@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "vpm/error.h"
 #include "vpm/pose.h"
 #include "vpm/tool.h"
 
@@ -47,6 +48,7 @@ struct SolidOptions {
 };
 
 struct CheckedSolid;  // the library's own
+struct HandleAccess;  // the library's own
 struct Packing;       // the library's own
 
 // Handle of an immutable closed mesh, oriented outward, in metres; copies share it.
@@ -73,12 +75,11 @@ class VPM_API SolidMesh {
   std::vector<std::string> notes() const;
   std::vector<std::string> warnings() const;
 
-  // Makes the handle of a solid that the library has checked.
-  explicit SolidMesh(std::shared_ptr<const CheckedSolid> solid) : solid_(std::move(solid)) {}
-  const CheckedSolid& solid() const { return *solid_; }
-
  private:
-  std::shared_ptr<const CheckedSolid> solid_;  // never null
+  friend HandleAccess;
+  explicit SolidMesh(std::shared_ptr<const CheckedSolid> solid) : solid_(std::move(solid)) {}
+
+  std::shared_ptr<const CheckedSolid> solid_;  // null once moved from
 };
 
 // Handle of an immutable packing: spheres that neither overlap nor leave the solid, largest first,
@@ -91,12 +92,11 @@ class VPM_API SpherePacking {
 
   std::vector<Sphere> spheres() const;
 
-  // Makes the handle of a packing that the library has made.
-  explicit SpherePacking(std::shared_ptr<const Packing> packing) : packing_(std::move(packing)) {}
-  const Packing& packing() const { return *packing_; }
-
  private:
-  std::shared_ptr<const Packing> packing_;  // never null
+  friend HandleAccess;
+  explicit SpherePacking(std::shared_ptr<const Packing> packing) : packing_(std::move(packing)) {}
+
+  std::shared_ptr<const Packing> packing_;  // null once moved from
 };
 
 struct PackingParameters {

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "vpm/error.h"
 #include "vpm/export.h"
 #include "vpm/pose.h"
 
 namespace vpm {
 
-struct ToolModel;  // the library's own
+struct HandleAccess;  // the library's own
+struct ToolModel;     // the library's own
 
 // Level of detail: the largest spheres of the packing, with what the rest of the solid's volume
 // adds to each. Errors are fractions of the solid's volume over cuts by planes and balls at all
@@ -48,12 +50,11 @@ class VPM_API Tool {
   // Returns the levels of detail, coarsest first; at least one.
   std::vector<ToolLevel> levels() const;
 
-  // Makes the handle of a model that the library has built and validated.
-  explicit Tool(std::shared_ptr<const ToolModel> model) : model_(std::move(model)) {}
-  const ToolModel& model() const { return *model_; }
-
  private:
-  std::shared_ptr<const ToolModel> model_;  // never null
+  friend HandleAccess;
+  explicit Tool(std::shared_ptr<const ToolModel> model) : model_(std::move(model)) {}
+
+  std::shared_ptr<const ToolModel> model_;  // null once moved from
 };
 
 }  // namespace vpm

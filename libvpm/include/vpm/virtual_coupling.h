@@ -11,6 +11,10 @@
 // Units: metres, newtons, seconds, radians; world axes. Not thread-safe.
 #pragma once
 
+#include <memory>
+
+#include "vpm/error.h"
+#include "vpm/export.h"
 #include "vpm/pose.h"
 #include "vpm/query_types.h"
 
@@ -54,12 +58,18 @@ struct CouplingEnergy {
   double lost = 0;
 };
 
+// A copy goes its own way: it may be stepped ahead to see what would be.
 class VPM_API VirtualCoupling {
  public:
   // Starts with the tool at rest at the device's pose. Throws Error(invalid_argument) for
   // parameters that validate() refuses, Error(refused) for a pose or a centre of mass that is not
   // finite or not rigid.
   VirtualCoupling(const CouplingParameters& parameters, Vec3 center_of_mass, const Pose& device);
+  ~VirtualCoupling();
+  VirtualCoupling(VirtualCoupling&&) noexcept;
+  VirtualCoupling& operator=(VirtualCoupling&&) noexcept;
+  VirtualCoupling(const VirtualCoupling&);
+  VirtualCoupling& operator=(const VirtualCoupling&);
 
   // Returns the tool's current pose, at which the contact is to be measured.
   Pose tool() const;
@@ -71,19 +81,14 @@ class VPM_API VirtualCoupling {
   // bounds. The state is then unchanged, so the next step may go on.
   Wrench advance(const Pose& device, const Wrench& contact);
 
-  const CouplingEnergy& energy() const { return energy_; }
+  // Returns the energies since the start.
+  CouplingEnergy energy() const;
 
  private:
-  double stored() const;
-  Wrench step(const Pose& device, const Wrench& contact);
+  class Impl;
+  Impl& impl() const;
 
-  CouplingParameters parameters_;
-  Vec3 center_of_mass_;
-  Pose device_;  // pose of the centre of mass that the device holds
-  Pose tool_;    // pose of the tool's centre of mass
-  Vec3 velocity_, angular_velocity_;
-  CouplingEnergy energy_;
-  double controlled_ = 0;  // J removed by the passivity controller
+  std::unique_ptr<Impl> impl_;  // null once moved from
 };
 
 }  // namespace vpm

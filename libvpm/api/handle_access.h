@@ -1,0 +1,33 @@
+// Opens the handles of the public headers to the library itself: makes them, and returns what they
+// hold. Programs cannot do either.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "libvpm/core/handle.h"
+#include "libvpm/include/vpm/scene.h"
+#include "libvpm/include/vpm/solid.h"
+#include "libvpm/include/vpm/tool.h"
+
+namespace vpm {
+
+struct HandleAccess {
+  // Makes the handle of something that the library has made and checked.
+  template <class Handle, class Held>
+  static Handle make(Held held) {
+    return Handle(std::make_shared<const Held>(std::move(held)));
+  }
+
+  static const Cloud& held(const PointCloud& cloud) { return held_by(cloud.cloud_, "PointCloud"); }
+  static const SceneBody& held(const Body& body) { return held_by(body.body_, "Body"); }
+  static const ToolModel& held(const Tool& tool) { return held_by(tool.model_, "Tool"); }
+  static const CheckedSolid& held(const SolidMesh& mesh) {
+    return held_by(mesh.solid_, "SolidMesh");
+  }
+  static const Packing& held(const SpherePacking& packing) {
+    return held_by(packing.packing_, "SpherePacking");
+  }
+};
+
+}  // namespace vpm
