@@ -4,6 +4,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
+#include "libvpm/include/vpm/version.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing.h"

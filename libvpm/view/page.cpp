@@ -8,6 +8,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/include/vpm/version.h"
 #include "libvpm/view/simplify.h"
 #include "libvpm/view/sphere_files.h"
 

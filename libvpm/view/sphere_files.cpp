@@ -12,6 +12,7 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
+#include "libvpm/include/vpm/version.h"
 #include "libvpm/synthetic/shapes.h"
 #include "libvpm/view/packed.h"
 

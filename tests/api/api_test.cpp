@@ -8,6 +8,7 @@
 #include <vpm/level_query.h>
 #include <vpm/query.h>
 #include <vpm/solid.h>
+#include <vpm/version.h>
 #include <vpm/virtual_coupling.h>
 
 #include <cmath>
@@ -71,6 +72,19 @@ static_assert(!std::is_convertible_v<vpm::PointCloud, vpm::Body>);
 static_assert(!std::is_convertible_v<std::vector<vpm::Body>, vpm::Scene>);
 static_assert(!std::is_convertible_v<vpm::Tool, vpm::Query>);
 static_assert(std::is_constructible_v<vpm::Scene, vpm::PointCloud>);
+
+TEST(PublicApi, TheVersionIsTheSameInHeaderLibraryAndProject) {
+  EXPECT_STREQ(VPM_VERSION, VPM_PROJECT_VERSION);
+  EXPECT_STREQ(vpm::version(), VPM_PROJECT_VERSION);
+  EXPECT_EQ(std::to_string(VPM_VERSION_MAJOR) + "." + std::to_string(VPM_VERSION_MINOR) + "." +
+                std::to_string(VPM_VERSION_PATCH),
+            VPM_PROJECT_VERSION);
+  constexpr int kMajor = VPM_VERSION_MAJOR, kMinor = VPM_VERSION_MINOR, kPatch = VPM_VERSION_PATCH;
+  static_assert(VPM_VERSION_AT_LEAST(kMajor, kMinor, kPatch));
+  static_assert(!VPM_VERSION_AT_LEAST(kMajor, kMinor, kPatch + 1));
+  static_assert(!VPM_VERSION_AT_LEAST(kMajor, kMinor + 1, 0));
+  static_assert(!VPM_VERSION_AT_LEAST(kMajor + 1, 0, 0));
+}
 
 TEST(PublicApi, MeshToAnswer) {
   EXPECT_NEAR(tool().volume(), kCube * kCube * kCube, 1e-15);

@@ -7,6 +7,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/include/vpm/version.h"
 
 namespace vpm::bench {
 namespace {

@@ -9,6 +9,7 @@
 #include "libvpm/file/stream.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
+#include "libvpm/include/vpm/version.h"
 #include "libvpm/view/page.h"
 #include "tools/common/error_text.h"
 #include "tools/common/import_arguments.h"

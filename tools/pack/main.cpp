@@ -16,6 +16,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/checksum.h"
 #include "libvpm/file/stream.h"
+#include "libvpm/include/vpm/version.h"
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_reader.h"
 #include "libvpm/model/packing.h"

@@ -1,0 +1,9 @@
+#include "libvpm/include/vpm/version.h"
+
+namespace vpm {
+
+const char* version() noexcept {
+  return VPM_VERSION;
+}
+
+}  // namespace vpm
