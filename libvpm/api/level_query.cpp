@@ -35,7 +35,7 @@ double LevelQuery::seconds() const {
   return impl().query.seconds();
 }
 
-std::string LevelQuery::reason() const {
+LevelReason LevelQuery::reason() const {
   return impl().query.reason();
 }
 

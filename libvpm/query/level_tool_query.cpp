@@ -151,12 +151,16 @@ void LevelToolQuery::run(const SceneView& scene, std::span<const Job> jobs,
   seconds_ = took.count() / static_cast<double>(std::max<std::size_t>(jobs.size(), 1));
 }
 
-std::string LevelToolQuery::reason_now() const {
-  std::string wanted = request_.max_error ? "max-error" : request_.for_scene ? "scene" : "";
+LevelReason LevelToolQuery::reason_now() const {
+  const LevelReason wanted = request_.max_error   ? LevelReason::max_error
+                             : request_.for_scene ? LevelReason::scene
+                                                  : LevelReason::none;
   if (!deadline_) return wanted;
-  if (!deadline_->keeps()) return "deadline missed";
-  if (wanted.empty()) return "deadline";
-  return used_ + 1 < queries_.size() ? "deadline over " + wanted : wanted;
+  if (!deadline_->keeps()) return LevelReason::deadline_missed;
+  if (wanted == LevelReason::none) return LevelReason::deadline;
+  if (used_ + 1 == queries_.size()) return wanted;
+  return wanted == LevelReason::max_error ? LevelReason::deadline_over_max_error
+                                          : LevelReason::deadline_over_scene;
 }
 
 std::vector<double> LevelToolQuery::probe(const ToolModel& tool, const SceneView& scene) {

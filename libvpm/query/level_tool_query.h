@@ -7,7 +7,6 @@
 #include <deque>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "libvpm/include/vpm/level_query.h"
@@ -71,13 +70,13 @@ class LevelToolQuery {
   // Returns the finest level that the request allows.
   const Level& finest() const { return queries_.back().level(); }
   double seconds() const { return seconds_; }
-  const std::string& reason() const { return reason_; }
+  LevelReason reason() const { return reason_; }
   const std::optional<SceneScale>& scale() const { return scale_; }
 
  private:
   std::size_t finest_wanted(const ToolModel& tool, const QueryOptions& options,
                             const SceneView& scene, const Pose& pose);
-  std::string reason_now() const;
+  LevelReason reason_now() const;
   double timed_run(std::size_t k, const SceneView& scene, const Pose& pose);
   std::vector<double> probe(const ToolModel& tool, const SceneView& scene);
 
@@ -88,7 +87,7 @@ class LevelToolQuery {
   std::size_t used_ = 0;
   double seconds_ = 0;
   Result result_;
-  std::string reason_;
+  LevelReason reason_ = LevelReason::none;
 };
 
 }  // namespace vpm

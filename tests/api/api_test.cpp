@@ -175,7 +175,7 @@ TEST(PublicApi, ALevelIsChosenByItsCalibration) {
     request.max_error = max_error;
     vpm::LevelQuery query(tool(), {}, request, wall(), behind(0));
     query.run(wall(), behind(0));
-    EXPECT_EQ(query.reason(), "max-error");
+    EXPECT_EQ(query.reason(), vpm::LevelReason::max_error);
     return query.level();
   };
   EXPECT_EQ(level_for(*levels[0].worst_error), levels[0].spheres);

@@ -10,8 +10,33 @@ std::string to_line(const nlohmann::ordered_json& line) {
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
+namespace {
+
+// Returns the value of `level_reason` in formats/schemas/query-result.json.
+const char* text_of(LevelReason reason) {
+  switch (reason) {
+    case LevelReason::none:
+      break;
+    case LevelReason::max_error:
+      return "max-error";
+    case LevelReason::scene:
+      return "scene";
+    case LevelReason::deadline:
+      return "deadline";
+    case LevelReason::deadline_over_max_error:
+      return "deadline over max-error";
+    case LevelReason::deadline_over_scene:
+      return "deadline over scene";
+    case LevelReason::deadline_missed:
+      return "deadline missed";
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string result_line(std::size_t pose_index, const Result& r, const Level& level,
-                        Measure measure, const std::string& level_reason,
+                        Measure measure, LevelReason level_reason,
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool) {
   nlohmann::ordered_json line;
@@ -30,7 +55,7 @@ std::string result_line(std::size_t pose_index, const Result& r, const Level& le
   if (r.points) line["points"] = *r.points;
   line["level"] = level.sphere_count;
   line["measure"] = measure == Measure::paper ? "paper" : "refined";
-  if (!level_reason.empty()) line["level_reason"] = level_reason;
+  if (level_reason != LevelReason::none) line["level_reason"] = text_of(level_reason);
   return to_line(line);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libvpm/include/vpm/level_query.h"
 #include "libvpm/query/tool_query.h"
 #include "tools/common/tool.h"
 
@@ -22,10 +23,10 @@ struct StepOfReplay {
 std::string to_line(const nlohmann::ordered_json& line);
 
 // Returns one line of results (formats/schemas/query-result.json). Nothing in it depends on the
-// device or the clock, unless a deadline chose the level. `level_reason` is the option that chose
-// the level, or "" to leave the field out; `tool` is the tool's index among several.
+// device or the clock, unless a deadline chose the level. `level_reason` is left out if
+// no option chose the level; `tool` is the tool's index among several.
 std::string result_line(std::size_t pose_index, const Result& result, const Level& level,
-                        Measure measure, const std::string& level_reason,
+                        Measure measure, LevelReason level_reason,
                         const std::optional<StepOfReplay>& replay,
                         std::optional<std::size_t> tool = std::nullopt);
 

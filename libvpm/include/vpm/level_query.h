@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "vpm/error.h"
 #include "vpm/query.h"
@@ -37,6 +36,17 @@ struct SceneScale {
   VPM_API double largest_radius() const;
 };
 
+// Says which part of a request chose the level.
+enum class LevelReason {
+  none,                     // nothing was requested: it is the finest
+  max_error,                // the coarsest within LevelRequest::max_error
+  scene,                    // the finest that LevelRequest::for_scene allows
+  deadline,                 // the finest that keeps LevelRequest::deadline_seconds
+  deadline_over_max_error,  // coarser than max_error asks for, to keep the deadline
+  deadline_over_scene,      // coarser than the scene allows, to keep the deadline
+  deadline_missed,          // the coarsest, which is expected to miss the deadline all the same
+};
+
 // A Query at the level that a request chooses; thread-safety and errors as for Query.
 class VPM_API LevelQuery {
  public:
@@ -58,9 +68,8 @@ class VPM_API LevelQuery {
   std::uint32_t level() const;
   // Returns the seconds that the last run took.
   double seconds() const;
-  // Returns why this level: "max-error", "scene", "deadline", "deadline over max-error", "deadline
-  // over scene", "deadline missed"; empty if nothing was requested.
-  std::string reason() const;
+  // Returns why this level was used last.
+  LevelReason reason() const;
   // Returns the scene's scale, if the request is for it.
   std::optional<SceneScale> scale() const;
   // Returns the state of each sphere, as Query::states().
