@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/pose.h"
@@ -195,6 +200,61 @@ TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {
   const double pull = kStiffness * (device.translation.z - coupling.tool().translation.z);
   EXPECT_NEAR(contact.wrench.force.z, -pull, 0.01 * pull);
   EXPECT_NEAR(kPerVolume * kEdge * kEdge * depth, pull, 0.02 * pull);
+}
+
+// What one column of the page's table says about a cube held against a wall.
+class WorkedExample {
+ public:
+  static constexpr double kEdge = 0.1, kContact = 1000, kBeyond = 0.01;  // m, N/m, m
+  static constexpr double kArea = kEdge * kEdge, kPerVolume = kContact / kArea;
+
+  explicit WorkedExample(double damping)
+      : coupling_{500, damping, critical_mass(500, damping), kEdge / std::sqrt(6), 1000} {
+    const ToolModel tool = testing::lattice_cube(kEdge, 6, 4);
+    const PreparedCloud wall(testing::see(synthetic::make_scene("wall")));  // at a depth of 1 m
+    QueryOptions options;
+    options.stiffness = kPerVolume;
+    ToolQuery query(tool, options);
+    const Pose touching = at({0, 0, 1 - kEdge / 2});
+    VirtualCoupling held(coupling_, tool.center_of_mass, touching);
+    const Pose hand = at({0, 0, touching.translation.z + kBeyond});
+    for (int k = 0; k < 2000; ++k) felt_ = held.advance(hand, query.run(wall, held.tool()).wrench);
+    depth_ = held.tool().translation.z - touching.translation.z;
+  }
+
+  // Returns the rows of the column: numbers and units as the page writes them.
+  std::vector<std::string> rows() const {
+    const CouplingLimits limits = coupling_limits(coupling_);
+    return {text(coupling_.mass, 3, "kg"),
+            text(limits.contact_stiffness, 5, "N/m"),
+            text(limits.contact_stiffness / kArea, 3, "N/m³"),
+            text(stable_rate(coupling_, kContact), 3, "1/s"),
+            text(limits.device_damping, 3, "N s/m"),
+            text(1000 * depth_, 2, "mm"),
+            text(-felt_.force.z, 2, "N"),
+            text(kPerVolume * kEdge * kEdge * kEdge, 3, "N")};
+  }
+
+ private:
+  static std::string text(double number, int digits, const char* unit) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*g %s", digits, number, unit);
+    return text;
+  }
+
+  CouplingParameters coupling_;
+  double depth_ = 0;
+  Wrench felt_;
+};
+
+TEST(VirtualCoupling, ThePageComputesItsExampleRight) {
+  std::ifstream file(std::string(VPM_SOURCE_DIR) + "/libvpm/haptics/README.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  const std::vector<std::string> one = WorkedExample(5).rows(), other = WorkedExample(0.5).rows();
+  for (std::size_t row = 0; row < one.size(); ++row) {
+    const std::string cells = "| " + one[row] + " | " + other[row] + " |";
+    EXPECT_NE(page.find(cells), std::string::npos) << "the page has no row " << cells;
+  }
 }
 
 }  // namespace
