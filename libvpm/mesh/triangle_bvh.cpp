@@ -21,8 +21,8 @@ template <class Mask>
   const Double4 zero{}, one = zero + 1.0;
   const Vec3x4 along = b - a;
   const Double4 length2 = dot(along, along);
-  const Double4 cell = dot(x - a, along) / length2;
-  const Double4 below = one < cell ? one : cell, clamped = cell < zero ? zero : below;
+  const Double4 fraction = dot(x - a, along) / length2;
+  const Double4 below = one < fraction ? one : fraction, clamped = fraction < zero ? zero : below;
   const Vec3x4 reached = a + clamped * along;
   const auto is_point = length2 <= zero;
   const Vec3x4 p{is_point ? a.x : reached.x, is_point ? a.y : reached.y,

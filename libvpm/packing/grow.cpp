@@ -67,8 +67,8 @@ void divide(const std::vector<Sphere>& spheres, std::span<std::uint32_t> from, i
     return turn % 3 == 0 ? c.x : turn % 3 == 1 ? c.y : c.z;
   };
   // Cuts between one and two thirds, by the golden ratio, so that planes differ from step to step.
-  const double cell = (1 + std::fmod(0.618 * (turn + 1), 1.0)) / 3;
-  const auto first = static_cast<std::size_t>(cell * static_cast<double>(from.size()));
+  const double fraction = (1 + std::fmod(0.618 * (turn + 1), 1.0)) / 3;
+  const auto first = static_cast<std::size_t>(fraction * static_cast<double>(from.size()));
   std::nth_element(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(first), from.end(),
                    [&](std::uint32_t a, std::uint32_t b) {
                      return along(a) != along(b) ? along(a) < along(b) : a < b;

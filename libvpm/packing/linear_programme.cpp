@@ -210,8 +210,8 @@ class InteriorPoint {
     for (std::size_t r = 0; r < size_; ++r)
       ahead += (slack_[r] + slack_room * dslack_[r]) * (price_[r] + price_room * dprice_[r]);
     if (!std::isfinite(ahead)) return false;
-    const double cell = ahead / (static_cast<double>(size_) * mean_);
-    const double target = cell * cell * cell * mean_;
+    const double ratio = ahead / (static_cast<double>(size_) * mean_);
+    const double target = ratio * ratio * ratio * mean_;
     for (std::size_t r = 0; r < size_; ++r) complement[r] += dslack_[r] * dprice_[r] - target;
     direction(complement);
     if (!std::all_of(dx_.begin(), dx_.end(), [](double d) { return std::isfinite(d); }))

@@ -277,10 +277,10 @@ void print_histogram(const Figures& figures) {
   for (std::size_t at = 0; at < times.size(); low *= 1.2) {
     const auto end = static_cast<std::size_t>(
         std::upper_bound(times.begin(), times.end(), low * 1.2) - times.begin());
-    const double cell = static_cast<double>(end - at) / static_cast<double>(times.size());
+    const double fraction = static_cast<double>(end - at) / static_cast<double>(times.size());
     if (end > at) {
       std::printf("%9.1f us  %6zu  %s\n", low * 1.2, end - at,
-                  std::string(static_cast<std::size_t>(std::ceil(60 * cell)), '#').c_str());
+                  std::string(static_cast<std::size_t>(std::ceil(60 * fraction)), '#').c_str());
     }
     at = end;
   }

@@ -131,8 +131,8 @@ class Packings {
                                {"memory_mb", cost.memory_mb}});
   }
 
-  void progress(double cell) const {
-    if (options_.progress) options_.progress(cell);
+  void progress(double fraction) const {
+    if (options_.progress) options_.progress(fraction);
   }
 
   // Adds the coverage of every prefix, one line of the comparison each.
@@ -220,16 +220,16 @@ class Packings {
         "|---|---|---|---|\n";
     for (const Shape& shape : shapes_) {
       const std::vector<Sphere> many = greedy(shape, kMostNeeded);
-      for (const double cell : {0.5, 0.6, 0.65, 0.7}) {
+      for (const double coverage : {0.5, 0.6, 0.65, 0.7}) {
         std::size_t spheres = 0;
-        for (double sum = 0; spheres < many.size() && sum < cell * shape.volume; ++spheres)
+        for (double sum = 0; spheres < many.size() && sum < coverage * shape.volume; ++spheres)
           sum += volume(many[spheres]);
         if (spheres == many.size() || spheres < 2) continue;
-        const std::size_t grown = needed_with_growth(shape, many, spheres, cell);
-        add("needed", shape.name, "greedy", spheres, cell, {});
-        add("needed", shape.name, "grown", grown, cell, {});
-        report_.summary += format("| %s | %.0f %% | %zu | %zu |\n", shape.name.c_str(), 100 * cell,
-                                  spheres, grown);
+        const std::size_t grown = needed_with_growth(shape, many, spheres, coverage);
+        add("needed", shape.name, "greedy", spheres, coverage, {});
+        add("needed", shape.name, "grown", grown, coverage, {});
+        report_.summary += format("| %s | %.0f %% | %zu | %zu |\n", shape.name.c_str(),
+                                  100 * coverage, spheres, grown);
       }
     }
     progress(0.8);
@@ -237,14 +237,14 @@ class Packings {
 
   // Bisects, since coverage rises with the number of spheres with rare exceptions.
   static std::size_t needed_with_growth(const Shape& shape, const std::vector<Sphere>& greedy,
-                                        std::size_t enough, double cell) {
+                                        std::size_t enough, double coverage) {
     std::size_t too_few = 0;
     while (enough - too_few > 1) {
       const std::size_t n = (enough + too_few) / 2;
       const auto end = greedy.begin() + static_cast<std::ptrdiff_t>(n);
       const double grown =
           filled(grow(shape.solid, {greedy.begin(), end}, {.enclosure = &shape.enclosure}));
-      (grown >= cell * shape.volume ? enough : too_few) = n;
+      (grown >= coverage * shape.volume ? enough : too_few) = n;
     }
     return enough;
   }
