@@ -24,9 +24,10 @@ std::unique_ptr<tbb::global_control>& thread_cap() {
   return cap;
 }
 
-// Tells the thread sanitizer that what is done before this is made happens before each turn, and
-// each turn, thrown exceptions too, before what is done after this is destroyed. TBB sees to that,
-// but its library is not instrumented. Turns stay unordered, so that their races are found.
+// Tells the thread sanitizer in which order TBB runs a loop, since TBB's library is not
+// instrumented. What the caller did before it made the TaskOrder comes before every turn; every
+// turn, with what it throws, comes before what the caller does after the TaskOrder is destroyed.
+// Turns have no order among themselves, so that races between them are found.
 class TaskOrder {
  public:
   class Turn {

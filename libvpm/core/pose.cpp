@@ -125,7 +125,7 @@ Pose pose_from_text(const std::string& text, double* deviation) {
 }
 
 Vec3 rotation_vector(const Rotation& r) {
-  // Q.w >= 0, so half the angle is at most pi / 2.
+  // Half the angle is at most pi / 2, since q.w >= 0.
   const Quaternion q = quaternion_from_rotation(r);
   const Vec3 axis{q.x, q.y, q.z};
   const double sine = norm(axis);

@@ -10,7 +10,8 @@
 #include "libvpm/core/pose.h"
 #include "libvpm/core/vector_width.h"
 
-// No vector is passed by any ABI: all is inlined.
+// GCC warns that the ABI of vector arguments changes with AVX. That is of no matter here: all these
+// functions are inlined.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 

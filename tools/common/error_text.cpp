@@ -7,7 +7,7 @@
 namespace vpm::tools {
 namespace {
 
-// Words for what the running tool has no option of the same name for.
+// What to write for names of the API for which the running program has no option of the same name.
 constexpr std::array<std::pair<const char*, const char*>, 11> kWords = {{
     {"repair_voxels", "--repair voxel=N"},
     {"pack", "vpm-pack"},

@@ -20,7 +20,7 @@ VPM_HD constexpr std::uint32_t value_of(NumberedWord word) {
   return static_cast<std::uint32_t>(word);
 }
 
-// Where the other side may look, or write, meanwhile.
+// Writes a word to a place, or reads one, while the other side may read or write there.
 VPM_HD inline void put(NumberedWord word, NumberedWord& place) {
   *static_cast<volatile NumberedWord*>(&place) = word;
 }

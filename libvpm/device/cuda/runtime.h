@@ -84,7 +84,8 @@ inline double microseconds_between(const Event& begin, const Event& end) {
   return 1e3 * static_cast<double>(milliseconds);
 }
 
-// At the host's own memory, before the device is asked whether the launch has failed.
+// How often the host looks into its own memory for an answer before it asks the device whether the
+// launch has failed.
 inline constexpr unsigned kLooksPerCheck = 1U << 16;
 
 // How blocks of a launch depend on each other and on what comes before it in the stream.
