@@ -177,8 +177,8 @@ class Search {
     return triangles_intersect(vertices_, triangles_[s], triangles_[t]);
   }
 
-  // True if all corners of t that are none of s lie on one side of the plane of s, given its
-  // corners.
+  // True if triangle t lies on one side of the plane of triangle s, whose corners are `plane`;
+  // corners that both have do not matter.
   bool beside(const Corners& plane, std::uint32_t s, std::uint32_t t) const {
     int side = 0;
     for (const std::uint32_t corner : triangles_[t]) {

@@ -13,8 +13,8 @@
 namespace vpm {
 namespace {
 
-// Where `take`, updates `best` with the point of the segment closest to x if that is nearer than
-// `best2`.
+// Replaces `best`, a point at the squared distance `best2` from x, by the closest point of the
+// segment from a to b where that is nearer, in the lanes that `take` selects.
 template <class Mask>
 [[gnu::always_inline]] inline void take_segment(const Vec3x4& x, const Vec3x4& a, const Vec3x4& b,
                                                 const Mask& take, Vec3x4& best, Double4& best2) {

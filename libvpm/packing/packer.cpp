@@ -133,7 +133,7 @@ class Packer {
   // State before the first sphere; set if the inertia error is asked for.
   std::optional<InertiaError> no_inertia_;
   double smallest_;  // in the unit frame, as is cap_
-  // Reason if no request is met.
+  // Why packing stops if no request is met before.
   StopReason stop_;
   double cap_;
   std::size_t most_;  // number of spheres at which even a band is cut short
