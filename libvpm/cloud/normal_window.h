@@ -120,9 +120,11 @@ class GatedWindows {
   const PaddedImage& inverse_;
   int radius_;
   float gate_;
-  // Gates of the first choice for each (du, dv).
+  // Largest difference from the centre at which the first choice admits a pixel, for each offset
+  // (du, dv).
   std::vector<float> wide_gates_;
-  // Gates of the second choice for each lane.
+  // Largest distance from the plane of the first choice at which the second one keeps a pixel, for
+  // each lane; infinite where the window has no edge.
   float gates_[kLanes];
   Planes planes_;
   std::vector<float> weights_;

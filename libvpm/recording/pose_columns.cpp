@@ -308,8 +308,9 @@ bool is_usual(const PoseColumns& columns) {
   return true;
 }
 
-// Returns the order of a line that has a time before the numbers that are named, which no other
-// word may stand before; empty if it has not.
+// Returns the order for a line that has one number more than the names: a time, which comes first
+// and which no name stands for. Returns nothing where the names have a time themselves, or name the
+// first number.
 std::optional<PoseColumns> order_after_time(const std::vector<PoseColumns>& orders,
                                             std::size_t count) {
   const PoseColumns& all = orders.back();
