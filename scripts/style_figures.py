@@ -1,23 +1,21 @@
 #!/usr/bin/env python3
-"""Prints figures about the source: lines, files, comments by their first word, longest functions.
+"""Prints figures about the source: lines, files, comments, longest functions.
 
-Usage: scripts/style_figures.py [--check] [FOLDER ...]
+Usage: scripts/style_figures.py [FOLDER ...]
 
-FOLDER limits files, comments and functions to these folders. With --check the exit code is 1 if a
-comment begins with one of the words in FRAGMENTS, and the places are listed.
+FOLDER limits files, comments and functions to these folders. They are figures and no check: whether a comment says what it
+means is found by reading it.
 """
 import argparse
 import collections
 import pathlib
 import re
 import statistics
-import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("examples", "libvpm", "tests", "tools")
 ENDINGS = {".h", ".cpp", ".cu", ".cuh"}
-FRAGMENTS = ("Of", "What", "Whether", "By", "Nor")
-QUERY_FOLDERS = ("measure", "scene", "backend", "temporal", "query", "surface")
+QUERY_FOLDERS = ("measure", "scene", "backend", "temporal", "query")
 LONG = 50  # lines of a function
 STRING = re.compile(r'"(?:\\.|[^"\\])*"|(?<!\w)\'(?:\\.|[^\'\\])+\'')
 
@@ -39,10 +37,10 @@ def split_comment(line):
     return (line, None) if at < 0 else (line[:at], line[at + 2:].strip())
 
 
-def comment_blocks(lines):
-    """Yields line number and first word of each run of // lines, and of each comment behind code."""
+def comment_words(lines):
+    """Yields the first word of each run of // lines, and of each comment behind code."""
     run_column = None
-    for number, line in enumerate(lines, 1):
+    for line in lines:
         code, comment = split_comment(line)
         if comment is None or code.startswith("}"):
             run_column = None
@@ -50,7 +48,7 @@ def comment_blocks(lines):
         continues = not code.strip() and run_column == len(code)
         run_column = len(code)
         if not continues and (word := re.search(r"[A-Za-z]+", comment)):
-            yield number, word.group()
+            yield word.group()
 
 
 def functions(lines):
@@ -91,7 +89,6 @@ def functions(lines):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true")
     parser.add_argument("folders", nargs="*", default=["libvpm", "tools", "tests", "examples"], metavar="FOLDER")
     arguments = parser.parse_args()
     files = {name: read_lines(name) for name in source_files(arguments.folders)}
@@ -109,25 +106,15 @@ def main():
     for group, lengths in sorted(groups.items()):
         print(f"{group}: {len(lengths)} files, median {statistics.median(lengths):.0f} lines, {sum(lengths)} in all")
 
-    words, fragments = collections.Counter(), []
-    for name, lines in files.items():
-        for number, word in comment_blocks(lines):
-            words[word] += 1
-            if word.capitalize() in FRAGMENTS:
-                fragments.append(f"{name}:{number}: {lines[number - 1].strip()}")
-    counts = ", ".join(f"{word} {words[word] + words[word.lower()]}" for word in FRAGMENTS)
-    print(f"comments: {sum(words.values())}; by fragments' first words: {counts}")
-    print("  most frequent: " + ", ".join(f"{word} {count}" for word, count in words.most_common(12)))
+    words = collections.Counter(word for lines in files.values() for word in comment_words(lines))
+    print(f"comments: {sum(words.values())}; they most often begin with "
+          + ", ".join(f"{word} {count}" for word, count in words.most_common(12)))
 
     found = sorted(((length, function, f"{name}:{line}") for name, lines in files.items()
                     if not name.startswith("tests/") for function, line, length in functions(lines)), reverse=True)
     print(f"functions: {len(found)}, {sum(length > LONG for length, *_ in found)} longer than {LONG} lines; the longest:")
     for length, function, place in found[:10]:
         print(f"  {length:4} {function}  {place}")
-
-    if arguments.check and fragments:
-        print("\ncomments that begin with " + ", ".join(FRAGMENTS) + ":", *fragments, sep="\n  ")
-        sys.exit(1)
 
 
 if __name__ == "__main__":
