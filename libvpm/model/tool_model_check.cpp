@@ -143,12 +143,12 @@ class LevelCheck {
     const std::size_t n = level_.sphere_count;
     if (level_.cell_volume.size() != n || level_.cell_centroid.size() != n ||
         level_.cell_reach.size() != n)
-      fail("its shares are not as many as its spheres");
+      fail("its cells are not as many as its spheres");
     for (std::size_t i = 0; i < n; ++i) {
       if (!(level_.cell_volume[i] >= 0) || !std::isfinite(level_.cell_volume[i]) ||
           !is_finite(level_.cell_centroid[i]) || !(level_.cell_reach[i] > 0) ||
           !std::isfinite(level_.cell_reach[i]))
-        fail("share " + std::to_string(i) + " is negative or not finite, or has no reach");
+        fail("cell " + std::to_string(i) + " is negative or not finite, or has no radius");
     }
   }
 
@@ -169,7 +169,7 @@ class LevelCheck {
       const std::uint32_t first = level_.block_begin[i], last = level_.block_begin[i + 1];
       if (first < last &&
           level_.blocks[last - 1].end - level_.blocks[first].begin > kMaxSamplesOfACell)
-        fail("the share of sphere " + std::to_string(i) + " has more than 2^20 samples");
+        fail("the cell of sphere " + std::to_string(i) + " has more than 2^20 samples");
     }
     for (std::size_t i = 0; i < level_.samples.size(); ++i) {
       const CellSample& sample = level_.samples[i];
@@ -189,18 +189,18 @@ class LevelCheck {
       const Sphere& sphere = model_.spheres[i];
       if (!(norm(sphere.center - model_.center_of_mass) + sphere.radius <= of_sphere) ||
           !(level_.cell_reach[i] <= 2 * farthest))
-        fail("sphere " + std::to_string(i) + " or its share lies beyond the tool's reach");
+        fail("sphere " + std::to_string(i) + " or its cell lies beyond the tool radius");
       balls += volume(sphere);
       cell_sum += level_.cell_volume[i];
     }
     for (std::size_t i = 0; i < level_.blocks.size(); ++i) {
       if (!(norm(widen(level_.blocks[i].center)) <= farthest))
-        fail("block " + std::to_string(i) + " lies beyond the tool's reach");
+        fail("block " + std::to_string(i) + " lies beyond the tool radius");
     }
     for (std::size_t i = 0; i < level_.samples.size(); ++i) {
       const CellSample& sample = level_.samples[i];
       if (!(norm(widen(sample.center)) <= farthest) || !(sample.radius <= farthest))
-        fail("sample " + std::to_string(i) + " lies beyond the tool's reach");
+        fail("sample " + std::to_string(i) + " lies beyond the tool radius");
       weights += sample.weight;
     }
     for (std::uint32_t i = 0; i < level_.sphere_count; ++i) check_cell(i);
@@ -211,7 +211,7 @@ class LevelCheck {
       fail("its spheres hold " + std::to_string(balls / model_.volume) +
            " times the tool's volume, so they overlap");
     if (differ(cell_sum, model_.volume))
-      fail("its shares sum to " + std::to_string(cell_sum / model_.volume) +
+      fail("its cells sum to " + std::to_string(cell_sum / model_.volume) +
            " times the tool's volume");
     if (differ(weights, 1))
       fail("the weights of its samples sum to " + std::to_string(weights) + " instead of 1");
@@ -224,7 +224,7 @@ class LevelCheck {
     const double farthest = kFarthestOfCell * level_.cell_reach[i];
     const auto check = [&](Vec3 at, double radius) {
       if (!(norm(at - center) + radius <= farthest))
-        fail("the share of sphere " + std::to_string(i) + " reaches further than it says");
+        fail("the cell of sphere " + std::to_string(i) + " reaches further than it says");
     };
     for (std::uint32_t b = level_.block_begin[i]; b < level_.block_begin[i + 1]; ++b) {
       const CellBlock& block = level_.blocks[b];
@@ -257,7 +257,7 @@ void check_calibration(const ToolModel& model, const std::string& name) {
 void validate(const ToolModel& model, const std::string& name) {
   if (!(model.volume > 0) || !std::isnormal(model.volume) || !is_finite(model.center_of_mass) ||
       !std::isfinite(model.reach))
-    refuse("volume, centre of mass and reach must be finite, and the volume positive", name);
+    refuse("volume, centre of mass and tool radius must be finite, and the volume positive", name);
   if (!(model.reach >= kSmallestLength && model.reach <= kLargestLength) ||
       !is_in_range(model.center_of_mass))
     refuse(

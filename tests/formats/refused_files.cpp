@@ -189,7 +189,7 @@ void add_models(std::vector<RefusedFile>& all, const std::vector<std::byte>& goo
   };
   using u32 = std::uint32_t;
   add("volume_negative", "volume", Spoiled(good).set("TOOL", 0, 0, -1.0));
-  add("sphere_beyond_reach", "sphere 0 or its share lies beyond",
+  add("sphere_beyond_reach", "sphere 0 or its cell lies beyond",
       Spoiled(good).set("TOOL", 0, 32, 0.1));
   add("level_too_large", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{9}));
   add("level_not_ascending", "levels must ascend", Spoiled(good).set("LEVL", 0, 124, u32{4}));
@@ -205,7 +205,7 @@ void add_models(std::vector<RefusedFile>& all, const std::vector<std::byte>& goo
   add("grid_overflow", "exceeds 2^32 - 1", Spoiled(good).set("LEVL", 0, 64 + 40, kMost));
   add("grid_too_large", "row offsets instead of", Spoiled(good).set("LEVL", 0, 64 + 40, u32{3}));
   add("grid_cell_zero", "positive cell size", Spoiled(good).set("LEVL", 0, 32, 0.0));
-  add("share_not_finite", "share 2 is negative or not finite",
+  add("cell_not_finite", "cell 2 is negative or not finite",
       Spoiled(good).set("SHRV", 0, 16, kNan));
   add("block_out_of_range", "block 3 has samples",
       Spoiled(good).set("BLCK", 0, 3 * 24 + 20, kMost));

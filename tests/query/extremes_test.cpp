@@ -194,13 +194,13 @@ TEST(ExtremeTools, SumsBeyondTheirLimitAreRefused) {
   };
   expect_refused(spoiled([](ToolModel& t, Level&) { t.volume /= 16; }), "overlap");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[3].weight *= 2; }), "weights");
-  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_volume[1] *= 1.1; }), "shares sum");
+  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_volume[1] *= 1.1; }), "cells sum");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].center.x = 10; }), "sample 5");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.samples[5].radius = 10; }), "sample 5");
   expect_refused(spoiled([](ToolModel&, Level& l) { l.blocks[2].center.y = -9; }), "block 2");
-  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_reach[7] = 0; }), "no reach");
+  expect_refused(spoiled([](ToolModel&, Level& l) { l.cell_reach[7] = 0; }), "no radius");
   expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 0; }), "2^-100 m");
-  expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 1e-3; }), "beyond the tool's reach");
+  expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 1e-3; }), "beyond the tool radius");
   expect_refused(spoiled([](ToolModel& t, Level&) { t.reach = 1e31; }), "2^100 m");
   expect_refused(spoiled([](ToolModel& t, Level&) { t.volume = 1e-310; }), "volume");
 }
