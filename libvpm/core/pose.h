@@ -48,7 +48,7 @@ inline bool is_rotation(const Rotation& r, double tolerance) {
 // Largest deviation from a unit quaternion or an orthonormal matrix that is taken for rounding and
 // normalised away; recorded camera poses reach 4e-4. Input that deviates more is refused.
 inline constexpr double kRotationTolerance = 0.02;
-// Deviation up to which decimal rounding explains it, so that no note is printed.
+// Largest deviation that decimal rounding explains, so that no note is printed.
 inline constexpr double kRotationRounding = 1e-5;
 
 // Deviation of rotations computed in double.

@@ -11,8 +11,8 @@ namespace vpm {
 namespace {
 
 constexpr double kGoldenRatio = 0.61803398874989485;
-// Bounds the memory of a lattice of any shape: the number of lines over its projection, of rows and
-// of columns.
+// Most lines of a lattice over its projection, and most of its rows and of its columns, so that its
+// memory is bounded whatever its shape.
 constexpr double kMaxLines = 4194304;
 
 // Returns the area of the solid's projections along x, y and z, counting hidden layers.

@@ -48,8 +48,8 @@ double cell_for(Vec3 extent, double cells) {
   const double unit = std::ldexp(1.0, std::ilogb(extent.x));
   const double ratio = extent.y / unit * (extent.z / unit) * (extent.x / unit);
   double cell = unit * std::cbrt(ratio / cells);
-  // Counts one grid cell more per axis than the extent holds; thin boxes need larger ones to keep
-  // the limit.
+  // The grid has one cell more along each axis than the extent holds, so the cells of a thin box
+  // are enlarged until their number keeps the limit.
   constexpr double kGrow = 1.0625;
   const auto count = [&] {
     return (extent.x / cell + 1) * (extent.y / cell + 1) * (extent.z / cell + 1);

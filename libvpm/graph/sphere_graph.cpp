@@ -12,8 +12,8 @@
 namespace vpm {
 namespace {
 
-// Limits the graph's size, counting both directions of edges; far more than a packing has for an
-// epsilon of the size of its gaps.
+// Most neighbours in a graph, both directions of each edge counted: far more than a packing has for
+// an epsilon of the size of its gaps.
 constexpr std::uint64_t kMaxNeighbors = std::uint64_t{1} << 28;
 constexpr std::size_t kGrain = 64;
 
@@ -106,7 +106,8 @@ SphereGraph with_edges(const SphereGraph& graph, const std::vector<SpherePair>& 
   return joined;
 }
 
-// Boruvka's algorithm: in each round every component takes its shortest edge to another one.
+// What follows is Boruvka's algorithm: in each round every component takes its shortest edge to
+// another one.
 
 namespace {
 

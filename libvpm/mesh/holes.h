@@ -12,8 +12,8 @@ namespace vpm {
 
 // Rim of a hole.
 struct BoundaryLoop {
-  // In the order of a face that would close the hole, if the triangles around it are consistently
-  // oriented.
+  // Vertices of the rim, in the order of a face that would close the hole if the triangles around
+  // it are consistently oriented.
   std::vector<std::uint32_t> vertices;
   bool closed = true;  // false if the rim ends at an edge of more than two triangles
 };

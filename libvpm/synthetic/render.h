@@ -42,7 +42,8 @@ double axial_sigma(double z, double angle);
 // Returns the standard deviation of a Kinect across the ray, pixels (same source).
 double lateral_sigma(double angle);
 
-// Clamps angles, radians: both models diverge, and the authors' data end here.
+// Largest angle, radians, for which the two models are asked: beyond it both diverge, and their
+// authors' data end here.
 inline constexpr double kLargestAngle = 80 * 3.14159265358979323846 / 180;
 
 // Stream of standard normal numbers that depends only on seed and counter. Exact sampling by

@@ -7,11 +7,11 @@
 
 namespace vpm::synthetic {
 
-// Edges along x, y, z; needles and sheets are allowed.
+// Returns a box with edges of these lengths along x, y and z; needles and sheets are allowed.
 Solid make_box(double a, double b, double c);
 Solid make_cube(double edge);
 
-// Regular solids with a corner towards +z, so that a motion along z makes contact with it.
+// Return regular solids with a corner towards +z, so that a motion along z makes contact with it.
 Solid make_tetrahedron(double edge);
 Solid make_octahedron(double edge);
 

@@ -18,8 +18,8 @@ class Surface {
   // Returns the exact Euclidean distance to the surface, negative inside the obstacle.
   virtual double distance(Vec3 p) const = 0;
 
-  // Returns the unit gradient of the distance, which points into free space. If several points are
-  // nearest, any of their gradients.
+  // Returns the unit gradient of the distance, which points into free space; one of several where
+  // several points of the surface are nearest.
   virtual Vec3 gradient(Vec3 p) const = 0;
 
   // Appends, in any order, every t at which the line origin + t * direction crosses the surface. A

@@ -99,8 +99,8 @@ class Page {
   void add_fact(const std::string& name, const std::string& value);
   void add_note(const std::string& text);
 
-  // Returns the body's number. `center` is its centre of mass in its own coordinates; `poses` map
-  // them to the world, one per step.
+  // Adds a body and returns its number. `center` is its centre of mass in its own coordinates;
+  // `poses` map them to the world, one per step.
   std::size_t add_body(const std::string& name, Vec3 center, double radius,
                        std::span<const Pose> poses);
   std::size_t add_column(const Column& column);
@@ -120,16 +120,18 @@ class Page {
   void add_path(const std::string& name, const std::string& color, std::size_t body);
   void add_arrow(const std::string& name, const std::string& color, std::size_t body,
                  std::size_t column, bool ring);
-  // Samples of each sphere's Voronoi cell; `begin` has one entry more than there are spheres.
+  // Adds the samples of each sphere's Voronoi cell, and returns their index for layers of spheres;
+  // `begin` has one entry more than there are spheres.
   std::size_t add_cells(std::span<const std::uint32_t> begin, std::span<const Vec3> samples);
 
-  // {"name", "count", "start", ...}; see main.js.
+  // Returns what main.js knows of the steps: {"name", "count", "start", ...}.
   Json& steps() { return steps_; }
   void add_chart(Json chart) { charts_.push_back(std::move(chart)); }
   void set_views(std::vector<std::string> names) { views_ = std::move(names); }
 
   std::string html() const;
-  // Atomic; "-" is standard output. Throws Error(cannot_write), and what check_available() throws.
+  // Writes the page, replacing a file in one step; "-" is standard output. Throws
+  // Error(cannot_write), and what check_available() throws.
   void write(const std::string& path) const;
 
  private:

@@ -1,5 +1,5 @@
-// Spheres as files that other programs show: one meaning of a suffix for all tools.
-// formats/spheres.md.
+// Spheres as files that other programs show. A suffix means the same to all programs, as
+// formats/spheres.md says.
 #pragma once
 
 #include <array>

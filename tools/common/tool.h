@@ -31,8 +31,8 @@ class Tool {
   const CommonOptions& common() const { return common_; }
   const std::string& name() const { return name_; }
 
-  // Accepts --device cuda. A tool that asks for device() calls it before run(); others refuse that
-  // option.
+  // Accepts --device cuda, which is refused otherwise. To be called before run() if the program
+  // asks for device().
   void computes_on_devices() { on_devices_ = true; }
   // Returns the device that --device names. Throws Error(unavailable) if this machine lacks it.
   Device device() const { return device_from_text(common_.device); }
@@ -69,10 +69,10 @@ class Tool {
   bool on_devices_ = false;
 };
 
-// An output file: the option that names it, its path, and its container kind where it has one.
-// Tells what a file that is no container holds.
+// What a file holds that is no container: what its name's ending says, JSON, or a page.
 enum class OutputForm { by_name, json, page };
 
+// An output file: the option that names it, its path, and its container kind where it has one.
 struct OutputFile {
   const char* option;
   std::string path;
@@ -82,7 +82,7 @@ struct OutputFile {
 
 // Throws Error(invalid_argument) if two outputs would be one file, or an output an input, and
 // without --force if an output is there already or its name ends like that of another kind
-// (libvpm/file/overwrite.h). Tools call it before the work begins.
+// (libvpm/file/overwrite.h). To be called before the work begins.
 void check_files(const std::vector<std::string>& inputs, const std::vector<OutputFile>& outputs,
                  const CommonOptions& common);
 
