@@ -37,7 +37,7 @@ TEST(CoherentPoses, StayInsideWhenTheToolHasPassedTheSurface) {
   const PreparedCloud cloud(see(synthetic::make_scene("wall")));
   const ToolModel tool = lattice_cube(kEdge, 6, 3);
   ToolQuery query(tool, coherent()), alone(tool, {});
-  int near = 0, far = 0;  // poses wholly behind the wall, within the tool's radius and beyond
+  int near = 0, far = 0;  // poses wholly behind the wall, within the tool radius and beyond
   for (const Pose& pose : through_the_wall(1.6)) {
     const double z = pose.translation.z;
     const Result r = query.run(cloud, pose), seen_alone = alone.run(cloud, pose);
@@ -69,7 +69,7 @@ TEST(CoherentPoses, ForgetWhenTold) {
   EXPECT_EQ(query.run(cloud, deep).volume, 0);
 }
 
-// The tool is free behind an object, further from its front than the tool's radius.
+// The tool is free behind an object, further from its front than the tool radius.
 TEST(CoherentPoses, DoNotTakeTheHiddenForTheInside) {
   const synthetic::Scene scene = synthetic::make_scene("block");
   const PreparedCloud cloud(see(scene));

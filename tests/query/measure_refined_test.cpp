@@ -169,7 +169,7 @@ TEST(RefinedMeasure, CountsWhatIsNearBehindTheSurfaceThoughNothingIsCut) {
       const Pose pose{generic_rotation(), {x, 0.01, z}};
       const Result r = query.run(cloud, pose);
       const double expected = behind_the_front(places, pose, near);
-      // A pixel is 2 mm wide; pieces as deep as the tool's reach count whole or not at all.
+      // A pixel is 2 mm wide; pieces as deep as the tool radius count whole or not at all.
       EXPECT_NEAR(r.volume_fraction, expected, 0.02) << x << ' ' << z;
       EXPECT_LE(std::abs(r.volume_fraction - before), std::abs(expected - expected_before) + 0.012)
           << x << ' ' << z;

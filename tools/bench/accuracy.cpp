@@ -230,7 +230,7 @@ class Accuracy {
 
   void summarise_sweeps() {
     report_.summary =
-        "Errors in % of the tool's volume (torque: of volume times reach)\n"
+        "Errors in % of the tool's volume (torque: of volume times tool radius)\n"
         "group   cloud   noise   measure  spheres   volume mean    worst     jump"
         "   torque mean   worst   direction mean   worst\n";
     for (const auto& [key, e] : sweeps_.groups()) {

@@ -223,7 +223,7 @@ Report tradeoff_report(const TradeoffSettings& settings, const std::vector<Measu
        "cloud's origin or the tool's centre, 0.06 um per metre"},
       {"knee", {{"none", clean->first->spheres}, {"kinect", noisy->first->spheres}}}};
   report.summary =
-      "Errors in % of the tool's volume (torque: of volume times reach)\n"
+      "Errors in % of the tool's volume (torque: of volume times tool radius)\n"
       "varied   noise   measure  normals       window stride threads spheres        us   volume"
       "    worst    force   torque     jump\n";
   for (const Row& row : rows) {

@@ -23,7 +23,7 @@ $ cut -d' ' -f2- device.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --pos
 3
 
 # Coherent poses: a tool that has passed wholly behind the wall is still inside. A single pose counts only places within
-# the tool's reach behind the wall.
+# the tool radius behind the wall.
 $ printf '%s\n' '0 0 0.95 0 0 0 1' '0 0 1.05 0 0 0 1' '0 0 1.12 0 0 0 1' '0 0 1.3 0 0 0 1' > deep.txt
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --poses deep.txt --coherent | python3 -c 'import json, sys; print([round(json.loads(line)["volume_fraction"], 2) for line in sys.stdin])'
 [0.25, 0.75, 1.0, 1.0]
