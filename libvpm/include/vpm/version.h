@@ -9,7 +9,7 @@
 #define VPM_VERSION_PATCH 0
 #define VPM_VERSION "0.1.0"
 
-// Is true if the headers are of this version or a later one: #if VPM_VERSION_AT_LEAST(0, 2, 0)
+// True if the headers are of this version or a later one: #if VPM_VERSION_AT_LEAST(0, 2, 0)
 #define VPM_VERSION_AT_LEAST(major, minor, patch) \
   (VPM_VERSION_MAJOR > (major) ||                 \
    (VPM_VERSION_MAJOR == (major) &&               \
