@@ -2,7 +2,6 @@
 // the truth.
 //
 // A place is known to be free if a camera sees it, and known to be inside if a camera's ray enters
-// A place is known to be free if a camera sees it, and known to be inside if a camera's ray enters
 // the obstacle before it and does not leave it again. All else is unknown: free space that no
 // camera sees (behind a thin plate or a block), parts of an obstacle hidden by free space (a wall
 // behind a block), places whose pixel is a hole, and places between the two depths of a jump within
