@@ -198,6 +198,11 @@ std::string words_of(const Suspicion& suspicion, const PlacedScene& place,
          (needs_pose ? " `camera_pose` 0,0,0,0,0,0,1" : "");
 }
 
+bool is_of_millimetres(Mistake mistake) {
+  return mistake == Mistake::poses_in_millimetres || mistake == Mistake::camera_in_millimetres ||
+         mistake == Mistake::all_in_millimetres;
+}
+
 std::vector<Suspicion> all_suspicions() {
   std::vector<Suspicion> suspicions;
   for (const Mistake mistake :
@@ -219,7 +224,10 @@ PoseCheck::PoseCheck(std::span<const ToolModel* const> tools, SceneSource source
 }
 
 void PoseCheck::see(const Pose& pose, std::size_t k, const Result& result, std::size_t scene) {
-  has_touched_ = has_touched_ || result.volume > 0 || result.boundary > 0 || result.inside > 0;
+  const bool is_inside = result.volume > 0 || result.inside > 0;
+  const bool is_buried = is_inside && result.boundary == 0 && result.inside > 0;
+  has_touched_ = has_touched_ || result.boundary > 0 || (is_inside && !is_buried);
+  has_buried_ = has_buried_ || is_buried;
   if (!has_touched_) kept_.add({pose, k, scene});
 }
 
@@ -252,19 +260,21 @@ PoseFit PoseCheck::fit_of(const std::map<std::size_t, PlacedScene>& places,
   return fit;
 }
 
-// Returns the mistakes that would explain it, with their cures: at most two, since more is a guess.
-// Names those that put the tool to the surface at more than half as many poses as the best of them:
-// fewer are no match for it.
+// Names at most two mistakes, since more is a guess: those that put the tool to the surface at more
+// than half as many poses as the best of them; fewer are no match for it. Of a tool that was inside
+// unseen space, as it may be meant to be, only lengths that are far beyond the scene are doubted.
 std::string PoseCheck::hint(const std::map<std::size_t, PlacedScene>& places) const {
   using Fitting = std::pair<PoseFit, Suspicion>;
   std::vector<Fitting> fitting;
-  for (const Suspicion& suspicion : all_suspicions())
+  for (const Suspicion& suspicion : all_suspicions()) {
+    if (has_buried_ && !is_of_millimetres(suspicion.mistake)) continue;
     if (const PoseFit fit = fit_of(places, suspicion); fit.near > 0)
       fitting.push_back({fit, suspicion});
+  }
   std::ranges::stable_sort(fitting, [](const Fitting& a, const Fitting& b) {
     return std::pair(a.first.touching, a.first.near) > std::pair(b.first.touching, b.first.near);
   });
-  if (fitting.empty()) return "; are poses and scene in the same frame and unit?";
+  if (fitting.empty()) return "";
   const auto words = [&](const Fitting& mistake) {
     return "with " + words_of(mistake.second, places.begin()->second, source_);
   };
@@ -293,7 +303,10 @@ std::optional<Remark> PoseCheck::remark() const {
   const char* const what = now.in_view > 0 ? "at no pose is the tool within its size of the surface"
                            : are_all_behind(places) ? "at every pose the tool is behind the camera"
                                                     : "at no pose is the tool in the camera's view";
-  return Remark{true, what + hint(places)};
+  const std::string open_question = "; are poses and scene in the same frame and unit?";
+  const std::string cures = hint(places);
+  if (cures.empty() && has_buried_) return std::nullopt;
+  return Remark{true, what + (cures.empty() ? open_question : cures)};
 }
 
 }  // namespace vpm

@@ -52,6 +52,7 @@ class PoseCheck {
   // Counts the poses that are at the scene, as it is or if a mistake were put right.
   PoseFit fit_of(const std::map<std::size_t, PlacedScene>& places,
                  const std::optional<Suspicion>& suspicion) const;
+  // Returns the mistakes that would explain it, with their cures; "" if none does.
   std::string hint(const std::map<std::size_t, PlacedScene>& places) const;
   bool are_all_behind(const std::map<std::size_t, PlacedScene>& places) const;
 
@@ -60,6 +61,7 @@ class PoseCheck {
   std::vector<ToolBall> tools_;  // in their own coordinates
   EvenSample<Kept> kept_;
   bool has_touched_ = false;
+  bool has_buried_ = false;  // a tool that the surface does not cut was inside, such as in shadows
 };
 
 }  // namespace vpm

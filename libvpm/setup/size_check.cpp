@@ -14,13 +14,13 @@ constexpr double kLargestTool = 10;      // a vehicle
 constexpr double kSmallestTool = 0.003;  // a burr, a needle's tip
 constexpr double kSmallestView = 0.02;   // what a depth camera sees
 constexpr double kLargestRoom = 30;      // a hall has points as fine as tools
-constexpr double kMuch = 100;
+constexpr double kSeveral = 6, kMuch = 100;
 
 enum class Doubt { none, tool_too_large, tool_too_small, scene_too_large, scene_too_small };
 
 Doubt doubt_of(double tool, double scene, const CheckedScene& points) {
-  if (tool > kLargestTool ? tool > scene : tool > kLargestHandled && tool > 2 * scene)
-    return Doubt::tool_too_large;
+  const double most = tool > kLargestTool ? scene : kSeveral * scene;
+  if (tool > kLargestHandled && tool > most) return Doubt::tool_too_large;
   const bool is_speck = points.camera && scene < kSmallestView;
   if (tool > kMuch * scene || (is_speck && tool > 10 * scene)) return Doubt::scene_too_small;
   if (scene < kMuch * tool) return Doubt::none;

@@ -24,12 +24,13 @@ std::vector<Pose> steps() {
   return {{turn, {0.1, 0.1, 0.97}}, {turn, {-0.2, -0.13, 1.0}}, {turn, {0, 0.05, 0.98}}};
 }
 
-// Returns what is said of poses that touched nothing.
-std::string said_of(const std::vector<Pose>& poses, const Cloud& cloud, Vec3 center = {}) {
+// Returns what is said of poses with this answer, by default that they touched nothing.
+std::string said_of(const std::vector<Pose>& poses, const Cloud& cloud, Vec3 center = {},
+                    const Result& result = {}) {
   const ToolModel tool = cube_of(0.3, center);
   const ToolModel* const tools[] = {&tool};
   PoseCheck check(tools, source_of(cloud), [&](std::size_t) { return checked_scene(cloud); });
-  for (const Pose& pose : poses) check.see(pose, 0, {});
+  for (const Pose& pose : poses) check.see(pose, 0, result);
   const auto remark = check.remark();
   return remark ? remark->text : "";
 }
@@ -89,6 +90,17 @@ TEST(PoseCheck, NamesTheCamerasPoseInMillimetres) {
                       wall_at(1, 60, camera)),
               "x, y, z of the poses and `import_cloud` `camera_pose` divided by 1000, if in "
               "millimetres");
+}
+
+TEST(PoseCheck, NamesPosesInMillimetresInShadowsThatCount) {
+  Result buried;
+  buried.volume = 0.001;
+  buried.inside = 30;
+  const Cloud wall = wall_at(1);
+  expect_cure(said_of({{{}, {0, 0, 950}}, {{}, {10, 0, 960}}}, wall, {}, buried),
+              "x, y, z of the poses divided by 1000, if they are millimetres");
+  EXPECT_EQ(said_of({{{}, {0, 0, 2.5}}}, wall, {}, buried), "");  // a robot in unseen space
+  EXPECT_EQ(said_of({{{}, {0, 0, 6}}}, wall, {}, buried), "");
 }
 
 TEST(PoseCheck, PosesAFewMetresOffAreNotCalledMillimetres) {

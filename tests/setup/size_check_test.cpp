@@ -67,6 +67,7 @@ TEST(SizeCheck, SaysNothingOfSizesThatOccur) {
 
 TEST(SizeCheck, SaysNothingOfVehicles) {
   EXPECT_EQ(said_of(4.7, wall_at(4)), "");
+  EXPECT_EQ(said_of(8.1, wall_at(1.4)), "");  // or models of no unit
   EXPECT_EQ(said_of(12, wall_at(25)), "");
   EXPECT_EQ(said_of(12, scanned_cube(60, 1)), "");
 }
