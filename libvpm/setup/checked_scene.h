@@ -1,4 +1,5 @@
-// What the checks of a setup know of a scene: where its points lie, and how it came there.
+// Declares what the checks of a setup know of a scene: where its points lie, and how they came
+// there.
 #pragma once
 
 #include <optional>

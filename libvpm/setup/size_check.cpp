@@ -12,7 +12,7 @@ namespace {
 constexpr double kLargestHandled = 3;    // a table, a robot's link
 constexpr double kLargestTool = 10;      // a vehicle
 constexpr double kSmallestTool = 0.003;  // a burr, a needle's tip
-constexpr double kSmallestView = 0.02;   // what a depth camera sees
+constexpr double kSmallestView = 0.02;   // a close-up of a depth camera
 constexpr double kLargestRoom = 30;      // a hall has points as fine as tools
 constexpr double kSeveral = 6, kMuch = 100;
 
