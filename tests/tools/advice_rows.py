@@ -185,7 +185,7 @@ SCANS = [
     (f"wall.pgm {CAMERA} --axes opengl", r"(--camera-pose \S+) gives it the others",
      f"wall.pgm {CAMERA} --axes opengl {{0}}", None),
     (f"wall.pgm {CAMERA} --range 100,5000", "all outside of --range, which is in metres", f"wall.pgm {CAMERA} --range 0.1,5", WALL),
-    (f"white.pgm {CAMERA}", r"(--invalid), --decode and --unit tell what they mean", f"white.pgm {CAMERA} {{0}} none", None),
+    (f"white.pgm {CAMERA}", r"(--invalid), --decode and --depth-scale tell what they mean", f"white.pgm {CAMERA} {{0}} none", None),
     (f"wall.pgm {CAMERA} --depth-scale 0.001", r"if a unit is 0.001 m, give (\d+)", f"wall.pgm {CAMERA} --depth-scale {{0}}", WALL),
     *[(f"{name} {CAMERA}", f"unpack it first{how}", f"<(python3 unpack.py {name}) {CAMERA}", WALL)
       for name, how in [("wall.pgm.gz", ": gunzip"), ("wall.pgm.bz2", ": bunzip2"), ("wall.pgm.xz", ": unxz"), ("wall.zip", "")]],
