@@ -3,22 +3,34 @@
 #include <vpm/depth_stream.h>
 #include <vpm/error.h>
 #include <vpm/query.h>
+#include <vpm/setup_check.h>
 #include <vpm/virtual_coupling.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <vector>
 
 namespace {
 
 constexpr std::uint32_t kWidth = 160, kHeight = 120;
+constexpr vpm::Intrinsics kIntrinsics{100, 100, 79.5, 59.5};
 constexpr int kSteps = 1000, kStepsPerImage = 33;
 
 // Stands for a camera: every pixel sees the wall at this depth, m.
 vpm::Scene wall_at(vpm::DepthStream& stream, float depth) {
   for (float& pixel : stream.metres()) pixel = depth;
   return stream.prepare({});
+}
+
+// Prints what is probably wrong with a tool before this wall, such as a mesh in millimetres.
+void check(const vpm::Tool& tool, float depth) {
+  const std::vector<float> image(std::size_t{kWidth} * kHeight, depth);
+  const vpm::Camera camera{kIntrinsics, kWidth, kHeight, {}};
+  const vpm::SetupCheck check(tool, vpm::PointCloud::from_depth(image, camera));
+  for (const vpm::Remark& remark : check.remarks())
+    std::fprintf(stderr, "control-loop: warning: %s\n", remark.text.c_str());
 }
 
 }  // namespace
@@ -30,11 +42,12 @@ int main(int argc, char** argv) {
   }
   try {
     const vpm::Tool tool = vpm::Tool::read(argv[1]);
+    check(tool, 1);
     const double size = tool.bounding_radius();
     vpm::QueryOptions options;
     options.stiffness = 500 / (size * size);  // N/m^3: as stiff as the coupling
     vpm::Query query(tool, options);
-    vpm::DepthStream stream({{100, 100, 79.5, 59.5}, kWidth, kHeight, std::nullopt});
+    vpm::DepthStream stream({kIntrinsics, kWidth, kHeight, std::nullopt});
 
     vpm::CouplingParameters coupling{.stiffness = 500, .damping = 5, .gyration = tool.gyration()};
     coupling.mass = vpm::critical_mass(coupling.stiffness, coupling.damping);

@@ -2,6 +2,7 @@
 
 #include "libvpm/api/handle_access.h"
 #include "libvpm/core/error.h"
+#include "libvpm/file/stream.h"
 #include "libvpm/graph/build_tool_model.h"
 #include "libvpm/graph/calibration.h"
 #include "libvpm/include/vpm/version.h"
@@ -27,7 +28,8 @@ nlohmann::json made_by_library(const char* what) {
 }  // namespace
 
 SolidMesh SolidMesh::read(const std::string& path, const SolidOptions& options) {
-  return handle_of(read_mesh(path), options);
+  const std::string name = path == "-" ? "standard input" : path;
+  return handle_of(parse_mesh(file::read_all(path), name, options.node), options);
 }
 
 SolidMesh SolidMesh::from_triangles(std::span<const Vec3> vertices,

@@ -131,7 +131,7 @@ std::string why_nothing(const RawDepth& raw, const Intrinsics& k, const DepthRea
   if (count([](float v) { return v > 0 && v < HUGE_VALF; }) == 0)
     return "all are 0, infinite, negative or not a number";
   return "its values mean \"not measured\", or depths that no camera measures; `invalid`, `decode` "
-         "and `unit` tell what they mean";
+         "and `depth_scale` tell what they mean";
 }
 
 }  // namespace

@@ -88,8 +88,7 @@ Remarks improbable_depths(const ScanFacts& facts, const std::optional<double>& u
   } else if (facts.depth && (facts.depth->median < kNearest || facts.depth->median > kFarthest)) {
     remarks.push_back(
         {true, text_of("half of its depths are %s %.3g m, which is improbable: is its unit another "
-                       "one? `unit` "
-                       "or `depth_scale` tells it",
+                       "one? `depth_scale` tells it, in units per metre",
                        facts.depth->median < kNearest ? "below" : "above", facts.depth->median)});
   }
   if (facts.depth && facts.measured < kFewest)

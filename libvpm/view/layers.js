@@ -153,11 +153,12 @@ function dustLayers(layer) {
 function pathLayers(layer, bodies) {
   const body = bodies[layer.body], count = body.poses.length / 7, positions = new Float32Array(3 * count), segments = [];
   for (let k = 0; k < count; ++k) body.centerAt(k).toArray(positions, 3 * k);
-  for (let k = 0; k + 1 < count; ++k) segments.push(...positions.subarray(3 * k, 3 * k + 6));
+  for (let k = 0; layer.joined && k + 1 < count; ++k) segments.push(...positions.subarray(3 * k, 3 * k + 6));
   const group = new THREE.Group().add(
     lineSegments(new Float32Array(segments), lineMaterial(layer.color, {width: 1.5, above: true, opacity: 0.6})),
     placed(new THREE.Points(geometryOf(positions), dotMaterial(layer.color, 4, false)), 6));
-  return [{name: layer.name, type: 'path', count, unit: 'poses', on: layer.on, object: group, swatch: {color: layer.color, shape: 'line'}}];
+  return [{name: layer.name, type: 'path', count, unit: 'poses', on: layer.on, object: group,
+    swatch: {color: layer.color, shape: layer.joined ? 'line' : 'ball'}}];
 }
 
 // Returns the parts of an arrow of length 1 along y: shaft, one or two heads, and a ring about it.

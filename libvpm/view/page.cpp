@@ -287,9 +287,14 @@ void Page::add_dust(const std::string& name, const std::string& color, std::span
                      {"until", packed(until)}});
 }
 
-void Page::add_path(const std::string& name, const std::string& color, std::size_t body) {
-  layers_.push_back(
-      {{"type", "path"}, {"name", name}, {"color", color}, {"body", body}, {"on", true}});
+void Page::add_path(const std::string& name, const std::string& color, std::size_t body,
+                    bool is_joined) {
+  layers_.push_back({{"type", "path"},
+                     {"name", name},
+                     {"color", color},
+                     {"body", body},
+                     {"joined", is_joined},
+                     {"on", true}});
 }
 
 void Page::add_arrow(const std::string& name, const std::string& color, std::size_t body,

@@ -117,7 +117,9 @@ class Page {
   // Adds places of which each is shown before its step `until`.
   void add_dust(const std::string& name, const std::string& color, std::span<const Vec3> places,
                 std::span<const std::uint32_t> until);
-  void add_path(const std::string& name, const std::string& color, std::size_t body);
+  // Adds the places of a body's centre at its poses, joined by lines if they follow each other.
+  void add_path(const std::string& name, const std::string& color, std::size_t body,
+                bool is_joined = true);
   void add_arrow(const std::string& name, const std::string& color, std::size_t body,
                  std::size_t column, bool ring);
   // Adds the samples of each sphere's Voronoi cell, and returns their index for layers of spheres;

@@ -7,6 +7,7 @@
 #include <vpm/import.h>
 #include <vpm/level_query.h>
 #include <vpm/query.h>
+#include <vpm/setup_check.h>
 #include <vpm/solid.h>
 #include <vpm/version.h>
 #include <vpm/virtual_coupling.h>
@@ -32,7 +33,7 @@ vpm::Scene wall() {
   return vpm::Scene(vpm::PointCloud::from_depth(wall_image(), kCamera));
 }
 
-vpm::SolidMesh cube(bool is_open = false) {
+vpm::SolidMesh cube(bool is_open = false, double scale = 1) {
   std::vector<vpm::Vec3> corners;
   for (int k = 0; k < 8; ++k)
     corners.push_back(
@@ -41,7 +42,7 @@ vpm::SolidMesh cube(bool is_open = false) {
       {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   if (is_open) triangles.pop_back();
-  return vpm::SolidMesh::from_triangles(corners, triangles);
+  return vpm::SolidMesh::from_triangles(corners, triangles, {.scale = scale});
 }
 
 const vpm::Tool& tool() {
@@ -163,6 +164,117 @@ TEST(PublicApi, FilesComeBackTheSame) {
   EXPECT_EQ(query.run(vpm::Scene(vpm::PointCloud::read(cloud_file)), behind(0.01)),
             original.run(vpm::Scene(cloud), behind(0.01)));
   std::filesystem::remove_all(folder);
+}
+
+// Returns what a check says of this tool before the wall; "" for nothing.
+std::string doubt_of(const vpm::Tool& asked, const std::vector<vpm::Pose>& poses) {
+  const vpm::PointCloud cloud = vpm::PointCloud::from_depth(wall_image(), kCamera);
+  const vpm::Scene scene(cloud);
+  vpm::Query query(asked);
+  vpm::SetupCheck check(asked, cloud);
+  for (const vpm::Pose& pose : poses) check.see(pose, query.run(scene, pose));
+  const vpm::Remarks remarks = check.remarks();
+  EXPECT_LE(remarks.size(), 1U);
+  return remarks.empty() ? "" : remarks.front().text;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != text.npos;
+}
+
+TEST(PublicApi, ACheckSaysWhatIsDoubted) {
+  EXPECT_EQ(doubt_of(tool(), {behind(0.02), behind(-0.2)}), "");
+  EXPECT_EQ(doubt_of(tool(), {}), "");
+  const vpm::Tool millimetres = vpm::build_tool(vpm::pack(cube(false, 1000), {.spheres = 20}));
+  EXPECT_TRUE(has(doubt_of(millimetres, {}), "give `scale` 0.001"));
+  vpm::Pose far = behind(0);
+  far.translation = {1000 * far.translation.x, 1000 * far.translation.y, 1000 * far.translation.z};
+  EXPECT_TRUE(has(doubt_of(tool(), {far}), "x, y, z of the poses divided by 1000"));
+  vpm::SetupCheck check(tool(), vpm::PointCloud::from_depth(wall_image(), kCamera));
+  EXPECT_EQ(error_of([&] { check.see({}, {}, 1); })->kind(), vpm::ErrorKind::invalid_argument);
+  EXPECT_EQ(error_of([] {
+              vpm::SetupCheck(std::span<const vpm::Tool>(),
+                              vpm::PointCloud::from_depth(wall_image(), kCamera));
+            })->kind(),
+            vpm::ErrorKind::invalid_argument);
+}
+
+// File of the wall, whose values are `unit` metres each.
+class WallFile {
+ public:
+  explicit WallFile(float unit)
+      : path_(std::filesystem::temp_directory_path() /
+              ("vpm-api-wall-" + std::to_string(::getpid()) + ".pfm")) {
+    std::ofstream file(path_, std::ios::binary);
+    file << "Pf\n" << kSide << ' ' << kSide << "\n-1.0\n";
+    for (const float depth : wall_image()) {
+      const float value = depth / unit;
+      file.write(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  ~WallFile() { std::filesystem::remove(path_); }
+  WallFile(const WallFile&) = delete;
+  WallFile& operator=(const WallFile&) = delete;
+
+  std::string path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(PublicApi, AnImportSaysWhatIsDoubtedAndTakesTheCure) {
+  const WallFile file(0.001F);
+  vpm::ImportParameters parameters;
+  parameters.intrinsics = kCamera.intrinsics;
+  vpm::Remarks remarks;
+  vpm::import_cloud(file.path(), parameters, &remarks);
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(remarks.front().is_warning);
+  EXPECT_TRUE(has(remarks.front().text, "`depth_scale`")) << remarks.front().text;
+  parameters.depth_scale = 1000;
+  remarks.clear();
+  const vpm::Scene scene(vpm::import_cloud(file.path(), parameters, &remarks));
+  EXPECT_TRUE(remarks.empty());
+  vpm::Query query(tool());
+  EXPECT_NEAR(query.run(scene, behind(0.02)).volume, query.run(wall(), behind(0.02)).volume, 1e-8);
+}
+
+TEST(PublicApi, AnImportRefusesParametersOutOfRange) {
+  const WallFile file(1);
+  const auto kind_of = [&](const auto& change) {
+    vpm::ImportParameters parameters;
+    parameters.intrinsics = kCamera.intrinsics;
+    change(parameters);
+    const auto error = error_of([&] { vpm::import_cloud(file.path(), parameters); });
+    return error ? std::optional(error->kind()) : std::nullopt;
+  };
+  const auto refused = vpm::ErrorKind::refused, argument = vpm::ErrorKind::invalid_argument;
+  EXPECT_EQ(kind_of([](auto&) {}), std::nullopt);
+  EXPECT_EQ(kind_of([](auto& p) { p.depth_scale = 0; }), argument);
+  EXPECT_EQ(kind_of([](auto& p) { p.depth_scale = -1000; }), argument);
+  EXPECT_EQ(kind_of([](auto& p) { p.range = {2, 1}; }), argument);
+  EXPECT_EQ(kind_of([](auto& p) { p.decode = "turned"; }), argument);
+  EXPECT_EQ(kind_of([](auto& p) { p.decode = "rotated"; }), argument);  // it has no 16 bits
+  EXPECT_EQ(kind_of([](auto& p) { p.range = {2, 3}; }), refused);       // nothing is left
+  EXPECT_EQ(kind_of([](auto& p) { p.invalid = {1}; }), refused);
+}
+
+TEST(PublicApi, AnImportTakesOtherAxes) {
+  const WallFile file(1);
+  vpm::ImportParameters parameters;
+  parameters.intrinsics = kCamera.intrinsics;
+  parameters.axes = vpm::CameraAxes::opengl;
+  parameters.camera_pose = vpm::Pose{};
+  const vpm::PointCloud cloud = vpm::import_cloud(file.path(), parameters);
+  vpm::Query query(tool());
+  const vpm::Pose turned{{}, {0, 0, -kWall}};  // a camera of OpenGL looks along -z
+  EXPECT_NEAR(query.run(vpm::Scene(cloud), turned).volume_fraction, 0.5, 0.01);
+  // A check knows the axes that were told, and names others.
+  vpm::SetupCheck check(tool(), cloud);
+  check.see({{}, {0, 0, kWall}}, {});
+  const vpm::Remarks remarks = check.remarks();
+  ASSERT_EQ(remarks.size(), 1U);
+  EXPECT_TRUE(has(remarks.front().text, "`import_cloud` `axes` opencv")) << remarks.front().text;
 }
 
 TEST(PublicApi, ALevelIsChosenByItsCalibration) {

@@ -4,6 +4,7 @@
 #include <vpm/depth_stream.h>
 #include <vpm/level_query.h>
 #include <vpm/query.h>
+#include <vpm/setup_check.h>
 #include <vpm/solid.h>
 #include <vpm/virtual_coupling.h>
 
@@ -125,6 +126,12 @@ TEST(MovedFrom, Query) {
       {[](auto& q) { q.run(scene, kPose); },
        [](auto& q) { q.run(scene, std::vector<vpm::Job>(1), results); },
        [](auto& q) { q.forget(); }, [](auto& q) { q.states(); }, [](auto& q) { q.level(); }});
+}
+
+TEST(MovedFrom, SetupCheck) {
+  expect_refused<vpm::SetupCheck>(
+      vpm::SetupCheck(tool(), cloud()), "SetupCheck",
+      {[](auto& c) { c.see(kPose, vpm::Result{}); }, [](auto& c) { c.remarks(); }});
 }
 
 TEST(MovedFrom, LevelQuery) {

@@ -19,6 +19,11 @@ run(${WORK}/build/mesh-to-answer ${inputs}/cube.off ${inputs}/wall.png 60,60,31.
 if(NOT output MATCHES "^volume 0\\.00[34][0-9]* m.3 .(49|50)")
   message(FATAL_ERROR "unexpected answer: ${output}")
 endif()
+# It prints what is doubted, with the cure: here a mesh that is scaled wrongly.
+run(${WORK}/build/mesh-to-answer ${inputs}/cube.off ${inputs}/wall.png 60,60,31.5,23.5 0,0,1,0,0,0,1 1000)
+if(NOT output MATCHES "warning: the tool is 346 m across and the scene [0-9.]* m: if the mesh is in millimetres, give `scale` 0.001")
+  message(FATAL_ERROR "unexpected answer: ${output}")
+endif()
 # A haptic loop pushes back.
 run(${WORK}/build/control-loop ${SOURCE}/formats/golden/v1/cube.vpmg)
 if(NOT output MATCHES "at most [0-9.]*[1-9][0-9.]* % of the tool inside, [0-9.]*[1-9][0-9.]* N felt")

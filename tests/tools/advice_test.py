@@ -47,7 +47,8 @@ UNTRIED = [
     ("for programs that call the library", [
         "make its rotation with rotation_from_matrix or rotation_from_quaternion",
         "make it with rotation_from_matrix or rotation_from_quaternion", "make their queries with the same options",
-        "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh",
+        "an image has pixels: give its size", "write to metres()", "write to counts()", "repair the mesh", "use the one that it was moved to",
+        "`depth_scale` must be finite and greater than 0", "`range` must go from 0 m or more to a farther depth",
     ]),
     ("said by a build without a library, or with CUDA", [
         "build with VPM_EXR=ON, or convert the image to a 16-bit PNG", "build it where yaml-cpp is installed, or give the numbers",

@@ -9,7 +9,18 @@
 
 namespace vpm::tools {
 
-CloudScene::CloudScene(QuerySetup& setup) {
+namespace {
+
+// Returns the surface of a depth image, which is compared with poses; nothing for points, or for
+// another measure than the refined one.
+std::optional<DepthSurface> measured_surface(const PreparedCloud& cloud, Measure measure) {
+  if (measure != Measure::refined || !cloud.is_organised()) return std::nullopt;
+  return cloud.depth_surface();
+}
+
+}  // namespace
+
+CloudScene::CloudScene(QuerySetup& setup) : setup_(setup) {
   const std::string& name = setup.arguments.cloud;
   const Cloud cloud = read_cloud(name);
   const auto start = std::chrono::steady_clock::now();
@@ -21,24 +32,16 @@ CloudScene::CloudScene(QuerySetup& setup) {
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   prepare_seconds_ = taken.count();
-  setup_check_.emplace(setup.tool, setup.models, cloud.positions, source_of(cloud),
-                       [scene = checked_scene(cloud)](std::size_t) { return scene; });
-  if (setup.options.measure == Measure::refined && !setup_check_->doubts_sizes())
-    measured_check_.emplace(setup.tool, setup.models, *cloud_);
-  if (!cloud.sensor) enclosed_check_.emplace(setup.tool, setup.models, cloud);
+  checks_.emplace(pointers_to(setup.models), cloud,
+                  measured_surface(*cloud_, setup.options.measure));
+  const Remarks remarks = checks_->remarks();
+  say(setup.tool, remarks);
+  has_said_ = !remarks.empty();
   if (setup.view) setup.view->add_cloud(name, cloud);
 }
 
-void CloudScene::see(const Pose& pose, std::size_t k, const Result& result) {
-  setup_check_->see(pose, k, result);
-  if (measured_check_) measured_check_->see(pose, k);
-  if (enclosed_check_) enclosed_check_->see(pose, k, result);
-}
-
 void CloudScene::warn_at_end() const {
-  setup_check_->warn_at_end();
-  if (measured_check_) measured_check_->warn_at_end();
-  if (enclosed_check_) enclosed_check_->warn_at_end();
+  if (!has_said_) say(setup_.tool, checks_->remarks());
 }
 
 PoseSource::PoseSource(const Arguments& arguments) : arguments_(arguments) {

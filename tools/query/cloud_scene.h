@@ -6,31 +6,31 @@
 
 #include "libvpm/recording/pose_reader.h"
 #include "libvpm/scene/prepared_cloud.h"
-#include "tools/query/enclosed_check.h"
-#include "tools/query/measured_check.h"
+#include "libvpm/setup/cloud_checks.h"
 #include "tools/query/query_setup.h"
-#include "tools/query/setup_check.h"
 
 namespace vpm::tools {
 
 // Cloud of --cloud, prepared for queries.
 class CloudScene {
  public:
-  // Reads and prepares the cloud and adds it to the view, if there is one.
+  // Reads and prepares the cloud and adds it to the view, if there is one. Says what the sizes of
+  // cloud and tools let doubt.
   explicit CloudScene(QuerySetup& setup);
 
   const PreparedCloud& cloud() const { return *cloud_; }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
-  // Shows the answer at a pose of the k-th tool to the checks, which warn at the end.
-  void see(const Pose& pose, std::size_t k, const Result& result);
+  // Shows the answer at a pose of the k-th tool to the checks.
+  void see(const Pose& pose, std::size_t k, const Result& result) { checks_->see(pose, k, result); }
+  // Says what the poses let doubt, where nothing was said of sizes.
   void warn_at_end() const;
 
  private:
+  const QuerySetup& setup_;
   std::optional<PreparedCloud> cloud_;
-  std::optional<SetupCheck> setup_check_;
-  std::optional<MeasuredCheck> measured_check_;
-  std::optional<EnclosedCheck> enclosed_check_;
+  std::optional<CloudChecks> checks_;
+  bool has_said_ = false;
   double prepare_seconds_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/model/tool_model.h"
+#include "libvpm/view/pose_path.h"
 
 namespace vpm::tools {
 namespace {
@@ -240,8 +241,16 @@ std::size_t PoseView::add_numbers(view::Page& page, const std::vector<Step>& ste
   return volume_column;
 }
 
-std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
-                               std::size_t tool) const {
+// True if the poses follow each other: as steps in time do, and others by where they lie.
+bool PoseView::are_path(const std::vector<Step>& steps) const {
+  if (recording_ != nullptr || options_.coherent) return true;
+  std::vector<Vec3> places;
+  for (const Step& step : steps) places.push_back(step.answers[0].pose * models_[0].center_of_mass);
+  return view::is_path(places);
+}
+
+std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+                               bool is_joined) const {
   const ToolModel& model = models_[tool];
   std::vector<Pose> poses;
   std::vector<std::uint8_t> bits;
@@ -264,7 +273,9 @@ std::size_t PoseView::add_tool(view::Page& page, const std::vector<Step>& steps,
                    .body = body,
                    .opacity = 0.3});
   }
-  if (steps.size() > 1) page.add_path("path of the tool" + of, kPathColor, body);
+  if (steps.size() > 1)
+    page.add_path((is_joined ? "path of the tool" : "poses of the tool") + of, kPathColor, body,
+                  is_joined);
   return add_numbers(page, steps, tool, body);
 }
 
@@ -309,7 +320,9 @@ void PoseView::write() const {
   }
   add_facts(page);
   view::Json volumes = view::Json::array();
-  for (std::size_t t = 0; t < models_.size(); ++t) volumes.push_back(add_tool(page, steps, t));
+  const bool is_joined = are_path(steps);
+  for (std::size_t t = 0; t < models_.size(); ++t)
+    volumes.push_back(add_tool(page, steps, t, is_joined));
   say_what_is_odd(page, steps, add_scene(page, steps));
 
   std::vector<std::uint32_t> numbers;
@@ -324,7 +337,7 @@ void PoseView::write() const {
       {"last", seen_ - 1}, {"numbers", view::packed(std::span<const std::uint32_t>(numbers))}};
   if (steps.size() > 1)
     page.add_chart({{"type", "curve"},
-                    {"title", "Volume along the path"},
+                    {"title", is_joined ? "Volume along the path" : "Volume at each pose"},
                     {"x", "pose"},
                     {"y", "volume"},
                     {"every", every_},

@@ -58,12 +58,14 @@ class PoseView {
   bool keeps_next() const { return seen_ % every_ == 0; }
   void keep(Step step);
   std::vector<Step> kept() const;
+  bool are_path(const std::vector<Step>& steps) const;
   void add_facts(view::Page& page) const;
   // Return the camera of the frame that each step sees; empty without frames that have one.
   std::vector<Camera> add_scene(view::Page& page, const std::vector<Step>& steps) const;
   std::vector<Camera> add_frames(view::Page& page, const std::vector<Step>& steps) const;
   // Return the number of the column of volumes.
-  std::size_t add_tool(view::Page& page, const std::vector<Step>& steps, std::size_t tool) const;
+  std::size_t add_tool(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
+                       bool is_joined) const;
   std::size_t add_numbers(view::Page& page, const std::vector<Step>& steps, std::size_t tool,
                           std::size_t body) const;
   void say_what_is_odd(view::Page& page, const std::vector<Step>& steps,

@@ -78,6 +78,17 @@ QuerySetup::QuerySetup(const Tool& t, const Arguments& a)
   if (!a.view.empty()) view.emplace(a.view, models, a.tools, options);
 }
 
+std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models) {
+  std::vector<const ToolModel*> pointers;
+  for (const ToolModel& model : models) pointers.push_back(&model);
+  return pointers;
+}
+
+void say(const Tool& tool, const Remarks& remarks) {
+  for (const Remark& remark : remarks)
+    remark.is_warning ? tool.warn(remark.text) : tool.note(remark.text);
+}
+
 void note_scale(const Tool& tool, const LevelToolQuery& query) {
   if (!query.scale()) return;
   tool.note("the scene resolves " + words_of(*query.scale()) + ": the level of " +

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
 #include "libvpm/query/level_tool_query.h"
 #include "tools/query/arguments.h"
@@ -28,6 +29,12 @@ struct QuerySetup {
   Denoising points;              // how points without a camera are read
   std::optional<PoseView> view;  // empty without --view
 };
+
+// Returns the models as the checks of a setup take them.
+std::vector<const ToolModel*> pointers_to(const std::vector<ToolModel>& models);
+
+// Prints what the checks of a setup say.
+void say(const Tool& tool, const Remarks& remarks);
 
 // Notes the level that the scene's points resolve, if --for-scene chose it.
 void note_scale(const Tool& tool, const LevelToolQuery& query);

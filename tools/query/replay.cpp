@@ -15,13 +15,14 @@
 #include "libvpm/recording/frame_schedule.h"
 #include "libvpm/recording/loop_clock.h"
 #include "libvpm/recording/timed_path.h"
+#include "libvpm/setup/pose_check.h"
+#include "libvpm/setup/size_check.h"
 #include "tools/query/arguments.h"
 #include "tools/query/coupling.h"
 #include "tools/query/mode.h"
 #include "tools/query/pose_view.h"
 #include "tools/query/query_report.h"
 #include "tools/query/replay_report.h"
-#include "tools/query/setup_check.h"
 
 namespace vpm::tools {
 namespace {
@@ -41,12 +42,15 @@ class Replay {
 
   // Queries step by step, writes a line of results for each and shows them to `check`. Prints notes
   // and warnings about frames as they happen.
-  void run(LevelToolQuery& query, SetupCheck& check, std::optional<VirtualCoupling> coupling,
+  void run(LevelToolQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
            Measure measure, file::Output& output, std::optional<PoseView>& view);
 
-  // Returns what a check of the setup compares poses with.
+  // Return what the checks of the setup compare poses and sizes with.
   SceneSource source() const;
   CheckedScene scene_of(std::size_t frame) const;
+  CheckedScene first_scene() const {
+    return checked_scene(first_cloud_->origin(), first_cloud_->positions(), first_camera_);
+  }
 
   // Returns the last pose of the tool. The values from here on need run().
   const Pose& last_pose() const { return last_pose_; }
@@ -238,13 +242,14 @@ CheckedScene Replay::scene_of(std::size_t frame) const {
   options.depth.looks_for_mistakes = false;
   if (recorded.camera) options.to_world = recorded.camera;
   try {
-    return checked_scene(import_scan(file::read_all(recorded.path), recorded.path, options));
+    const ImportedScan scan = import_scan(file::read_all(recorded.path), recorded.path, options);
+    return scan.image ? checked_scene(*scan.image) : checked_scene(scan.points);
   } catch (const Error&) {  // it has changed since, or came by a pipe
     return {};
   }
 }
 
-void Replay::run(LevelToolQuery& query, SetupCheck& check, std::optional<VirtualCoupling> coupling,
+void Replay::run(LevelToolQuery& query, PoseCheck& check, std::optional<VirtualCoupling> coupling,
                  Measure measure, file::Output& output, std::optional<PoseView>& view) {
   if (view) view->set_frames(arguments_.frames, recording_, import_);
   feed_ = std::make_unique<FrameFeed>(recording_, schedule_, import_, device_, points_);
@@ -365,11 +370,15 @@ void run_frames(QuerySetup& setup) {
     coupling.emplace(*parameters, model.center_of_mass, first);
   }
   file::Output output(a.output);
-  SetupCheck check(setup.tool, setup.models, replay.first_cloud().positions(), replay.source(),
-                   [&](std::size_t frame) { return replay.scene_of(frame); });
+  const std::vector<const ToolModel*> tools = pointers_to(setup.models);
+  const std::optional<Remark> sizes = improbable_sizes(tools, replay.first_scene(), true);
+  if (sizes) say(setup.tool, {*sizes});
+  PoseCheck check(tools, replay.source(),
+                  [&](std::size_t frame) { return replay.scene_of(frame); });
   replay.run(query, check, coupling, setup.options.measure, output, setup.view);
   output.finish();
-  check.warn_at_end();
+  const std::optional<Remark> missing = check.remark();
+  if (missing && !sizes) say(setup.tool, {*missing});
   nlohmann::json stats =
       query_stats(replay.query_seconds(), replay.prepare_seconds(), a.deadline_us);
   stats["cloud_points"] = replay.last_cloud().positions().size();

@@ -18,6 +18,13 @@ struct Camera {
   Pose to_world;                        // camera to world coordinates
 };
 
+// Axes of cameras and clouds that other programs use.
+enum class CameraAxes {
+  opencv,  // x right, y down, z forward: the axes of this library
+  opengl,  // x right, y up, z backward
+  ros      // x forward, y left, z up: a robot's body
+};
+
 // Estimators of a pixel's normal from a square window around it. inverse_depth is the least-squares
 // plane of inverse depth; pca is the eigenvector of the points' covariance (section 3.1 of
 // Kaluschke, Weller, Zachmann, "A Volumetric Penetration Measure for 6-DOF Haptic Rendering of

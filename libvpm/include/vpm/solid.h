@@ -45,6 +45,9 @@ struct SolidOptions {
   // m; wider holes are refused. If unset: no limit for
   // Repair::voxel, a sixteenth of the longest side for Repair::flood.
   std::optional<double> max_hole = std::nullopt;
+  // Node of a COLLADA, glTF, 3MF or FBX scene that is read with what is below it, by its name; "":
+  // all.
+  std::string node = {};
 };
 
 struct CheckedSolid;  // the library's own

@@ -37,9 +37,9 @@ $ vpm-normals wall.npy -o x.vpmc --intrinsics 60,60,31.5,23.5 --decode rotated
 2> vpm-normals: error: wall.npy: --decode is for integers of 16 bits, which this image has not
 [2]
 $ vpm-normals wall.npy -o mm.vpmc --intrinsics 60,60,31.5,23.5 --unit mm
-2> vpm-normals: warning: wall.npy: half of its depths are below 0.00103 m, which is improbable: is its unit another one? --unit or --depth-scale tells it
+2> vpm-normals: warning: wall.npy: half of its depths are below 0.00103 m, which is improbable: is its unit another one? --depth-scale tells it, in units per metre
 $ vpm-normals wall.pgm -o um.vpmc --intrinsics 60,60,31.5,23.5 --depth-scale 5 --verbose
-2> vpm-normals: warning: wall.pgm: half of its depths are above 206 m, which is improbable: is its unit another one? --unit or --depth-scale tells it
+2> vpm-normals: warning: wall.pgm: half of its depths are above 206 m, which is improbable: is its unit another one? --depth-scale tells it, in units per metre
 2> vpm-normals: wall.pgm: depth 200 to 212.6 m, median 206.4 m; 100 % measured; the scene is 216.6 x 166.5 x 12.6 m, from (-105, -83.27, 200) to (111.6, 83.27, 212.6)
 $ vpm-normals wall.pgm -o x.vpmc --intrinsics 60,60,31.5,23.5 --depth-scale 5 --unit mm
 2> vpm-normals: error: --depth-scale and --unit exclude each other: leave one of them out
@@ -61,7 +61,7 @@ $ vpm-normals opengl.pcd -o gl.vpmc --axes opengl
 # A tool that no pose brings to the scene is said, and whether the inverse poses would.
 $ vpm-pack cube.off -o cube.vpmp --spheres 100 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,-0.95,0,0,0,1 -o /dev/null
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opengl: give vpm-normals --axes opengl --camera-pose 0,0,0,0,0,0,1
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with inverse poses (from tool to world), or with vpm-normals --axes opengl --camera-pose 0,0,0,0,0,0,1
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 5,0,1,0,0,0,1 -o /dev/null
 2> vpm-query: warning: at no pose is the tool in the camera's view; are poses and scene in the same frame and unit?
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.3,0,0,0,1 -o /dev/null
@@ -69,7 +69,16 @@ $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.3,0,0,0,1 -o /dev/nu
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.7,0,0,0,1 -o /dev/null
 $ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph large.vpmp -o large.vpmg --quiet && vpm-query --tool large.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 -o /dev/null
 2> vpm-pack: warning: cube.off: the mesh is 200 m across: if its unit is the millimetre, give --scale 1
-2> vpm-query: warning: the tool is 346 m across and the scene 1.37 m: is one of them in other units than metres? vpm-pack --scale and vpm-normals --unit tell them
+2> vpm-query: warning: the tool is 346 m across and the scene 1.37 m: if the mesh is in metres, give vpm-pack --scale 1
+
+# So are a tool in millimetres that is no giant, the cure works, and nothing else is said of it; and poses in millimetres.
+$ sed -n 3,10p cube.off > corners.txt; (echo OFF; echo 8 12 0; awk '{print 75*$1, 150*$2, 250*$3}' corners.txt; tail -n +11 cube.off) > finger.off; vpm-pack finger.off -o finger.vpmp --spheres 30 --quiet && vpm-graph finger.vpmp -o finger.vpmg --quiet && vpm-query --tool finger.vpmg --cloud wall.vpmc --poses - -o /dev/null <<< $'0 0 0.95 0 0 0 1\n0 0 950 0 0 0 1'
+2> vpm-query: warning: the tool is 60.2 m across and the scene 1.37 m: if the mesh is in millimetres, give vpm-pack --scale 0.001
+$ vpm-pack finger.off -o metres.vpmp --scale 0.001 --spheres 30 --quiet && vpm-graph metres.vpmp -o metres.vpmg --quiet && vpm-query --tool metres.vpmg --cloud wall.vpmc --pose 0,0,1.02,0,0,0,1 -o /dev/null
+$ printf '%s\n' '0 0 950 0 0 0 1' '10 0 960 0 0 0 1' > poses_mm.txt && vpm-query --tool cube.vpmg --cloud wall.vpmc --poses poses_mm.txt -o /dev/null
+2> vpm-query: warning: at no pose is the tool within its size of the surface; it would be there with x, y, z of the poses divided by 1000, if they are millimetres
+$ awk '{print $1/1000, $2/1000, $3/1000, $4, $5, $6, $7}' poses_mm.txt | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - | wc -l
+2
 
 # Files that were given by mistake are named.
 $ printf 'version https://git-lfs.github.com/spec/v1\noid sha256:0\n' | vpm-normals - -o x.vpmc
@@ -132,8 +141,8 @@ $ sleep 0 & : > .x.vpmp.vpm-$!-0.tmp; wait; vpm-pack cube.off -o swept.vpmp --sp
 # the one that fits best, or all that fit as well.
 $ printf '%s\n' '0.1 0.1 0.95 0 0 0 1' '-0.2 -0.13 0.98 0 0 0 1' > steps.txt
 $ vpm-normals opengl.pcd --axes opengl -o turned.vpmc --camera-pose 0,0,0,0,0,0,1 --quiet && vpm-query --tool cube.vpmg --cloud turned.vpmc --poses steps.txt -o /dev/null
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opencv: give vpm-normals --axes opencv
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with inverse poses (from tool to world), or with vpm-normals --axes opencv
 $ vpm-normals wall.pgm -o moved.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 4,0,0,0,0,0,1 && vpm-query --tool cube.vpmg --cloud moved.vpmc --poses steps.txt -o /dev/null
-2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there if the poses are in the camera's frame: leave vpm-normals --camera-pose out
+2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there with no vpm-normals --camera-pose, if poses are in the camera's frame
 $ vpm-normals wall.pgm -o w_first.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0,0.9659258,0.258819,0,0 && vpm-query --tool cube.vpmg --cloud w_first.vpmc --pose 0,-0.475,0.8227,0,0,0,1 -o /dev/null
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the quaternion of the camera's pose begins with w: give vpm-normals --camera-pose tx,ty,tz,qx,qy,qz,qw
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with vpm-normals --camera-pose as tx,ty,tz,qx,qy,qz,qw (w last)

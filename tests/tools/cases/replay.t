@@ -112,11 +112,11 @@ $ sed 's/0.95/0/' gap.txt > camera.txt && vpm-query --tool cube.vpmg --frames st
 # A path that misses what the frames see is warned about like poses in a cloud, with the cure.
 $ printf '%s\n' '0 0 0 -0.95 0 0 0 1' '0.2 0 0 -0.95 0 0 0 1' > behind.txt && printf '%s\n' '0 0 0 0.3 0 0 0 1' '0.2 0 0 0.3 0 0 0 1' > before.txt && printf '%s\n' '0 9 0 0.95 0 0 0 1' '0.2 9 0 0.95 0 0 0 1' > beside.txt
 $ for t in behind before beside; do vpm-query --tool cube.vpmg --frames steps --trajectory $t.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null; done
-2> vpm-query: warning: at every pose the tool is behind the camera; it would be there if the poses are inverted: a pose must map the tool's coordinates to the world's; or if the camera has the axes of opengl: give --axes opengl --camera-pose 0,0,0,0,0,0,1
+2> vpm-query: warning: at every pose the tool is behind the camera; it would be there with inverse poses (from tool to world), or with --axes opengl --camera-pose 0,0,0,0,0,0,1
 2> vpm-query: warning: at no pose is the tool within its size of the surface; are poses and scene in the same frame and unit?
 2> vpm-query: warning: at no pose is the tool in the camera's view; are poses and scene in the same frame and unit?
 $ vpm-pack cube.off -o large.vpmp --scale 1000 --spheres 50 --quiet && vpm-graph large.vpmp -o large.vpmg --quiet && vpm-query --tool large.vpmg --frames steps --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
 2> vpm-pack: warning: cube.off: the mesh is 200 m across: if its unit is the millimetre, give --scale 1
-2> vpm-query: warning: the tool is 346 m across and the scene 1.31 m: is one of them in other units than metres? vpm-pack --scale and --unit tell them
+2> vpm-query: warning: the tool is 346 m across and the scene 1.31 m: if the mesh is in metres, give vpm-pack --scale 1
 $ cp -r steps moved && for f in moved/*.pose.txt; do printf '%s\n' '1 0 0 4' '0 1 0 0' '0 0 1 0' '0 0 0 1' > $f; done; vpm-query --tool cube.vpmg --frames moved --trajectory still.txt --intrinsics 60,60,31.5,23.5 --quiet -o /dev/null
-2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there if the poses are in the camera's frame: they must be in the world's
+2> vpm-query: warning: at no pose is the tool in the camera's view; it would be there with poses in the world's frame, not the camera's

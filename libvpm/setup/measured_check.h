@@ -2,15 +2,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/prepared_cloud.h"
-#include "tools/common/tool.h"
-#include "tools/query/even_sample.h"
+#include "libvpm/scene/depth/depth_surface.h"
+#include "libvpm/setup/even_sample.h"
 
-namespace vpm::tools {
+namespace vpm {
 
 // Depths of an image, continued to where nothing was measured: across holes to the farther side,
 // and as far as a tool is long where a side is open.
@@ -40,15 +41,22 @@ class ContinuedDepth {
 
 class MeasuredCheck {
  public:
-  // Keeps references to all of them. Clouds without a camera are never warned about.
-  MeasuredCheck(const Tool& tool, std::span<const ToolModel> models, const PreparedCloud& cloud)
-      : tool_(tool), models_(models), cloud_(cloud) {}
+  // Keeps references to the tools and to the image that the surface shows.
+  MeasuredCheck(std::span<const ToolModel* const> tools, const DepthSurface& surface,
+                const Pose& camera_to_world)
+      : tools_(tools), surface_(surface), camera_to_world_(camera_to_world) {}
 
   // Notes a pose of the k-th tool.
   void see(const Pose& pose, std::size_t k) { poses_.add({pose, k}); }
-  // Warns if at some poses a quarter or more of what a tool has behind the surface lies at holes of
-  // the image or out of it, where no volume counts.
-  void warn_at_end() const;
+  // Returns how many of the noted poses were looked at, and at how many of these a quarter or more
+  // of what a tool has behind the surface lies at holes of the image or out of it, where no volume
+  // counts.
+  struct Found {
+    std::size_t poses = 0, unmeasured = 0;
+  };
+  Found found() const;
+  // Returns a warning if there are such poses.
+  std::optional<Remark> remark(const Found& found) const;
 
  private:
   struct ToolPose {
@@ -56,13 +64,12 @@ class MeasuredCheck {
     std::size_t tool = 0;
   };
 
-  bool is_unmeasured(const DepthSurface& surface, const ContinuedDepth& continued,
-                     const ToolPose& at) const;
+  bool is_unmeasured(const ContinuedDepth& continued, const ToolPose& at) const;
 
-  const Tool& tool_;
-  std::span<const ToolModel> models_;
-  const PreparedCloud& cloud_;
+  std::span<const ToolModel* const> tools_;
+  DepthSurface surface_;
+  Pose camera_to_world_;
   EvenSample<ToolPose> poses_;
 };
 
-}  // namespace vpm::tools
+}  // namespace vpm

@@ -1,10 +1,10 @@
-#include "tools/query/enclosed_check.h"
+#include "libvpm/setup/enclosed_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-namespace vpm::tools {
+namespace vpm {
 namespace {
 
 constexpr double kFullTurn = 4 * kPi;  // the solid angle of all directions
@@ -34,19 +34,20 @@ double PointWinding::at(Vec3 place) const {
 }
 
 void EnclosedCheck::see(const Pose& pose, std::size_t k, const Result& result) {
-  if (2 * result.volume < models_[k].volume) doubtful_.add({pose, k});
+  if (2 * result.volume < tools_[k]->volume) doubtful_.add({pose, k});
 }
 
-void EnclosedCheck::warn_at_end() const {
+std::optional<Remark> EnclosedCheck::remark() const {
   constexpr double kInside = 0.75;  // between a wide wall's 1/2 and a closed surface's 1
   const auto found = std::ranges::count_if(doubtful_.kept(), [&](const ToolPose& at) {
-    return winding_.at(at.pose * models_[at.tool].spheres.front().center) > kInside;
+    return winding_.at(at.pose * tools_[at.tool]->spheres.front().center) > kInside;
   });
-  if (found == 0) return;
+  if (found == 0) return std::nullopt;
   const bool are_all = doubtful_.stride() == 1;
-  tool_.warn("at " + std::to_string(found) + (are_all ? "" : " or more") +
-             " of the poses the tool is inside of what the points enclose, but points without a "
-             "camera tell only of what is near them: no volume is counted deeper inside");
+  return Remark{true, "at " + std::to_string(found) + (are_all ? "" : " or more") +
+                          " of the poses the tool is inside of what the points enclose, but no "
+                          "volume counts there: points without a camera tell only of what is near "
+                          "them"};
 }
 
-}  // namespace vpm::tools
+}  // namespace vpm

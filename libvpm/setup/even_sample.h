@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace vpm::tools {
+namespace vpm {
 
 // Keeps every stride-th of the items that are added, and doubles the stride when there are many.
 template <class Item>
@@ -30,4 +30,4 @@ class EvenSample {
   std::size_t seen_ = 0, stride_ = 1;
 };
 
-}  // namespace vpm::tools
+}  // namespace vpm

@@ -1,10 +1,10 @@
-#include "tools/query/measured_check.h"
+#include "libvpm/setup/measured_check.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-namespace vpm::tools {
+namespace vpm {
 namespace {
 
 constexpr std::size_t kMostPieces = 256;  // at most this many, evenly chosen from a tool
@@ -59,11 +59,10 @@ double ContinuedDepth::toward(Vec3 place) const {
   return depth_[row * static_cast<std::size_t>(width_) + column];
 }
 
-bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDepth& continued,
-                                  const ToolPose& at) const {
+bool MeasuredCheck::is_unmeasured(const ContinuedDepth& continued, const ToolPose& at) const {
   constexpr double kLittle = 1e-3;  // part of the tool's volume
-  const ToolModel& model = models_[at.tool];
-  const Pose to_camera = inverse(cloud_.camera_to_world()) * at.pose;
+  const ToolModel& model = *tools_[at.tool];
+  const Pose to_camera = inverse(camera_to_world_) * at.pose;
   const std::vector<CellSample>& pieces = model.levels.back().samples;
   const std::size_t every = pieces.size() / kMostPieces + 1;
   double all = 0, inside = 0, inside_unknown = 0;
@@ -71,7 +70,7 @@ bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDe
     const CellSample& piece = pieces[k];
     all += piece.weight;
     const Vec3 place = to_camera * (model.center_of_mass + widen(piece.center));
-    const SurfaceSample sample = surface.sample(place);
+    const SurfaceSample sample = surface_.sample(place);
     const double depth = sample.known ? 0 : continued.toward(place);
     if (!sample.known && depth == 0) continue;
     const double distance = sample.known ? sample.distance : depth - place.z;
@@ -83,21 +82,26 @@ bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDe
   return 4 * inside_unknown > inside && inside_unknown > kLittle * all;
 }
 
-void MeasuredCheck::warn_at_end() const {
-  if (!cloud_.is_organised() || poses_.kept().empty()) return;
-  const DepthSurface surface = cloud_.depth_surface();
+MeasuredCheck::Found MeasuredCheck::found() const {
+  Found found{poses_.kept().size(), 0};
+  if (found.poses == 0) return found;
   double reach = 0;
-  for (const ToolModel& model : models_) reach = std::max(reach, model.reach);
-  const ContinuedDepth continued(surface, 2 * reach);
-  const auto found = std::ranges::count_if(
-      poses_.kept(), [&](const ToolPose& at) { return is_unmeasured(surface, continued, at); });
-  if (found == 0) return;
-  tool_.warn("at " + std::to_string(found) + " of " + std::to_string(poses_.kept().size()) +
-             (models_.size() > 1 ? " poses of tools" : " poses") +
-             (poses_.stride() > 1 ? " that were looked at" : "") +
-             " a quarter or more of what the tool has behind the surface lies where the camera "
-             "measured nothing (holes of the image, or out of its view), if the surface goes on "
-             "there: no volume is counted for it");
+  for (const ToolModel* const model : tools_) reach = std::max(reach, model->reach);
+  const ContinuedDepth continued(surface_, 2 * reach);
+  found.unmeasured = static_cast<std::size_t>(std::ranges::count_if(
+      poses_.kept(), [&](const ToolPose& at) { return is_unmeasured(continued, at); }));
+  return found;
 }
 
-}  // namespace vpm::tools
+std::optional<Remark> MeasuredCheck::remark(const Found& found) const {
+  if (found.unmeasured == 0) return std::nullopt;
+  return Remark{true, "at " + std::to_string(found.unmeasured) + " of " +
+                          std::to_string(found.poses) +
+                          (tools_.size() > 1 ? " poses of tools" : " poses") +
+                          (poses_.stride() > 1 ? " that were looked at" : "") +
+                          " a quarter or more of what the tool has behind the surface lies where "
+                          "nothing was measured: no volume counts there; move the camera, or fill "
+                          "the holes"};
+}
+
+}  // namespace vpm

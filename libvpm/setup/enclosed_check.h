@@ -2,16 +2,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/include/vpm/query_types.h"
+#include "libvpm/include/vpm/remark.h"
 #include "libvpm/model/tool_model.h"
-#include "libvpm/query/tool_query.h"
-#include "tools/common/tool.h"
-#include "tools/query/even_sample.h"
+#include "libvpm/setup/even_sample.h"
 
-namespace vpm::tools {
+namespace vpm {
 
 // How often an oriented surface, known by points with normals, encloses a place. Some of the points
 // stand for all, so that it is only told apart whether a place is inside, outside or beside the
@@ -35,15 +36,15 @@ class PointWinding {
 
 class EnclosedCheck {
  public:
-  // Keeps references to the tool and the models.
-  EnclosedCheck(const Tool& tool, std::span<const ToolModel> models, const Cloud& cloud)
-      : tool_(tool), models_(models), winding_(cloud) {}
+  // Keeps references to the tools.
+  EnclosedCheck(std::span<const ToolModel* const> tools, const Cloud& cloud)
+      : tools_(tools), winding_(cloud) {}
 
   // Notes the answer at a pose of the k-th tool.
   void see(const Pose& pose, std::size_t k, const Result& result);
-  // Warns if at some poses a tool is inside, though half of it or more did not count: points
-  // without a camera tell only of what is near them.
-  void warn_at_end() const;
+  // Returns a warning if at some poses a tool is inside, though half of it or more did not count:
+  // points without a camera tell only of what is near them.
+  std::optional<Remark> remark() const;
 
  private:
   struct ToolPose {
@@ -51,10 +52,9 @@ class EnclosedCheck {
     std::size_t tool = 0;
   };
 
-  const Tool& tool_;
-  std::span<const ToolModel> models_;
+  std::span<const ToolModel* const> tools_;
   PointWinding winding_;
   EvenSample<ToolPose> doubtful_;  // poses at which half of the tool or more did not count
 };
 
-}  // namespace vpm::tools
+}  // namespace vpm

@@ -1,0 +1,63 @@
+// Finds setups that are probably wrong: units, frames of poses and cameras, unseen places.
+//
+//   const vpm::PointCloud cloud = vpm::PointCloud::read("scene.vpmc");
+//   const vpm::Tool tool = vpm::Tool::read("tool.vpmg");
+//   const vpm::Scene scene(cloud);
+//   vpm::Query query(tool);                                // <vpm/query.h>
+//   vpm::SetupCheck check(tool, cloud);
+//   check.see(pose, query.run(scene, pose));               // for each pose
+//   const vpm::Remarks remarks = check.remarks();          // to be shown, if there are any
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "vpm/error.h"
+#include "vpm/query_types.h"
+#include "vpm/remark.h"
+#include "vpm/scene.h"
+#include "vpm/tool.h"
+
+namespace vpm {
+
+// Compares sizes, and the poses that were asked, with what a cloud shows. Shares tools and cloud.
+// Belongs to one thread at a time. Keeps at most some hundred poses, evenly chosen.
+class VPM_API SetupCheck {
+ public:
+  // Takes a millisecond or a few. `measure` is the one that is asked: what a camera has not seen is
+  // told for the refined one. Throws Error(invalid_argument) without a tool; otherwise as Body for
+  // a depth image that no query could use.
+  SetupCheck(const Tool& tool, const PointCloud& cloud, Measure measure = Measure::refined);
+  SetupCheck(std::span<const Tool> tools, const PointCloud& cloud,
+             Measure measure = Measure::refined);
+  ~SetupCheck();
+  SetupCheck(SetupCheck&&) noexcept;
+  SetupCheck& operator=(SetupCheck&&) noexcept;
+
+  // Notes the answer that a query of this cloud gave at a pose of a tool, which is named by its
+  // place. Throws Error(invalid_argument) if there is no such tool.
+  void see(const Pose& pose, const Result& result, std::size_t tool = 0);
+
+  // Returns a warning with its cure if something is probably wrong, otherwise nothing. It is the
+  // first that holds of:
+  // - a tool is much larger than all that the scene shows, or smaller than its points can show,
+  //   which mistakes of units cause; known before the first pose;
+  // - a tool is inside of what points without a camera enclose, where half of it or more did not
+  //   count, since such points tell only of what is near them;
+  // - a quarter or more of what a tool has behind the surface lies where the camera measured
+  //   nothing, at half of the poses or more;
+  // - no pose brought a tool into the camera's view, or near the surface. The remark names what
+  //   would: poses in metres, inverse poses, other axes;
+  // - the third, at fewer poses.
+  // Takes some milliseconds.
+  Remarks remarks() const;
+
+ private:
+  struct Impl;
+  Impl& impl() const;
+
+  std::unique_ptr<Impl> impl_;  // null once moved from
+};
+
+}  // namespace vpm
