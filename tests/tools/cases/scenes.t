@@ -1,4 +1,4 @@
-# vpm-pack reads COLLADA, glTF, 3MF and FBX by assimp, in metres and with the transforms of nodes.
+# vpm-pack reads COLLADA, glTF, 3MF and FBX, in metres and with the transforms of nodes.
 
 $ python3 $SOURCE/tests/tools/scene_files.py .
 $ for f in cube.dae cube.gltf beside.gltf cube.glb cube.3mf cube.fbx; do vpm-pack $f --spheres 5 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["format"], r["mesh"]["triangles"], round(r["volume_mesh"], 5))'; done
@@ -29,6 +29,11 @@ none
 2> vpm-pack: note: none.3mf: its unit is taken to be 0.001 m, which 3MF has by default; transforms of nodes were applied; z is up, as in the file
 2> vpm-pack: error: mile.3mf: its unit 'mile' is none of 3MF: micron, millimeter, centimeter, inch, foot or meter
 [1]
+
+# Positions of integers and instances of glTF are read.
+$ for f in quantized instances; do vpm-pack $f.glb --spheres 5 --quiet --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["shells"], round(r["volume_mesh"], 5), [round(c, 5) for c in r["mesh"]["box_high"]])'; done
+1 1.0 [1.0, 1.0, 1.0]
+2 2.0 [3.0, 1.0, 1.0]
 
 # Several nodes are joined, or one is chosen.
 $ for f in two.dae two.glb; do vpm-pack $f --spheres 5 --report - | python3 -c 'import json, sys; r = json.load(sys.stdin); print(r["mesh"]["shells"], round(r["volume_mesh"], 5))'; done
