@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
@@ -12,6 +13,7 @@
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
+#include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/weld.h"
 
 namespace vpm {
@@ -100,8 +102,8 @@ class Check {
     if (facts().unused_vertices > 0)
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
-    for (Vec3& p : vertices()) p = options_.scale * p;
-    unit_ = options_.scale;
+    for (Vec3& p : vertices()) p = scale_ * p;
+    unit_ = scale_;
     look_for_self_intersections();
     drop_inner_shells();
     measure();
@@ -114,11 +116,11 @@ class Check {
 
   void check_extent() {
     const Box box = box_of(vertices(), triangles());
-    const Vec3 size = options_.scale * (box.high - box.low);
+    const Vec3 size = scale_ * (box.high - box.low);
     const double extent = std::max({size.x, size.y, size.z});
-    const double farthest = options_.scale * std::max({std::abs(box.low.x), std::abs(box.low.y),
-                                                       std::abs(box.low.z), std::abs(box.high.x),
-                                                       std::abs(box.high.y), std::abs(box.high.z)});
+    const double farthest =
+        scale_ * std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
+                           std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
     diagonal_ = norm(box.high - box.low);
     if (extent == 0) refuse("all triangles lie in one point", mesh_.name);
     if (!(extent >= kSmallestExtent && farthest <= kLargestExtent)) {
@@ -179,7 +181,7 @@ class Check {
     const Box box = box_of(vertices(), triangles());
     const Vec3 size = box.high - box.low;
     const double longest = std::max({size.x, size.y, size.z});
-    const double max_hole = options_.max_hole ? *options_.max_hole / options_.scale
+    const double max_hole = options_.max_hole ? *options_.max_hole / scale_
                             : is_flood        ? kDefaultMaxHole * longest
                                               : HUGE_VAL;
     if (is_flood && max_hole > diagonal_) {
@@ -188,7 +190,7 @@ class Check {
           text, sizeof text,
           "`max_hole` %.3g m is more than the mesh is across, %.3g m: nothing of it would "
           "be reached from outside; is it in metres?",
-          options_.scale * max_hole, options_.scale * diagonal_);
+          scale_ * max_hole, scale_ * diagonal_);
       throw Error(ErrorKind::invalid_argument, text);
     }
     refuse_wide_holes(max_hole);
@@ -209,10 +211,10 @@ class Check {
              is_flood ? "give a wider `max_hole`, or more voxels"
                       : "give more voxels (`repair_voxels`), or turn triangles that face inward");
     }
-    done.max_hole = std::isfinite(max_hole) ? options_.scale * max_hole : 0;
-    done.voxel *= options_.scale;
-    done.solid_to_mesh *= options_.scale;
-    done.mesh_to_solid *= options_.scale;
+    done.max_hole = std::isfinite(max_hole) ? scale_ * max_hole : 0;
+    done.voxel *= scale_;
+    done.solid_to_mesh *= scale_;
+    done.mesh_to_solid *= scale_;
     facts().voxel_repair = done;
     char text[160];
     std::snprintf(text, sizeof text,
@@ -229,7 +231,7 @@ class Check {
       if (width <= max_hole) continue;
       char text[160];
       std::snprintf(text, sizeof text, "a hole is %.3g m wide, more than %.3g m, through ",
-                    options_.scale * width, options_.scale * max_hole);
+                    scale_ * width, scale_ * max_hole);
       refuse(text + text_of_rim(loop), mesh_.name, "close it, or give a wider `max_hole`");
     }
   }
@@ -261,8 +263,8 @@ class Check {
     for (FilledHole& hole : done.holes) {
       note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +
            counted(hole.edges, "edge", "edges") + " about " + text_of(hole.center));
-      hole.center = options_.scale * hole.center;
-      hole.size *= options_.scale;
+      hole.center = scale_ * hole.center;
+      hole.size *= scale_;
     }
     facts().filled_holes = std::move(done.holes);
     topology_ = std::move(done.topology);
@@ -323,8 +325,10 @@ class Check {
     refuse(defects + ".", mesh_.name, "Only a closed surface has an inside: " + advice());
   }
 
-  // Returns what makes this mesh pass, found by trying.
+  // Returns what makes this mesh pass, found by trying; for a mesh that takes too long to try, what
+  // may do so.
   std::string advice() {
+    if (is_trial_) return "";
     for (const double weld_by : {1e-6, 1e-5, 1e-4, 1e-3}) {
       if (weld_by <= options_.weld.value_or(kDefaultWeld) || !closes_by_welding(weld_by)) continue;
       char text[64];
@@ -332,13 +336,76 @@ class Check {
                     weld_by);
       return text;
     }
-    if (options_.repair == Repair::none && closes_by_filling()) {
-      return std::string("give `repair` to ") +
-             (topology_.boundary.empty() ? "drop repeated triangles"
-                                         : "fill planar and small holes") +
-             ", or `repair` voxel for a new surface";
+    constexpr std::size_t kMostTried = 20'000, kMostEdgesTried = 1000;
+    if (triangles().size() > kMostTried)
+      return "`repair` holes, voxel or flood may close it, or mend it in a mesh editor";
+    if (options_.repair == Repair::none && topology_.boundary.size() <= kMostEdgesTried &&
+        passes(Repair::holes)) {
+      return std::string("give `repair` to ") + (topology_.boundary.empty()
+                                                     ? "drop repeated triangles"
+                                                     : "fill planar and small holes");
     }
-    return "give `repair` voxel for a new surface, or mend it in a mesh editor";
+    constexpr const char* kOrMend = ", or mend it in a mesh editor";
+    if (passes(Repair::voxel))
+      return std::string("give `repair` voxel for a new surface") + kOrMend;
+    if (passes(Repair::flood))
+      return std::string("give `repair` flood for a new surface") + kOrMend;
+    if (const double width = widest_hole(); !options_.max_hole && passes(Repair::flood, width)) {
+      char text[96];
+      std::snprintf(text, sizeof text, "give `repair` flood and `max_hole` %.3g for a new surface",
+                    width);
+      return text + std::string(kOrMend);
+    }
+    return "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
+  }
+
+  // Returns a little more than the width of the widest hole, in metres.
+  double widest_hole() const {
+    double widest = 0;
+    for (const BoundaryLoop& loop : boundary_loops(topology_, result_.solid.triangles))
+      widest = std::max(widest, width_of(loop, result_.solid.vertices));
+    return 1.1 * scale_ * widest;
+  }
+
+  // True if most of the mesh's area lies within three voxels of a new surface: where triangles face
+  // anywhere, a winding number encloses a crumb.
+  bool is_kept_by(const CheckedSolid& made) const {
+    constexpr double kMost = 0.75;
+    const TriangleBvh surface(made.solid.vertices, made.solid.triangles);
+    const std::vector<Vec3>& points = result_.solid.vertices;
+    double near = 0, all = 0;
+    for (const Triangle& t : result_.solid.triangles) {
+      const Vec3 a = points[t[0]], b = points[t[1]], c = points[t[2]];
+      const double area = norm(cross(b - a, c - a));
+      const Vec3 middle = scale_ / 3 * (a + b + c);
+      const double within = 3 * made.facts.voxel_repair->voxel;
+      if (surface.closest(middle, within).triangle != SurfacePoint::kNone) near += area;
+      all += area;
+    }
+    return near >= kMost * all;
+  }
+
+  // True if the repair makes a solid of the mesh, tried with few voxels, that is no crumb of it and
+  // no mere skin over a sheet.
+  bool passes(Repair repair, std::optional<double> max_hole = std::nullopt) const {
+    constexpr int kTriedVoxels = 40;  // a flood's default width is two and a half
+    constexpr double kSkin = 1.5;     // voxels
+    SolidOptions options = options_;
+    options.repair = repair;
+    if (max_hole) options.max_hole = max_hole;
+    options.repair_voxels = kTriedVoxels;
+    try {
+      const MeshProgress silent;
+      Check trial(mesh_, options, silent);
+      trial.is_trial_ = true;
+      const CheckedSolid made = trial.run();
+      const MeshFacts& facts = made.facts;
+      return !facts.voxel_repair ||
+             (facts.volume > kSkin * facts.voxel_repair->voxel * facts.area / 2 &&
+              is_kept_by(made));
+    } catch (const Error&) {
+      return false;
+    }
   }
 
   // True if joining vertices closes the mesh and no triangle is lost by it.
@@ -346,16 +413,6 @@ class Check {
     std::vector<Triangle> joined = triangles();
     const Weld done = weld(vertices(), share * diagonal_, joined);
     return done.collapsed_triangles == 0 && is_closed(topology_of(vertices().size(), joined));
-  }
-
-  // True if repair_holes() would close the mesh, or if that takes too long to try.
-  bool closes_by_filling() {
-    constexpr std::size_t kMostTried = 1000;  // edges
-    if (topology_.boundary.size() > kMostTried) return true;
-    std::vector<Vec3> points = vertices();
-    std::vector<Triangle> filled = triangles();
-    weld(points, kDefaultWeld * diagonal_, filled);
-    return !filled.empty() && is_closed(fill(points, filled).topology);
   }
 
   static bool is_closed(const Topology& topology) {
@@ -410,8 +467,7 @@ class Check {
     const auto place = [&](std::uint32_t triangle) {
       const Triangle& t = triangles()[triangle];
       // Uses the file's unit.
-      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) /
-                     (3 * options_.scale));
+      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / (3 * scale_));
     };
     warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
          places(first, place) +
@@ -463,6 +519,27 @@ class Check {
                     facts().volume);
       refuse(text, mesh_.name);
     }
+    warn_of_size();
+  }
+
+  // Warns of sizes that few tools have, with the scale that is likely meant. Grippers and links of
+  // robots are .005 to 3 m long; in millimetres these are 5 to 3000 "m".
+  void warn_of_size() {
+    constexpr double kLargest = 5, kLargestOfToldScale = 100, kSmallest = 0.001;  // m
+    const Vec3 sides = facts().high - facts().low;
+    const double size = std::max({sides.x, sides.y, sides.z});
+    if (size >= kSmallest && size < (options_.scale ? kLargestOfToldScale : kLargest)) return;
+    const bool is_large = size > kSmallest;
+    const char* const cause =
+        !is_large ? ": if it was scaled to metres twice"
+        : mesh_.format == MeshFormat::gltf
+            ? ", as glTF's unit is the metre: if its program wrote millimetres"
+        : has_unit(mesh_.format) ? " by the unit of its file: if that should be the millimetre"
+                                 : ": if its unit is the millimetre";
+    char text[200];
+    std::snprintf(text, sizeof text, "the mesh is %.3g m across%s, give `scale` %g", size, cause,
+                  scale_ * (is_large ? 0.001 : 1000));
+    warn(text);
   }
 
   // Shares of the progress after two of the steps that may take long.
@@ -479,7 +556,9 @@ class Check {
 
   const RawMesh& mesh_;
   const SolidOptions& options_;
+  const double scale_ = options_.scale.value_or(1);
   const MeshProgress& progress_;
+  bool is_trial_ = false;  // asks only whether the mesh passes
   CheckedSolid result_;
   Topology topology_;
   std::vector<TrianglePair> contacts_;
@@ -491,7 +570,7 @@ class Check {
 
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options,
                         const MeshProgress& progress) {
-  if (!(options.scale > 0 && std::isfinite(options.scale)))
+  if (const double scale = options.scale.value_or(1); !(scale > 0 && std::isfinite(scale)))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "scale");
   if (options.max_hole && !(*options.max_hole > 0))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "max-hole");
