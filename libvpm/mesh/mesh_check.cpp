@@ -63,6 +63,19 @@ double area_of(const Solid& solid) {
   return area;
 }
 
+// Returns the share of the area whose triangles' centres lie within this distance of the other.
+double share_near(const Solid& solid, const Solid& other, double within) {
+  const TriangleBvh surface(other.vertices, other.triangles);
+  double near = 0, all = 0;
+  for (const Triangle& t : solid.triangles) {
+    const Vec3 a = solid.vertices[t[0]], b = solid.vertices[t[1]], c = solid.vertices[t[2]];
+    const double area = norm(cross(b - a, c - a));
+    all += area;
+    if (surface.closest((a + b + c) / 3, within).triangle != SurfacePoint::kNone) near += area;
+  }
+  return near / all;
+}
+
 // Takes one mesh from raw triangles to the solid; each step is one check.
 class Check {
  public:
@@ -345,18 +358,23 @@ class Check {
                                                      ? "drop repeated triangles"
                                                      : "fill planar and small holes");
     }
-    constexpr const char* kOrMend = ", or mend it in a mesh editor";
-    if (passes(Repair::voxel))
-      return std::string("give `repair` voxel for a new surface") + kOrMend;
-    if (passes(Repair::flood))
-      return std::string("give `repair` flood for a new surface") + kOrMend;
-    if (const double width = widest_hole(); !options_.max_hole && passes(Repair::flood, width)) {
-      char text[96];
-      std::snprintf(text, sizeof text, "give `repair` flood and `max_hole` %.3g for a new surface",
-                    width);
-      return text + std::string(kOrMend);
-    }
+    // What is thin may be a skin beside triangles that face the wrong way: thicker solids go first.
+    for (const double thickness : {3.0, 1.5})
+      if (const std::string text = advice_of_new_surface(thickness); !text.empty())
+        return text + ", or mend it in a mesh editor";
     return "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
+  }
+
+  // Returns which new surface has a solid of this mean thickness, in voxels; nothing if none has.
+  std::string advice_of_new_surface(double thickness) const {
+    if (passes(Repair::voxel, thickness)) return "give `repair` voxel for a new surface";
+    if (passes(Repair::flood, thickness)) return "give `repair` flood for a new surface";
+    const double width = widest_hole();
+    if (options_.max_hole || !passes(Repair::flood, thickness, width)) return "";
+    char text[96];
+    std::snprintf(text, sizeof text, "give `repair` flood and `max_hole` %.3g for a new surface",
+                  width);
+    return text;
   }
 
   // Returns a little more than the width of the widest hole, in metres.
@@ -367,29 +385,21 @@ class Check {
     return 1.1 * scale_ * widest;
   }
 
-  // True if most of the mesh's area lies within three voxels of a new surface: where triangles face
-  // anywhere, a winding number encloses a crumb.
+  // True if most of the mesh lies at a new surface and most of that at the mesh: where triangles
+  // face anywhere, a winding number encloses crumbs and skins beside them.
   bool is_kept_by(const CheckedSolid& made) const {
-    constexpr double kMost = 0.75;
-    const TriangleBvh surface(made.solid.vertices, made.solid.triangles);
-    const std::vector<Vec3>& points = result_.solid.vertices;
-    double near = 0, all = 0;
-    for (const Triangle& t : result_.solid.triangles) {
-      const Vec3 a = points[t[0]], b = points[t[1]], c = points[t[2]];
-      const double area = norm(cross(b - a, c - a));
-      const Vec3 middle = scale_ / 3 * (a + b + c);
-      const double within = 3 * made.facts.voxel_repair->voxel;
-      if (surface.closest(middle, within).triangle != SurfacePoint::kNone) near += area;
-      all += area;
-    }
-    return near >= kMost * all;
+    constexpr double kMostOfMesh = 0.75, kMostOfSolid = 0.6;
+    Solid mesh = result_.solid;
+    for (Vec3& p : mesh.vertices) p = scale_ * p;
+    const double voxel = made.facts.voxel_repair->voxel;
+    return share_near(mesh, made.solid, 3 * voxel) >= kMostOfMesh &&
+           share_near(made.solid, mesh, 1.5 * voxel) >= kMostOfSolid;
   }
 
-  // True if the repair makes a solid of the mesh, tried with few voxels, that is no crumb of it and
-  // no mere skin over a sheet.
-  bool passes(Repair repair, std::optional<double> max_hole = std::nullopt) const {
+  // True if the repair makes a solid of the mesh, tried with few voxels, that is no crumb of it
+  // and, of a new surface, no skin thinner than so many voxels.
+  bool passes(Repair repair, double thickness = 0, std::optional<double> max_hole = {}) const {
     constexpr int kTriedVoxels = 40;  // a flood's default width is two and a half
-    constexpr double kSkin = 1.5;     // voxels
     SolidOptions options = options_;
     options.repair = repair;
     if (max_hole) options.max_hole = max_hole;
@@ -401,7 +411,7 @@ class Check {
       const CheckedSolid made = trial.run();
       const MeshFacts& facts = made.facts;
       return !facts.voxel_repair ||
-             (facts.volume > kSkin * facts.voxel_repair->voxel * facts.area / 2 &&
+             (facts.volume > thickness * facts.voxel_repair->voxel * facts.area / 2 &&
               is_kept_by(made));
     } catch (const Error&) {
       return false;

@@ -404,6 +404,23 @@ Solid with_every_second_turned(Solid solid) {
   return solid;
 }
 
+// Returns the unit cube's faces apart from each other, three of them turned.
+Solid squares_facing_anywhere() {
+  Solid apart;
+  const Solid cube = make_cube(1);
+  for (std::size_t k = 0; k < cube.triangles.size(); k += 2) {
+    Solid face;
+    face.vertices = cube.vertices;
+    face.triangles = {cube.triangles[k], cube.triangles[k + 1]};
+    const Triangle& t = face.triangles[0];
+    const Vec3 normal =
+        cross(face.vertices[t[1]] - face.vertices[t[0]], face.vertices[t[2]] - face.vertices[t[0]]);
+    for (Vec3& p : face.vertices) p += 0.01 * normal;
+    apart = together(apart, k % 4 == 0 ? turned_over(face) : face);
+  }
+  return apart;
+}
+
 // Returns the options that a refusal advises, nothing if it advises no repair.
 std::optional<SolidOptions> advised(const std::string& refusal) {
   SolidOptions options = repair(Repair::none);
@@ -446,6 +463,7 @@ TEST(Advice, MakesTheMeshPass) {
       {"gaps", shrunk_triangles(ball, 0.02), 4.1},
       {"gaps, facing anywhere", with_every_second_turned(shrunk_triangles(ball, 0.02)), 4.1},
       {"wide triangles, facing anywhere", with_every_second_turned(shrunk_triangles(cube, .02)), 1},
+      {"squares, facing anywhere", squares_facing_anywhere(), 1},
       {"open ones that cross", together(open_cube, moved(open_cube, {.3, .2, .1})), 1.4},
       {"a body beside a sheet", together(cube, moved(sheet(4, flat), {2, 0, 0})), 1},
   };
