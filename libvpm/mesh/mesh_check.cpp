@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
@@ -349,32 +350,40 @@ class Check {
                     weld_by);
       return text;
     }
-    constexpr std::size_t kMostTried = 20'000, kMostEdgesTried = 1000;
-    if (triangles().size() > kMostTried)
-      return "`repair` holes, voxel or flood may close it, or mend it in a mesh editor";
-    if (options_.repair == Repair::none && topology_.boundary.size() <= kMostEdgesTried &&
-        passes(Repair::holes)) {
+    constexpr std::size_t kMostFilled = 100'000, kMostRenewed = 20'000, kMostEdgesFilled = 1000;
+    if (options_.repair == Repair::none && triangles().size() <= kMostFilled &&
+        topology_.boundary.size() <= kMostEdgesFilled && thickness_by(Repair::holes) > 0) {
       return std::string("give `repair` to ") + (topology_.boundary.empty()
                                                      ? "drop repeated triangles"
                                                      : "fill planar and small holes");
     }
-    // What is thin may be a skin beside triangles that face the wrong way: thicker solids go first.
-    for (const double thickness : {3.0, 1.5})
-      if (const std::string text = advice_of_new_surface(thickness); !text.empty())
-        return text + ", or mend it in a mesh editor";
-    return "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
+    if (triangles().size() > kMostRenewed)
+      return "`repair` holes, voxel or flood may close it, or mend it in a mesh editor";
+    const std::string renew = advice_of_new_surface();
+    return !renew.empty()
+               ? renew + ", or mend it in a mesh editor"
+               : "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
   }
 
-  // Returns which new surface has a solid of this mean thickness, in voxels; nothing if none has.
-  std::string advice_of_new_surface(double thickness) const {
-    if (passes(Repair::voxel, thickness)) return "give `repair` voxel for a new surface";
-    if (passes(Repair::flood, thickness)) return "give `repair` flood for a new surface";
+  // Returns which new surface bounds a solid; nothing if none does. What is thin may be a skin
+  // beside triangles that face the wrong way, and so a thicker solid goes first.
+  std::string advice_of_new_surface() const {
+    constexpr double kThick = 3, kThin = 1.5;  // voxels
+    char wide[96];
     const double width = widest_hole();
-    if (options_.max_hole || !passes(Repair::flood, thickness, width)) return "";
-    char text[96];
-    std::snprintf(text, sizeof text, "give `repair` flood and `max_hole` %.3g for a new surface",
+    std::snprintf(wide, sizeof wide, "give `repair` flood and `max_hole` %.3g for a new surface",
                   width);
-    return text;
+    std::string thin;
+    const auto is_thick = [&](const std::string& advice, double thickness) {
+      if (thickness > kThin && thin.empty()) thin = advice;
+      return thickness > kThick;
+    };
+    for (const auto& [repair, advice] :
+         {std::pair(Repair::voxel, "give `repair` voxel for a new surface"),
+          std::pair(Repair::flood, "give `repair` flood for a new surface")})
+      if (is_thick(advice, thickness_by(repair))) return advice;
+    if (!options_.max_hole && is_thick(wide, thickness_by(Repair::flood, width))) return wide;
+    return thin;
   }
 
   // Returns a little more than the width of the widest hole, in metres.
@@ -396,9 +405,9 @@ class Check {
            share_near(made.solid, mesh, 1.5 * voxel) >= kMostOfSolid;
   }
 
-  // True if the repair makes a solid of the mesh, tried with few voxels, that is no crumb of it
-  // and, of a new surface, no skin thinner than so many voxels.
-  bool passes(Repair repair, double thickness = 0, std::optional<double> max_hole = {}) const {
+  // Returns the mean thickness, in voxels, of the solid that the repair makes of the mesh, tried
+  // with few voxels; 0 if it makes none, or crumbs, and no limit where holes were filled.
+  double thickness_by(Repair repair, std::optional<double> max_hole = {}) const {
     constexpr int kTriedVoxels = 40;  // a flood's default width is two and a half
     SolidOptions options = options_;
     options.repair = repair;
@@ -409,12 +418,11 @@ class Check {
       Check trial(mesh_, options, silent);
       trial.is_trial_ = true;
       const CheckedSolid made = trial.run();
-      const MeshFacts& facts = made.facts;
-      return !facts.voxel_repair ||
-             (facts.volume > thickness * facts.voxel_repair->voxel * facts.area / 2 &&
-              is_kept_by(made));
+      if (!made.facts.voxel_repair) return HUGE_VAL;
+      if (!is_kept_by(made)) return 0;
+      return 2 * made.facts.volume / (made.facts.area * made.facts.voxel_repair->voxel);
     } catch (const Error&) {
-      return false;
+      return 0;
     }
   }
 
