@@ -1,12 +1,13 @@
 #include "libvpm/mesh/gltf_plain.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "libvpm/core/error.h"
@@ -89,6 +90,7 @@ class PlainGltf {
   std::string bytes_of(const json& buffer, std::string_view chunk) const;
   std::vector<double> numbers(const json& accessor, std::size_t width) const;
   json as_floats(const json& index, std::size_t width);
+  std::vector<json> instances_of(const json& attributes, const json& mesh) const;
   void take_instances(std::size_t node);
   [[noreturn]] void refuse_numbers(const std::string& why) const {
     refuse("the numbers of its meshes cannot be read: " + why, name_,
@@ -215,15 +217,9 @@ void PlainGltf::make_floats() {
   }
 }
 
-// Gives the node a child for each of its instances, which have its mesh.
-void PlainGltf::take_instances(std::size_t node) {
-  const json before = content_["nodes"][node];
-  const json& attributes = member(member(member(before, "extensions"), kInstancing), "attributes");
-  const json& mesh = member(before, "mesh");
-  if (!attributes.is_object() || attributes.empty() || mesh.is_null()) return;
-  if (!member(before, "skin").is_null()) refuse_numbers("a node with instances has a skin");
-  json children = member(before, "children").is_array() ? before["children"] : json::array();
-  std::size_t count = 0;
+// Returns a node with the mesh for each instance that the attributes place.
+std::vector<json> PlainGltf::instances_of(const json& attributes, const json& mesh) const {
+  constexpr std::uint64_t kBytesOfNode = 1024;
   std::vector<json> instances;
   for (const auto& [attribute, key, width] : {std::tuple{"TRANSLATION", "translation", 3},
                                               {"ROTATION", "rotation", 4},
@@ -232,9 +228,8 @@ void PlainGltf::take_instances(std::size_t node) {
     if (index.is_null()) continue;
     const std::vector<double> values =
         numbers(element(member(content_, "accessors"), index), static_cast<std::size_t>(width));
-    count = values.size() / static_cast<std::size_t>(width);
-    constexpr std::uint64_t kBytesOfNode = 1024;
-    if (content_["nodes"].size() + count > most_ / kBytesOfNode)
+    const std::size_t count = values.size() / static_cast<std::size_t>(width);
+    if (member(content_, "nodes").size() + count > most_ / kBytesOfNode)
       refuse_numbers("its instances are too many");
     if (!instances.empty() && instances.size() != count)
       refuse_numbers("the places of a node's instances differ in number");
@@ -244,7 +239,18 @@ void PlainGltf::take_instances(std::size_t node) {
       instances[k][key] = std::vector<double>(first, first + width);
     }
   }
-  for (json& instance : instances) {
+  return instances;
+}
+
+// Gives the node a child for each of its instances, which have its mesh.
+void PlainGltf::take_instances(std::size_t node) {
+  const json before = content_["nodes"][node];
+  const json& attributes = member(member(member(before, "extensions"), kInstancing), "attributes");
+  const json& mesh = member(before, "mesh");
+  if (!attributes.is_object() || attributes.empty() || mesh.is_null()) return;
+  if (!member(before, "skin").is_null()) refuse_numbers("a node with instances has a skin");
+  json children = member(before, "children").is_array() ? before["children"] : json::array();
+  for (json& instance : instances_of(attributes, mesh)) {
     instance["name"] =
         text_of(member(before, "name")) + " instance " + std::to_string(children.size() + 1);
     children.push_back(content_["nodes"].size());
