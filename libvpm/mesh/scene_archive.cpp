@@ -25,7 +25,7 @@ std::size_t directory_of(std::string_view zip) {
   return told < zip.size() && zip.substr(told).starts_with(kRecord) ? told : zip.find(kRecord);
 }
 
-// What the directory tells of an entry.
+// Holds what the directory tells of an entry.
 struct Entry {
   std::uint32_t flags, method, checksum;
   std::uint64_t size, local;  // bytes packed, and the place of the header before them

@@ -44,7 +44,7 @@ ColladaHeader collada_header(std::string_view text, const std::string& name) {
     has_axis = true;
   };
   const auto fault = read_xml(text, events);
-  // What is wrong behind the asset is for assimp to judge.
+  // Leaves it to assimp to judge what is wrong behind the asset.
   if (fault && !has_asset) {
     refuse("its unit cannot be read, as its XML is damaged: " + *fault, name,
            "save it again, or as OBJ, PLY or STL");

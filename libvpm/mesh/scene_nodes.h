@@ -11,7 +11,7 @@ namespace vpm {
 struct SceneNode {
   std::string name;
   std::size_t parent;  // index of the node above, its own for the root
-  bool has_faces;      // of its own
+  bool has_faces;      // itself, not a node below
 };
 
 // Chooses among the nodes that hold faces. Where several have one name, they are called NAME[1],

@@ -92,7 +92,7 @@ ThreemfComponent ModelReader::component(const XmlElement& element) const {
     if (number) m.push_back(*number);
   }
   Pose& place = component.place;
-  if (m.size() == 12) {  // by columns: three of the matrix, then the translation
+  if (m.size() == 12) {  // three columns of the matrix, then the translation
     place.rotation = {{m[0], m[3], m[6]}, {m[1], m[4], m[7]}, {m[2], m[5], m[8]}};
     place.translation = {m[9], m[10], m[11]};
   }

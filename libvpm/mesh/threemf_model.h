@@ -20,7 +20,7 @@ struct ThreemfVolume {
 };
 
 struct ThreemfComponent {
-  std::string path;  // of the model part that has the object; empty for that of the component
+  std::string path;  // names the model part that has the object; empty for the component's own
   std::uint64_t object = 0;
   Pose place;  // to the coordinates around it; its rotation may be any matrix
 };

@@ -99,7 +99,7 @@ class Placement {
     const ThreemfObject* object;
     Pose to_world;
   };
-  std::vector<Placed> placed_{{nullptr, {}}};  // of each node
+  std::vector<Placed> placed_{{nullptr, {}}};  // one for each node
   std::size_t depth_ = 0, visits_ = 0;
   std::map<std::string, std::size_t> left_out_;  // counts of parts by their roles
 };

@@ -28,7 +28,8 @@ void take(const XmlElement& element, std::uint64_t& object, SlicerSettings& sett
     std::string& role = settings.volumes[object].back().role;
     const std::string key = element.text_of("key"), value = element.text_of("value");
     if (key == "volume_type") role = value;
-    if (key == "modifier" && value == "1" && role.empty()) role = "modifier";  // of old files
+    if (key == "modifier" && value == "1" && role.empty())
+      role = "modifier";  // as old files have it
   }
 }
 

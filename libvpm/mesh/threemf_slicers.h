@@ -1,4 +1,4 @@
-// What slicers tell, in 3MF files, of parts that are no part of the solid.
+// Reads from 3MF files which parts slicers tell to be no part of the solid.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,10 @@ enum class ThreemfRole { solid, left_out, cut_away };
 ThreemfRole role_of(const std::string& word);
 
 struct SlicerSettings {
-  // By object of the main model, as PrusaSlicer and those after it tell.
+  // Volumes by the object of the main model, as PrusaSlicer and those after it tell.
   std::map<std::uint64_t, std::vector<ThreemfVolume>> volumes;
-  // By object and the object of one of its components, as Bambu Studio and OrcaSlicer tell.
+  // Roles by the object and the object of one of its components, as Bambu Studio and OrcaSlicer
+  // tell.
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::string> parts;
 };
 

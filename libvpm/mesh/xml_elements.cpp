@@ -18,7 +18,7 @@ std::string_view without_prefix(std::string_view name) {
   return name.substr(name.rfind(':') + 1);  // npos + 1 is 0
 }
 
-// What expat's functions are given.
+// Holds what expat's functions are given.
 struct Walk {
   const XmlEvents& events;
   XML_Parser parser;

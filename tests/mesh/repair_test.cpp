@@ -449,7 +449,7 @@ TEST(Advice, MakesTheMeshPass) {
   struct Row {
     const char* name;
     Solid mesh;
-    double volume;  // of the body that was meant
+    double volume;  // m^3, which the body that was meant has
   };
   const auto flat = [](double, double) { return 0.0; };
   const std::vector<Row> rows = {

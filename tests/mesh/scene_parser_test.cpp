@@ -371,7 +371,7 @@ TEST(Gltf, InstancesAreRead) {
     const std::string extensions = std::string(",\"") + used + R"(":["EXT_mesh_gpu_instancing"])";
     const std::string content = glb(extensions, instances(R"("TRANSLATION":0)"));
     expect_half(parse(content, "a.glb"), 1);
-    expect_half(node_of(content, "skin"), 1);  // by the name of their node
+    expect_half(node_of(content, "skin"), 1);  // chosen by the name of their node
   }
   expect_half(parse(glb("", instances(R"("SCALE":0)")), "a.glb"), .125);
   expect_half(parse(glb("", instances(R"("SCALE":0,"TRANSLATION":0)")), "a.glb"), .625);

@@ -56,10 +56,10 @@ class VPM_API SolidMesh {
  public:
   // Reads an OBJ, OFF, PLY, STL or OM file, told by its content, and makes a solid of it; "-" is
   // standard input. COLLADA, glTF and FBX are read in a child process where assimp was built, 3MF
-  // where expat was, otherwise Error(unavailable) is thrown; all their nodes are joined. Throws Error(refused)
-  // naming the file with line, byte or element for what is damaged, and the rims of holes, edges or
-  // vertices where it is no solid beyond the repair of the options; Error(invalid_argument) for
-  // options out of range.
+  // where expat was, otherwise Error(unavailable) is thrown; all their nodes are joined. Throws
+  // Error(refused) naming the file with line, byte or element for what is damaged, and the rims of
+  // holes, edges or vertices where it is no solid beyond the repair of the options;
+  // Error(invalid_argument) for options out of range.
   static SolidMesh read(const std::string& path, const SolidOptions& options = {});
 
   // Makes a solid of triangles, counter-clockwise seen from outside, by the same rules.
