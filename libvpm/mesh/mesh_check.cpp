@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
@@ -12,6 +14,7 @@
 #include "libvpm/mesh/self_intersection.h"
 #include "libvpm/mesh/shells.h"
 #include "libvpm/mesh/topology.h"
+#include "libvpm/mesh/triangle_bvh.h"
 #include "libvpm/mesh/weld.h"
 
 namespace vpm {
@@ -61,6 +64,19 @@ double area_of(const Solid& solid) {
   return area;
 }
 
+// Returns the share of the area whose triangles' centres lie within this distance of the other.
+double share_near(const Solid& solid, const Solid& other, double within) {
+  const TriangleBvh surface(other.vertices, other.triangles);
+  double near = 0, all = 0;
+  for (const Triangle& t : solid.triangles) {
+    const Vec3 a = solid.vertices[t[0]], b = solid.vertices[t[1]], c = solid.vertices[t[2]];
+    const double area = norm(cross(b - a, c - a));
+    all += area;
+    if (surface.closest((a + b + c) / 3, within).triangle != SurfacePoint::kNone) near += area;
+  }
+  return near / all;
+}
+
 // Takes one mesh from raw triangles to the solid; each step is one check.
 class Check {
  public:
@@ -100,8 +116,8 @@ class Check {
     if (facts().unused_vertices > 0)
       note(counted(facts().unused_vertices, "vertex", "vertices") + " without a triangle dropped");
     orient();
-    for (Vec3& p : vertices()) p = options_.scale * p;
-    unit_ = options_.scale;
+    for (Vec3& p : vertices()) p = scale_ * p;
+    unit_ = scale_;
     look_for_self_intersections();
     drop_inner_shells();
     measure();
@@ -114,11 +130,11 @@ class Check {
 
   void check_extent() {
     const Box box = box_of(vertices(), triangles());
-    const Vec3 size = options_.scale * (box.high - box.low);
+    const Vec3 size = scale_ * (box.high - box.low);
     const double extent = std::max({size.x, size.y, size.z});
-    const double farthest = options_.scale * std::max({std::abs(box.low.x), std::abs(box.low.y),
-                                                       std::abs(box.low.z), std::abs(box.high.x),
-                                                       std::abs(box.high.y), std::abs(box.high.z)});
+    const double farthest =
+        scale_ * std::max({std::abs(box.low.x), std::abs(box.low.y), std::abs(box.low.z),
+                           std::abs(box.high.x), std::abs(box.high.y), std::abs(box.high.z)});
     diagonal_ = norm(box.high - box.low);
     if (extent == 0) refuse("all triangles lie in one point", mesh_.name);
     if (!(extent >= kSmallestExtent && farthest <= kLargestExtent)) {
@@ -179,7 +195,7 @@ class Check {
     const Box box = box_of(vertices(), triangles());
     const Vec3 size = box.high - box.low;
     const double longest = std::max({size.x, size.y, size.z});
-    const double max_hole = options_.max_hole ? *options_.max_hole / options_.scale
+    const double max_hole = options_.max_hole ? *options_.max_hole / scale_
                             : is_flood        ? kDefaultMaxHole * longest
                                               : HUGE_VAL;
     if (is_flood && max_hole > diagonal_) {
@@ -188,7 +204,7 @@ class Check {
           text, sizeof text,
           "`max_hole` %.3g m is more than the mesh is across, %.3g m: nothing of it would "
           "be reached from outside; is it in metres?",
-          options_.scale * max_hole, options_.scale * diagonal_);
+          scale_ * max_hole, scale_ * diagonal_);
       throw Error(ErrorKind::invalid_argument, text);
     }
     refuse_wide_holes(max_hole);
@@ -209,10 +225,10 @@ class Check {
              is_flood ? "give a wider `max_hole`, or more voxels"
                       : "give more voxels (`repair_voxels`), or turn triangles that face inward");
     }
-    done.max_hole = std::isfinite(max_hole) ? options_.scale * max_hole : 0;
-    done.voxel *= options_.scale;
-    done.solid_to_mesh *= options_.scale;
-    done.mesh_to_solid *= options_.scale;
+    done.max_hole = std::isfinite(max_hole) ? scale_ * max_hole : 0;
+    done.voxel *= scale_;
+    done.solid_to_mesh *= scale_;
+    done.mesh_to_solid *= scale_;
     facts().voxel_repair = done;
     char text[160];
     std::snprintf(text, sizeof text,
@@ -229,7 +245,7 @@ class Check {
       if (width <= max_hole) continue;
       char text[160];
       std::snprintf(text, sizeof text, "a hole is %.3g m wide, more than %.3g m, through ",
-                    options_.scale * width, options_.scale * max_hole);
+                    scale_ * width, scale_ * max_hole);
       refuse(text + text_of_rim(loop), mesh_.name, "close it, or give a wider `max_hole`");
     }
   }
@@ -261,8 +277,8 @@ class Check {
     for (FilledHole& hole : done.holes) {
       note("filled a " + std::string(hole.planar ? "planar" : "small") + " hole of " +
            counted(hole.edges, "edge", "edges") + " about " + text_of(hole.center));
-      hole.center = options_.scale * hole.center;
-      hole.size *= options_.scale;
+      hole.center = scale_ * hole.center;
+      hole.size *= scale_;
     }
     facts().filled_holes = std::move(done.holes);
     topology_ = std::move(done.topology);
@@ -323,8 +339,10 @@ class Check {
     refuse(defects + ".", mesh_.name, "Only a closed surface has an inside: " + advice());
   }
 
-  // Returns what makes this mesh pass, found by trying.
+  // Returns what makes this mesh pass, found by trying; for a mesh that takes too long to try, what
+  // may do so.
   std::string advice() {
+    if (is_trial_) return "";
     for (const double weld_by : {1e-6, 1e-5, 1e-4, 1e-3}) {
       if (weld_by <= options_.weld.value_or(kDefaultWeld) || !closes_by_welding(weld_by)) continue;
       char text[64];
@@ -332,13 +350,80 @@ class Check {
                     weld_by);
       return text;
     }
-    if (options_.repair == Repair::none && closes_by_filling()) {
-      return std::string("give `repair` to ") +
-             (topology_.boundary.empty() ? "drop repeated triangles"
-                                         : "fill planar and small holes") +
-             ", or `repair` voxel for a new surface";
+    constexpr std::size_t kMostFilled = 100'000, kMostRenewed = 20'000, kMostEdgesFilled = 1000;
+    if (options_.repair == Repair::none && triangles().size() <= kMostFilled &&
+        topology_.boundary.size() <= kMostEdgesFilled && thickness_by(Repair::holes) > 0) {
+      return std::string("give `repair` to ") + (topology_.boundary.empty()
+                                                     ? "drop repeated triangles"
+                                                     : "fill planar and small holes");
     }
-    return "give `repair` voxel for a new surface, or mend it in a mesh editor";
+    if (triangles().size() > kMostRenewed)
+      return "`repair` holes, voxel or flood may close it, or mend it in a mesh editor";
+    const std::string renew = advice_of_new_surface();
+    return !renew.empty()
+               ? renew + ", or mend it in a mesh editor"
+               : "no `repair` closes it: give a sheet a thickness, or mend it in a mesh editor";
+  }
+
+  // Returns which new surface bounds a solid; nothing if none does. What is thin may be a skin
+  // beside triangles that face the wrong way, and so a thicker solid goes first.
+  std::string advice_of_new_surface() const {
+    constexpr double kThick = 3, kThin = 1.5;  // voxels
+    char wide[96];
+    const double width = widest_hole();
+    std::snprintf(wide, sizeof wide, "give `repair` flood and `max_hole` %.3g for a new surface",
+                  width);
+    std::string thin;
+    const auto is_thick = [&](const std::string& advice, double thickness) {
+      if (thickness > kThin && thin.empty()) thin = advice;
+      return thickness > kThick;
+    };
+    for (const auto& [repair, advice] :
+         {std::pair(Repair::voxel, "give `repair` voxel for a new surface"),
+          std::pair(Repair::flood, "give `repair` flood for a new surface")})
+      if (is_thick(advice, thickness_by(repair))) return advice;
+    if (!options_.max_hole && is_thick(wide, thickness_by(Repair::flood, width))) return wide;
+    return thin;
+  }
+
+  // Returns a little more than the width of the widest hole, in metres.
+  double widest_hole() const {
+    double widest = 0;
+    for (const BoundaryLoop& loop : boundary_loops(topology_, result_.solid.triangles))
+      widest = std::max(widest, width_of(loop, result_.solid.vertices));
+    return 1.1 * scale_ * widest;
+  }
+
+  // True if most of the mesh lies at a new surface and most of that at the mesh: where triangles
+  // face anywhere, a winding number encloses crumbs and skins beside them.
+  bool is_kept_by(const CheckedSolid& made) const {
+    constexpr double kMostOfMesh = 0.75, kMostOfSolid = 0.6;
+    Solid mesh = result_.solid;
+    for (Vec3& p : mesh.vertices) p = scale_ * p;
+    const double voxel = made.facts.voxel_repair->voxel;
+    return share_near(mesh, made.solid, 3 * voxel) >= kMostOfMesh &&
+           share_near(made.solid, mesh, 1.5 * voxel) >= kMostOfSolid;
+  }
+
+  // Returns the mean thickness, in voxels, of the solid that the repair makes of the mesh, tried
+  // with few voxels; 0 if it makes none, or crumbs, and no limit where holes were filled.
+  double thickness_by(Repair repair, std::optional<double> max_hole = {}) const {
+    constexpr int kTriedVoxels = 40;  // a flood's default width is two and a half
+    SolidOptions options = options_;
+    options.repair = repair;
+    if (max_hole) options.max_hole = max_hole;
+    options.repair_voxels = kTriedVoxels;
+    try {
+      const MeshProgress silent;
+      Check trial(mesh_, options, silent);
+      trial.is_trial_ = true;
+      const CheckedSolid made = trial.run();
+      if (!made.facts.voxel_repair) return HUGE_VAL;
+      if (!is_kept_by(made)) return 0;
+      return 2 * made.facts.volume / (made.facts.area * made.facts.voxel_repair->voxel);
+    } catch (const Error&) {
+      return 0;
+    }
   }
 
   // True if joining vertices closes the mesh and no triangle is lost by it.
@@ -346,16 +431,6 @@ class Check {
     std::vector<Triangle> joined = triangles();
     const Weld done = weld(vertices(), share * diagonal_, joined);
     return done.collapsed_triangles == 0 && is_closed(topology_of(vertices().size(), joined));
-  }
-
-  // True if repair_holes() would close the mesh, or if that takes too long to try.
-  bool closes_by_filling() {
-    constexpr std::size_t kMostTried = 1000;  // edges
-    if (topology_.boundary.size() > kMostTried) return true;
-    std::vector<Vec3> points = vertices();
-    std::vector<Triangle> filled = triangles();
-    weld(points, kDefaultWeld * diagonal_, filled);
-    return !filled.empty() && is_closed(fill(points, filled).topology);
   }
 
   static bool is_closed(const Topology& topology) {
@@ -410,8 +485,7 @@ class Check {
     const auto place = [&](std::uint32_t triangle) {
       const Triangle& t = triangles()[triangle];
       // Uses the file's unit.
-      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) /
-                     (3 * options_.scale));
+      return text_of((vertices()[t[0]] + vertices()[t[1]] + vertices()[t[2]]) / (3 * scale_));
     };
     warn("the mesh intersects itself: " + counted(pairs.size(), "pair", "pairs") + " of triangles" +
          places(first, place) +
@@ -463,6 +537,27 @@ class Check {
                     facts().volume);
       refuse(text, mesh_.name);
     }
+    warn_of_size();
+  }
+
+  // Warns of sizes that few tools have, with the scale that is likely meant. Grippers and links of
+  // robots are .005 to 3 m long; in millimetres these are 5 to 3000 "m".
+  void warn_of_size() {
+    constexpr double kLargest = 5, kLargestOfToldScale = 100, kSmallest = 0.001;  // m
+    const Vec3 sides = facts().high - facts().low;
+    const double size = std::max({sides.x, sides.y, sides.z});
+    if (size >= kSmallest && size < (options_.scale ? kLargestOfToldScale : kLargest)) return;
+    const bool is_large = size > kSmallest;
+    const char* const cause =
+        !is_large ? ": if it was scaled to metres twice"
+        : mesh_.format == MeshFormat::gltf
+            ? ", as glTF's unit is the metre: if its program wrote millimetres"
+        : has_unit(mesh_.format) ? " by the unit of its file: if that should be the millimetre"
+                                 : ": if its unit is the millimetre";
+    char text[200];
+    std::snprintf(text, sizeof text, "the mesh is %.3g m across%s, give `scale` %g", size, cause,
+                  scale_ * (is_large ? 0.001 : 1000));
+    warn(text);
   }
 
   // Shares of the progress after two of the steps that may take long.
@@ -479,7 +574,9 @@ class Check {
 
   const RawMesh& mesh_;
   const SolidOptions& options_;
+  const double scale_ = options_.scale.value_or(1);
   const MeshProgress& progress_;
+  bool is_trial_ = false;  // asks only whether the mesh passes
   CheckedSolid result_;
   Topology topology_;
   std::vector<TrianglePair> contacts_;
@@ -491,7 +588,7 @@ class Check {
 
 CheckedSolid make_solid(const RawMesh& mesh, const SolidOptions& options,
                         const MeshProgress& progress) {
-  if (!(options.scale > 0 && std::isfinite(options.scale)))
+  if (const double scale = options.scale.value_or(1); !(scale > 0 && std::isfinite(scale)))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "scale");
   if (options.max_hole && !(*options.max_hole > 0))
     throw Error(ErrorKind::invalid_argument, "must be a positive number", "max-hole");

@@ -19,7 +19,7 @@ Solid triangles_of(const RawMesh& mesh, const SolidOptions& options) {
     weld(result.vertices, tolerance, result.triangles);
   }
   drop_unused(result.vertices, result.triangles);
-  for (Vec3& p : result.vertices) p = options.scale * p;
+  for (Vec3& p : result.vertices) p = options.scale.value_or(1) * p;
   return result;
 }
 

@@ -13,8 +13,10 @@ RawMesh parse_obj(std::string_view text, const std::string& name);
 RawMesh parse_off(std::string_view text, const std::string& name);
 RawMesh parse_om(std::string_view bytes, const std::string& name);
 RawMesh parse_ply(std::string_view bytes, const std::string& name);
+// Reads COLLADA, glTF and FBX.
 RawMesh parse_scene(std::string_view bytes, const std::string& name, MeshFormat format,
                     const std::string& node);
+RawMesh parse_threemf(std::string_view bytes, const std::string& name, const std::string& node);
 RawMesh parse_stl(std::string_view bytes, const std::string& name);
 
 // Returns the format of a file of a scene, which holds meshes in nodes, if its content tells.

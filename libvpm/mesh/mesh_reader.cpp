@@ -69,6 +69,10 @@ bool lists_corners(MeshFormat format) {
   return format == MeshFormat::stl || format >= MeshFormat::dae;
 }
 
+bool has_unit(MeshFormat format) {
+  return format >= MeshFormat::dae;
+}
+
 void note_division(std::size_t vertices, RawMesh& mesh) {
   if (vertices == 0) return;
   mesh.notes.push_back(std::to_string(vertices) +
@@ -141,6 +145,12 @@ void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
     refuse(std::string("this is ") + file::describe(*scan), name, hint);
 }
 
+RawMesh parse_nodes(std::string_view text, const std::string& name, MeshFormat format,
+                    const std::string& node) {
+  return format == MeshFormat::threemf ? parse_threemf(text, name, node)
+                                       : parse_scene(text, name, format, node);
+}
+
 RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const std::string& node) {
   if (bytes.empty()) refuse("the file is empty", name);
   const std::string_view text = file::without_byte_order_mark(file::as_text(bytes));
@@ -149,11 +159,11 @@ RawMesh parse(std::span<const std::byte> bytes, const std::string& name, const s
   if (looks_like_off(text)) return parse_off(text, name);
   if (looks_like_stl(text)) return parse_stl(text, name);
   if (looks_like_om(text)) return parse_om(text, name);
-  if (const auto scene = scene_by_content(text)) return parse_scene(text, name, *scene, node);
+  if (const auto scene = scene_by_content(text)) return parse_nodes(text, name, *scene, node);
   const bool is_named_threemf = extension == "3mf" && text.starts_with("PK\x03\x04");
   if (!is_named_threemf) refuse_foreign(bytes, name);
   if (const auto scene = scene_by_extension(extension))
-    return parse_scene(text, name, *scene, node);
+    return parse_nodes(text, name, *scene, node);
   if (extension == "obj") return parse_obj(text, name);
   if (extension == "off") return parse_off(text, name);
   if (extension == "ply") return parse_ply(text, name);

@@ -1,5 +1,6 @@
 // Reads triangle and polygon meshes: OBJ, OFF and PLY (text, or binary of either byte order), STL
-// (text, binary), and OM by OpenMesh; COLLADA, glTF, 3MF and FBX by assimp, where it was built.
+// (text, binary), and OM by OpenMesh; 3MF by expat; COLLADA, glTF and FBX by assimp, where it was
+// built.
 //
 // The other parsers are our own for two reasons: coordinates keep double precision, and all
 // polygons are kept, also those that no half-edge structure accepts, so that defects can be named.
@@ -41,6 +42,8 @@ struct RawMesh {
 const char* name_of(MeshFormat format);
 // True for formats whose files list a point once for each triangle or corner that has it.
 bool lists_corners(MeshFormat format);
+// True for formats whose files say or imply a unit, which is applied.
+bool has_unit(MeshFormat format);
 
 // Cuts polygons into triangles whose corners are the polygon's, in the plane along whose normal the
 // polygon is seen largest: polygons of four corners by a diagonal, convex ones as a fan, others by

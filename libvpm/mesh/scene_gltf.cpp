@@ -5,10 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/scalar_type.h"
+#include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
+#include "libvpm/mesh/gltf_json.h"
+#include "libvpm/mesh/gltf_plain.h"
 #include "libvpm/mesh/scene_header.h"
 
 namespace vpm {
@@ -27,6 +31,15 @@ std::string_view json_of(std::string_view gltf) {
   return gltf.size() < kHeader ? "" : gltf.substr(kHeader, file::unsigned_at(gltf, 12));
 }
 
+// Returns the binary data of a binary file, which is its second chunk.
+std::string_view chunk_of(std::string_view gltf) {
+  constexpr std::size_t kHeader = 20, kChunkHeader = 8;
+  if (!gltf.starts_with("glTF")) return "";
+  const std::size_t at = kHeader + std::size_t{file::unsigned_at(gltf, 12)};
+  if (at + kChunkHeader > gltf.size()) return "";
+  return gltf.substr(at + kChunkHeader, file::unsigned_at(gltf, at));
+}
+
 // Says what follows a binary file, such as a second one that `cat` has joined to it.
 void note_rest(std::string_view gltf, GltfHeader& header) {
   constexpr std::size_t kLengthAt = 8, kHeader = 12, kMostPadding = 3;
@@ -38,38 +51,19 @@ void note_rest(std::string_view gltf, GltfHeader& header) {
   }
 }
 
-// Returns the member, empty where there is none or it is of another kind.
-const json& member(const json& object, const char* key) {
-  static const json none;
-  if (!object.is_object()) return none;
-  const auto found = object.find(key);
-  return found != object.end() ? *found : none;
-}
-
-// Returns the element that an index of the file names, empty where there is none.
-const json& element(const json& list, const json& index) {
-  static const json none;
-  if (!list.is_array() || !index.is_number_unsigned()) return none;
-  const auto at = index.get<std::uint64_t>();
-  return at < list.size() ? list[at] : none;
-}
-
-std::string text_of(const json& value) {
-  return value.is_string() ? value.get<std::string>() : "";
-}
-
-// True for extensions that say how a surface looks, or what stands beside it, and for the
-// compression that assimp may unpack; where it cannot, it says so.
+// True for extensions that are read, that say how a surface looks or what stands beside it, and for
+// the compression that assimp may unpack; where it cannot, it says so.
 bool is_readable(const std::string& extension) {
-  if (extension == "KHR_draco_mesh_compression") return true;
+  for (const char* const read :
+       {"KHR_draco_mesh_compression", "KHR_mesh_quantization", "EXT_mesh_gpu_instancing"})
+    if (extension == read) return true;
   const std::string name = file::in_lower_case(extension);
   for (const char* const part : {"material", "texture", "light", "image", "xmp", "audio"})
     if (name.find(part) != name.npos) return true;
   return false;
 }
 
-constexpr const char* kSaveUncompressed =
-    "save it without compression, quantization and instancing, or as OBJ, PLY or STL";
+constexpr const char* kSaveUncompressed = "save it without compression, or as OBJ, PLY or STL";
 
 void check_required(const json& content, const std::string& name) {
   for (const json& extension : member(content, "extensionsRequired")) {
@@ -80,23 +74,6 @@ void check_required(const json& content, const std::string& name) {
   }
 }
 
-// Refuses positions of integers, which assimp reads as floats, or not at all.
-void check_positions(const json& content, const std::string& name) {
-  constexpr int kByte = 5120, kUnsignedShort = 5123;  // with unsigned bytes and shorts between
-  for (const json& mesh : member(content, "meshes")) {
-    for (const json& primitive : member(mesh, "primitives")) {
-      const json& accessor = element(member(content, "accessors"),
-                                     member(member(primitive, "attributes"), "POSITION"));
-      const json& type = member(accessor, "componentType");
-      if (!type.is_number_integer() || type < kByte || type > kUnsignedShort) continue;
-      refuse(
-          "its positions are integers, as the glTF extension KHR_mesh_quantization has them, "
-          "which is not read here",
-          name, kSaveUncompressed);
-    }
-  }
-}
-
 bool is_file(const std::filesystem::path& path) {
   std::error_code fault;
   return std::filesystem::is_regular_file(path, fault);
@@ -104,11 +81,19 @@ bool is_file(const std::filesystem::path& path) {
 
 // Refuses a file whose buffers lie in files that are not there: assimp names them only, and of a
 // pipe nobody knows where they are.
-void check_buffers(const json& content, const std::string& name) {
+void check_buffers(const json& content, bool is_binary, const std::string& name) {
   constexpr const char* kOneFile = "save it as GLB, which is one file";
   const std::filesystem::path folder = std::filesystem::path(name).parent_path();
+  bool has_chunk = is_binary;
   for (const json& buffer : member(content, "buffers")) {
     const std::string uri = text_of(member(buffer, "uri"));
+    if (uri.empty() && !std::exchange(has_chunk, false)) {
+      refuse(
+          "the data of its meshes is not in the file in plain form, as with "
+          "EXT_meshopt_compression",
+          name, kSaveUncompressed);
+    }
+    has_chunk = false;
     if (uri.empty() || uri.starts_with("data:")) continue;
     const std::string needed = "it needs the file '" + file::shown(uri, 200) + "'";
     if (uri.find("://") != uri.npos) refuse(needed + ", which is not fetched", name, kOneFile);
@@ -223,8 +208,7 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
   const json content = json::parse(json_of(bytes), nullptr, false);
   if (!content.is_object()) return header;  // assimp says what is wrong
   check_required(content, name);
-  check_positions(content, name);
-  check_buffers(content, name);
+  check_buffers(content, bytes.starts_with("glTF"), name);
   note_rest(bytes, header);
   take_skins(content, header);
   header.has_scene = !member(content, "scenes").empty() || roots_of(content).empty();
@@ -233,13 +217,7 @@ GltfHeader gltf_header(std::string_view bytes, const std::string& name) {
   if (has_morph(content))
     header.notes.push_back(
         "its morph targets have weights, which are not applied: check its shape");
-  for (const json& extension : member(content, "extensionsUsed")) {
-    if (text_of(extension) == "EXT_mesh_gpu_instancing") {
-      header.notes.push_back(
-          "its nodes have instances (EXT_mesh_gpu_instancing), which are not applied: one of each "
-          "is read");
-    }
-  }
+  header.plain = as_plain_gltf(content, chunk_of(bytes), name, file::most_memory(bytes.size()));
   return header;
 }
 

@@ -17,29 +17,15 @@ struct ColladaHeader {
 };
 
 // Reads the asset of a COLLADA file's root. Throws Error(refused) if its unit's length is no
-// positive number: a file in millimetres would be taken for one in metres.
+// positive number, or cannot be read: a file in millimetres would be taken for one in metres.
 ColladaHeader collada_header(std::string_view text, const std::string& name);
-
-struct NamedUnit {
-  std::string name;
-  double metres;
-};
-
-struct ThreemfHeader {
-  std::optional<NamedUnit> unit;  // where the file names one
-  std::vector<std::string> notes;
-};
-
-// Reads the model in a 3MF file. Throws Error(refused) if the archive holds no model that can be
-// unpacked, for an unknown unit, and for bodies that are not read here: those in other files of the
-// archive, and what is no mesh.
-ThreemfHeader threemf_header(std::string_view bytes, const std::string& name);
 
 struct GltfHeader {
   std::vector<std::string> notes;
   bool has_skin = false;
-  bool keeps_skin = false;  // assimp can read the skins; it crashes on others
-  bool has_scene = true;    // or no nodes that one could show
+  bool keeps_skin = false;           // assimp can read the skins; it crashes on others
+  bool has_scene = true;             // or no nodes that one could show
+  std::optional<std::string> plain;  // the file for assimp, where that must be another one
 };
 
 // Reads the JSON of a glTF file, binary or text. Throws Error(refused) if it requires an extension

@@ -1,4 +1,4 @@
-// Files of scenes (COLLADA, glTF, 3MF, FBX) by assimp: nodes with transforms, which hold meshes.
+// Files of scenes (COLLADA, glTF, FBX) by assimp: nodes with transforms, which hold meshes.
 // Coordinates are those of the file's own axes, in metres. None of assimp's processing is asked
 // for: polygons stay polygons, and vertices that a format lists once per corner are joined later,
 // as those of STL. It crashes on some files, so it reads in a process of its own, which sends back
@@ -42,8 +42,6 @@ const char* hint_of(MeshFormat format, std::string_view bytes) {
       return "dae";
     case MeshFormat::gltf:
       return bytes.starts_with("glTF") ? "glb" : "gltf";
-    case MeshFormat::threemf:
-      return "3mf";
     default:
       return "fbx";
   }
@@ -116,21 +114,63 @@ void add_mesh(const aiMesh& mesh, const PlacedVertices& placed, RawMesh& result)
 constexpr const char* kSkinIsNotApplied =
     "it has a skin, which is not applied: check its size, or export it without the skin";
 
+struct PlacedNode {
+  const aiNode* node;
+  aiMatrix4x4 to_world;
+  std::size_t parent;  // index of the node above, its own for the root
+};
+
+// Returns all nodes, each before those below it.
+std::vector<PlacedNode> placed_nodes(const aiScene& scene, const aiMatrix4x4& of_root) {
+  std::vector<PlacedNode> nodes;
+  std::vector<PlacedNode> open{{scene.mRootNode, of_root, 0}};
+  while (!open.empty()) {
+    const PlacedNode here = open.back();
+    open.pop_back();
+    const std::size_t at = nodes.size();
+    nodes.push_back(here);
+    for (unsigned k = here.node->mNumChildren; k-- > 0;) {
+      const aiNode* const child = here.node->mChildren[k];
+      open.push_back({child, here.to_world * child->mTransformation, at});
+    }
+  }
+  return nodes;
+}
+
+std::vector<SceneNode> named_nodes(const aiScene& scene, const std::vector<PlacedNode>& placed) {
+  std::vector<SceneNode> nodes;
+  for (const PlacedNode& here : placed) {
+    const aiNode& node = *here.node;
+    const bool has_faces =
+        std::any_of(node.mMeshes, node.mMeshes + node.mNumMeshes,
+                    [&](unsigned mesh) { return scene.mMeshes[mesh]->mNumFaces > 0; });
+    nodes.push_back({node.mName.C_Str(), here.parent, has_faces});
+  }
+  return nodes;
+}
+
+PlacesByName places_of(const std::vector<PlacedNode>& nodes) {
+  PlacesByName places;
+  for (const PlacedNode& placed : nodes)
+    places[placed.node->mName.C_Str()].push_back(placed.to_world);
+  return places;
+}
+
 // Appends the meshes of the nodes. The joints of a skin place its mesh, not the node, as glTF and
 // COLLADA say; those of FBX stand for deformations only.
-void add_nodes(const aiScene& scene, const NodeChoice& choice,
+void add_nodes(const aiScene& scene, const std::vector<PlacedNode>& placed,
                const std::vector<std::size_t>& nodes, MeshFormat format, RawMesh& result) {
-  const PlacesByName places = choice.places();
+  const PlacesByName places = places_of(placed);
   std::size_t posed = 0, without_pose = 0;
   for (const std::size_t k : nodes) {
-    const aiNode& node = *choice[k].node;
+    const aiNode& node = *placed[k].node;
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
       const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
       const auto pose =
           mesh.HasBones() && format != MeshFormat::fbx ? rest_pose(mesh, places) : std::nullopt;
       if (mesh.HasBones()) ++(pose ? posed : without_pose);
       const bool by_node = !mesh.HasBones() || format != MeshFormat::gltf;
-      add_mesh(mesh, pose ? *pose : moved(mesh, by_node ? choice[k].to_world : aiMatrix4x4()),
+      add_mesh(mesh, pose ? *pose : moved(mesh, by_node ? placed[k].to_world : aiMatrix4x4()),
                result);
     }
   }
@@ -172,16 +212,6 @@ FileFacts facts_of_collada(std::string_view text, const std::string& name) {
   return facts;
 }
 
-FileFacts facts_of_threemf(std::string_view bytes, const std::string& name) {
-  const ThreemfHeader header = threemf_header(bytes, name);
-  const NamedUnit unit = header.unit.value_or(NamedUnit{"", 0.001});
-  return {unit.metres,
-          "its unit is taken to be " + text_of_metres(unit.metres) +
-              (header.unit ? ", the " + unit.name + " that the file names"
-                           : ", which 3MF has by default"),
-          'z', header.notes};
-}
-
 FileFacts facts_of_fbx(const aiScene& scene) {
   constexpr double kCentimetre = 0.01;
   float factor = 1;
@@ -209,7 +239,6 @@ FileFacts facts_of_fbx(const aiScene& scene) {
 // Returns what the file itself tells, of those formats for which no scene is needed.
 FileFacts facts_of(MeshFormat format, std::string_view bytes, const std::string& name) {
   if (format == MeshFormat::dae) return facts_of_collada(bytes, name);
-  if (format == MeshFormat::threemf) return facts_of_threemf(bytes, name);
   return {1, "its coordinates are metres", 'y', {}};
 }
 
@@ -251,18 +280,17 @@ RawMesh read_scene(std::string_view bytes, const std::string& name, MeshFormat f
            name, kSaveAgain);
   }
   if (format == MeshFormat::fbx) facts = facts_of_fbx(*scene);
-  const NodeChoice choice(*scene, root_transform(*scene, format, facts.metres), name);
+  const std::vector<PlacedNode> placed =
+      placed_nodes(*scene, root_transform(*scene, format, facts.metres));
+  const NodeChoice choice(named_nodes(*scene, placed), name);
   const std::vector<std::size_t> nodes = choice.choose(node);
   if (nodes.empty()) refuse("it has no faces, only nodes", name, "export it with its mesh");
-  add_nodes(*scene, choice, nodes, format, mesh);
+  add_nodes(*scene, placed, nodes, format, mesh);
   if (format != MeshFormat::dae)  // its root has done so
     for (Vec3& p : mesh.vertices) p = facts.metres * p;
   mesh.notes.insert(mesh.notes.begin(), facts.unit + "; transforms of nodes were applied; " +
                                             facts.up + " is up, as in the file");
-  if (nodes.size() > 1) {
-    mesh.notes.push_back("the meshes of " + std::to_string(nodes.size()) +
-                         " nodes are joined: " + choice.names_of(nodes) + "; `node` chooses one");
-  }
+  if (nodes.size() > 1) mesh.notes.push_back(choice.joined(nodes));
   mesh.notes.insert(mesh.notes.end(), facts.notes.begin(), facts.notes.end());
   return mesh;
 }
@@ -347,6 +375,7 @@ std::optional<RawMesh> read_apart(std::string_view bytes, const std::string& nam
 std::optional<RawMesh> read_gltf(std::string_view bytes, const std::string& name,
                                  const std::string& node) {
   const GltfHeader header = gltf_header(bytes, name);
+  if (header.plain) bytes = *header.plain;
   const std::string shown = header.has_scene ? "" : with_scene(bytes);
   if (!header.has_scene) bytes = shown;
   auto mesh = header.keeps_skin ? read_apart(bytes, name, MeshFormat::gltf, node) : std::nullopt;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/stream.h"
@@ -28,22 +29,25 @@ std::string json_text(const std::string& name) {
   return nlohmann::json(name).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// Returns the name escaped for XML attributes; invalid UTF-8 becomes U+FFFD.
+// Returns the name escaped for XML attributes, whose readers turn plain tabs and ends of lines into
+// blanks; invalid UTF-8 becomes U+FFFD. Throws as check_link does.
 std::string xml_text(const std::string& name) {
+  const std::string valid = nlohmann::json::parse(json_text(name)).get<std::string>();
   std::string text;
-  for (const char c : nlohmann::json::parse(json_text(name)).get<std::string>()) {
-    switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      default:  // XML cannot express control characters
-        text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  for (std::size_t k = 0; k < valid.size(); ++k) {
+    const char c = valid[k];
+    const bool is_white = c == '\t' || c == '\n' || c == '\r';
+    const std::string_view rest = std::string_view(valid).substr(k);
+    if ((static_cast<unsigned char>(c) < ' ' && !is_white) || rest.starts_with("\xEF\xBF\xBE") ||
+        rest.starts_with("\xEF\xBF\xBF")) {
+      throw Error(ErrorKind::invalid_argument,
+                  "the name '" + file::shown(name) + "' has a character that XML cannot express",
+                  "link", "give another name");
+    }
+    if (is_white || c == '&' || c == '<' || c == '>' || c == '"') {
+      text += "&#" + std::to_string(int{c}) + ";";
+    } else {
+      text += c;
     }
   }
   return text;
@@ -66,6 +70,10 @@ ExportFormat export_format(const std::string& path) {
           "' must end with .csv, .json, .ply (.points.ply), .glb, .vtk, .yml (.yaml), .urdf "
           "or .srdf",
       "export");
+}
+
+void check_link(ExportFormat format, const std::string& link) {
+  if (format == ExportFormat::urdf || format == ExportFormat::srdf) xml_text(link);
 }
 
 std::string packing_as_json(const std::vector<Sphere>& spheres) {

@@ -20,13 +20,18 @@ namespace vpm {
 enum class ExportFormat { spheres, json, vtk, yml, urdf, srdf };
 ExportFormat export_format(const std::string& path);
 
+// Throws Error(invalid_argument) if the format cannot express the link's name: XML has no control
+// characters but tabs and ends of lines.
+void check_link(ExportFormat format, const std::string& link);
+
 std::string packing_as_json(const std::vector<Sphere>& spheres);
 std::string packing_as_vtk(const std::vector<Sphere>& spheres);
 std::string packing_as_yml(const std::vector<Sphere>& spheres, const std::string& link);
+// Throw as check_link does.
 std::string packing_as_urdf(const std::vector<Sphere>& spheres, const std::string& link);
 std::string packing_as_srdf(const std::vector<Sphere>& spheres, const std::string& link);
 
-// Writes the file atomically. Throws Error(cannot_write).
+// Writes the file atomically. Throws Error(cannot_write), or as the functions above do.
 void export_packing(const std::string& path, const std::vector<Sphere>& spheres,
                     const std::string& link);
 

@@ -21,6 +21,7 @@ constexpr Target kTargets[] = {
     {"stl", run_stl},
     {"om", run_om},
     {"scene", run_scene, nullptr, true},
+    {"threemf", run_threemf},
     {"solid", run_solid},
     {"vpmp", run_vpmp, mutate_container},
 #endif

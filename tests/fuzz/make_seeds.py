@@ -230,6 +230,32 @@ def texts():
     yield "recording/associated", "0.0 1.png 0.0 2.png\n0.1 2.png 0.1 1.png\n"
 
 
+def packages():
+    def mesh(x):
+        vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % (x + v[0], v[1], v[2]) for v in VERTICES)
+        return f"<mesh><vertices>{vertices}</vertices><triangles>" + "".join(
+            '<triangle v1="%d" v2="%d" v3="%d"/>' % t for t in TRIANGLES) + "</triangles></mesh>"
+
+    def model(objects, items):
+        return ('<model unit="millimeter" xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06">'
+                f"<resources>{objects}</resources><build>{items}</build></model>")
+    cube = f'<object id="1" type="model" name="cube">{mesh(0)}</object>'
+    item = '<item objectid="1" transform="2 0 0 0 2 0 0 0 2 1 2 3"/>'
+    yield "threemf/cube", model(cube, item)
+    yield "threemf/support", model(cube + f'<object id="2" type="support">{mesh(3)}</object>', item + '<item objectid="2"/>')
+    both = ('<object id="3"><components><component objectid="1"/><component objectid="2" p:path="/3D/Objects/a.model" '
+            'transform="1 0 0 0 1 0 0 0 1 5 0 0"/></components></object>')
+    other = model(f'<object id="2">{mesh(0)}</object>', "")
+    for subtype in ("normal_part", "modifier_part", "negative_part"):
+        yield f"threemf/{subtype}", "\n--\n".join((
+            model(cube + both, '<item objectid="3"/>'), other,
+            f'<config><object id="3"><part id="1" subtype="normal_part"/><part id="2" subtype="{subtype}"/></object></config>'))
+    yield "threemf/volumes", "\n--\n".join((
+        model(cube, item), other, "<config/>",
+        '<config><object id="1"><volume firstid="0" lastid="5"><metadata type="volume" key="volume_type" '
+        'value="ParameterModifier"/></volume></object></config>'))
+
+
 def containers():
     for path in sorted((SOURCE / "formats/golden/v1").glob("*.vpm?")):
         yield f"{path.suffix[1:]}/{path.stem}", path.read_bytes()
@@ -243,7 +269,7 @@ def main():
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "scene").mkdir(parents=True)
     scene_files.write_all(folder / "scene")
-    for make in (meshes, images, clouds, texts, containers):
+    for make in (meshes, packages, images, clouds, texts, containers):
         for name, content in make():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,13 @@
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "libvpm/mesh/mesh_check.h"
 #include "libvpm/mesh/mesh_parsers.h"
 #include "libvpm/mesh/voxel_repair.h"
 #include "libvpm/packing/packer.h"
 #include "tests/fuzz/targets.h"
+#include "tests/mesh/zip_file.h"
 
 namespace vpm::fuzz {
 namespace {
@@ -24,8 +29,8 @@ void expect_sound(const RawMesh& mesh) {
   }
 }
 
-// True if a process of its own reads this, which takes as long as a hundred files of other formats:
-// the target `scene` has such inputs.
+// True if a process of its own may read this, which takes as long as a hundred files of other
+// formats: the target `scene` has such inputs.
 bool is_scene(Bytes input) {
   return scene_by_content(text_of(input)).has_value();
 }
@@ -63,6 +68,23 @@ void run_om(Bytes input) {
 void run_scene(Bytes input) {
   const bool is_text_of_fbx = text_of(input).starts_with(';');
   run_mesh([&] { return parse_mesh(input, is_text_of_fbx ? "x.fbx" : "x.gltf"); });
+}
+
+void run_threemf(Bytes input) {
+  constexpr std::string_view kBetween = "\n--\n";
+  std::vector<test::ZippedFile> files;
+  const std::string text = text_of(input);
+  std::string_view rest = text;
+  for (const char* const path :
+       {"3D/3dmodel.model", "3D/Objects/a.model", "Metadata/model_settings.config",
+        "Metadata/Slic3r_PE_model.config"}) {
+    const std::size_t end = rest.find(kBetween);
+    files.push_back({path, std::string(rest.substr(0, end))});
+    if (end == rest.npos) break;
+    rest.remove_prefix(end + kBetween.size());
+  }
+  const std::string archive = test::zip(files);
+  run_mesh([&] { return parse_threemf(archive, "x.3mf", ""); });
 }
 
 void run_solid(Bytes input) {

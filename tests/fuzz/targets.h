@@ -11,8 +11,11 @@ void run_off(Bytes input);
 void run_ply(Bytes input);
 void run_stl(Bytes input);
 void run_om(Bytes input);
-// Takes COLLADA, glTF, 3MF and FBX, which a process of its own reads.
+// Takes COLLADA, glTF and FBX, which a process of its own reads, and 3MF.
 void run_scene(Bytes input);
+// Takes parts of a 3MF package, separated by lines "--": the main model, another one, and settings
+// of slicers.
+void run_threemf(Bytes input);
 // Takes a byte of options and an OBJ file: repaired, welded, packed.
 void run_solid(Bytes input);
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "libvpm/core/error.h"
@@ -61,6 +62,41 @@ TEST(MeshCheck, ScaleMultipliesLengths) {
   const CheckedSolid checked = solid_of(make_cube(2), {.scale = 0.001});
   EXPECT_DOUBLE_EQ(checked.facts.volume, 8e-9);
   EXPECT_DOUBLE_EQ(checked.facts.high.x, 0.001);
+}
+
+TEST(MeshCheck, SizesThatFewToolsHaveAreWarnedOf) {
+  const auto warnings_of = [](double edge, std::optional<double> scale) {
+    return solid_of(make_cube(edge), {.scale = scale}).warnings;
+  };
+  for (const double edge : {0.002, 0.05, 0.3, 1.6, 3.0, 4.9})  // tools, and links of robots
+    EXPECT_TRUE(warnings_of(edge, std::nullopt).empty()) << edge;
+  for (const double edge : {5.0, 15.0, 50.0, 300.0, 5000.0}) {  // the same in millimetres
+    EXPECT_TRUE(says(warnings_of(edge, std::nullopt),
+                     "m across: if its unit is the millimetre, give `scale` 0.001"))
+        << edge;
+    EXPECT_TRUE(warnings_of(edge, 0.001).empty()) << edge;
+    EXPECT_EQ(warnings_of(edge, 1).empty(), edge < 100) << edge << ": said to be metres";
+  }
+  EXPECT_TRUE(says(warnings_of(300, 1), "give `scale` 0.001"));
+  EXPECT_TRUE(says(warnings_of(0.05, 0.001), "give `scale` 1"));
+  EXPECT_TRUE(says(warnings_of(0.0005, std::nullopt),
+                   "0.0005 m across: if it was scaled to metres twice, give `scale` 1000"));
+}
+
+TEST(MeshCheck, WarningsOfSizeKnowTheUnitOfTheFormat) {
+  RawMesh mesh = parse(as_off(make_cube(50)), "a.off");
+  const auto says_of = [&](MeshFormat format, const std::string& words) {
+    mesh.format = format;
+    return says(make_solid(mesh).warnings, words);
+  };
+  for (const MeshFormat format :
+       {MeshFormat::obj, MeshFormat::off, MeshFormat::ply, MeshFormat::stl})
+    EXPECT_TRUE(says_of(format, "50 m across: if its unit is the millimetre, give `scale` 0.001"));
+  EXPECT_TRUE(says_of(MeshFormat::gltf,
+                      "50 m across, as glTF's unit is the metre: if its program wrote millimetres, "
+                      "give `scale` 0.001"));
+  for (const MeshFormat format : {MeshFormat::dae, MeshFormat::threemf, MeshFormat::fbx})
+    EXPECT_TRUE(says_of(format, "50 m across by the unit of its file"));
 }
 
 TEST(MeshCheck, ACavityIsLeftOut) {

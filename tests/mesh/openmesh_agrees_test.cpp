@@ -12,6 +12,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/synthetic/shapes.h"
+#include "libvpm/view/sphere_files.h"
 #include "tests/mesh/mesh_files.h"
 
 namespace vpm::test {
@@ -151,6 +152,29 @@ TEST(DamagedOm, NeverDoesMoreThanRefuse) {
     } catch (const Error& error) {
       ASSERT_EQ(error.kind(), ErrorKind::refused);
     }
+  }
+}
+
+TEST(OpenMeshReads, TheBallsOfAPacking) {
+  const std::vector<Sphere> spheres = {{{.1, -.2, 3}, .5}, {{10, 20, 30}, 1.0 / 64}};
+  expect_same_mesh(view::spheres_as(view::SphereFormat::ply, spheres), "ply");
+}
+
+TEST(AssimpReads, TheBallsOfAPacking) {
+  const std::vector<Sphere> spheres = {{{.1, -.2, 3}, .5}, {{10, 20, 30}, 1.0 / 64}};
+  try {
+    const auto facts = [&](view::SphereFormat format, const char* name) {
+      return solid_of(view::spheres_as(format, spheres), name).facts;
+    };
+    const MeshFacts glb = facts(view::SphereFormat::glb, "a.glb");
+    const MeshFacts ply = facts(view::SphereFormat::ply, "a.ply");
+    EXPECT_EQ(glb.shells, spheres.size());
+    EXPECT_EQ(glb.triangles, ply.triangles);
+    EXPECT_NEAR(glb.volume, ply.volume, 1e-5);
+    EXPECT_LT(norm(glb.low - ply.low) + norm(glb.high - ply.high), 1e-5);
+  } catch (const Error& fault) {
+    if (fault.kind() != ErrorKind::unavailable) throw;
+    GTEST_SKIP() << "no assimp";
   }
 }
 

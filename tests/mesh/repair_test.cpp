@@ -2,7 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libvpm/core/error.h"
 #include "libvpm/core/parallel.h"
@@ -356,6 +361,138 @@ TEST(Repair, WhatIsAdvisedMakesTheMeshPass) {
   SolidOptions options;
   options.weld = 1e-5;
   EXPECT_NEAR(solid_of(soup, "a.obj", options).facts.volume, 0.125, 1e-5);
+}
+
+// Returns a grid of n x n squares over the unit square, z by a function of x and y.
+template <class Height>
+Solid sheet(int n, const Height& height) {
+  Solid solid;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      const double x = double{1} * i / n, y = double{1} * j / n;
+      solid.vertices.push_back({x, y, height(x, y)});
+    }
+  }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (n + 1) + i); };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      solid.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      solid.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return solid;
+}
+
+// Returns the solid with every triangle apart from the others by this part of its size.
+Solid shrunk_triangles(const Solid& solid, double gap) {
+  Solid apart;
+  for (const Triangle& t : solid.triangles) {
+    const Vec3 middle = (solid.vertices[t[0]] + solid.vertices[t[1]] + solid.vertices[t[2]]) / 3;
+    Triangle moved{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      moved[k] = static_cast<std::uint32_t>(apart.vertices.size());
+      apart.vertices.push_back(middle + (1 - gap) * (solid.vertices[t[k]] - middle));
+    }
+    apart.triangles.push_back(moved);
+  }
+  return apart;
+}
+
+Solid with_every_second_turned(Solid solid) {
+  for (std::size_t k = 0; k < solid.triangles.size(); k += 2)
+    std::swap(solid.triangles[k][0], solid.triangles[k][1]);
+  return solid;
+}
+
+// Returns the unit cube's faces apart from each other, three of them turned.
+Solid squares_facing_anywhere() {
+  Solid apart;
+  const Solid cube = make_cube(1);
+  for (std::size_t k = 0; k < cube.triangles.size(); k += 2) {
+    Solid face;
+    face.vertices = cube.vertices;
+    face.triangles = {cube.triangles[k], cube.triangles[k + 1]};
+    const Triangle& t = face.triangles[0];
+    const Vec3 normal =
+        cross(face.vertices[t[1]] - face.vertices[t[0]], face.vertices[t[2]] - face.vertices[t[0]]);
+    for (Vec3& p : face.vertices) p += 0.01 * normal;
+    apart = together(apart, k % 4 == 0 ? turned_over(face) : face);
+  }
+  return apart;
+}
+
+// Returns the options that a refusal advises, nothing if it advises no repair.
+std::optional<SolidOptions> advised(const std::string& refusal) {
+  SolidOptions options = repair(Repair::none);
+  if (contains(refusal, "give `weld` ")) {
+    options.weld = std::stod(refusal.substr(refusal.find("give `weld` ") + 12));
+  } else if (contains(refusal, "give `repair` voxel")) {
+    options.repair = Repair::voxel;
+  } else if (contains(refusal, "give `repair` flood")) {
+    options.repair = Repair::flood;
+    if (const auto at = refusal.find("`max_hole` "); at != refusal.npos)
+      options.max_hole = std::stod(refusal.substr(at + 11));
+  } else if (contains(refusal, "give `repair` to")) {
+    options.repair = Repair::holes;
+  } else {
+    return std::nullopt;
+  }
+  return options;
+}
+
+TEST(Advice, MakesTheMeshPass) {
+  const Solid ball = make_icosphere(1, 3), cube = make_cube(1);
+  Solid finned = cube;
+  finned.triangles.push_back({0, 1, 7});
+  Solid open_cube = cube;
+  open_cube.triangles.resize(10);
+  struct Row {
+    const char* name;
+    Solid mesh;
+    double volume;  // m^3, which the body that was meant has
+  };
+  const auto flat = [](double, double) { return 0.0; };
+  const std::vector<Row> rows = {
+      {"a cube without a face", open_cube, 1},
+      {"inside out", turned_over(open_cube), 1},
+      {"a small hole", cut_open(ball, 0.97), 4.1},
+      {"a wide hole", cut_open(ball, 0.5), 3.5},
+      {"a wide hole, facing anywhere", with_every_second_turned(cut_open(ball, 0.5)), 3.5},
+      {"a fin", finned, 1},
+      {"tiny gaps", shrunk_triangles(cube, 1e-5), 1},
+      {"gaps", shrunk_triangles(ball, 0.02), 4.1},
+      {"gaps, facing anywhere", with_every_second_turned(shrunk_triangles(ball, 0.02)), 4.1},
+      {"wide triangles, facing anywhere", with_every_second_turned(shrunk_triangles(cube, .02)), 1},
+      {"squares, facing anywhere", squares_facing_anywhere(), 1},
+      {"open ones that cross", together(open_cube, moved(open_cube, {.3, .2, .1})), 1.4},
+      {"a body beside a sheet", together(cube, moved(sheet(4, flat), {2, 0, 0})), 1},
+  };
+  for (const auto& [name, mesh, volume] : rows) {
+    const std::string refusal = refusal_of(as_off(mesh), "a.off");
+    const auto options = advised(refusal);
+    EXPECT_TRUE(options) << name << ": " << refusal;
+    if (!options) continue;
+    try {
+      EXPECT_NEAR(solid_of(as_off(mesh), "a.off", *options).facts.volume, volume, 0.25 * volume)
+          << name << ": " << refusal;
+    } catch (const Error& fault) {
+      ADD_FAILURE() << name << ": " << refusal << "\n" << fault.what();
+    }
+  }
+}
+
+TEST(Advice, IsAChoiceWhereTryingTakesLong) {
+  const std::string refusal = refusal_of(as_off(cut_open(make_icosphere(1, 6), 0.1)), "a.off");
+  EXPECT_TRUE(contains(refusal, "`repair` holes, voxel or flood may close it")) << refusal;
+}
+
+TEST(Advice, NoRepairIsAdvisedForSheets) {
+  for (const Solid& mesh :
+       {sheet(1, [](double, double) { return 0.; }), sheet(8, [](double, double) { return 0.; }),
+        sheet(16, [](double x, double y) { return .02 * std::sin(20 * x) * std::cos(20 * y); })}) {
+    const std::string refusal = refusal_of(as_off(mesh), "a.off");
+    EXPECT_TRUE(contains(refusal, "no `repair` closes it: give a sheet a thickness")) << refusal;
+  }
 }
 
 }  // namespace

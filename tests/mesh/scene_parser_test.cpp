@@ -2,6 +2,7 @@
 // tests/tools/cases/scenes.t.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
@@ -200,8 +201,6 @@ TEST(Gltf, WhatIsNotAppliedIsSaid) {
   expect_note(parse(glb("", R"(,"weights":[1.0])"), "a.glb"),
               "its morph targets have weights, which are not applied");
   EXPECT_EQ(parse(glb("", R"(,"weights":[0])"), "a.glb").notes.size(), 1U);
-  expect_note(parse(glb(R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"])"), "a.glb"),
-              "instances (EXT_mesh_gpu_instancing), which are not applied");
 }
 
 // Returns a glTF file in text whose buffer is another file, and the content of that.
@@ -278,26 +277,119 @@ TEST(Gltf, WithoutASceneAllNodesAreRead) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Gltf, PositionsOfIntegersAreRefused) {
-  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
-  for (const char* const type : {"5120", "5121", "5122", "5123"}) {
-    std::string bytes = glb(R"(,"extensionsUsed":["KHR_mesh_quantization"])");
-    bytes.replace(bytes.find("5126"), 4, type);
-    expect_refusal(bytes, "a.glb", "integers, as the glTF extension KHR_mesh_quantization");
+// Returns the cube of edge 1 with positions of integers, a node's members and the JSON after them.
+std::string quantized(int component, bool is_normalized, int low, int high,
+                      const std::string& of_node, const std::string& rest = "") {
+  const int size = component <= 5121 ? 1 : 2;
+  const int stride = 4 * size;
+  const Solid cube = synthetic::make_cube(1);
+  std::string buffer;
+  for (const Vec3& p : cube.vertices) {
+    for (const double c : {p.x, p.y, p.z})
+      append_number(buffer, static_cast<std::uint32_t>(c < 0 ? low : high), size);
+    append_number(buffer, 0x77, size);  // padding
   }
-  EXPECT_EQ(parse(glb(R"(,"extensionsUsed":["KHR_mesh_quantization"])"), "a.glb").polygon_count(),
-            12U);
+  const std::size_t points = buffer.size();
+  for (const Triangle& t : cube.triangles)
+    for (const std::uint32_t corner : t) append_number(buffer, corner, 2);
+  const auto text = [](std::size_t number) { return std::to_string(number); };
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"n","mesh":0)" +
+      of_node +
+      R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0},"indices":1}]}],"accessors":[)" +
+      R"({"bufferView":0,"componentType":)" + std::to_string(component) + R"(,"normalized":)" +
+      (is_normalized ? "true" : "false") + R"(,"count":8,"type":"VEC3"},)" +
+      R"({"bufferView":1,"componentType":5123,"count":36,"type":"SCALAR"}],"bufferViews":[)" +
+      R"({"buffer":0,"byteLength":)" + text(points) + R"(,"byteStride":)" + std::to_string(stride) +
+      R"(},{"buffer":0,"byteOffset":)" + text(points) + R"(,"byteLength":)" +
+      text(buffer.size() - points) + R"(}],"buffers":[{"byteLength":)" + text(buffer.size()) +
+      R"(}],"extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"])" +
+      rest + "}";
+  return as_glb(json, buffer);
+}
+
+TEST(Gltf, PositionsOfIntegersAreRead) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  struct Row {
+    int component;
+    bool is_normalized;
+    int low, high;
+    double edge;
+  };
+  for (const Row& row : std::vector<Row>{{5120, true, -127, 127, 2},
+                                         {5120, true, -128, 127, 2},
+                                         {5120, false, -100, 20, 120},
+                                         {5121, true, 0, 255, 1},
+                                         {5121, false, 7, 207, 200},
+                                         {5122, true, -32767, 32767, 2},
+                                         {5122, false, -3000, 3000, 6000},
+                                         {5123, true, 0, 65535, 1},
+                                         {5123, false, 1, 50001, 50000}}) {
+    const double scale = .5 / row.edge;
+    const std::string place = R"(,"translation":[3,0,0],"scale":[)" + std::to_string(scale) + "," +
+                              std::to_string(scale) + "," + std::to_string(scale) + "]";
+    const CheckedSolid solid =
+        solid_of(quantized(row.component, row.is_normalized, row.low, row.high, place), "a.glb");
+    const double edge = std::stod(std::to_string(scale)) * row.edge;
+    EXPECT_NEAR(solid.facts.volume, edge * edge * edge, 1e-6) << row.component;
+    EXPECT_NEAR(solid.facts.high.x - solid.facts.low.x, edge, 1e-6) << row.component;
+  }
+}
+
+TEST(Gltf, NumbersThatAreNotInTheFileAreRefused) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  const std::string whole = quantized(5122, true, -32767, 32767, "");
+  const auto with = [&](const std::string& words, const std::string& instead) {
+    std::string bytes = whole;
+    return bytes.replace(bytes.find(words), words.size(), instead);
+  };
+  for (const std::string& bytes :
+       {with("\"count\":8", "\"count\":9"), with("\"byteStride\":8", "\"byteStride\":9"),
+        with("\"byteLength\":64", "\"byteLength\":10"),
+        with("\"componentType\":5122", "\"componentType\":5124")})
+    expect_refusal(bytes, "a.glb", "the numbers of its meshes cannot be read");
+}
+
+TEST(Gltf, InstancesAreRead) {
+  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
+  // Accessor 0 are the eight points of the cube of edge 0.5.
+  const auto instances = [](const std::string& attributes) {
+    return R"(,"scale":[2,2,2],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" +
+           attributes + "}}}";
+  };
+  const auto expect_half = [](const RawMesh& mesh, double half) {
+    EXPECT_EQ(mesh.polygon_count(), 8 * 12U);
+    double low = 0, high = 0;
+    for (const Vec3& p : mesh.vertices) {
+      low = std::min({low, p.x, p.y, p.z});
+      high = std::max({high, p.x, p.y, p.z});
+    }
+    EXPECT_NEAR(low, -half, 1e-6);
+    EXPECT_NEAR(high, half, 1e-6);
+  };
+  for (const char* const used : {"extensionsUsed", "extensionsRequired"}) {
+    const std::string extensions = std::string(",\"") + used + R"(":["EXT_mesh_gpu_instancing"])";
+    const std::string content = glb(extensions, instances(R"("TRANSLATION":0)"));
+    expect_half(parse(content, "a.glb"), 1);
+    expect_half(node_of(content, "skin"), 1);  // chosen by the name of their node
+  }
+  expect_half(parse(glb("", instances(R"("SCALE":0)")), "a.glb"), .125);
+  expect_half(parse(glb("", instances(R"("SCALE":0,"TRANSLATION":0)")), "a.glb"), .625);
+  EXPECT_EQ(parse(glb("", instances("")), "a.glb").polygon_count(), 12U);
+  for (const std::string wrong : {R"("TRANSLATION":7)", R"("ROTATION":0)"})
+    expect_refusal(glb("", instances(wrong)), "a.glb", "the numbers of its meshes cannot be read");
 }
 
 TEST(Gltf, RequiredExtensionsAreNamed) {
   if (!reads_scenes()) GTEST_SKIP() << "no assimp";
-  for (const std::string name :
-       {"KHR_mesh_quantization", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing"}) {
+  for (const std::string name : {"EXT_meshopt_compression", "EXT_of_tomorrow"}) {
     const std::string refusal =
         refusal_of(glb(R"(,"extensionsRequired":[")" + name + R"("])"), "a.glb");
     EXPECT_NE(refusal.find("requires the glTF extension " + name), refusal.npos) << refusal;
     EXPECT_NE(refusal.find("save it without compression"), refusal.npos) << refusal;
   }
+  expect_refusal(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4}],"meshes":[]})",
+                 "a.gltf", "the data of its meshes is not in the file");
   const std::string looks = R"(,"extensionsRequired":["KHR_materials_unlit","KHR_texture_basisu"])";
   EXPECT_EQ(refusal_of(glb(looks), "a.glb"), "");
 }
@@ -414,99 +506,6 @@ TEST(Collada, JointsPlaceAMeshWithASkin) {
   const RawMesh bound = with_skin(".1 0 0 0 0 .1 0 0 0 0 .1 0 0 0 0 1", "");
   EXPECT_NEAR(bound.vertices.at(1).x, 0.1, 1e-6);
   expect_note(bound, "it has a skin: the joints place its mesh");
-}
-
-std::uint32_t crc_of(const std::string& bytes) {
-  std::uint32_t crc = ~0U;
-  for (const char c : bytes) {
-    crc ^= static_cast<unsigned char>(c);
-    for (int k = 0; k < 8; ++k) crc = crc >> 1 ^ (crc & 1U) * 0xEDB88320U;
-  }
-  return ~crc;
-}
-
-// Returns a zip archive of files that are not packed.
-std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
-  std::string bytes, directory;
-  for (const auto& [path, content] : files) {
-    std::string head;
-    for (const std::uint32_t number : {20U, 0U, 0U, 0U, 0U}) append_number(head, number, 2);
-    append_number(head, crc_of(content));
-    for (int k = 0; k < 2; ++k) append_number(head, static_cast<std::uint32_t>(content.size()));
-    append_number(head, static_cast<std::uint32_t>(path.size()), 2);
-    append_number(head, 0, 2);
-    directory += std::string("PK\x01\x02\x14\0", 6) + head + std::string(10, '\0');
-    append_number(directory, static_cast<std::uint32_t>(bytes.size()));
-    directory += path;
-    bytes += "PK\x03\x04" + head + path + content;
-  }
-  std::string end("PK\x05\x06\0\0\0\0", 8);
-  for (int k = 0; k < 2; ++k) append_number(end, static_cast<std::uint32_t>(files.size()), 2);
-  append_number(end, static_cast<std::uint32_t>(directory.size()));
-  append_number(end, static_cast<std::uint32_t>(bytes.size()));
-  append_number(end, 0, 2);
-  return bytes + directory + end;
-}
-
-const std::string kBody =
-    R"(<object id="1" type="model"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
-<vertex x="0" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>)";
-
-// Returns a 3MF file of a model with these attributes, objects and items.
-std::string threemf(const std::string& attributes, const std::string& objects = kBody,
-                    const std::string& items = R"(<item objectid="1"/>)",
-                    const std::string& path = "3D/3dmodel.model", const std::string& before = "") {
-  return zip(
-      {{"_rels/.rels",
-        R"(<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/)" +
-            path +
-            R"(" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
-       {path, before +
-                  R"(<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" )" +
-                  attributes + "><resources>" + objects + "</resources><build>" + items +
-                  "</build></model>"}});
-}
-
-TEST(Threemf, OnlyTheUnitOfItsModelCounts) {
-  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
-  EXPECT_NEAR(parse(threemf(R"(unit=" inch ")"), "a.3mf").vertices.at(1).x, 0.0254, 1e-9);
-  const std::string comment = R"(<?xml version="1.0"?><!-- <model unit="inch"> -->)";
-  EXPECT_NEAR(parse(threemf(R"(unit="meter")", kBody, R"(<item objectid="1"/>)", "3D/3dmodel.model",
-                            comment),
-                    "a.3mf")
-                  .vertices.at(1)
-                  .x,
-              1, 1e-9);
-}
-
-TEST(Threemf, TheModelMayHaveAnyName) {
-  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
-  const std::string content = threemf("", kBody, R"(<item objectid="1"/>)", "3D/part.model");
-  EXPECT_EQ(parse(content, "a.3mf").polygon_count(), 1U);
-  EXPECT_EQ(parse(content, "a").format, MeshFormat::threemf);
-  expect_refusal(zip({{"a.txt", "a"}}), "a.3mf", "no 3D model in UTF-8 can be unpacked from it");
-}
-
-TEST(Threemf, BodiesThatAreNotReadAreRefused) {
-  if (!reads_scenes()) GTEST_SKIP() << "no assimp";
-  const std::string production =
-      R"(xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p")";
-  const std::string elsewhere =
-      R"(<object id="2" type="model"><components><component p:path="/3D/b.model" objectid="1"/></components></object>)";
-  const std::string both = R"(<item objectid="1"/><item objectid="2"/>)";
-  const std::string words = "its parts lie in other files of the archive";
-  expect_refusal(threemf(production, kBody + elsewhere, both), "a.3mf", words);
-  expect_refusal(threemf(production, kBody, R"(<item objectid="1" p:path="/3D/b.model"/>)"),
-                 "a.3mf", words);
-  // The extension also names parts that are all in one file.
-  EXPECT_EQ(parse(threemf(production, kBody, R"(<item objectid="1" p:UUID="x"/>)"), "a.3mf")
-                .polygon_count(),
-            1U);
-  expect_refusal(threemf(R"(xmlns:s="http://x/slice/2015/07" requiredextensions="s")"), "a.3mf",
-                 "it requires the 3MF extension http://x/slice/2015/07");
-  const std::string boolean = R"(<object id="2"><bo:booleanshape objectid="1"/></object>)";
-  expect_refusal(threemf(R"(xmlns:bo="x")", kBody + boolean, both), "a.3mf",
-                 "one of its objects is of 'booleanshape'");
 }
 
 TEST(Nodes, OfOneNameAreToldApart) {

@@ -66,6 +66,32 @@ def moebius(radius, steps=24):
     return vertices, triangles
 
 
+def ball_of_patches(rows=32):
+    """Returns a ball of squares with gaps between them, of which every second one faces inward."""
+    vertices, faces = [], []
+
+    def at(u, v):
+        polar, around = math.pi * u / rows, math.pi * v / rows
+        return math.sin(polar) * math.cos(around), math.sin(polar) * math.sin(around), math.cos(polar)
+    for i in range(rows):
+        for j in range(2 * rows):
+            low, high = 0.02, 0.98
+            square = [(low, low), (high, low), (high, high), (low, high)]
+            faces.append(tuple(range(len(vertices), len(vertices) + 4))[::1 if (i + j) % 2 else -1])
+            vertices += [at(i + a, j + b) for a, b in square]
+    return vertices, faces
+
+
+def squares_apart(gap):
+    """Returns the cube as squares with gaps between them, of which every second one faces inward."""
+    vertices, faces = [], []
+    for k, face in enumerate(FACES):
+        middle = [sum(CORNERS[c][axis] for c in face) / 4 for axis in range(3)]
+        faces.append(tuple(range(4 * k, 4 * k + 4))[::1 if k % 2 else -1])
+        vertices += [tuple(m + (1 - gap) * (x - m) for x, m in zip(CORNERS[c], middle)) for c in face]
+    return vertices, faces
+
+
 def write_meshes(folder):
     box = (CORNERS, FACES)
     plate = [(x, y, 0.05 * z) for x, y, z in CORNERS]
@@ -81,6 +107,7 @@ def write_meshes(folder):
         "other.off": off(scaled(CORNERS, 0.3, (-0.1, -0.1, -0.1)), FACES),
         "small_mm.off": off(scaled(CORNERS, 200, (-100, -100, -100)), FACES),
         "loose.off": off(loose, [range(k, k + 4) for k in range(0, len(loose), 4)]),
+        "gaps.off": off(*ball_of_patches()), "apart.off": off(*squares_apart(0.02)), "sheet.off": off(CORNERS[:4], [(0, 1, 3, 2)]),
         "fan.off": off(CORNERS, [*FACES, (0, 1, 7)]), "plate.off": off(plate, FACES),
         "foil.off": off([(x, y, 1e-6 * z) for x, y, z in CORNERS], FACES),
         "moebius.off": off(*joined(box, moebius(0.1))), "moebius_alone.off": off(*moebius(0.1)),
@@ -104,6 +131,12 @@ def write_meshes(folder):
     (folder / "comma.dae").write_text(cube.replace('meter="0.001"', 'meter="0,001"'))
     (folder / "nodes.dae").write_text(cube.replace('<instance_geometry url="#g"/>', ""))
     scene_files.threemf(folder / "parts.3mf", 1000, unit=' unit="millimeter" requiredextensions="slice"')
+    (folder / "large.glb").write_bytes(scene_files.glb([("body", 100, (0, 0, 0))], 0.5))
+    for name, settings in {"negative": '<config><object id="1"><volume firstid="0" lastid="11"><metadata key="volume_type" '
+                                       'value="NegativeVolume"/></volume></object></config>', "settings": "<config>"}.items():
+        scene_files.threemf(folder / f"{name}.3mf", 1000)
+        with zipfile.ZipFile(folder / f"{name}.3mf", "a") as archive:
+            archive.writestr("Metadata/Slic3r_PE_model.config", settings)
     skinned = (folder / "cube.gltf").read_text().replace('"mesh": 0', '"mesh": 0, "skin": 0')
     (folder / "skin.gltf").write_text(skinned.replace('"scene": 0', '"scene": 0, "skins": [{"joints": [0]}]'))
     (folder / "cut.glb").write_bytes((folder / "cube.glb").read_bytes()[:500])

@@ -2,6 +2,7 @@
 
 COMMANDS holds whole command lines; MESHES and SCANS the arguments of vpm-pack and vpm-normals.
 """
+import math
 import re
 
 from advice_files import MESH_STARTS, SCAN_STARTS, STARTS
@@ -23,10 +24,12 @@ MESHES = [
     ("tiny.off", r"give (--scale \S+)", "tiny.off {0}", 0.125),
     ("huge.off", "give --scale", "huge.off --scale 1e-31", 1),
     ("open.off", r"give (--repair) to fill", "open.off {0}", 1),
-    ("open.off", r"(--repair voxel) for a new surface", "open.off {0}=16", 1, ROUGH),
     ("loose.off", r"give (--weld 0\.001), which joins parts that nearly meet", "loose.off --weld 0.002", 1, ROUGH),
     ("fan.off --repair", r"give (--repair voxel) for a new surface", "fan.off {0}=16", 1, ROUGH),
     ("fan.off --repair", "mend it in a mesh editor", "cube.off --repair", 1),
+    ("gaps.off", r"give (--repair flood) for a new surface", "gaps.off {0}=48", 4 / 3 * math.pi, ROUGH),
+    ("apart.off", r"give (--repair flood) and (--max-hole \S+) for a new surface", "apart.off {0}=48 {1}", 1, 0.2),
+    ("sheet.off", "no --repair closes it: give a sheet a thickness", "plate.off", 0.05),
     ("open.off --repair flood=20", "close it, or give a wider --max-hole", "open.off --repair flood=20 --max-hole 1.2", 1, 0.2),
     ("open.off --repair flood=20", "close it, or give a wider --max-hole", "cube.off --repair flood=40", 1, ROUGH),
     ("open.off --max-hole 1", r"--max-hole belongs to (--repair) (voxel) or (flood)", "open.off --max-hole 1.2 {0} {1}=16", 1,
@@ -62,11 +65,14 @@ MESHES = [
     ("two.glb --node hand", r"nodes with faces: \w+, (\w+)", "two.glb --node {0}", 0.125),
     ("cube.obj --node hand", "leave --node out", "cube.obj", 1),
     ("cut.glb", "save it again, or as OBJ", "cube.glb", 1),
-    ("short.glb", "integers, .*; save it without compression, quantization and instancing, or as OBJ", "cube.glb", 1),
-    ("packed.gltf", "save it without compression, quantization and instancing, or as OBJ, PLY or STL", "cube.glb", 1),
+    ("packed.gltf", "save it without compression, or as OBJ, PLY or STL", "cube.glb", 1),
     ("comma.dae", "write the metres of one unit there, 0.001 for millimetres", "cube.dae", 1),
     ("nodes.dae", "export it with its mesh", "cube.dae", 1),
     ("parts.3mf", "export it as STL or OBJ", "cube.obj", 1),
+    ("negative.3mf", "export the plate or object as STL, which the slicer cuts", "cube.obj", 1),
+    ("settings.3mf", "save it again, or export it as STL", "cube.3mf", 1),
+    ("large.glb", r"as glTF's unit is the metre: if its program wrote millimetres, give (--scale \S+)", "large.glb {0}", 1.25e-4),
+    ("small.off --link $'a\\1' --export out.urdf", "give another name", "small.off --link a --export out.urdf", BRICK),
     ("skin.gltf", "check its size, or export it without the skin", "cube.gltf", 1),
     ("points.obj", "save it with its faces; a cloud of points is for vpm-normals", "cube.obj", 1),
     ("blank.obj", "give the file that was meant, as OBJ, PLY or STL", "cube.obj", 1),

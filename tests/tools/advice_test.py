@@ -64,6 +64,7 @@ UNTRIED = [
     ]),
     ("takes a large input, or many seconds: tests/mesh/broad_phase_test.cpp, tests/faults", [
         "delete doubled or tangled parts, or give `repair` voxel for a new surface",
+        "`repair` holes, voxel or flood may close it, or mend it in a mesh editor",
         "delete doubled or inner parts, or pack the parts one by one", "crop it", "crop it, or take every second one",
         "export: too many spheres for the 32-bit indices of balls; use .points.ply",
         "bytes, the most that is read of a pipe or device; give a file instead",

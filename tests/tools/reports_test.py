@@ -89,7 +89,8 @@ def volume_faults(row, done, volumes):
 def mesh_faults(tools, folder, arguments, status, text, volume):
     row = f"{folder}: vpm-pack {arguments}"
     done = tools.run(f"cd {folder} && vpm-pack {arguments} --spheres 60 --report -")
-    if done.returncode != status or text not in done.stderr or (not text and done.stderr):
+    more = [line for line in done.stderr.splitlines() if not re.search("spheres fill .* of a solid of", line)]
+    if done.returncode != status or text not in done.stderr or (not text and more):
         yield f"{row}: exit status {done.returncode}, expected {status} and '{text}': {done.stderr}"
     elif volume is not None and abs(json.loads(done.stdout)["volume_mesh"] - volume) > 1e-6 * volume:
         yield f"{row}: volume {json.loads(done.stdout)['volume_mesh']}, expected {volume}"

@@ -58,12 +58,15 @@ def gltf(nodes, edge):
     return content, buffer
 
 
-def glb(nodes, edge):
-    content, buffer = gltf(nodes, edge)
+def glb_of(content, buffer):
     text = json.dumps(content).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(buffer), 0x004E4942) + buffer
     return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
+
+
+def glb(nodes, edge):
+    return glb_of(*gltf(nodes, edge))
 
 
 def threemf(path, edge, name="3D/3dmodel.model", unit=' unit="millimeter"'):
@@ -127,6 +130,37 @@ Connections:  {{
 """
 
 
+def quantized_glb(edge):
+    """Returns a cube of positions in signed bytes (KHR_mesh_quantization), as optimisers write them."""
+    points = b"".join(struct.pack("<4b", *(127 if c else -127 for c in v), 0) for v in VERTICES)
+    corners = b"".join(struct.pack("<3H", *t) for t in TRIANGLES)
+    content = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+        "extensionsUsed": ["KHR_mesh_quantization"], "extensionsRequired": ["KHR_mesh_quantization"],
+        "nodes": [{"mesh": 0, "scale": [edge / 2] * 3, "translation": [edge / 2] * 3}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5120, "normalized": True, "count": len(VERTICES), "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 3 * len(TRIANGLES), "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(points), "byteStride": 4},
+                        {"buffer": 0, "byteOffset": len(points), "byteLength": len(corners)}],
+        "buffers": [{"byteLength": len(points + corners)}]}
+    return glb_of(content, points + corners)
+
+
+def instanced_glb(edge, places):
+    """Returns cubes at places (EXT_mesh_gpu_instancing)."""
+    content, buffer = gltf([("body", 1, (0, 0, 0))], edge)
+    added = b"".join(struct.pack("<3f", *place) for place in places)
+    content["bufferViews"].append({"buffer": 0, "byteOffset": len(buffer), "byteLength": len(added)})
+    content["accessors"].append({"bufferView": len(content["bufferViews"]) - 1, "componentType": 5126, "count": len(places),
+                                 "type": "VEC3"})
+    content["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": len(content["accessors"]) - 1}}}
+    content["extensionsUsed"] = ["EXT_mesh_gpu_instancing"]
+    content["buffers"] = [{"byteLength": len(buffer + added)}]
+    return glb_of(content, buffer + added)
+
+
 def write_all(folder):
     same = [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]
     half = [1, 0, 0, 3000, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
@@ -138,7 +172,8 @@ def write_all(folder):
     inline = "data:application/octet-stream;base64," + base64.b64encode(buffer).decode()
     (folder / "cube.gltf").write_text(json.dumps({**content, "buffers": [{"byteLength": len(buffer), "uri": inline}]}))
     (folder / "cube.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5))
-    (folder / "short.glb").write_bytes(glb([("body", 2, (0, 0, 0))], 0.5).replace(b"5126", b"5122"))
+    (folder / "quantized.glb").write_bytes(quantized_glb(1))
+    (folder / "instances.glb").write_bytes(instanced_glb(1, [(0, 0, 0), (2, 0, 0)]))
     (folder / "two.glb").write_bytes(glb([("body", 2, (0, 0, 0)), ("tip", -1, (3, 0, 0))], 0.5))
     threemf(folder / "cube.3mf", 1000)
     threemf(folder / "metre.3mf", 1, unit=' unit="meter"')

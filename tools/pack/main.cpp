@@ -45,6 +45,7 @@ struct Arguments {
   double coverage = 1, min_radius = 0;
   std::optional<double> inertia_error, max_radius, weld, max_hole;
   double scale = 1;
+  const CLI::Option* scale_option = nullptr;  // tells whether it was given
   bool grow = false, validate = false;
 };
 
@@ -91,8 +92,9 @@ void declare_reports(CLI::App& app, Arguments& a) {
 void declare_mesh(CLI::App& app, Arguments& a) {
   app.add_option("--node", a.node,
                  "Read only this node of a COLLADA, glTF, 3MF or FBX file, with those below it");
-  app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
-      ->capture_default_str();
+  a.scale_option =
+      app.add_option("--scale", a.scale, "Unit of the mesh in metres: 0.001 for millimetres")
+          ->capture_default_str();
   app.add_option("--weld", a.weld,
                  "Join vertices nearer than this fraction of the mesh's diagonal (STL: 1e-9)");
   app.add_option("--repair", a.repair,
@@ -121,7 +123,8 @@ void declare(CLI::App& app, Arguments& a) {
 }
 
 SolidOptions solid_options(const Arguments& a) {
-  SolidOptions options{.scale = a.scale, .weld = a.weld, .max_hole = a.max_hole};
+  SolidOptions options{.weld = a.weld, .max_hole = a.max_hole};
+  if (!a.scale_option->empty()) options.scale = a.scale;
   if (a.repair.empty() || parse_repair(a.repair, options)) return options;
   throw Error(
       ErrorKind::invalid_argument,
@@ -154,6 +157,14 @@ bool has_link(ExportFormat format) {
          format == ExportFormat::srdf;
 }
 
+// Returns the name that a robot description gives the part: --link, or the mesh's file name without
+// folder and extension.
+std::string link_name(const Arguments& a) {
+  if (!a.link.empty()) return a.link;
+  const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
+  return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
+}
+
 void check(const Arguments& a, const CommonOptions& common) {
   const Repair repair = solid_options(a).repair;
   if (a.max_hole && repair != Repair::voxel && repair != Repair::flood)
@@ -169,20 +180,13 @@ void check(const Arguments& a, const CommonOptions& common) {
   const bool names_link = !a.export_path.empty() && has_link(export_format(a.export_path));
   if (!a.link.empty() && !names_link)
     refuse_usage("--link is a name in .yml, .urdf and .srdf; give --export with one of these");
+  if (names_link) check_link(export_format(a.export_path), link_name(a));
   check_files({a.mesh, a.for_scene},
               {{"--output", a.output, file::Kind::packing},
                {"--report", a.report, std::nullopt, OutputForm::json},
                {"--export", a.export_path, std::nullopt},
                {"--view", a.view, std::nullopt, OutputForm::page}},
               common);
-}
-
-// Returns the name that a robot description gives the part: --link, or the mesh's file name without
-// folder and extension.
-std::string link_name(const Arguments& a) {
-  if (!a.link.empty()) return a.link;
-  const std::string name = a.mesh.substr(a.mesh.rfind('/') + 1);
-  return a.mesh == "-" ? "tool" : name.substr(0, name.rfind('.'));
 }
 
 // Makes the solid; of a mesh that is refused, --view shows why.
@@ -196,21 +200,6 @@ CheckedSolid checked_solid(const Tool& tool, const Arguments& a, const RawMesh& 
                          tool.in_words_of_options(fault.hint()));
     throw;
   }
-}
-
-// Adds a warning if the mesh is larger or smaller than tools are, with the scale that is likely
-// meant.
-void warn_of_size(const Arguments& a, CheckedSolid& checked) {
-  constexpr double kLargest = 100, kSmallest = 0.001;  // m
-  const Vec3 sides = checked.facts.high - checked.facts.low;
-  const double size = std::max({sides.x, sides.y, sides.z});
-  if (size >= kSmallest && size <= kLargest) return;
-  const bool is_large = size > kLargest;
-  char text[200];
-  std::snprintf(text, sizeof text, "the mesh is %.3g m across: if %s, give --scale %g", size,
-                is_large ? "its unit is the millimetre" : "it was scaled to metres twice",
-                a.scale * (is_large ? 0.001 : 1000));
-  checked.warnings.push_back(text);
 }
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
@@ -269,7 +258,9 @@ void grow_together(const Tool& tool, const Arguments& a, const CheckedSolid& che
   result.coverage *= volume_of(result.spheres) / before;
 }
 
-void say_result(const Tool& tool, const Arguments& a, const PackResult& result) {
+// Says what was made: the size in words shows a wrong unit, and the coverage too few spheres.
+void say_result(const Tool& tool, const Arguments& a, const MeshFacts& facts,
+                const PackResult& result) {
   const std::string count = std::to_string(result.spheres.size());
   const auto fewer = [&](const char* why) {
     tool.note("delivered " + count + " of " + std::to_string(a.spheres) + " spheres: " + why);
@@ -281,7 +272,15 @@ void say_result(const Tool& tool, const Arguments& a, const PackResult& result) 
   if (result.partly_searched)
     tool.note(
         "the spheres are so small beside the solid that only samples of its inside were searched");
-  tool.detail(count + " spheres cover " + std::to_string(result.coverage) + " of the volume");
+  const Vec3 sides = facts.high - facts.low;
+  const bool is_large = std::max({sides.x, sides.y, sides.z}) >= 1;
+  const double unit = is_large ? 1 : 0.001;
+  char text[200];
+  std::snprintf(text, sizeof text, "%s %.3g %% of a solid of %.3g x %.3g x %.3g %s",
+                (count + (result.spheres.size() == 1 ? " sphere fills" : " spheres fill")).c_str(),
+                100 * result.coverage, sides.x / unit, sides.y / unit, sides.z / unit,
+                is_large ? "m" : "mm");
+  tool.note(text);
 }
 
 void say_validation(const Tool& tool, const Validation& v, CheckedSolid& checked) {
@@ -321,7 +320,6 @@ void run(const Tool& tool, Arguments a) {
   CheckedSolid checked = checked_solid(tool, a, parse_mesh(bytes, name, a.node));
   const std::string prefix = name + ": ";
   for (const std::string& note : checked.notes) tool.note(prefix + note);
-  warn_of_size(a, checked);
   for (const std::string& warning : checked.warnings) tool.warn(prefix + warning);
 
   std::optional<SceneScale> scene;
@@ -332,7 +330,7 @@ void run(const Tool& tool, Arguments a) {
   refuse_uncertified(a.mesh, result.coverage, certificate);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  say_result(tool, a, result);
+  say_result(tool, a, checked.facts, result);
 
   std::optional<Validation> validation;
   if (a.validate) {

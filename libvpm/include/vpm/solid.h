@@ -35,7 +35,9 @@ enum class Repair {
 inline constexpr int kRepairVoxels = 128;
 
 struct SolidOptions {
-  double scale = 1;  // unit of the file in metres
+  // Unit of the file in metres. If unset: 1, and a mesh of a size that few tools have, but many in
+  // millimetres, gives a warning.
+  std::optional<double> scale = std::nullopt;
   // Vertices nearer than this, relative to the bounding box's diagonal, are joined. If unset:
   // 1e-9 for STL; for formats with indices too, but only if the mesh is open before and
   // closed after.
@@ -58,11 +60,11 @@ struct Packing;       // the library's own
 class VPM_API SolidMesh {
  public:
   // Reads an OBJ, OFF, PLY, STL or OM file, told by its content, and makes a solid of it; "-" is
-  // standard input. COLLADA, glTF, 3MF and FBX are read where assimp was built, in a child process,
-  // otherwise Error(unavailable) is thrown; all their nodes are joined. Throws Error(refused)
-  // naming the file with line, byte or element for what is damaged, and the rims of holes, edges or
-  // vertices where it is no solid beyond the repair of the options; Error(invalid_argument) for
-  // options out of range.
+  // standard input. COLLADA, glTF and FBX are read in a child process where assimp was built, 3MF
+  // where expat was, otherwise Error(unavailable) is thrown; all their nodes are joined. Throws
+  // Error(refused) naming the file with line, byte or element for what is damaged, and the rims of
+  // holes, edges or vertices where it is no solid beyond the repair of the options;
+  // Error(invalid_argument) for options out of range.
   static SolidMesh read(const std::string& path, const SolidOptions& options = {});
 
   // Makes a solid of triangles, counter-clockwise seen from outside, by the same rules.

@@ -28,7 +28,9 @@ $ cube='OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 
   "volume_mesh": 1.0,
   "volume_mesh": 1.0,
 2> vpm-pack: note: standard input: another OFF file follows in line 17, which is not read
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 1 x 1 x 1 m
 2> vpm-pack: note: standard input: the header counts 6 faces, but more follows in line 17, which is not read
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 1 x 1 x 1 m
 2> vpm-pack: error: standard input: the header counts 5 faces, but more follows in line 16, which is not read; so the mesh is open: 4 edges *. save it again, or fetch all of it (glob)
 2> vpm-pack: error: standard input: the header counts 9 vertices, but line 11 does not look like one; so the mesh is open: 4 edges *. save it again, or fetch all of it (glob)
 [1]
@@ -98,6 +100,7 @@ $ cube='OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 
   "volume_mesh": 1.0,
 2> vpm-pack: error: standard input: the mesh is open: 2 edges belong to one triangle only, around 1 hole: a rim of 2 edges through (0, 0, 0), (1, 1, 1), (1, 0, 0); the mesh is non-manifold: 1 edge belongs to more than two triangles, at (0, 0, 0)-(1, 0, 0). Only a closed surface has an inside: give --repair voxel for a new surface, or mend it in a mesh editor
 2> vpm-pack: note: standard input: 2 repeated triangles dropped
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 1 x 1 x 1 m
 2> vpm-pack: error: standard input: the mesh reaches from (0, 0, 0) to (1, 1, 1e+31), which leaves the range of 1e-30 to 1e30 m; give --scale
 [1]
 
@@ -105,12 +108,15 @@ $ cube='OFF\n8 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 
 $ awk 'NR < 11 {print} NR > 10 {print $1, $5, $4, $3, $2}' cube.off | vpm-pack - --spheres 5 --report - | grep volume_mesh
   "volume_mesh": 1.0,
 2> vpm-pack: note: standard input: the mesh faced inward and was turned
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 1 x 1 x 1 m
 $ (echo OFF 16 12 0; sed -n 3,10p cube.off; sed -n 3,10p cube.off | awk '{print $1 / 2 + 0.25, $2 / 2 + 0.25, $3 / 2 + 0.25}'; sed -n 11,16p cube.off; sed -n 11,16p cube.off | awk '{print 4, $2 + 8, $3 + 8, $4 + 8, $5 + 8}') | vpm-pack - --spheres 5 --report - | grep volume_mesh
   "volume_mesh": 1.0,
 2> vpm-pack: note: standard input: 1 shell inside of the solid dropped: nothing but solid lies on both sides; turn it over if it is a cavity
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 1 x 1 x 1 m
 $ (echo OFF 16 12 0; sed -n 3,10p cube.off; sed -n 3,10p cube.off | awk '{print $1 + 0.5, $2 + 0.25, $3 + 0.25}'; sed -n 11,16p cube.off; sed -n 11,16p cube.off | awk '{print 4, $2 + 8, $3 + 8, $4 + 8, $5 + 8}') | vpm-pack - --spheres 5 --report - | grep volume_mesh
   "volume_mesh": 1.71875,
 2> vpm-pack: warning: standard input: the mesh intersects itself: 19 pairs of triangles, at (0.333333, 0.333333, 1), (0.666667, 0.666667, 1), (1, 0.333333, 0.333333) and more; what it encloses at least once is the solid, and overlaps count once
+2> vpm-pack: note: 5 spheres fill 46.1 % of a solid of 1.5 x 1.25 x 1.25 m
 
 # Files that are no meshes are named, with the next step.
 $ for t in '\xff\xd8\xff' '\x89HDF' 'LASF' '#ROSBAG V2.0' 'BLENDER' '<mujoco>' '\x1f\x8b' 'VERSION .7\n' '\x89PNG'; do printf "$t" | vpm-pack - -o x.vpmp; done

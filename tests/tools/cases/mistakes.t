@@ -179,12 +179,14 @@ $ for out in /dev/stdout /dev/fd/1 /proc/self/fd/1; do vpm-pack cube.off --spher
 $ (echo first; vpm-pack cube.off --spheres 5 --export five.csv --report /dev/fd/1) > both.txt; head -n 2 both.txt
 first
 {
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 200 x 200 x 200 mm
 $ vpm-query --tool cube.vpmg --cloud wall.vpmc --pose 0,0,0.95,0,0,0,1 --for-scene -o closed.jsonl 2>&-; head -c 8 closed.jsonl
 {"pose":
 
 # Numbers may be written as CLI11 reads them, which JSON does not.
 $ vpm-pack cube.off --scale .1 --spheres 5 -o small.vpmp && vpm-graph small.vpmp --mesh cube.off -o small.vpmg && echo made
 made
+2> vpm-pack: note: 5 spheres fill 56.4 % of a solid of 20 x 20 x 20 mm
 $ vpm-graph cube.vpmp --levels 010 -o x.vpmg
 2> vpm-graph: error: --levels: 010 begins with a zero; write it without (see vpm-graph --help)
 [2]

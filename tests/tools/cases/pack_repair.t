@@ -2,10 +2,11 @@
 
 $ printf 'OFF\n8 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n' > open.off
 $ vpm-pack open.off -o open.vpmp
-2> vpm-pack: error: open.off: the mesh is open: 4 edges belong to one triangle only, around 1 hole: a loop of 4 edges through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1). Only a closed surface has an inside: give --repair to fill planar and small holes, or --repair voxel for a new surface
+2> vpm-pack: error: open.off: the mesh is open: 4 edges belong to one triangle only, around 1 hole: a loop of 4 edges through (0, 1, 0), (0, 0, 0), (0, 0, 1), (0, 1, 1). Only a closed surface has an inside: give --repair to fill planar and small holes
 [1]
 $ vpm-pack open.off --repair --spheres 1 -o filled.vpmp --report filled.json
 2> vpm-pack: note: open.off: filled a planar hole of 4 edges about (0, 0.5, 0.5)
+2> vpm-pack: note: 1 sphere fills 52.4 % of a solid of 1 x 1 x 1 m
 $ $VALIDATE pack-report filled.json
 $ python3 -c 'import json; r = json.load(open("filled.json")); print(r["volume_mesh"], round(r["r_max"], 9), r["mesh"]["filled_holes"])'
 1.0 0.5 [{'center': [0.0, 0.5, 0.5], 'edges': 4, 'planar': True, 'size': 1.4142135623730951}]
@@ -13,6 +14,7 @@ $ vpm-pack open.off --repair holes --spheres 1 --quiet -o - | cmp - filled.vpmp
 
 $ vpm-pack open.off --repair voxel=20 --spheres 1 --report voxel.json
 2> vpm-pack: note: open.off: a new surface from voxels of 0.05 m: at most * (glob)
+2> vpm-pack: note: 1 sphere fills 52.8 % of a solid of 1 x 1 x 1 m
 $ $VALIDATE pack-report voxel.json
 $ python3 -c 'import json; m = json.load(open("voxel.json"))["mesh"]; v = m["voxel_repair"]; print(m["shells"], m["euler_characteristic"], v["voxel"], v["hausdorff_distance"] > v["voxel"])'
 1 2 0.05 True
