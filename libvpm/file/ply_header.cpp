@@ -101,7 +101,9 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
       header.elements.back().properties.push_back(parse_property(lines));
     } else if (is_word(keyword, "end_header")) {
       break;
-    } else if (!is_word(keyword, "comment") && !is_word(keyword, "obj_info")) {
+    } else if (is_word(keyword, "comment")) {
+      if (lines.word() == "vpm" && lines.word() == "origin") header.origin = lines.point();
+    } else if (!is_word(keyword, "obj_info")) {
       lines.refuse_here("not a statement of a PLY header");
     }
   }

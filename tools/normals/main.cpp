@@ -126,7 +126,7 @@ void run(const Tool& tool, const Arguments& a) {
                                {"input_hash", file::content_hash({bytes})}};
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
-  if (!a.export_path.empty()) write_points(a.export_path, imported.cloud);
+  if (!a.export_path.empty()) say(tool, a.export_path, write_points(a.export_path, imported.cloud));
   if (!a.output.empty()) write_cloud(a.output, imported.cloud);
 }
 
