@@ -308,8 +308,9 @@ bool is_usual(const PoseColumns& columns) {
   return true;
 }
 
-// Returns the order of a line that has a time before the numbers that are named, which no other
-// word may stand before; empty if it has not.
+// Returns the order of a line that has one number more than the names, which then is a time in
+// front of the pose. Empty if the names tell of a time or of another column before the pose, or if
+// the other numbers do not fit them.
 std::optional<PoseColumns> order_after_time(const std::vector<PoseColumns>& orders,
                                             std::size_t count) {
   const PoseColumns& all = orders.back();

@@ -112,7 +112,7 @@ nlohmann::json parameters_of(const Tool& tool, const ImportOptions& options) {
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
   if (!a.view.empty()) view::check_available();
-  const ImportOptions options = import_options(tool, a.import);
+  const ImportOptions options = import_options(tool, a.import, a.depth);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);

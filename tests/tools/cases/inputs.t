@@ -15,7 +15,7 @@ $ vpm-normals wall.pgm -o x.vpmc --intrinsics larger.json
 [1]
 $ vpm-normals wall.pgm -o pose.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose pose.txt && vpm-normals wall.pgm -o - --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0.5,0,0,0,1 | cmp - pose.vpmc
 $ vpm-normals wall.pgm -o x.vpmc --intrinsics wall.pgm
-2> vpm-normals: error: wall.pgm: not a text with a camera's intrinsics
+2> vpm-normals: error: wall.pgm: this is a PGM, PPM or PFM image; write fx, fy, cx and cy of its camera in a text, or give them as --intrinsics fx,fy,cx,cy
 [1]
 $ vpm-normals wall.pgm -o normalised.vpmc --intrinsics 1.1,1.2,0.5,0.5
 2> vpm-normals: warning: wall.pgm: the intrinsics 1.1,1.2,0.5,0.5 are less than a pixel or a few; if they are parts of the image's size, give --intrinsics 70.4,57.6,31.5,23.5
@@ -90,7 +90,7 @@ $ python3 -c 'print("VERSION 0.7\nFI" + 100000 * "E" + " 1")' > long.pcd; vpm-no
 2> vpm-normals: error: long.pcd: PCD header: unknown entry 'FIEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEE…'
 [1]
 $ head -c 300 wall.vpmc | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - 2>&1 | cut -c1-80
-vpm-query: error: standard input, line 1: column 1 is not a number: \x89VPM
+vpm-query: error: standard input: this is a file of vpm (.vpmp, .vpmg, .vpmc); g
 [1]
 
 # What others write by the pages of formats/ is read.
