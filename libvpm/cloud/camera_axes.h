@@ -46,7 +46,8 @@ constexpr Rotation to_axes(CameraAxes axes) {
   return {};
 }
 
-// Returns the pose that takes this library's axes to the world, of one that takes the others there.
+// Returns the pose in the world of a frame with this library's axes, given that of the same frame
+// with the other axes.
 constexpr Pose with_own_axes(const Pose& pose, CameraAxes axes) {
   return {pose.rotation * to_axes(axes), pose.translation};
 }

@@ -57,7 +57,7 @@ PlyEncoding parse_encoding(TextLines& lines) {
 // Checks counts. A list takes at least its length, a text value at least a digit and a separator.
 void check_counts(const PlyHeader& header, std::size_t file_bytes, const std::string& name) {
   double least = static_cast<double>(header.body) - 1;
-  std::string what;
+  std::vector<std::string> what;
   for (const PlyElement& element : header.elements) {
     double each = 0;
     for (const PlyProperty& p : element.properties)
@@ -68,10 +68,9 @@ void check_counts(const PlyHeader& header, std::size_t file_bytes, const std::st
     if (element.properties.empty() && element.count > 0)
       refuse("the element '" + shown(element.name, kLongestShown) + "' has no properties", name);
     least += each * static_cast<double>(element.count);
-    what += (what.empty() ? "" : ", ") + std::to_string(element.count) + " x " +
-            shown(element.name, kLongestShown);
+    what.push_back(std::to_string(element.count) + " x " + element.name);
   }
-  check_header_counts(name, what, least, file_bytes);
+  check_header_counts(name, listed(what), least, file_bytes);
 }
 
 }  // namespace
@@ -101,7 +100,9 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::string& name) {
       header.elements.back().properties.push_back(parse_property(lines));
     } else if (is_word(keyword, "end_header")) {
       break;
-    } else if (!is_word(keyword, "comment") && !is_word(keyword, "obj_info")) {
+    } else if (is_word(keyword, "comment")) {
+      if (lines.word() == "vpm" && lines.word() == "origin") header.origin = lines.point();
+    } else if (!is_word(keyword, "obj_info")) {
       lines.refuse_here("not a statement of a PLY header");
     }
   }

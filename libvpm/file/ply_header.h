@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "libvpm/core/vec3.h"
 #include "libvpm/file/scalar_type.h"
 
 namespace vpm::file {
@@ -31,6 +32,7 @@ enum class PlyEncoding { text, little_endian, big_endian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::text;
   std::vector<PlyElement> elements;
+  Vec3 origin;  // place that the points are written about: "comment vpm origin X Y Z"; else 0
   std::size_t body = 0;   // offset of the first byte after the header
   std::size_t lines = 0;  // number of the header's last line
 };

@@ -17,7 +17,43 @@ bool ends_first_line_in_cr(std::string_view text) {
   return end != text.npos && text[end] == '\r' && text.substr(end + 1, 1) != "\n";
 }
 
+void append_utf8(char32_t code, std::string& text) {
+  const auto add = [&](char32_t byte) { text += static_cast<char>(byte); };
+  const auto rest = [&](unsigned shift) { add(0x80 | (code >> shift & 0x3F)); };
+  if (code < 0x80) return add(code);
+  if (code < 0x800) return add(0xC0 | code >> 6), rest(0);
+  if (code < 0x10000) return add(0xE0 | code >> 12), rest(6), rest(0);
+  add(0xF0 | code >> 18), rest(12), rest(6), rest(0);
+}
+
 }  // namespace
+
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+}
+
+std::string utf8_of(std::string_view text) {
+  if (!is_utf16(text)) return std::string(text);
+  const std::size_t high = text[0] == '\xFE' ? 0 : 1;  // place of the high byte of two
+  const auto unit = [&](std::size_t at) -> char32_t {
+    if (at + 2 > text.size()) return 0;
+    return static_cast<unsigned char>(text[at + high]) * 256U +
+           static_cast<unsigned char>(text[at + 1 - high]);
+  };
+  std::string utf8;
+  for (std::size_t at = 2; at + 2 <= text.size(); at += 2) {
+    char32_t code = unit(at);
+    const char32_t next = unit(at + 2);
+    if (code >= 0xD800 && code < 0xDC00 && next >= 0xDC00 && next < 0xE000) {
+      code = 0x10000 + ((code - 0xD800) << 10) + (next - 0xDC00);
+      at += 2;
+    } else if (code >= 0xD800 && code < 0xE000) {  // half of a pair
+      code = 0xFFFD;
+    }
+    append_utf8(code, utf8);
+  }
+  return utf8;
+}
 
 std::vector<std::string_view> split_words(std::string_view line, std::string_view between) {
   std::vector<std::string_view> words;
@@ -64,6 +100,25 @@ std::string shown(std::string_view text, std::size_t most) {
   return said + (text.size() > end ? "…" : "");
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 5;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(kMost, names.size()); ++k)
+    list += (k == 0 ? "" : ", ") + shown(names[k]);
+  const std::size_t more = names.size() - std::min(kMost, names.size());
+  return more == 0 ? list : list + " and " + std::to_string(more) + " more";
+}
+
+std::optional<std::uint64_t> number_in_name(const std::string& path) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t begin = path.find_last_of('/') + 1;  // 0 without a folder
+  const std::string_view stem = std::string_view(path).substr(begin, path.find('.', begin) - begin);
+  const std::size_t last = stem.find_last_of(kDigits);
+  if (last == stem.npos) return std::nullopt;
+  const std::size_t first = stem.find_last_not_of(kDigits, last) + 1;
+  return to_count(stem.substr(first, last - first + 1));
+}
+
 TextCursor::TextCursor(std::string_view text)
     : text_(text), ends_in_cr_(ends_first_line_in_cr(text)) {}
 
@@ -97,13 +152,33 @@ void TextCursor::skip() {
   at_ = std::min(at_ + 1, text_.size());
 }
 
+std::string rest_of(std::istream& stream) {
+  constexpr std::size_t kMost = std::size_t{1} << 28U;  // bytes
+  std::string text;
+  char part[1U << 16U];
+  while (stream.read(part, sizeof part), stream.gcount() > 0) {
+    text.append(part, static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kMost) refuse("more than 256 MB in one piece is not read");
+  }
+  return text;
+}
+
+void LineStream::begin() {
+  has_begun_ = true;
+  const int first = stream_->peek();
+  if (first != 0xFF && first != 0xFE) return;
+  utf8_.str(utf8_of(rest_of(*stream_)));
+  stream_ = &utf8_;
+}
+
 std::optional<std::string> LineStream::next() {
   constexpr std::size_t kLongest = 1'000'000;  // bytes
   using Traits = std::istream::traits_type;
+  if (!has_begun_) begin();
   std::string line;
   bool has_any = false;
   for (;;) {
-    const auto character = stream_.get();
+    const auto character = stream_->get();
     if (Traits::eq_int_type(character, Traits::eof())) break;
     const char c = Traits::to_char_type(character);
     const bool is_pair = passes_over_lf_ && c == '\n';

@@ -7,6 +7,7 @@
 #include <istream>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,12 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
+
+// True if the text begins with the mark of UTF-16, of either order of bytes.
+bool is_utf16(std::string_view text);
+// Returns a text in UTF-16, which begins with its mark, in UTF-8, and any other as it is. What is
+// no character becomes U+FFFD.
+std::string utf8_of(std::string_view text);
 
 inline constexpr std::string_view kBlank = " \t\r\n\v\f";
 // Returns the words of the line, which one or several of the characters `between` stand between.
@@ -41,6 +48,12 @@ bool is_word(std::string_view text, std::string_view word);
 // Returns the text as a message may show it, by printable(); what is beyond `most` bytes of it is
 // replaced by "…".
 std::string shown(std::string_view text, std::size_t most = 60);
+
+// Returns the names as a message lists them: five at most, then how many more there are.
+std::string listed(const std::vector<std::string>& names);
+
+// Returns the last number in a file's name before its first dot: 460 for frame-000460.depth.png.
+std::optional<std::uint64_t> number_in_name(const std::string& path);
 
 // Reads a file in memory line by line or word by word. In a file whose first line ends in CR alone,
 // an LF after a CR is not part of the line's end: it may be the first byte of binary data.
@@ -66,19 +79,28 @@ class TextCursor {
   bool ends_in_cr_ = false;  // the first line ends in CR alone
 };
 
+// Returns what is left of a stream. Throws Error(refused) for more than 256 MB.
+std::string rest_of(std::istream& stream);
+
 // Reads the lines of a stream as they come: a line is returned as soon as its end is read, so that
-// a pipe is answered line by line.
+// a pipe is answered line by line. Of a stream in UTF-16, which begins with its mark, all is read
+// at once, and lines are in UTF-8.
 class LineStream {
  public:
   // The stream must outlive this.
-  explicit LineStream(std::istream& stream) : stream_(stream) {}
+  explicit LineStream(std::istream& stream) : stream_(&stream) {}
 
   // Returns the next line without its end; empty at the end of the stream. Throws Error(refused)
   // for a line of more than a million bytes, which no text has.
   std::optional<std::string> next();
 
  private:
-  std::istream& stream_;
+  // Replaces a stream in UTF-16 by its text in UTF-8.
+  void begin();
+
+  std::istream* stream_;
+  std::istringstream utf8_;
+  bool has_begun_ = false;
   bool passes_over_lf_ = false;  // the last line ended in CR
 };
 

@@ -23,13 +23,17 @@ struct RawDepth {
   bool are_16_bit = false;    // integers of 16 bits: values may be rotated, swapped or disparities
   bool may_be_swapped = false;  // writers of this format disagree about the order of bytes
   Remarks remarks;
-  Remarks unit_remarks;  // those that nobody needs who tells the unit
+  Remarks unit_remarks;  // about the unit, which are left out where the user tells it
 
   double usual_units_per_metre() const { return are_integers ? 1000 : 1; }
 };
 
 // Reads a 16-bit gray PNG.
 RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& name);
+
+// Reads the payload of a message of ROS' compressedDepth, a PNG of millimetres behind 12 bytes. Of
+// floats, the PNG holds coded inverse depths instead, which are refused.
+RawDepth parse_compressed_depth(std::span<const std::byte> bytes, const std::string& name);
 
 // Reads the depth channel of an OpenEXR file (exr_channels.h tells which); HALF, FLOAT or UINT.
 // Pixels of the display window that are not stored become 0. Throws Error(unavailable) in builds

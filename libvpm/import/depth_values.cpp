@@ -13,6 +13,7 @@
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/remark.h"
+#include "libvpm/import/scan_facts.h"
 
 namespace vpm {
 namespace {
@@ -95,34 +96,93 @@ bool look_swapped(std::span<const float> values, std::size_t width) {
          (has_many_values(values) ? have_low_bytes(values) : are_depths_only_if_swapped(values));
 }
 
-// Returns a warning about 16-bit values of which one byte is not used, that look rotated by three
-// bits, or like a Kinect's raw disparity.
-Remarks coding_suspicions(std::span<const float> values) {
-  constexpr std::size_t kFewestSteps = 64;   // distinct multiples of 8
-  constexpr float kLargestDisparity = 2047;  // marks pixels without any
-  std::size_t measured = 0, multiples = 0, marked = 0;
-  float largest = 0;
-  std::vector<bool> steps(1U << 13);
+// Returns what the bits of a value are after a rotation by three to the right.
+std::uint16_t rotated(std::uint16_t bits) {
+  return static_cast<std::uint16_t>((bits >> 3) | (bits << 13));
+}
+
+// What neighbours that differ tell of a rotation by three bits.
+struct RotationSigns {
+  std::size_t pairs = 0;
+  std::size_t nearer = 0;   // pairs that are eight times nearer, or more, once rotated back
+  std::size_t crossed = 0;  // those of a low and a high value that are neighbours only then
+};
+
+RotationSigns rotation_signs(std::span<const float> values, std::size_t width) {
+  constexpr float kAcross = 32768;
+  constexpr int kNear = 64;
+  RotationSigns signs;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const float left = values[i - 1], right = values[i];
+    if (i % width == 0 || !is_value(left) || !is_value(right) || left == right) continue;
+    if (left > 65534 || right > 65534) continue;
+    const int back = std::abs(rotated(static_cast<std::uint16_t>(left)) -
+                              rotated(static_cast<std::uint16_t>(right)));
+    ++signs.pairs;
+    signs.nearer += static_cast<float>(8 * back) <= std::abs(left - right);
+    signs.crossed += std::abs(left - right) > kAcross && back < kNear;
+  }
+  return signs;
+}
+
+// Returns a warning if nearly all values look rotated by three bits, and are depths that no camera
+// reaches unless they are rotated back, or cross there from the highest values to the lowest. Other
+// values may be multiples of 8 because a sensor's steps, or a program's, are so.
+Remarks rotation_suspicion(std::span<const float> values, std::size_t width,
+                           const std::optional<double>& units_per_metre) {
+  constexpr double kFar = 7, kFarthest = 20, kRoom = 4;  // m: median, largest, median decoded
+  constexpr double kUsual = 1000, kTenths = 10000;       // units per metre
+  constexpr std::size_t kTail = 50;                      // one value of so many is beyond
+  constexpr std::size_t kFewestPairs = 64, kFewestCrossed = 8;
+  constexpr double kNearlyAll = 0.9;
+  std::vector<float> measured, decoded;
   for (const float value : values) {
     if (!is_value(value) || value > 65534) continue;
-    const auto bits = static_cast<std::uint16_t>(value);
-    ++measured;
-    largest = std::max(largest, value);
-    marked += value == kLargestDisparity;
-    if (bits % 8 != 0) continue;
-    ++multiples;
-    steps[bits / 8] = true;
+    measured.push_back(value);
+    decoded.push_back(rotated(static_cast<std::uint16_t>(value)));
   }
-  const auto distinct = static_cast<std::size_t>(std::count(steps.begin(), steps.end(), true));
+  if (measured.empty()) return {};
+  const auto metres = [&](std::vector<float>& all, std::size_t rank, double scale) {
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(all.begin(), at, all.end());
+    return *at / scale;
+  };
+  const std::size_t half = measured.size() / 2,
+                    most = measured.size() - 1 - measured.size() / kTail;
+  const double scale = units_per_metre.value_or(kUsual), median = metres(measured, half, scale);
+  const RotationSigns signs = rotation_signs(values, width);
+  const bool is_far = median > kFar || metres(measured, most, scale) > kFarthest;
+  if (signs.pairs < kFewestPairs || (!is_far && signs.crossed < kFewestCrossed) ||
+      static_cast<double>(signs.nearer) < kNearlyAll * static_cast<double>(signs.pairs))
+    return {};
+  const double there = metres(decoded, half, scale);
+  const bool are_tenths = !units_per_metre && there > kRoom;
+  return {{true, "its values look rotated by three bits: as they are, their median is " +
+                     metres_text(median) + "; give `decode` rotated" +
+                     (are_tenths ? " and `depth_scale` 10000, which make that " +
+                                       metres_text(metres(decoded, half, kTenths)) + " (APC)"
+                                 : ", which makes that " + metres_text(there) + " (SUN3D)")}};
+}
+
+// Returns a warning about 16-bit values of which one byte is not used, that look rotated by three
+// bits, or like a Kinect's raw disparity.
+Remarks coding_suspicions(std::span<const float> values, std::size_t width,
+                          const std::optional<double>& units_per_metre) {
+  constexpr float kLargestDisparity = 2047;  // marks pixels without any
   if (has_many_values(values) && !have_low_bytes(values)) {
     return {{true,
              "all values are multiples of 256, like those of 8 bits; if their bytes stand in the "
              "other order, give `decode` swapped"}};
   }
-  if (multiples == measured && distinct >= kFewestSteps) {
-    return {{true,
-             "all values are multiples of 8, as if they were rotated by three bits (SUN3D, APC), "
-             "which makes depths 8 times too large; if so, give `decode` rotated"}};
+  if (Remarks rotated = rotation_suspicion(values, width, units_per_metre); !rotated.empty())
+    return rotated;
+  std::size_t measured = 0, marked = 0;
+  float largest = 0;
+  for (const float value : values) {
+    if (!is_value(value) || value > 65534) continue;
+    ++measured;
+    largest = std::max(largest, value);
+    marked += value == kLargestDisparity;
   }
   if (largest == kLargestDisparity && 100 * marked > measured) {
     return {{true, "no value is above 2047, which " + pixels_text(marked) +
@@ -186,7 +246,7 @@ constexpr std::array kUsualMarkers{65535.0F, 65504.0F, 1e10F, std::numeric_limit
 float decoded(float value, const DepthDecoding& decoding) {
   auto bits = static_cast<std::uint16_t>(value);
   if (decoding.swapped) bits = swapped(bits);
-  if (decoding.rotated) bits = static_cast<std::uint16_t>((bits >> 3) | (bits << 13));
+  if (decoding.rotated) bits = rotated(bits);
   if (!decoding.disparity) return bits;
   // Beyond 10 m, disparities of a Kinect tell nothing (toolbox of NYU Depth V2).
   constexpr double kNumerator = 351.3, kAtInfinity = 1092.5, kFarthest = 10;
@@ -240,7 +300,9 @@ bool decode(std::vector<float>& values, const RawDepth& raw, const DepthReading&
     for (float& value : values) value = decoded(value, reading.decoding);
     return false;
   }
-  const Remarks suspicions = reading.looks_for_mistakes ? coding_suspicions(values) : Remarks{};
+  const Remarks suspicions = reading.looks_for_mistakes
+                                 ? coding_suspicions(values, raw.width, reading.units_per_metre)
+                                 : Remarks{};
   append(remarks, suspicions);
   return !suspicions.empty();
 }

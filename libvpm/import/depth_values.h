@@ -14,7 +14,7 @@ namespace vpm {
 // How 16-bit values are coded, undone in this order.
 struct DepthDecoding {
   bool swapped = false;     // the two bytes stand in the other order than the format says
-  bool big_endian = false;  // those of a PGM stand as it says; otherwise they are looked at
+  bool big_endian = false;  // a PGM's bytes stand as its standard says; if false, the values tell
   bool rotated = false;     // rotated by three bits to the left (SUN3D, Princeton's APC data)
   bool disparity =
       false;  // raw disparity of a Kinect: 351.3 / (1092.5 - value) metres (NYU Depth V2)

@@ -77,11 +77,9 @@ Indices grey_picture(const std::vector<Words>& all) {
 }
 
 std::string names_of(const std::vector<ExrChannelName>& channels, const Indices& which) {
-  constexpr std::size_t kMostNames = 8;
-  std::string names;
-  for (std::size_t k = 0; k < std::min(which.size(), kMostNames); ++k)
-    names += (k == 0 ? "" : ", ") + file::shown(full_name(channels[which[k]]));
-  return names + (which.size() > kMostNames ? ", …" : "");
+  std::vector<std::string> names;
+  for (const std::size_t k : which) names.push_back(full_name(channels[k]));
+  return file::listed(names);
 }
 
 std::string names_of(const std::vector<ExrChannelName>& channels) {

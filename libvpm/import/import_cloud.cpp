@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "libvpm/core/error.h"
-#include "libvpm/file/foreign_content.h"
-#include "libvpm/file/scan_format.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/point_files.h"
@@ -23,12 +22,13 @@ using file::ScanFormat;
 // Throws Error(refused), naming `name` and what the file seems to be, if it is none of these.
 ScanFormat format_of(std::span<const std::byte> bytes, const std::string& name) {
   if (bytes.empty()) refuse("the file is empty", name, "give a depth image or a cloud");
-  if (const auto other = file::foreign_content(bytes))
-    refuse("this is " + other->what, name,
-           other->holds == file::Holds::mesh
+  const auto content = file::sniff(bytes);
+  if (content && content->scan) return *content->scan;
+  if (content)
+    refuse("this is " + content->what, name,
+           content->holds == file::Holds::mesh
                ? "give a depth image or a cloud, or the mesh to vpm-pack"
-               : other->next);
-  if (const auto format = file::scan_format(bytes)) return *format;
+               : content->next);
   if (file::is_table_of_numbers(file::as_text(bytes)))
     refuse("this is a table of numbers in text", name,
            "save points as PLY or PCD, with their normals, and a depth image as NPY, PFM, TIFF or "
@@ -53,6 +53,8 @@ RawDepth parse_depth(ScanFormat format, std::span<const std::byte> bytes, const 
       return parse_netpbm_depth(bytes, name);
     case ScanFormat::npy:
       return parse_npy_depth(bytes, name);
+    case ScanFormat::compressed_depth:
+      return parse_compressed_depth(bytes, name);
     default:
       return parse_png_depth(bytes, name);
   }

@@ -5,11 +5,13 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "libvpm/core/error.h"
-#include "libvpm/file/foreign_content.h"
+#include "libvpm/file/npy.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/text.h"
 #include "libvpm/import/calibration_fields.h"
 #include "libvpm/import/calibration_text.h"
@@ -276,39 +278,82 @@ void find_candidates(const json& value, const std::string& path, std::vector<Can
     find_candidates(item, path.empty() ? key : path + "." + key, found);
 }
 
-const Candidate& chosen(const std::vector<Candidate>& candidates, const std::string& name) {
+bool are_same(const Candidate& a, const Candidate& b) {
+  const auto units = [](const Candidate& c) {
+    return c.file.factor ? c.file.factor->units_per_metre : 0;
+  };
+  return are_same(a.file.intrinsics, b.file.intrinsics) && a.file.width == b.file.width &&
+         a.file.height == b.file.height && units(a) == units(b) && a.fault == b.fault;
+}
+
+// Returns the only camera among these, or that of all which are the same; null if they differ.
+const Candidate* only(const std::vector<const Candidate*>& candidates) {
+  const bool are_one = std::ranges::all_of(
+      candidates, [&](const Candidate* other) { return are_same(*other, *candidates.front()); });
+  return are_one && !candidates.empty() ? candidates.front() : nullptr;
+}
+
+// Returns the camera that is meant: the only one, the one that is called depth, or, where each
+// image has its own, as in BOP's scene_camera.json, the one under the number in the image's name.
+Candidate chosen(const std::vector<Candidate>& candidates, const std::string& name,
+                 const std::string& image) {
   if (candidates.empty())
     refuse("no camera's intrinsics in it", name,
            "it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix");
-  if (candidates.size() == 1) return candidates.front();
-  std::vector<const Candidate*> depth;
-  std::string paths;
+  const std::optional<std::uint64_t> number = file::number_in_name(image);
+  std::vector<const Candidate*> all, depth, of_image;
+  std::vector<std::string> paths;
   for (const Candidate& candidate : candidates) {
+    all.push_back(&candidate);
+    paths.push_back(candidate.path);
     if (file::in_lower_case(candidate.path).find("depth") != std::string::npos)
       depth.push_back(&candidate);
-    paths += (paths.empty() ? "" : ", ") + file::shown(candidate.path, 40);
+    const std::string key = candidate.path.substr(0, candidate.path.find('.'));
+    if (number && file::to_count(key) == number) of_image.push_back(&candidate);
   }
-  if (depth.size() != 1)
-    refuse("it holds several cameras: " + file::shown(paths, 200), name,
+  for (const auto& some : {all, depth})
+    if (const Candidate* const found = only(some)) return *found;
+  const Candidate* const found = only(of_image);
+  if (found == nullptr)
+    refuse("it holds several cameras: " + file::listed(paths), name,
            "give the numbers of one as `intrinsics` fx,fy,cx,cy");
-  return *depth.front();
+  Candidate taken = *found;
+  taken.file.remarks.push_back({false, "of its " + std::to_string(all.size()) +
+                                           " cameras, that under the image's number, " +
+                                           std::to_string(*number) + ", is taken"});
+  return taken;
 }
 
-// Refuses what is no calibration by its first bytes: XML of OpenCV, UTF-16, archives, web pages.
-void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
-  const std::string_view text = file::as_text(bytes);
+// Refuses what is no calibration by its first bytes.
+void refuse_foreign(const std::optional<file::Content>& content, std::string_view text,
+                    const std::string& name) {
   const std::string_view start =
       text.substr(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   if (start.starts_with("<?xml") || start.starts_with("<opencv_storage"))
     refuse("this is XML, which is not read for intrinsics", name,
            "write it as .yml, which OpenCV does where the file's name ends so");
-  const auto other = file::foreign_content(bytes);
-  if (other && other->holds == file::Holds::anything)
-    refuse("this is " + other->what, name, other->next);
+  if (content)
+    refuse("this is " + content->what, name,
+           content->holds == file::Holds::anything
+               ? content->next
+               : "write fx, fy, cx and cy of its camera in a text, or give them as `intrinsics` "
+                 "fx,fy,cx,cy");
 }
 
-// Returns the camera of a text that holds numbers and nothing else.
-Candidate from_text(const std::vector<double>& n, const std::string& name) {
+// Returns the numbers of an array of NumPy that has few enough to be a camera's.
+std::vector<double> numbers_of_array(std::span<const std::byte> bytes, const std::string& name) {
+  constexpr std::uint64_t kMost = 16;  // 4x4
+  const file::NpyArray array = file::parse_npy(bytes, name);
+  if (array.size == 0 || array.size > kMost)
+    refuse("an array of " + file::shape_text(array.shape) + " is no camera's matrix", name,
+           "save one of 3 x 3 numbers");
+  std::vector<double> numbers;
+  for (std::uint64_t k = 0; k < array.size; ++k) numbers.push_back(array.at(k));
+  return numbers;
+}
+
+// Returns the camera of a text, or array, that holds numbers and nothing else.
+Candidate from_numbers(const std::vector<double>& n, const std::string& name) {
   Candidate read;
   if (n.size() == 4)
     read.file.intrinsics = {n[0], n[1], n[2], n[3]};
@@ -320,11 +365,12 @@ Candidate from_text(const std::vector<double>& n, const std::string& name) {
 }
 
 // Returns the camera of a calibration in JSON or YAML.
-Candidate from_calibration(std::string_view text, const std::string& name) {
+Candidate from_calibration(std::string_view text, const std::string& name,
+                           const std::string& image) {
   const json calibration = parse_calibration(text, name);
   std::vector<Candidate> candidates;
   find_candidates(calibration, "", candidates);
-  Candidate read = chosen(candidates, name);
+  Candidate read = chosen(candidates, name, image);
   if (!read.file.factor && calibration.is_object())
     read.file.factor = depth_factor_in(Fields(calibration));
   return read;
@@ -332,14 +378,23 @@ Candidate from_calibration(std::string_view text, const std::string& name) {
 
 }  // namespace
 
-IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name) {
-  constexpr std::size_t kLargest = std::size_t{1} << 20;  // bytes
-  const std::string_view text = file::without_byte_order_mark(file::as_text(bytes));
-  refuse_foreign(bytes.last(text.size()), name);
-  if (text.size() > kLargest || text.find('\0') != text.npos)
+IntrinsicsFile parse_intrinsics(std::span<const std::byte> bytes, const std::string& name,
+                                const std::string& image) {
+  constexpr std::size_t kLargest = std::size_t{1} << 20U;      // bytes
+  constexpr std::size_t kLargestJson = std::size_t{1} << 24U;  // an entry for each image of many
+  const std::string utf8 = file::utf8_of(file::as_text(bytes));
+  const std::string_view text = file::without_byte_order_mark(utf8);
+  const auto content = file::sniff(std::as_bytes(std::span(text.data(), text.size())));
+  const bool is_array = content && content->scan == file::ScanFormat::npy;
+  if (!is_array) refuse_foreign(content, text, name);
+  const std::size_t first = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+  const std::size_t most = text.substr(first).starts_with('{') ? kLargestJson : kLargest;
+  if (!is_array && (text.size() > most || text.find('\0') != text.npos))
     refuse("not a text with a camera's intrinsics", name);
-  const std::vector<double> numbers = plain_numbers(text);
-  const Candidate read = numbers.empty() ? from_calibration(text, name) : from_text(numbers, name);
+  const std::vector<double> numbers =
+      is_array ? numbers_of_array(bytes, name) : plain_numbers(text);
+  const Candidate read =
+      numbers.empty() ? from_calibration(text, name, image) : from_numbers(numbers, name);
   if (!read.fault.empty()) refuse(read.fault, name, read.hint);
   if (!are_sound(read.file.intrinsics))
     refuse("its focal lengths are not greater than 0, or its numbers are too large", name);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -106,15 +107,34 @@ void compare_with_plane(const Cloud& cloud, std::span<const std::size_t> points,
     cosines.push_back(static_cast<float>(std::abs(dot(widen(plane), widen(cloud.normals[k])))));
 }
 
-Remarks off_the_surface(std::vector<float> cosines, const Cloud& cloud) {
+// Returns how far normals lie off the planes that the points in a cube form: the median, in
+// degrees; empty if too few points form planes.
+std::optional<double> degrees_off_planes(const Cloud& cloud, const Cubes& cubes) {
   constexpr std::size_t kFewest = 20, kPart = 10;  // one of so many must be judged
-  constexpr float kMostDegrees = 25;
-  if (cosines.size() < kFewest || kPart * cosines.size() < cloud.size()) return {};
+  std::vector<float> cosines;
+  cubes.for_each(
+      [&](std::span<const std::size_t> points) { compare_with_plane(cloud, points, cosines); });
+  if (cosines.size() < kFewest || kPart * cosines.size() < cloud.size()) return std::nullopt;
   const auto middle = cosines.begin() + static_cast<std::ptrdiff_t>(cosines.size() / 2);
   std::nth_element(cosines.begin(), middle, cosines.end());
-  const double degrees = std::acos(std::min(*middle, 1.0F)) * 180 / std::numbers::pi;
-  if (degrees <= kMostDegrees) return {};
-  return {{true, "its normals lie " + std::to_string(static_cast<int>(degrees)) +
+  return std::acos(std::min(*middle, 1.0F)) * 180 / std::numbers::pi;
+}
+
+// Returns a warning if normals lie off the surfaces that the points form. Quantised depths form
+// flat steps that are several points wide, and a few noisy points form planes by chance, so that
+// right normals may lie off the planes in small cubes. They agree with those in larger cubes, where
+// the surface is flat; wrong ones lie off the planes of every size.
+Remarks off_the_surface(const Cloud& cloud, double side, const Cubes& smallest) {
+  constexpr double kMostDegrees = 25;
+  constexpr int kSizes = 5;  // each twice as large as the one before
+  std::optional<double> least = degrees_off_planes(cloud, smallest);
+  for (int k = 1; k < kSizes && least.value_or(HUGE_VAL) > kMostDegrees; ++k) {
+    side *= 2;
+    const std::optional<double> degrees = degrees_off_planes(cloud, Cubes(cloud, side));
+    if (degrees) least = std::min(*degrees, least.value_or(HUGE_VAL));
+  }
+  if (!least || *least <= kMostDegrees) return {};
+  return {{true, "its normals lie " + std::to_string(static_cast<int>(*least)) +
                      " degrees off those of the surfaces that its points form (median): were the "
                      "points turned without their normals, or are the normals coded, as 0 to 1 or "
                      "as colours? Give them in the frame of the points, as -1 to 1"}};
@@ -173,19 +193,17 @@ Remarks improbable_normals(const Cloud& cloud) {
   constexpr std::size_t kFew = 8, kPart = 500;  // points; one of so many
   const double side = kSideOfRadius * median_radius(cloud);
   if (!(side > 0)) return {};
+  const Cubes cubes(cloud, side);
   std::size_t opposite = 0;
-  std::vector<float> cosines;
-  Cubes(cloud, side).for_each([&](std::span<const std::size_t> points) {
-    opposite += count_opposite(cloud, points);
-    compare_with_plane(cloud, points, cosines);
-  });
+  cubes.for_each(
+      [&](std::span<const std::size_t> points) { opposite += count_opposite(cloud, points); });
   Remarks remarks;
   if (opposite >= kFew && kPart * opposite >= cloud.size())
     remarks.push_back(
         {true, "normals of neighbouring points face opposite ways (" +
                    percent_text(opposite, cloud.size()) +
                    " do), as if they were never oriented; all must point into free space"});
-  append(remarks, off_the_surface(std::move(cosines), cloud));
+  append(remarks, off_the_surface(cloud, side, cubes));
   return remarks;
 }
 

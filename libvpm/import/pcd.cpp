@@ -58,6 +58,7 @@ struct Header {
   std::uint64_t width = 0, height = 1, points = 0;
   std::uint64_t point_size = 0, point_values = 0;
   std::optional<Pose> viewpoint;
+  Vec3 origin;  // place that the points are written about
   std::string encoding;
 };
 
@@ -86,6 +87,7 @@ class PcdParser {
     if (header_.encoding == "ascii") read_ascii();
     if (header_.encoding == "binary") read_binary();
     if (header_.encoding == "binary_compressed") read_compressed();
+    for (Vec3& p : points_.positions) p = p + header_.origin;
     say_unread();
     return std::move(points_);
   }
@@ -97,6 +99,7 @@ class PcdParser {
   void read_entry(const std::vector<std::string_view>& words);
   void read_fields(const std::vector<std::string_view>& words);
   void read_viewpoint(const std::vector<std::string_view>& words);
+  void read_origin(const std::vector<std::string_view>& words);
   void check_header();
   void find_columns();
   void allocate();
@@ -128,6 +131,8 @@ void PcdParser::read_header() {
     const std::optional<std::string_view> line = cursor_.line();
     if (!line) fail("header ends before its DATA line");
     const std::vector<std::string_view> words = file::split_words(*line);
+    if (words.size() == 6 && words[0] == "#" && words[1] == "vpm" && words[2] == "origin")
+      read_origin(words);
     if (words.empty() || words[0].front() == '#') continue;
     if (words.size() < 2) fail("header: '" + file::shown(words[0]) + "' has no value");
     read_entry(words);
@@ -210,6 +215,13 @@ void PcdParser::read_viewpoint(const std::vector<std::string_view>& words) {
            "give tx ty tz qw qx qy qz of a unit quaternion");
   }
   header_.viewpoint = viewpoint;
+}
+
+// Reads "# vpm origin X Y Z", the place that cloud_export.h writes points about.
+void PcdParser::read_origin(const std::vector<std::string_view>& words) {
+  const auto number = [&](std::size_t k) { return file::to_number(words[k]).value_or(0); };
+  header_.origin = {number(3), number(4), number(5)};
+  if (!is_finite(header_.origin)) fail("header: its origin is not finite");
 }
 
 void PcdParser::check_header() {

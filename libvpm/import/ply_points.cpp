@@ -71,6 +71,7 @@ PointSet parse_ply_points(std::span<const std::byte> bytes, const std::string& n
       body.end_record();
     }
   }
+  for (Vec3& p : points.positions) p = p + header.origin;
   for (std::string& note : body.unread()) points.remarks.push_back({true, std::move(note)});
   return points;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/scalar_type.h"
 #include "libvpm/import/depth_files.h"
 #include "libvpm/import/point_files.h"
 
@@ -123,6 +124,21 @@ RawDepth parse_png_depth(std::span<const std::byte> bytes, const std::string& na
   if (!png.read_rows(rows)) refuse(std::string("not a sound PNG: ") + png.fault(), name);
   image.values.assign(values.begin(), values.end());
   return image;
+}
+
+RawDepth parse_compressed_depth(std::span<const std::byte> bytes, const std::string& name) {
+  // An integer, the format, and two floats. Images of floats are stored as a / depth + b there,
+  // with b = 1 - a / farthest; images of millimetres leave the floats 0 or unset.
+  constexpr std::size_t kConfiguration = 12;
+  const auto number = [&](std::size_t at) {
+    return file::read_scalar(bytes.data() + at, {'F', 4}, false);
+  };
+  constexpr double kLeast = 1e-3, kMost = 1e9, kNearest = 0.1, kFarthest = 1000;
+  const double a = number(4), b = number(8), farthest = a / (1 - b);  // m
+  if (a > kLeast && a < kMost && farthest > kNearest && farthest < kFarthest)
+    refuse("a message of ROS' compressedDepth of float depths, which it codes as inverse depths",
+           name, "decode it by compressed_depth_image_transport, and save it as 16-bit PNG");
+  return parse_png_depth(bytes.subspan(kConfiguration), name);
 }
 
 }  // namespace vpm

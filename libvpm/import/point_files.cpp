@@ -1,5 +1,8 @@
 #include "libvpm/import/point_files.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "libvpm/core/error.h"
 #include "libvpm/file/text.h"
 
@@ -19,10 +22,10 @@ constexpr std::array<ColumnNames, kPointColumns> kColumns{{{"x", "x"},
                                                            {"nz", "normal_z"}}};
 
 std::string listed(std::span<const std::string> fields) {
-  std::string list;
-  for (const std::string& field : fields)
-    if (!field.empty()) list += (list.empty() ? "" : ", ") + field;
-  return file::shown(list, 100);
+  std::vector<std::string> names;
+  std::copy_if(fields.begin(), fields.end(), std::back_inserter(names),
+               [](const std::string& field) { return !field.empty(); });
+  return file::listed(names);
 }
 
 }  // namespace

@@ -10,9 +10,8 @@
 #include "libvpm/core/box.h"
 #include "libvpm/core/error.h"
 #include "libvpm/core/rounding.h"
-#include "libvpm/file/foreign_content.h"
 #include "libvpm/file/ply_header.h"
-#include "libvpm/file/scan_format.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/file/text_lines.h"
@@ -137,12 +136,11 @@ std::optional<MeshFormat> scene_by_extension(const std::string& extension) {
 
 // Refuses what is known to be something else than a mesh, by name.
 void refuse_foreign(std::span<const std::byte> bytes, const std::string& name) {
-  const char* const hint = "give the mesh, or a cloud and images to vpm-normals";
-  if (const auto other = file::foreign_content(bytes))
-    refuse("this is " + other->what, name, other->holds == file::Holds::scan ? hint : other->next);
-  const auto scan = file::scan_format(bytes);
-  if (scan && *scan != file::ScanFormat::ply)
-    refuse(std::string("this is ") + file::describe(*scan), name, hint);
+  const auto other = file::sniff(bytes);
+  if (!other || other->is_mesh) return;
+  refuse("this is " + other->what, name,
+         other->holds == file::Holds::scan ? "give the mesh, or a cloud and images to vpm-normals"
+                                           : other->next);
 }
 
 RawMesh parse_nodes(std::string_view text, const std::string& name, MeshFormat format,

@@ -308,9 +308,9 @@ bool is_usual(const PoseColumns& columns) {
   return true;
 }
 
-// Returns the order for a line that has one number more than the names: a time, which comes first
-// and which no name stands for. Returns nothing where the names have a time themselves, or name the
-// first number.
+// Returns the order of a line that has one number more than the names, which then is a time in
+// front of the pose. Empty if the names tell of a time or of another column before the pose, or if
+// the other numbers do not fit them.
 std::optional<PoseColumns> order_after_time(const std::vector<PoseColumns>& orders,
                                             std::size_t count) {
   const PoseColumns& all = orders.back();

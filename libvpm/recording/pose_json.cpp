@@ -96,14 +96,9 @@ std::optional<ObjectPose> pose_of_ros(const json& object) {
 }
 
 std::string keys_of(const json& object) {
-  constexpr std::size_t kMostNames = 8;
-  std::string names;
-  std::size_t count = 0;
-  for (const auto& [key, value] : object.items()) {
-    if (++count > kMostNames) return names + ", …";
-    names += (count == 1 ? "\"" : ", \"") + file::shown(key) + "\"";
-  }
-  return names.empty() ? "nothing" : names;
+  std::vector<std::string> names;
+  for (const auto& [key, value] : object.items()) names.push_back('"' + file::shown(key) + '"');
+  return names.empty() ? "nothing" : file::listed(names);
 }
 
 constexpr const char* kNoCameraMatrix =

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <iostream>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/recording/pose_json.h"
 #include "libvpm/recording/pose_numbers.h"
@@ -43,6 +45,32 @@ bool are_undefined(const std::vector<double>& numbers) {
 bool may_be_by_columns(std::vector<double> rows, const std::vector<double>& last) {
   rows.insert(rows.end(), last.begin(), last.end());
   return is_by_columns(rows);
+}
+
+// Refuses what is known by its first line to hold no poses.
+void refuse_foreign(const std::string& line, const std::string& name) {
+  const std::string start = line + "\n";
+  const auto other = file::sniff(std::as_bytes(std::span(start.data(), start.size())));
+  if (!other) return;
+  refuse("this is " + other->what, name,
+         other->holds == file::Holds::anything
+             ? other->next
+             : "write poses as lines tx ty tz qx qy qz qw, as JSON or as .npy");
+}
+
+// Returns how many numbers each pose of an array has.
+std::size_t numbers_per_pose(const std::vector<std::uint64_t>& shape, const std::string& name) {
+  const std::size_t dimensions = shape.size();
+  const std::uint64_t last = dimensions > 0 ? shape.back() : 0;
+  if ((dimensions == 2 || dimensions == 3) && last == kMatrixRow) {
+    const std::uint64_t rows = shape[dimensions - 2];
+    if (rows == 3 || rows == 4) return rows * kMatrixRow;
+  }
+  if (dimensions == 1 || dimensions == 2)
+    for (const std::size_t count : {kQuaternionPose, kTimedPose, kThreeRows, kMatrix})
+      if (last == count) return count;
+  refuse("an array of " + file::shape_text(shape) + " holds no poses", name,
+         "save matrices, N x 4 x 4 or N x 3 x 4, or N x 7 numbers tx ty tz qx qy qz qw");
 }
 
 Pose only_pose(const std::string& path, double* deviation) {
@@ -80,7 +108,34 @@ std::optional<std::string> PoseReader::any_line() {
     if (line && line_ == 1)
       line->erase(0, line->size() - file::without_byte_order_mark(*line).size());
     if (!line) line_ = --read_;
+    if (line && line_ == 1) refuse_foreign(*line, name_);
     return line;
+  } catch (const Error& fault) {
+    refuse(fault.problem(), fault.where().empty() ? place() : fault.where(), fault.hint());
+  }
+}
+
+void PoseReader::begin_array() {
+  constexpr int kFirstByte = 0x93;  // of .npy
+  errno = 0;
+  const int first = stream_.peek();
+  if (stream_.bad()) refuse("cannot read " + name_ + ": " + std::strerror(errno));
+  if (first != kFirstByte) return;
+  bytes_ = file::rest_of(stream_);
+  array_ = file::parse_npy(std::as_bytes(std::span(bytes_.data(), bytes_.size())), name_);
+  per_pose_ = numbers_per_pose(array_->shape, name_);
+}
+
+std::optional<Pose> PoseReader::next_of_array() {
+  if ((item_ + 1) * per_pose_ > array_->size) return std::nullopt;
+  std::vector<double> numbers(per_pose_);
+  for (std::size_t k = 0; k < per_pose_; ++k) numbers[k] = array_->at(item_ * per_pose_ + k);
+  ++item_;
+  time_.reset();
+  try {
+    const TimedPose found = from_numbers(std::move(numbers), std::nullopt);
+    time_ = found.time;
+    return found.pose;
   } catch (const Error& fault) {
     refuse(fault.problem(), place(), fault.hint());
   }
@@ -114,6 +169,8 @@ std::optional<std::string> PoseReader::next_line(bool stops_at_blank) {
 }
 
 std::optional<Pose> PoseReader::next() {
+  if (read_ == 0 && !array_) begin_array();
+  if (array_) return next_of_array();
   if (item_ >= list_.size()) {
     list_.clear();
     item_ = 0;
@@ -135,6 +192,7 @@ std::optional<Pose> PoseReader::next() {
 
 std::string PoseReader::place() const {
   const std::string item = item_ > 0 && list_.size() != 1 ? ", pose " + std::to_string(item_) : "";
+  if (array_) return name_ + item;
   return name_ + ", line " + std::to_string(line_) + item;
 }
 
@@ -244,9 +302,9 @@ PoseReader::TimedPose PoseReader::from_numbers(std::vector<double> n, std::optio
 }
 
 Pose read_camera_pose(const std::string& path, double* deviation) {
-  const std::vector<std::byte> bytes = file::read_all(path);
+  const std::string text = file::utf8_of(file::as_text(file::read_all(path)));
   try {
-    const nlohmann::json value = json_or_print(file::as_text(bytes));
+    const nlohmann::json value = json_or_print(text);
     if (value.is_object())
       if (const auto pose = camera_of_object(value, deviation)) return *pose;
     if (value.is_array() && list_of_poses(value) == nullptr) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libvpm/core/pose.h"
+#include "libvpm/file/npy.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/pose_columns.h"
 
@@ -24,11 +25,13 @@ namespace vpm {
 //   TUM text     "time tx ty tz qx qy qz qw" (the time may be left out)
 //   KITTI text   twelve numbers, a 3x4 matrix row by row
 //   matrix text  four lines of four numbers for each pose, or three for each pose of the file
-// A '#' starts a comment, except in a line of JSON. A line of names, in a comment or first in the
-// file, tells the order of the numbers after it; otherwise quaternions end in w. Words beside the
-// names are passed over; a comment that seems to tell another order, but not clearly, is refused
-// with the first pose that has a quaternion. Times may be seconds or whole milli-, micro- or
-// nanoseconds since 1970.
+//   NPY          an array of matrices, N x 4 x 4 or N x 3 x 4, or of N x 7 numbers, or 8 with the
+//                time first
+// Texts are in UTF-8, or in UTF-16 with its mark. A '#' starts a comment, except in a line of JSON.
+// A line of names, in a comment or first in the file, tells the order of the numbers after it;
+// otherwise quaternions end in w. Words beside the names are passed over; a comment that seems to
+// tell another order, but not clearly, is refused with the first pose that has a quaternion. Times
+// may be seconds or whole milli-, micro- or nanoseconds since 1970.
 class PoseReader {
  public:
   explicit PoseReader(const std::string& path);  // "-" reads standard input
@@ -60,6 +63,9 @@ class PoseReader {
     std::size_t number = 0;
   };
 
+  // Takes the whole stream if it begins as an array of NumPy does.
+  void begin_array();
+  std::optional<Pose> next_of_array();
   // Returns the next line with more than a comment; empty at the end. `stops_at_blank` returns ""
   // for a blank line.
   std::optional<std::string> next_line(bool stops_at_blank = false);
@@ -84,6 +90,9 @@ class PoseReader {
   std::ifstream file_;
   std::istream& stream_;
   file::LineStream lines_;
+  std::string bytes_;                    // of an array
+  std::optional<file::NpyArray> array_;  // if the file is one
+  std::size_t per_pose_ = 0;             // numbers of a pose in the array
   std::optional<PoseNames> names_;
   int rows_ = 0;  // lines of each matrix: 3 or 4, 0 before the first
   bool has_passed_blank_ = false;

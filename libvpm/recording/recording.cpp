@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <set>
+#include <span>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/sniff.h"
 #include "libvpm/file/stream.h"
 #include "libvpm/file/text.h"
 #include "libvpm/recording/pose_reader.h"
@@ -56,8 +58,14 @@ std::optional<std::pair<double, std::string>> entry_of(std::string_view line) {
 
 void read_list(const fs::path& list, Recording& recording) {
   const std::vector<std::byte> bytes = file::read_all(list.string());
+  const std::string text = file::utf8_of(file::as_text(bytes));
+  const auto other = file::sniff(std::as_bytes(std::span(text.data(), text.size())));
+  if (other)
+    refuse("this is " + other->what, list.string(),
+           other->scan ? "give the folder of the frames, or a list of \"time file\" lines"
+                       : other->next);
   std::size_t number = 0;
-  for (const std::string_view line : lines_of(file::as_text(bytes))) {
+  for (const std::string_view line : lines_of(text)) {
     ++number;
     try {
       const auto entry = entry_of(line);
@@ -109,16 +117,6 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-// Returns the last number before the first dot of a name.
-std::optional<std::uint64_t> number_in(const fs::path& path) {
-  const std::string stem = stem_of(path);
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) return std::nullopt;
-  const std::size_t before = stem.find_last_not_of("0123456789", last);
-  const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  return file::to_count(std::string_view(stem).substr(first, last - first + 1));
-}
-
 // True if the whole name is a number with a point.
 bool is_decimal(const fs::path& path) {
   const std::string name = path.stem().string();
@@ -131,7 +129,7 @@ bool is_decimal(const fs::path& path) {
 std::optional<double> time_in(const fs::path& path) {
   constexpr std::uint64_t kSmallestStamp = 1'000'000'000'000;
   if (is_decimal(path)) return seconds_of_stamp(*file::to_number(path.stem().string()));
-  const std::optional<std::uint64_t> number = number_in(path);
+  const std::optional<std::uint64_t> number = file::number_in_name(path.string());
   if (!number || *number < kSmallestStamp) return std::nullopt;
   return seconds_of_stamp(static_cast<double>(*number));
 }
@@ -139,7 +137,7 @@ std::optional<double> time_in(const fs::path& path) {
 void number_frames(const std::vector<fs::path>& files, double frame_rate, Recording& recording) {
   std::vector<std::pair<std::uint64_t, fs::path>> numbered;
   for (const fs::path& path : files) {
-    const std::optional<std::uint64_t> number = number_in(path);
+    const std::optional<std::uint64_t> number = file::number_in_name(path.string());
     if (!number)
       refuse("its name is neither a time (12.345.png) nor has it a number (frame-000001.png)",
              path.string(), "give a list of \"time file\" lines instead");

@@ -67,7 +67,7 @@ class SampledPath {
   SampledPath(TimedPath path, double rate);
 
   std::size_t steps() const { return steps_; }
-  // Returns the time of a step, s from the first one.
+  // Returns the seconds from the first step to this one.
   double time(std::size_t step) const { return static_cast<double>(step) / rate_; }
   Pose pose(std::size_t step) const;
   const TimedPath& path() const { return path_; }

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "libvpm/file/foreign_content.h"
+#include "libvpm/file/sniff.h"
 
 namespace vpm::file {
 namespace {
@@ -62,9 +62,9 @@ TEST(Text, ALineWithoutEndIsRefused) {
   EXPECT_ANY_THROW(streamed_lines_of(std::string(2'000'000, 'x')));
 }
 
-TEST(ForeignContent, NamesWhatPeopleGiveByMistake) {
+TEST(Sniff, NamesWhatPeopleGiveByMistake) {
   const auto what = [](std::string_view text) {
-    const auto found = foreign_content(std::as_bytes(std::span(text.data(), text.size())));
+    const auto found = sniff(std::as_bytes(std::span(text.data(), text.size())));
     return found ? found->what : "";
   };
   EXPECT_EQ(what("version https://git-lfs.github.com/spec/v1\n"),
@@ -77,8 +77,76 @@ TEST(ForeignContent, NamesWhatPeopleGiveByMistake) {
   EXPECT_EQ(what("ISO-10303-21;\nHEADER;"), "a STEP file of CAD");
   EXPECT_EQ(what("\x1f\x8b\x08"), "compressed by gzip");
   EXPECT_EQ(what("%PDF-1.7"), "a PDF document");
-  EXPECT_EQ(what("# .PCD v0.7"), "");
+  EXPECT_EQ(what("MATLAB 5.0 MAT-file, Platform: posix"), "a MATLAB file");
+  EXPECT_EQ(what("MATLAB 7.3 MAT-file, Platform: posix"), "a MATLAB file (HDF5)");
+  EXPECT_EQ(what("\x1a\x45\xdf\xa3\xa3"), "a Matroska recording (.mkv), such as an Azure Kinect's");
+  EXPECT_EQ(what("# fx fy cx cy\n1 2 3 4\n"), "");
+  EXPECT_EQ(what("v 0 0 0\nv 1 0 0\n"), "");
   EXPECT_EQ(what(""), "");
+}
+
+TEST(Sniff, NamesWhatIsReadToo) {
+  for (const auto& [text, scan] : std::vector<std::pair<std::string_view, ScanFormat>>{
+           {"\x89PNG\r\n", ScanFormat::png},
+           {"v/1\1", ScanFormat::exr},
+           {{"MM\0*", 4}, ScanFormat::tiff},
+           {"P5\n", ScanFormat::netpbm},
+           {"Pf 2 2", ScanFormat::netpbm},
+           {"\x93NUMPY\1", ScanFormat::npy},
+           {"# .PCD v0.7", ScanFormat::pcd},
+           {"# made\n#\nVERSION .7\n", ScanFormat::pcd},
+           {"\xEF\xBB\xBFply\n", ScanFormat::ply},
+           {{"\0\0\0\0\0\0\0\0\0\0\0\0\x89PNG", 16}, ScanFormat::compressed_depth}}) {
+    const auto found = sniff(std::as_bytes(std::span(text.data(), text.size())));
+    ASSERT_TRUE(found) << text;
+    EXPECT_EQ(found->scan, scan) << found->what;
+    EXPECT_EQ(found->holds, Holds::scan);
+  }
+  for (const std::string& text : {std::string("glTF\2\0\0\0", 8), std::string("solid cube\n"),
+                                  std::string("OFF\n8 6 0\n"), std::string("<COLLADA>")}) {
+    const auto found = sniff(std::as_bytes(std::span(text.data(), text.size())));
+    ASSERT_TRUE(found) << text;
+    EXPECT_EQ(found->next, "give it to vpm-pack");
+    EXPECT_TRUE(found->is_mesh);
+  }
+}
+
+// Returns the units in UTF-16 with their mark.
+std::string utf16(std::u16string_view units, bool is_big) {
+  std::string bytes = is_big ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char16_t unit : units) {
+    const auto high = static_cast<char>(unit >> 8), low = static_cast<char>(unit & 0xFF);
+    bytes += {is_big ? high : low, is_big ? low : high};
+  }
+  return bytes;
+}
+
+TEST(Text, Utf16BecomesUtf8) {
+  for (const bool is_big : {false, true}) {
+    EXPECT_EQ(utf8_of(utf16(u"fx = 1\r\n", is_big)), "fx = 1\r\n");
+    EXPECT_EQ(utf8_of(utf16(u"\u00e9\u20ac\U0001F600", is_big)), "é€😀");
+    EXPECT_EQ(utf8_of(utf16(std::u16string{'a', 0xD800, 'b', 0xDC00}, is_big)), "a\uFFFDb\uFFFD");
+    EXPECT_EQ(utf8_of(utf16(u"ab", is_big) + "x"), "ab") << "half a character at the end";
+    EXPECT_EQ(streamed_lines_of(utf16(u"a b\r\nc\nd", is_big)),
+              (std::vector<std::string>{"a b", "c", "d"}));
+  }
+  EXPECT_EQ(utf8_of("\xFF\xFE"), "");
+  EXPECT_EQ(utf8_of("plain"), "plain");
+}
+
+TEST(Text, ListsHaveFiveNamesAndACount) {
+  EXPECT_EQ(listed({}), "");
+  EXPECT_EQ(listed({"a", "b", "c", "d", "e"}), "a, b, c, d, e");
+  EXPECT_EQ(listed(std::vector<std::string>(1000, "P")), "P, P, P, P, P and 995 more");
+}
+
+TEST(Text, TheNumberInANameIsTheLastBeforeItsFirstDot) {
+  EXPECT_EQ(number_in_name("scene7/depth/000012.png"), 12U);
+  EXPECT_EQ(number_in_name("frame-000460.depth2.png"), 460U);
+  EXPECT_EQ(number_in_name("7.png"), 7U);
+  EXPECT_FALSE(number_in_name("scene7/depth.png"));
+  EXPECT_FALSE(number_in_name("-"));
+  EXPECT_FALSE(number_in_name(""));
 }
 
 // Returns a mesh of MuJoCo: counts of vertices, normals, texture coordinates and faces, then `rest`
@@ -88,7 +156,7 @@ std::string mesh_of_mujoco(std::size_t rest) {
   return std::string(reinterpret_cast<const char*>(counts), sizeof counts) + std::string(rest, 1);
 }
 
-TEST(ForeignContent, NamesFilesOfOtherPrograms) {
+TEST(Sniff, NamesFilesOfOtherPrograms) {
   constexpr std::size_t kMujoco = 4 * 12 + 4 * 12 + 4 * 8 + 2 * 12;
   const std::string xml = "<?xml version=\"1.0\"?>\n<!-- made -->\n";
   for (const auto& [text, what, next, holds] :
@@ -111,7 +179,7 @@ TEST(ForeignContent, NamesFilesOfOtherPrograms) {
             Holds::anything},
            {xml + "<sdf version=\"1.6\">", "a robot description", "one of the files",
             Holds::mesh}}) {
-    const auto found = foreign_content(std::as_bytes(std::span(text.data(), text.size())));
+    const auto found = sniff(std::as_bytes(std::span(text.data(), text.size())));
     ASSERT_TRUE(found) << text;
     EXPECT_NE(found->what.find(what), std::string::npos) << found->what;
     EXPECT_NE(found->next.find(next), std::string::npos) << found->next;
@@ -120,7 +188,7 @@ TEST(ForeignContent, NamesFilesOfOtherPrograms) {
   for (const std::string& text :
        {mesh_of_mujoco(kMujoco + 1), std::string("160&120&"), std::string("160&&1&"),
         std::string("&&&"), std::string("160 120 1"), std::string("*nod")})
-    EXPECT_FALSE(foreign_content(std::as_bytes(std::span(text.data(), text.size())))) << text;
+    EXPECT_FALSE(sniff(std::as_bytes(std::span(text.data(), text.size())))) << text;
 }
 
 }  // namespace

@@ -143,6 +143,13 @@ def tiff(values, code, bits, sample_format, compression=1):
     return b"II*\0" + struct.pack("<I", 8 + len(data)) + data + directory
 
 
+def npy(kind, shape, data):
+    """Returns an array of NumPy whose values are these bytes."""
+    header = "{'descr': '%s', 'fortran_order': False, 'shape': (%s,), }" % (kind, ", ".join(map(str, shape)))
+    header += " " * (117 - len(header)) + "\n"
+    return b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode() + data
+
+
 def images():
     yield "png/gray", png(MILLIMETRES)
     yield "exr/plain", exr(0, 1)
@@ -158,10 +165,7 @@ def images():
         "<%df" % len(METRES), *METRES)
     for name, kind, data in (("floats", "<f4", struct.pack("<48f", *METRES)),
                              ("integers", "<u2", struct.pack("<48H", *MILLIMETRES))):
-        header = "{'descr': '%s', 'fortran_order': False, 'shape': (%d, %d), }" % (
-            kind, HEIGHT, WIDTH)
-        header += " " * (117 - len(header)) + "\n"
-        yield "npy/" + name, b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode() + data
+        yield "npy/" + name, npy(kind, (HEIGHT, WIDTH), data)
 
 
 def clouds():
@@ -207,7 +211,9 @@ INTRINSICS = {
            "  data: [525, 0, 319.5, 0, 525, 239.5, 0, 0, 1]\n",
     "open3d": '{"width": 640, "height": 480, "intrinsic_matrix": '
               '[525, 0, 0, 0, 525, 0, 319.5, 239.5, 1]}\n',
-    "realsense": '{"width": 640, "height": 480, "fx": 525, "fy": 525, "ppx": 319.5, "ppy": 239.5}\n'}
+    "realsense": '{"width": 640, "height": 480, "fx": 525, "fy": 525, "ppx": 319.5, "ppy": 239.5}\n',
+    "bop": '{"0": {"cam_K": [525, 0, 319.5, 0, 525, 239.5, 0, 0, 1], "depth_scale": 0.1}, '
+           '"5": {"cam_K": [526, 0, 319.5, 0, 525, 239.5, 0, 0, 1], "depth_scale": 0.1}}\n'}
 
 
 def texts():
@@ -216,6 +222,13 @@ def texts():
         yield "camera_pose/" + name, text.split("\n")[0] if "json" in name else text
     for name, text in INTRINSICS.items():
         yield "intrinsics/" + name, text
+    upright = struct.pack("<16f", 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1)
+    for target in ("poses", "camera_pose"):
+        yield target + "/npy_matrices", npy("<f4", (1, 4, 4), upright)
+        yield target + "/utf16", POSES["tum"].encode("utf-16")
+    yield "poses/npy_times", npy("<f8", (2, 8), struct.pack("<16d", *[1, 0, 0, 1, 0, 0, 0, 1], *[2, 0, 0, 1, 0, 0, 0, 1]))
+    yield "intrinsics/npy", npy("<f8", (3, 3), struct.pack("<9d", 525, 0, 319.5, 0, 525, 239.5, 0, 0, 1))
+    yield "intrinsics/utf16", INTRINSICS["numbers"].encode("utf-16")
     yield "config/plain", ('{"input": "a.off", "output": "b", "spheres": 10, "coverage": 0.5, '
                            '"grow": true, "levels": [1, 2], "tool": ["a", "b"]}')
     yield "config/import", ('{"intrinsics": "525,525,319.5,239.5", "camera-pose": "0,0,0,0,0,0,1", '

@@ -5,7 +5,11 @@
 #endif
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libvpm/file/stream.h"
 #include "libvpm/file/temporary_folder.h"
@@ -98,12 +102,14 @@ TEST(NpyDepth, ReadsTypesAndOrders) {
 
 TEST(NpyDepth, RefusesWhatIsNoDepth) {
   const auto refused = [](const std::string& file) { return test::refusal([&] { npy(file); }); };
-  EXPECT_TRUE(says(refused(make_npy<char>("|u1", "False", "(2, 3)", {})), "|u1"));
-  EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", "(2, 3, 3)", kRows)), "3 dimensions"));
+  const std::vector<float> many(6000);
   EXPECT_TRUE(
-      says(refused(make_npy<float>("<f4", "False", "(2, 3, 3)", kRows)), "save only the z"));
+      says(refused(make_npy<char>("|u1", "False", "(2, 3)", {1, 2, 3, 4, 5, 6})), "8 bits"));
+  const std::string points = refused(make_npy<float>("<f4", "False", "(2, 3, 3)", many));
+  EXPECT_TRUE(says(points, "an array of 2 x 3 x 3; depth has two dimensions"));
+  EXPECT_TRUE(says(points, "save only the z"));
   for (const char* const shape : {"(64, 3)", "(64, 4)", "(1000, 6)", "(1, 64, 3)"})
-    EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", shape, kRows)),
+    EXPECT_TRUE(says(refused(make_npy<float>("<f4", "False", shape, many)),
                      "are a table of points; save them as PLY or PCD, with their normals"))
         << shape;
   for (const char* const shape : {"(64, 2)", "(64, 9)", "(47, 3)", "(3, 64)"})
@@ -216,6 +222,30 @@ TEST(TiffDepth, RefusesWhatIsNoDepth) {
   }
 }
 #endif
+
+// Returns the payload of a message of ROS' compressedDepth: format, two floats, PNG.
+std::string compressed_depth(float a, float b, const std::string& png) {
+  std::string bytes;
+  append(bytes, std::int32_t{0});
+  append(bytes, a);
+  append(bytes, b);
+  return bytes + png;
+}
+
+TEST(CompressedDepth, MillimetresAreReadAndCodedFloatsRefused) {
+  const std::string png = make_png(3, 2, 16, {1000, 1001, 0, 1003, 65000, 1005});
+  const RawDepth plain = parse_png_depth(bytes_of(png), "file");
+  // The configuration of images of millimetres is left as it was in memory.
+  for (const auto& [a, b] : {std::pair{0.F, 0.F}, {1e-38F, 3e10F}, {10100.F, 0.F}, {-5.F, 5.F}}) {
+    const std::string file = compressed_depth(a, b, png);
+    EXPECT_EQ(parse_compressed_depth(bytes_of(file), "file").values, plain.values) << a;
+  }
+  // Depths of quantisation 100 up to 10 m, as ROS codes them without being told otherwise.
+  const std::string coded = compressed_depth(10100, 1 - 10100 / 10.F, png);
+  const std::string fault = test::refusal([&] { parse_compressed_depth(bytes_of(coded), "file"); });
+  EXPECT_TRUE(says(fault, "compressedDepth of float depths"));
+  EXPECT_TRUE(says(fault, "inverse depths"));
+}
 
 }  // namespace
 }  // namespace vpm

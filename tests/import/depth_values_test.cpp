@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <utility>
+
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
 
@@ -101,6 +105,75 @@ TEST(DepthValues, RotatedValuesAreNamedAndRead) {
       metres(image_of({9001 >> 13 | (9001 & 8191) << 3}, 1, true), {.decoding = {.rotated = true}})
           .depth[0],
       9.001F);
+}
+
+// Returns depths of a corridor from `near` to `far` in whole units, with a unit or two of noise.
+std::vector<float> corridor(int near, int far, std::size_t count) {
+  std::vector<float> values;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double part = static_cast<double>(k % 320) / 320;
+    const double depth = near / (1 - part * (1 - static_cast<double>(near) / far));
+    values.push_back(std::round(static_cast<float>(depth)) + static_cast<float>(k * 7 % 3));
+  }
+  return values;
+}
+
+std::vector<float> rotated_left(std::vector<float> values) {
+  for (float& value : values) {
+    const auto bits = static_cast<std::uint32_t>(value);
+    value = static_cast<float>((bits << 3 | bits >> 13) & 0xFFFFU);
+  }
+  return values;
+}
+
+TEST(DepthValues, RotatedValuesAreToldByMostOfThemAndByTheirDepths) {
+  constexpr std::size_t kCount = 320 * 20;
+  struct Row {
+    int near, far;
+    std::string cure;
+  };
+  const std::string tenths = "`decode` rotated and `depth_scale` 10000";
+  for (const auto& [near, far, cure] : {Row{800, 4000, "`decode` rotated, which makes that 1."},
+                                        Row{1500, 9500, "`decode` rotated, which makes that 2."},
+                                        Row{4100, 16000, tenths}, Row{5000, 9000, tenths}}) {
+    std::vector<float> values = rotated_left(corridor(near, far, kCount));
+    for (std::size_t k = 0; k < kCount; k += 50) values[k] = 0;   // not measured
+    for (std::size_t k = 7; k < kCount; k += 99) values[k] += 3;  // whatever a few do
+    const Metres read = metres(image_of(values, 320, true));
+    ASSERT_EQ(read.remarks.size(), 1U) << near;
+    EXPECT_TRUE(says(read.remarks[0].text, cure)) << near;
+    DepthReading cured{.decoding = {.rotated = true}};
+    if (cure == tenths) cured.units_per_metre = 10000;
+    EXPECT_TRUE(metres(image_of(values, 320, true), cured).remarks.empty());
+  }
+  // The unit is told already.
+  const Metres told = metres(image_of(rotated_left(corridor(4100, 9000, kCount)), 320, true),
+                             {.units_per_metre = 10000});
+  ASSERT_EQ(told.remarks.size(), 1U);
+  EXPECT_FALSE(told.remarks[0].text.find("depth_scale") < told.remarks[0].text.size());
+}
+
+TEST(DepthValues, MultiplesOfEightAreNotAlwaysRotated) {
+  constexpr std::size_t kCount = 320 * 20;
+  for (const double step : {8.0, 10.0, 16.0, 24.0, 40.0})
+    for (const auto& [near, far] : {std::pair{500, 1200}, {1500, 4000}, {3000, 9500}}) {
+      std::vector<float> values = corridor(near, far, kCount);
+      for (float& value : values) value = static_cast<float>(step * std::round(value / step));
+      EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty()) << step << " " << near;
+    }
+  for (const double per_square_metre : {0.0015, 0.003}) {  // steps of a stereo camera, of a Kinect
+    std::vector<float> values = corridor(800, 9500, kCount);
+    for (float& value : values) {
+      const double disparity = std::round(1000 / (per_square_metre * value));
+      value = static_cast<float>(8 * std::round(125 / (per_square_metre * disparity)));
+    }
+    EXPECT_TRUE(metres(image_of(values, 320, true)).remarks.empty()) << per_square_metre;
+  }
+  // Far depths whose values do not tell of a rotation, and eighths of millimetres, told.
+  EXPECT_TRUE(metres(image_of(corridor(9000, 60000, kCount), 320, true)).remarks.empty());
+  std::vector<float> eighths = corridor(800, 4000, kCount);
+  for (float& value : eighths) value *= 8;
+  EXPECT_TRUE(metres(image_of(eighths, 320, true), {.units_per_metre = 8000}).remarks.empty());
 }
 
 TEST(DepthValues, DisparitiesAreNamedAndRead) {

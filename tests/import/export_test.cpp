@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "libvpm/core/error.h"
+#include "libvpm/file/temporary_folder.h"
 #include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
 #include "tests/import/test_files.h"
@@ -44,6 +45,45 @@ TEST(CloudExport, PlyAndScatteredPcdComeBackAtTheSamePlaces) {
       EXPECT_LT(norm(widen(back.normals[k]) - widen(cloud.normals[k])), 1e-6);
     }
   }
+}
+
+// Coordinates are the world's where float32 holds them, and doubles never: some readers take those
+// for floats or zeros.
+TEST(CloudExport, PlacesAreOfTheWorldWhereFloat32HoldsThem) {
+  for (const Vec3 origin : {Vec3{}, Vec3{1, -2, 0.5}, Vec3{60, 0, 0}, Vec3{3e5, 5e6, 100}}) {
+    Cloud cloud = without_camera(seen_cloud());
+    cloud.origin = origin;
+    const bool is_near = norm(origin) < 100;
+    for (const std::string& file : {to_ply(cloud), to_pcd(cloud)}) {
+      EXPECT_EQ(file.find("vpm origin") == file.npos, is_near) << origin.x;
+      EXPECT_EQ(file.find("double"), file.npos);
+      const ImportedCloud back = import_cloud(bytes_of(file), "file", {});
+      EXPECT_TRUE(back.remarks.empty()) << back.remarks.front().text;
+      const std::size_t all = cloud.size();
+      ASSERT_EQ(back.cloud.size(), all);
+      for (std::size_t k = 0; k < all; ++k)
+        EXPECT_LT(norm(back.cloud.origin + widen(back.cloud.positions[k]) - cloud.origin -
+                       widen(cloud.positions[k])),
+                  1e-5);
+    }
+  }
+}
+
+// What is written of a cloud that float32 does not hold is said, with the place to add.
+TEST(CloudExport, ThePlaceToAddIsSaid) {
+  const file::TemporaryFolder folder;
+  Cloud cloud = without_camera(seen_cloud());
+  cloud.origin = {1, 2, 3};
+  EXPECT_TRUE(write_points(folder.path("near.ply"), cloud).empty());
+  cloud.origin = {3e5, 5e6, 100};
+  for (const char* const name : {"far.ply", "far.pcd"}) {
+    const Remarks said = write_points(folder.path(name), cloud);
+    ASSERT_EQ(said.size(), 1U);
+    EXPECT_FALSE(said[0].is_warning);
+    EXPECT_TRUE(says(said[0].text, "about 300000, 5000000, 100, which"));
+  }
+  const Cloud seen = seen_cloud();
+  EXPECT_TRUE(write_points(folder.path("seen.pcd"), seen).empty());
 }
 
 TEST(CloudExport, OnlyKnownExtensions) {

@@ -328,10 +328,12 @@ TEST(ImportCloud, SaysWhyNothingIsMeasured) {
 TEST(ImportCloud, RefusesWhatHoldsNoCloud) {
   EXPECT_TRUE(says(refused(""), "empty"));
   EXPECT_TRUE(
-      says(refused("OFF\n0 0 0\n"), "neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY"));
+      says(refused("OF\n0 0 0\n"), "neither PNG, OpenEXR, TIFF, PGM, PFM, NPY, PCD nor PLY"));
   for (const char* const table : {"0 0 1 0 0 -1\n1 0 1 0 0 -1\n", "//X Y Z\n0 0 1\n1 0 1\n",
                                   "0.5;0.5;0.5;0.5\n0.5;0.5;0.5;0.5\n"})
     EXPECT_TRUE(says(refused(table), "a table of numbers in text; save points as PLY or PCD"));
+  EXPECT_TRUE(
+      says(refused("OFF\n0 0 0\n"), "this is a mesh in OFF; give a depth image or a cloud"));
   EXPECT_TRUE(says(refused("P7\nWIDTH 2\n"), "a PAM picture; save it as PGM"));
   EXPECT_TRUE(says(refused("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
                            "property float y\nproperty float z\nend_header\n1 2 3\n"),

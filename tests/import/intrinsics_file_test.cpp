@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/import/test_files.h"
 #include "tests/refusal.h"
@@ -115,11 +119,13 @@ TEST(IntrinsicsFile, ReadsMatricesAndListsOfIntrinsics) {
 }
 
 TEST(IntrinsicsFile, RefusesSeveralCamerasOfOneObjectByTheirNames) {
-  const std::string m = kMatrix, list = R"({"intrinsics": [1, 1, 1, 1]})";
-  EXPECT_TRUE(says(refused(R"({"M1": )" + m + R"(, "M2": )" + m + "}"), "cameras: M1, M2"));
-  EXPECT_TRUE(says(refused(R"({"cam0": )" + list + R"(, "cam1": )" + list + "}"), "cam0, cam1"));
+  const std::string m = kMatrix, other = "[524,0,319.5, 0,526,239.5, 0,0,1]";
+  const std::string list = R"({"intrinsics": [1, 1, 1, 1]})",
+                    second = R"({"intrinsics": [1, 2, 1, 1]})";
+  EXPECT_TRUE(says(refused(R"({"M1": )" + m + R"(, "M2": )" + other + "}"), "cameras: M1, M2"));
+  EXPECT_TRUE(says(refused(R"({"cam0": )" + list + R"(, "cam1": )" + second + "}"), "cam0, cam1"));
   EXPECT_TRUE(says(refused(R"({"Camera1.fx": 1, "Camera1.fy": 1, "Camera1.cx": 1, "Camera1.cy": 1,
-                               "Camera2.fx": 1, "Camera2.fy": 1, "Camera2.cx": 1, "Camera2.cy": 1})"),
+                               "Camera2.fx": 2, "Camera2.fy": 1, "Camera2.cx": 1, "Camera2.cy": 1})"),
                    "camera1, camera2"));
   expect_camera(R"({"M0": [525,0,319.5, 0,526,239.5, 0,0,1], "M1": "none"})");
 }
@@ -129,10 +135,10 @@ TEST(IntrinsicsFile, RefusesWhatTellsNoCamera) {
   EXPECT_TRUE(says(refused(R"({"fx": 525})"), "no camera's intrinsics"));
   EXPECT_TRUE(says(
       refused(
-          R"({"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}})"),
+          R"({"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 2, "cy": 1}})"),
       "left, right"));
   EXPECT_TRUE(says(refused("0 526 319.5 239.5"), "focal lengths"));
-  EXPECT_TRUE(says(refused(std::string("\x89PNG\0", 5)), "not a text"));
+  EXPECT_TRUE(says(refused(std::string("fx = 1\0", 8)), "not a text"));
 }
 
 TEST(IntrinsicsFile, RefusesOtherFormatsByTheirNames) {
@@ -140,14 +146,6 @@ TEST(IntrinsicsFile, RefusesOtherFormatsByTheirNames) {
     EXPECT_TRUE(says(refused(start + "<?xml version=\"1.0\"?>\n<opencv_storage/>"), "XML"));
     EXPECT_TRUE(says(refused(start + "<opencv_storage/>"), ".yml"));
   }
-  EXPECT_TRUE(says(refused(std::string("\xFF\xFE"
-                                       "6\0",
-                                       4)),
-                   "UTF-16"));
-  EXPECT_TRUE(says(refused(std::string("\xFE\xFF\0"
-                                       "6",
-                                       4)),
-                   "UTF-16"));
   EXPECT_TRUE(says(refused("\x1f\x8b"), "gzip"));
 }
 
@@ -274,6 +272,81 @@ TEST(IntrinsicsFile, ReadsYaml) {
   EXPECT_TRUE(says(refused("a: [1\n"), "not YAML"));
 }
 #endif
+
+// Returns BOP's scene_camera.json of these images, numbered 0, 5, 10, ….
+std::string scene_camera(std::size_t images, bool differ) {
+  std::string text = "{";
+  for (std::size_t k = 0; k < images; ++k)
+    text += (k == 0 ? "\"" : ", \"") + std::to_string(5 * k) + "\": {\"cam_K\": [" +
+            std::to_string(525 + (differ ? k : 0)) +
+            ", 0, 319.5, 0, 526, 239.5, 0, 0, 1], \"depth_scale\": 0.1}";
+  return text + "}";
+}
+
+TEST(IntrinsicsFile, CamerasThatAreTheSameAreOne) {
+  for (const std::size_t images : {1U, 2U, 1000U}) {
+    const IntrinsicsFile read = parse(scene_camera(images, false));
+    EXPECT_EQ(read.intrinsics.fx, 525);
+    ASSERT_TRUE(read.factor);
+    EXPECT_EQ(read.factor->units_per_metre, 10000);
+    EXPECT_TRUE(read.remarks.empty());
+  }
+}
+
+TEST(IntrinsicsFile, TheNumberOfTheImageChooses) {
+  const std::string text = scene_camera(1000, true);
+  for (const char* const image : {"scene/depth/000035.png", "35.png", "frame-35.depth.png"}) {
+    const IntrinsicsFile read = parse_intrinsics(bytes_of(text), "file", image);
+    EXPECT_EQ(read.intrinsics.fx, 532);
+    ASSERT_EQ(read.remarks.size(), 1U);
+    EXPECT_TRUE(
+        says(read.remarks[0].text, "of its 1000 cameras, that under the image's number, 35"));
+  }
+  for (const char* const image : {"", "-", "000036.png", "depth.png"}) {
+    const std::string fault =
+        test::refusal([&] { parse_intrinsics(bytes_of(text), "file", image); });
+    EXPECT_TRUE(says(fault, "several cameras: 0, 10, 100, 1000, 1005 and 995 more")) << fault;
+    EXPECT_LT(fault.size(), 200U);
+  }
+  // A key that only ends in a number is a camera's, not an image's.
+  const std::string stereo =
+      R"({"cam0": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "cam1": {"fx": 2, "fy": 1, "cx": 1, "cy": 1}})";
+  EXPECT_NE(test::refusal([&] { parse_intrinsics(bytes_of(stereo), "file", "0001.png"); }), "");
+}
+
+TEST(IntrinsicsFile, ReadsUtf16AndArrays) {
+  for (const bool is_big : {false, true}) {
+    std::string wide = is_big ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char letter : std::string(R"({"fx": 525, "fy": 526, "cx": 319.5, "cy": 239.5})"))
+      wide += is_big ? std::string{'\0', letter} : std::string{letter, '\0'};
+    expect_camera(wide);
+  }
+  const auto npy = [](const std::string& shape, const std::vector<double>& numbers) {
+    const std::string header =
+        "{'descr': '<f8', 'fortran_order': False, 'shape': " + shape + ", }\n";
+    std::string bytes("\x93NUMPY\1\0", 8);
+    append(bytes, static_cast<std::uint16_t>(header.size()));
+    bytes += header;
+    for (const double number : numbers) append(bytes, number);
+    return bytes;
+  };
+  expect_camera(npy("(3, 3)", {525, 0, 319.5, 0, 526, 239.5, 0, 0, 1}));
+  expect_camera(npy("(4,)", {525, 526, 319.5, 239.5}));
+  EXPECT_TRUE(says(refused(npy("(5, 4)", std::vector<double>(20, 1))), "an array of 5 x 4 is no"));
+}
+
+TEST(IntrinsicsFile, OtherFilesAreNamed) {
+  for (const auto& [start, name] : std::vector<std::pair<std::string, std::string>>{
+           {"MATLAB 5.0 MAT-file, Platform: posix", "a MATLAB file"},
+           {"MATLAB 7.3 MAT-file, Platform: posix", "a MATLAB file (HDF5)"},
+           {"\x89HDF\r\n\x1a\n", "an HDF5 file"},
+           {"\x1a\x45\xdf\xa3", "a Matroska recording"},
+           {"\x89PNG\r\n", "a PNG picture"},
+           {"ply\n", "a PLY file"}}) {
+    EXPECT_TRUE(says(refused(start), "this is " + name)) << start;
+    EXPECT_TRUE(says(refused(start), "`intrinsics` fx,fy,cx,cy")) << start;
+  }
+}
 
 }  // namespace
 }  // namespace vpm

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 #include <string>
 #include <utility>
@@ -88,6 +89,64 @@ TEST(NormalChecks, NormalsOfOtherSurfacesAreSaid) {
   EXPECT_TRUE(says(with([](const Vec3& n) { return 127.5 * (n + Vec3{1, 1, 1}); }), "coded"));
   EXPECT_EQ(with([](const Vec3& n) { return 7 * n; }), "");
   EXPECT_EQ(with([](const Vec3& n) { return n + Vec3{0.3, 0, 0}; }), "");
+}
+
+// Returns what a camera at the origin sees of a room with a floor and three walls, in depths of
+// `step` metres (0: as they are), with the room's true normals.
+PointSet room(double step) {
+  constexpr int kWidth = 160, kHeight = 120;
+  constexpr double kFocal = 130;
+  struct Wall {
+    Vec3 normal;
+    double distance;
+  };
+  const Wall walls[] = {{{0, -1, 0}, 1.2}, {{-0.8, 0, -0.6}, 2}, {{0.6, 0, -0.8}, 2.2}};
+  PointSet points;
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) {
+      const Vec3 ray{(u - 0.5 * kWidth) / kFocal, (v - 0.5 * kHeight) / kFocal, 1};
+      double depth = 1e9;
+      Vec3 normal;
+      for (const Wall& wall : walls) {
+        const double found = -wall.distance / dot(wall.normal, ray);
+        if (found > 0 && found < depth) depth = found, normal = wall.normal;
+      }
+      if (step > 0) depth = step * std::round(depth / step);
+      points.positions.push_back(depth * ray);
+      points.normals.push_back(normal);
+    }
+  }
+  return points;
+}
+
+TEST(NormalChecks, QuantisedDepthsAreNoSurfacesOfTheirOwn) {
+  const auto with = [](PointSet points, const std::function<Vec3(const Vec3&)>& change) {
+    for (Vec3& n : points.normals) n = change(n);
+    return said(points);
+  };
+  const auto about_y = [](double degrees) {
+    return [turn = degrees * std::numbers::pi / 180](const Vec3& n) {
+      return Vec3{std::cos(turn) * n.x + std::sin(turn) * n.z, n.y,
+                  std::cos(turn) * n.z - std::sin(turn) * n.x};
+    };
+  };
+  for (const double step : {0.0, 0.001, 0.01, 0.03, 0.06}) {
+    EXPECT_EQ(said(room(step)), "") << step;
+    // The floor's normals stay right. Turned by 45 degrees, a wall's face the camera, as the flat
+    // parts of wide steps do.
+    for (const double degrees : {step > 0.01 ? 90.0 : 45.0, 90.0, 150.0})
+      EXPECT_TRUE(says(with(room(step), about_y(degrees)), "degrees off")) << step << degrees;
+    EXPECT_TRUE(says(with(room(step),
+                          [](const Vec3& n) {
+                            return 0.5 * (n + Vec3{1, 1, 1});
+                          }),
+                     "degrees off"))
+        << step;
+    std::mt19937 random(1);
+    std::normal_distribution<double> any;
+    const auto of_chance = [&](const Vec3&) { return Vec3{any(random), any(random), any(random)}; };
+    EXPECT_TRUE(says(with(room(step), of_chance), "degrees off")) << step;
+  }
 }
 
 TEST(NormalChecks, SoundPointsAreNotSuspected) {

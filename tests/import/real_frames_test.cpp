@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "libvpm/file/stream.h"
+#include "libvpm/import/cloud_export.h"
 #include "libvpm/import/import_cloud.h"
 #include "tests/test_name.h"
 
@@ -31,6 +34,16 @@ INSTANTIATE_TEST_SUITE_P(
         Frame{"kinect_capture0001.pcd", {525, 525, 319.5, 239.5}, 1, 640, 480, 249647}),
     [](const auto& frame) { return test::test_name(frame.param.file); });
 
+// Expects that what is exported of a cloud is read without a warning, as many points as it has.
+void expect_to_come_back(const Cloud& cloud) {
+  for (const std::string& file : {to_ply(cloud), to_pcd(cloud), to_pcd(without_camera(cloud))}) {
+    const ImportedCloud back =
+        import_cloud(std::as_bytes(std::span(file.data(), file.size())), "export", {});
+    EXPECT_EQ(back.cloud.size(), cloud.size());
+    for (const Remark& remark : back.remarks) EXPECT_FALSE(remark.is_warning) << remark.text;
+  }
+}
+
 TEST_P(RealFrame, BecomesASoundCloud) {
   const Frame& frame = GetParam();
   const std::string path = VPM_SOURCE_DIR "/../shared/data/depth/" + frame.file;
@@ -46,6 +59,7 @@ TEST_P(RealFrame, BecomesASoundCloud) {
   EXPECT_EQ(imported.width, frame.width);
   EXPECT_EQ(imported.height, frame.height);
   EXPECT_EQ(frame.width * frame.height - imported.invalid, frame.measured);
+  expect_to_come_back(imported.cloud);
   // Nearly every measured pixel has enough neighbours.
   EXPECT_GT(static_cast<double>(imported.cloud.size()),
             0.999 * static_cast<double>(frame.measured));

@@ -2,6 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libvpm/core/pose.h"
 #include "libvpm/file/stream.h"
@@ -179,6 +183,113 @@ TEST(PoseForms, TablesAreReadOrTellTheColumn) {
     EXPECT_TRUE(says(refused(text), words)) << text << refused(text);
   EXPECT_FALSE(says(refused("1 3 0 0 0 5 2 3 1 image.png\n"), "COLMAP"));
   EXPECT_FALSE(says(refused("this is no table\n"), "leave this column out"));
+}
+
+// Returns an array of NumPy of these numbers, which stand as `Value`.
+template <class Value>
+std::string npy(const std::string& type, const std::string& shape, const Numbers& numbers,
+                bool by_columns = false) {
+  const std::string header = "{'descr': '" + type +
+                             "', 'fortran_order': " + (by_columns ? "True" : "False") +
+                             ", 'shape': " + shape + ", }\n";
+  std::string bytes = std::string("\x93NUMPY\1\0", 8);
+  bytes += static_cast<char>(header.size() & 0xFF);
+  bytes += static_cast<char>(header.size() >> 8);
+  bytes += header;
+  for (const double number : numbers) {
+    const auto value = static_cast<Value>(number);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  return bytes;
+}
+
+// Two poses: turned about x by half a turn at (5, 2, 3), and upright at (6, 2, 3).
+const Numbers kMatrices{1, 0, 0, 5, 0, -1, 0, 2, 0, 0, -1, 3, 0, 0, 0, 1,
+                        1, 0, 0, 6, 0, 1,  0, 2, 0, 0, 1,  3, 0, 0, 0, 1};
+const Numbers kQuaternions{5, 2, 3, 1, 0, 0, 0, 6, 2, 3, 0, 0, 0, 1};
+
+// Returns the numbers of an array of these sizes by columns, the first index running fastest.
+Numbers by_columns(const Numbers& rows, const std::vector<std::size_t>& shape) {
+  Numbers columns(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::size_t left = k, place = 0, stride = rows.size();
+    for (std::size_t d = shape.size(); d-- > 0;) {
+      stride /= shape[d];
+      place += left % shape[d] * stride;
+      left /= shape[d];
+    }
+    columns[place] = rows[k];
+  }
+  return columns;
+}
+
+TEST(PoseForms, ArraysOfNumPyAreRead) {
+  Numbers three, timed;
+  for (std::size_t k = 0; k < kMatrices.size(); ++k)
+    if (k % 16 < 12) three.push_back(kMatrices[k]);
+  for (std::size_t k = 0; k < kQuaternions.size(); ++k) {
+    if (k % 7 == 0) timed.push_back(0.5 + static_cast<double>(k));
+    timed.push_back(kQuaternions[k]);
+  }
+  for (const std::string& file :
+       {npy<double>("<f8", "(2, 4, 4)", kMatrices), npy<float>("<f4", "(2, 4, 4)", kMatrices),
+        npy<double>("<f8", "(2, 3, 4)", three), npy<double>("<f8", "(2, 7)", kQuaternions),
+        npy<float>("<f4", "(2, 7)", kQuaternions), npy<double>("<f8", "(2, 16)", kMatrices),
+        npy<double>("<f8", "(2, 12)", three), npy<std::int64_t>("<i8", "(2, 7)", kQuaternions),
+        npy<double>("<f8", "(2, 4, 4)", by_columns(kMatrices, {2, 4, 4}), true),
+        npy<float>("<f4", "(2, 7)", by_columns(kQuaternions, {2, 7}), true)}) {
+    const Read read = read_all_poses(file);
+    EXPECT_EQ(read.x, (Numbers{5, 6})) << file;
+    EXPECT_EQ(read.turn, (Numbers{1, 0})) << file;
+    EXPECT_TRUE(read.times.empty());
+    EXPECT_EQ(read.place, ", pose 2");
+  }
+  EXPECT_EQ(read_all_poses(npy<double>("<f8", "(2, 8)", timed)).times, (Numbers{0.5, 7.5}));
+  EXPECT_EQ(read_all_poses(npy<double>("<f8", "(7,)", {9, 0, 0, 0, 0, 0, 1})).x, (Numbers{9}));
+  EXPECT_EQ(
+      read_all_poses(npy<double>("<f8", "(4, 4)", Numbers(kMatrices.begin() + 16, kMatrices.end())))
+          .x,
+      (Numbers{6}));
+  const file::TemporaryFolder folder;  // also for one camera
+  file::write_all(folder.path("p"),
+                  npy<float>("<f4", "(1, 4, 4)", Numbers(kMatrices.begin() + 16, kMatrices.end())));
+  EXPECT_EQ(read_camera_pose(folder.path("p")).translation.x, 6);
+}
+
+TEST(PoseForms, OtherArraysAreRefused) {
+  EXPECT_TRUE(says(refused(npy<double>("<f8", "(2, 3, 3)", Numbers(18))), "an array of 2 x 3 x 3"));
+  EXPECT_TRUE(says(refused(npy<double>("<f8", "(3, 2)", Numbers(6))), "N x 4 x 4"));
+  EXPECT_TRUE(says(refused(npy<double>("<f8", "()", {1})), "holds no poses"));
+  EXPECT_TRUE(says(refused(npy<double>("<f8", "(9, 7)", kQuaternions)), "truncated"));
+  EXPECT_TRUE(says(refused(npy<double>("|O", "(2, 7)", kQuaternions)), "not floats or integers"));
+  Numbers scaled = kQuaternions;
+  scaled[13] = 2;
+  EXPECT_TRUE(says(refused(npy<double>("<f8", "(2, 7)", scaled)), "pose 2"));
+  const std::string sound = npy<double>("<f8", "(2, 7)", kQuaternions);
+  for (std::size_t size = 1; size < sound.size(); ++size)
+    EXPECT_NE(refused(sound.substr(0, size)), "") << size;
+}
+
+TEST(PoseForms, TextsInUtf16AreRead) {
+  const std::string text = "# tx ty tz qx qy qz qw\r\n5 0 0 0 0 0 1\r\n{\"pose\": [6,0,0,0,0,0,1]}";
+  for (const bool is_big : {false, true}) {
+    std::string wide = is_big ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char letter : text)
+      wide += is_big ? std::string{'\0', letter} : std::string{letter, '\0'};
+    EXPECT_EQ(read_all_poses(wide).x, (Numbers{5, 6}));
+  }
+}
+
+TEST(PoseForms, WhatHoldsNoPosesIsNamed) {
+  for (const auto& [start, name] : std::vector<std::pair<std::string, std::string>>{
+           {"MATLAB 5.0 MAT-file, Platform", "a MATLAB file"},
+           {"\x89HDF\r\n\x1a\n", "an HDF5 file"},
+           {"\x1a\x45\xdf\xa3", "a Matroska recording"},
+           {"#ROSBAG V2.0\n", "a ROS bag"},
+           {"\x89PNG\r\n", "a PNG picture"},
+           {"solid cube\nfacet", "a mesh in STL"},
+           {"PK\3\4", "an archive (zip, npz)"}})
+    EXPECT_TRUE(says(refused(start), "this is " + name)) << start;
 }
 
 }  // namespace

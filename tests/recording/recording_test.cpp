@@ -31,6 +31,30 @@ class ARecording : public test::InTemporaryFolder {
   }
 };
 
+TEST_F(ARecording, OfAnotherFormatIsNamed) {
+  write("a.mkv", "\x1a\x45\xdf\xa3....");
+  write("a.bag", "#ROSBAG V2.0\n");
+  write("a.png", "\x89PNG\r\n");
+  const auto fault = [&](const char* name) {
+    return refusal([&] { read_recording(path(name), {}); });
+  };
+  EXPECT_TRUE(says(fault("a.mkv"),
+                   "this is a Matroska recording (.mkv), such as an Azure Kinect's; "
+                   "extract its depth images as 16-bit PNG"));
+  EXPECT_TRUE(says(fault("a.bag"), "this is a ROS bag; extract its images"));
+  EXPECT_TRUE(says(fault("a.png"), "this is a PNG picture; give the folder of the frames"));
+}
+
+TEST_F(ARecording, MayBeListedInUtf16) {
+  write("a.png");
+  std::string wide = "\xFF\xFE";
+  for (const char letter : std::string("# time file\r\n1.5 a.png\r\n")) wide += {letter, '\0'};
+  write("list.txt", wide);
+  const Recording recording = read_recording(path("list.txt"), {});
+  ASSERT_EQ(recording.frames.size(), 1U);
+  EXPECT_EQ(recording.frames[0].time, 1.5);
+}
+
 constexpr const char* kIdentity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
 
 TEST_F(ARecording, OfNumberedFramesHasNumbersForTimes) {

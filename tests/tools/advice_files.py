@@ -270,7 +270,8 @@ def write_cameras(folder):
         "region.json": json.dumps({"width": 128, "height": 96, "K": [60, 0, 63.5, 0, 60, 47.5, 0, 0, 1],
                                    "roi": {"x_offset": 32, "y_offset": 24, "width": WIDTH, "height": HEIGHT}}),
         "shape.json": json.dumps({"width": 100, "height": 96, **one}),
-        "several.json": json.dumps({"left": one, "right": one}),
+        "several.json": json.dumps({"left": one, "right": {**one, "fx": 61}}),
+        "complex.npy": depth_files.npy(METRES).replace(b"<f4", b"<c8"),
         "two_poses.txt": "0 0 0 0 0 0 1\n0 0 0.5 0 0 0 1\n", "one_pose.txt": "0 0 0 0 0 0 1\n",
         "mirror.txt": "1 0 0 0\n0 1 0 0\n0 0 -1 0\n0 0 0 1\n",
     }
@@ -332,6 +333,8 @@ SCAN_STARTS = {
     b"\xff\xd8\xff\xe0": "give the 16-bit or float image", b"GIF89a": "give the 16-bit or float image",
     b"\x89HDF\r\n\x1a\n": "save one of its arrays as .npy or 16-bit PNG",
     b"MATLAB 5.0 MAT-file": "save one of its arrays as 16-bit PNG",
+    b"MATLAB 7.3 MAT-file": "save one of its arrays as 16-bit PNG",
+    b"\x1a\x45\xdf\xa3": "extract its depth images as 16-bit PNG, for example by ffmpeg",
     b"#ROSBAG V2.0": "extract its images or clouds first", b"\x89MCAP0\r\n": "extract its images or clouds first",
     b"RIFF\x10\0\0\0WEBP": "give the 16-bit or float image", b"#?RADIANCE\n": "give the 16-bit or float image",
     b"P7\nWIDTH 64\n": "save it as PGM, or as 16-bit PNG", b"\x80\x04\x95\x10": "save its array as .npy",

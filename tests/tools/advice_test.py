@@ -40,6 +40,9 @@ UNTRIED = [
         "replay: or a recording with camera-intrinsics.txt, as for vpm-query --frames",
         "vpm-normals --intrinsics", "vpm-pack --weld", "vpm-pack --repair", "vpm-pack --max-hole",
     ]),
+    ("tells which tool reads a format; a tool that does not says what it wants instead", [
+        "give it to vpm-pack", "give it to vpm-normals",
+    ]),
     ("stands in a page of --view: tests/view", [
         "No camera sees the tool's centre at any pose. Poses map the tool to the world (x right, y down, z forward from a camera "
         "without --camera-pose): is one of them inverted, or in millimetres?",

@@ -144,7 +144,8 @@ DepthReading depth_reading(const ImportArguments& a) {
   return reading;
 }
 
-void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& options) {
+void read_intrinsics(const Tool& tool, const ImportArguments& a, const std::string& image,
+                     ImportOptions& options) {
   if (a.intrinsics.empty()) return;
   const std::vector<double> n = numbers_in(a.intrinsics);
   if (begins_with_number(a.intrinsics)) {
@@ -153,7 +154,7 @@ void read_intrinsics(const Tool& tool, const ImportArguments& a, ImportOptions& 
                    ": give four numbers fx,fy,cx,cy, or a file with them");
     options.intrinsics = {n[0], n[1], n[2], n[3]};
   } else {
-    const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics);
+    const IntrinsicsFile read = parse_intrinsics(file::read_all(a.intrinsics), a.intrinsics, image);
     say(tool, a.intrinsics, read.remarks);
     say(tool, a.intrinsics, unused_factor(read.factor, options.depth.units_per_metre));
     options.intrinsics = read.intrinsics;
@@ -184,14 +185,14 @@ void declare(CLI::App& app, ImportArguments& a) {
   declare_normals(app, a);
 }
 
-ImportOptions import_options(const Tool& tool, const ImportArguments& a) {
+ImportOptions import_options(const Tool& tool, const ImportArguments& a, const std::string& image) {
   ImportOptions options;
   options.normals = {normal_method_from_text(a.method), a.window, a.edge_gate};
   check_normal_options(options.normals);
   options.depth = depth_reading(a);
   options.channel = a.channel;
   options.flip = a.flip;
-  read_intrinsics(tool, a, options);
+  read_intrinsics(tool, a, image, options);
   read_pose(tool, a, options);
   return options;
 }

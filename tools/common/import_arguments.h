@@ -23,10 +23,12 @@ struct ImportArguments {
 // Adds the options to `app`, which writes their values to `arguments`.
 void declare(CLI::App& app, ImportArguments& arguments);
 
-// Returns the values as libvpm takes them, and reads the files that they name. Throws
+// Returns the values as libvpm takes them, and reads the files that they name; the name of the
+// depth image, if there is one, tells which of a file's cameras is its. Throws
 // Error(invalid_argument) where one is out of range, and what the files' readers throw; notes what
 // these say, and a quaternion that had to be normalised.
-ImportOptions import_options(const Tool& tool, const ImportArguments& arguments);
+ImportOptions import_options(const Tool& tool, const ImportArguments& arguments,
+                             const std::string& image = {});
 
 // Prints what the readers say about a file.
 void say(const Tool& tool, const std::string& name, const Remarks& remarks);

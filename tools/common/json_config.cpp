@@ -8,6 +8,7 @@
 
 #include "libvpm/core/error.h"
 #include "libvpm/file/json_text.h"
+#include "libvpm/file/text.h"
 
 namespace vpm::tools {
 namespace {
@@ -91,7 +92,7 @@ std::vector<CLI::ConfigItem> JsonConfig::from_config(std::istream& input) const 
   const std::string text = whole_text(input);
   json config;
   try {
-    config = file::parse_json(text);
+    config = file::parse_json(file::utf8_of(text));
   } catch (const Error& fault) {
     throw CLI::FileError("the configuration is " + fault.problem() +
                          (fault.hint().empty() ? "" : "; " + fault.hint()));

@@ -113,7 +113,7 @@ nlohmann::json parameters_of(const Tool& tool, const ImportOptions& options) {
 void run(const Tool& tool, const Arguments& a) {
   check(a, tool.common());
   if (!a.view.empty()) view::check_available();
-  const ImportOptions options = import_options(tool, a.import);
+  const ImportOptions options = import_options(tool, a.import, a.depth);
   const auto start = std::chrono::steady_clock::now();
   const std::string name = a.depth == "-" ? "standard input" : a.depth;
   const std::vector<std::byte> bytes = file::read_all(a.depth);
@@ -127,7 +127,7 @@ void run(const Tool& tool, const Arguments& a) {
                                {"input_hash", file::content_hash({bytes})}};
   if (!a.report.empty()) file::write_all(a.report, report_of(imported, a, seconds).dump(2) + "\n");
   if (!a.view.empty()) write_scan_view(a.view, a.depth, imported, options.normals);
-  if (!a.export_path.empty()) write_points(a.export_path, imported.cloud);
+  if (!a.export_path.empty()) say(tool, a.export_path, write_points(a.export_path, imported.cloud));
   if (!a.output.empty()) write_cloud(a.output, imported.cloud);
 }
 

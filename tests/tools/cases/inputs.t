@@ -15,7 +15,7 @@ $ vpm-normals wall.pgm -o x.vpmc --intrinsics larger.json
 [1]
 $ vpm-normals wall.pgm -o pose.vpmc --intrinsics 60,60,31.5,23.5 --camera-pose pose.txt && vpm-normals wall.pgm -o - --intrinsics 60,60,31.5,23.5 --camera-pose 0,0,0.5,0,0,0,1 | cmp - pose.vpmc
 $ vpm-normals wall.pgm -o x.vpmc --intrinsics wall.pgm
-2> vpm-normals: error: wall.pgm: not a text with a camera's intrinsics
+2> vpm-normals: error: wall.pgm: this is a PGM, PPM or PFM image; write fx, fy, cx and cy of its camera in a text, or give them as --intrinsics fx,fy,cx,cy
 [1]
 $ vpm-normals wall.pgm -o normalised.vpmc --intrinsics 1.1,1.2,0.5,0.5
 2> vpm-normals: warning: wall.pgm: the intrinsics 1.1,1.2,0.5,0.5 are less than a pixel or a few; if they are parts of the image's size, give --intrinsics 70.4,57.6,31.5,23.5
@@ -31,7 +31,7 @@ $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --invalid 9 --for
 $ vpm-normals far.npy -o far.vpmc --intrinsics 60,60,31.5,23.5 --range 0.1,5 --force 2>&1 | wc -l
 0
 $ vpm-normals rotated.pgm -o rotated.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: warning: rotated.pgm: all values are multiples of 8, as if they were rotated by three bits (SUN3D, APC), which makes depths 8 times too large; if so, give --decode rotated
+2> vpm-normals: warning: rotated.pgm: its values look rotated by three bits: as they are, their median is 8.26 m; give --decode rotated, which makes that 1.03 m (SUN3D)
 $ vpm-normals rotated.pgm --export rotated.ply --intrinsics 60,60,31.5,23.5 --decode rotated && cmp rotated.ply wall.npy.ply
 $ vpm-normals wall.npy -o x.vpmc --intrinsics 60,60,31.5,23.5 --decode rotated
 2> vpm-normals: error: wall.npy: --decode is for integers of 16 bits, which this image has not
@@ -99,7 +99,7 @@ $ python3 -c 'print("VERSION 0.7\nFI" + 100000 * "E" + " 1")' > long.pcd; vpm-no
 2> vpm-normals: error: long.pcd: PCD header: unknown entry 'FIEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEEE…'
 [1]
 $ head -c 300 wall.vpmc | vpm-query --tool cube.vpmg --cloud wall.vpmc --poses - 2>&1 | cut -c1-80
-vpm-query: error: standard input, line 1: column 1 is not a number: \x89VPM
+vpm-query: error: standard input: this is a file of vpm (.vpmp, .vpmg, .vpmc); g
 [1]
 
 # What others write by the pages of formats/ is read.

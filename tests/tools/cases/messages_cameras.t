@@ -3,7 +3,7 @@
 $ python3 $SOURCE/tests/tools/depth_files.py . && cp $SOURCE/tests/tools/inputs/* . && vpm-pack cube.off -o cube.vpmp --spheres 30 --quiet && vpm-graph cube.vpmp -o cube.vpmg --quiet && vpm-normals wall.pgm -o wall.vpmc --intrinsics 60,60,31.5,23.5
 
 # Intrinsics
-$ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}}' '{' '{"fx": 1e999}' '60 60 31.5' '60 0 31.5 0 60 23.5 0 0 2' '-60 60 31.5 23.5' 'camera: [' 'a: b'; do echo "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
+$ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "right": {"fx": 2, "fy": 1, "cx": 1, "cy": 1}}' '{' '{"fx": 1e999}' '60 60 31.5' '60 0 31.5 0 60 23.5 0 0 2' '-60 60 31.5 23.5' 'camera: [' 'a: b'; do echo "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
 2> vpm-normals: error: i.txt: no camera's intrinsics in it; it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix
 2> vpm-normals: error: i.txt: no camera's intrinsics in it; it needs fx, fy, cx and cy, or a matrix K, camera_matrix or intrinsic_matrix
 2> vpm-normals: error: i.txt: it holds several cameras: left, right; give the numbers of one as --intrinsics fx,fy,cx,cy
@@ -18,11 +18,11 @@ $ for t in '{}' '{"fx": 60}' '{"left": {"fx": 1, "fy": 1, "cx": 1, "cy": 1}, "ri
 $ echo '{"K": [60, 1, 31.5, 0, 60, 23.5, 0, 0, 1], "D": [0.1, 0, 0, 0, 0]}' > i.json; vpm-normals wall.pgm -o skewed.vpmc --intrinsics i.json
 2> vpm-normals: warning: i.json: the skew in its matrix is not used
 2> vpm-normals: warning: i.json: the lens's distortion in it is not used: the depth image must be a rectified one
-$ printf '60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n' > scannet.txt; printf '\357\273\27760 60 31.5 23.5\n' > mark.txt; echo '{"cameraMatrix": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' > key.json; printf 'camera_model: pinhole\nintrinsics: [60, 60, 31.5, 23.5]\n' > kalibr.yaml; for k in scannet.txt mark.txt key.json kalibr.yaml; do vpm-normals wall.pgm -o $k.vpmc --intrinsics $k && cmp $k.vpmc wall.vpmc; done
-$ for t in '60 0 31.5 45 0 60 23.5 0 0 0 1 0' '<?xml version="1.0"?><opencv_storage></opencv_storage>' '\377\3766\0000\000' '{"M1": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1], "M2": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' '{"camera_model": "omni", "intrinsics": [1, 60, 60, 31.5, 23.5]}'; do printf "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
+$ printf '60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n' > scannet.txt; printf '\357\273\27760 60 31.5 23.5\n' > mark.txt; printf '\377\376' > wide.txt; printf '60 60 31.5 23.5\n' | iconv -t UTF-16LE >> wide.txt; echo '{"cameraMatrix": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' > key.json; printf 'camera_model: pinhole\nintrinsics: [60, 60, 31.5, 23.5]\n' > kalibr.yaml; for k in scannet.txt mark.txt wide.txt key.json kalibr.yaml; do vpm-normals wall.pgm -o $k.vpmc --intrinsics $k && cmp $k.vpmc wall.vpmc; done
+$ for t in '60 0 31.5 45 0 60 23.5 0 0 0 1 0' '<?xml version="1.0"?><opencv_storage></opencv_storage>' '\037\213' '{"M1": [60, 0, 31.5, 0, 60, 23.5, 0, 0, 1], "M2": [61, 0, 31.5, 0, 60, 23.5, 0, 0, 1]}' '{"camera_model": "omni", "intrinsics": [1, 60, 60, 31.5, 23.5]}'; do printf "$t" > i.txt; vpm-normals wall.pgm -o x.vpmc --intrinsics i.txt; done
 2> vpm-normals: error: i.txt: the last column of its matrix is not 0, or the last row not 0 0 0 1, as if it were of another camera beside this one, or a pose; if fx, fy, cx and cy in it are those of this image, give --intrinsics 60,60,31.5,23.5
 2> vpm-normals: error: i.txt: this is XML, which is not read for intrinsics; write it as .yml, which OpenCV does where the file's name ends so
-2> vpm-normals: error: i.txt: this is text in UTF-16; save it as UTF-8
+2> vpm-normals: error: i.txt: this is compressed by gzip; unpack it first: gunzip
 2> vpm-normals: error: i.txt: it holds several cameras: M1, M2; give the numbers of one as --intrinsics fx,fy,cx,cy
 2> vpm-normals: error: i.txt: its camera_model is omni, and only pinhole is read; rectify the images and give the numbers of the camera that they have then as --intrinsics fx,fy,cx,cy
 [1]

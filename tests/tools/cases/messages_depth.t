@@ -21,12 +21,12 @@ $ sed '3s/-1.0/-2.0/' wall.pfm > scaled.pfm; vpm-normals scaled.pfm -o scaled.vp
 
 # NPY
 $ npy() { python3 -c 'import struct, sys; h = sys.argv[1].encode(); sys.stdout.buffer.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(h)) + h + b"\0" * 32)' "$1"; }; for h in "{'descr': '<f4', 'shape': (2, 1), }" "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 1), }" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 2), }" "{'descr': '<f4', 'fortran_order': False, 'shape': 2, }" "{'descr': '<f4', 'fortran_order': False, 'shape': (9, 9), }"; do npy "$h" | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5; done; npy '{}' | head -c 9 | vpm-normals - -o x.vpmc --intrinsics 60,60,31.5,23.5
-2> vpm-normals: error: standard input: not a depth image in NPY: its header has no fortran_order
-2> vpm-normals: error: standard input: not a depth image in NPY: values of type |u1; depth is a float or an integer of 16 bits or more
-2> vpm-normals: error: standard input: not a depth image in NPY: its shape has 3 dimensions that are not 1; depth has two, rows and columns; save only the z of the point at each pixel
-2> vpm-normals: error: standard input: not a depth image in NPY: its shape cannot be read
-2> vpm-normals: error: standard input: not a depth image in NPY: the file is truncated: 324 bytes of values promised, 32 there
-2> vpm-normals: error: standard input: not a depth image in NPY: the file is truncated
+2> vpm-normals: error: standard input: not a sound NPY: its header has no fortran_order
+2> vpm-normals: error: standard input: not a depth image in NPY: integers of 8 bits; depth is a float or an integer of 16 bits or more
+2> vpm-normals: error: standard input: not a depth image in NPY: an array of 2 x 2 x 2; depth has two dimensions, rows and columns; save only the z of the point at each pixel
+2> vpm-normals: error: standard input: not a sound NPY: its shape cannot be read
+2> vpm-normals: error: standard input: not a sound NPY: the file is truncated: 9 x 9 values promised, 8 there
+2> vpm-normals: error: standard input: not a sound NPY: the file is truncated
 [1]
 
 # PNG

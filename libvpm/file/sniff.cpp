@@ -1,4 +1,4 @@
-#include "libvpm/file/foreign_content.h"
+#include "libvpm/file/sniff.h"
 
 #include <algorithm>
 #include <cstring>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libvpm/file/container_layout.h"
+#include "libvpm/file/ply_header.h"
 #include "libvpm/file/scalar_type.h"
 #include "libvpm/file/text.h"
 
@@ -25,9 +26,12 @@ constexpr const char* kExport = "export it as OBJ, PLY or STL";
 constexpr const char* kExportMesh = "export a mesh from it, as OBJ, PLY or STL";
 
 constexpr const char* kSaveDepths = "save its depths as .npy, PFM or 16-bit PNG";
+constexpr const char* kSaveArray = "save one of its arrays as 16-bit PNG";
 constexpr const char* kExportPly = "export it as PLY";
+constexpr const char* kToPack = "give it to vpm-pack";
 
 constexpr Start kStarts[] = {
+    {"\x89vpm"sv, "a file of vpm (.vpmp, .vpmg, .vpmc)", "give the file that was meant"},
     {"version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
      "fetch it with: git lfs pull"},
     {"<!doctype html"sv, "a web page", "download the file itself"},
@@ -47,7 +51,10 @@ constexpr Start kStarts[] = {
     {"\x80\x04\x95"sv, "a pickle of Python", "save its array as .npy", Holds::scan},
     {"%pdf"sv, "a PDF document", "give the file that was meant"},
     {"\x89hdf"sv, "an HDF5 file", "save one of its arrays as .npy or 16-bit PNG", Holds::scan},
-    {"matlab 5.0"sv, "a MATLAB file", "save one of its arrays as 16-bit PNG", Holds::scan},
+    {"matlab 5.0"sv, "a MATLAB file", kSaveArray, Holds::scan},
+    {"matlab 7.3"sv, "a MATLAB file (HDF5)", kSaveArray, Holds::scan},
+    {"\x1a\x65\xdf\xa3"sv, "a Matroska recording (.mkv), such as an Azure Kinect's",
+     "extract its depth images as 16-bit PNG, for example by ffmpeg", Holds::scan},
     {"#rosbag"sv, "a ROS bag", "extract its images or clouds first", Holds::scan},
     {"\x89mcap"sv, "an MCAP recording", "extract its images or clouds first", Holds::scan},
     {"lasf"sv, "a LAS cloud", "convert it to PLY with normals, for example by PDAL", Holds::scan},
@@ -83,33 +90,59 @@ constexpr Start kStarts[] = {
     {"pieh"sv, "a depth map of Sintel (.dpt) or optical flow (.flo)", kSaveDepths, Holds::scan},
     {"\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
     {"\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
+    {"gltf\2\0\0\0"sv, "a scene in glTF", kToPack, Holds::mesh},
+    {"kaydara fbx binary"sv, "a scene in FBX", kToPack, Holds::mesh},
+    {"solid "sv, "a mesh in STL", kToPack, Holds::mesh},
+    {"off\n"sv, "a mesh in OFF", kToPack, Holds::mesh},
+    {"off\r\n"sv, "a mesh in OFF", kToPack, Holds::mesh},
 };
+
+// Depth images and clouds, whose letters have one case.
+struct ScanStart {
+  std::string_view bytes;
+  ScanFormat format;
+};
+
+constexpr ScanStart kScanStarts[] = {
+    {"\x89PNG"sv, ScanFormat::png},   {"\x76\x2f\x31\x01"sv, ScanFormat::exr},
+    {"II*\0"sv, ScanFormat::tiff},    {"MM\0*"sv, ScanFormat::tiff},
+    {"II+\0"sv, ScanFormat::tiff},    {"MM\0+"sv, ScanFormat::tiff},
+    {"\x93NUMPY"sv, ScanFormat::npy}, {"# .PCD"sv, ScanFormat::pcd},
+    {"VERSION "sv, ScanFormat::pcd},  {"FIELDS "sv, ScanFormat::pcd},
+};
+
+// Words for each of ScanFormat, in its order.
+constexpr const char* kScanWords[] = {"a PNG picture",     "an OpenEXR image",
+                                      "a TIFF image",      "a PGM, PPM or PFM image",
+                                      "an array of NumPy", "a cloud of points (PCD)",
+                                      "a PLY file",        "a message of ROS' compressedDepth"};
 
 // Elements that a file begins with, or has behind the declaration of XML.
 constexpr Start kElements[] = {
     {"<x3d"sv, "a scene in X3D", kExport, Holds::mesh},
     {"<amf"sv, "a mesh in AMF", kExport, Holds::mesh},
+    {"<collada"sv, "a scene in COLLADA", kToPack, Holds::mesh},
     {"<vtkfile"sv, "a file of VTK", kExportPly},
 };
 
-ForeignContent content_of(const Start& known) {
-  return {known.what, known.next, known.holds};
+Content content_of(const Start& known) {
+  return {known.what, known.next, known.holds, {}, known.next == kToPack};
 }
 
 // Tells the kinds of XML by what stands behind the declaration and comments.
-std::optional<ForeignContent> xml_kind(std::span<const std::byte> bytes) {
+std::optional<Content> xml_kind(std::span<const std::byte> bytes) {
   constexpr std::size_t kLooked = 4096;
   const std::string text = in_lower_case(as_text(bytes.first(std::min(bytes.size(), kLooked))));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
   if (text.compare(begin, 5, "<?xml") != 0) return std::nullopt;
   for (const char* const robot : {"<robot", "<mujoco", "<sdf"}) {
     if (text.find(robot) != text.npos)
-      return ForeignContent{"a robot description (URDF, MJCF, SDF)",
-                            "give one of the files that it names", Holds::mesh};
+      return Content{"a robot description (URDF, MJCF, SDF)", "give one of the files that it names",
+                     Holds::mesh};
   }
   for (const Start& element : kElements)
     if (text.find(element.bytes) != text.npos) return content_of(element);
-  return ForeignContent{"an XML file", "give the file that was meant"};
+  return Content{"an XML file", "give the file that was meant"};
 }
 
 // True for counts of vertices, normals, texture coordinates and faces that tell the file's size.
@@ -134,21 +167,20 @@ bool is_map_of_colmap(std::string_view bytes) {
 }
 
 // Tells formats that begin with no word of their own.
-std::optional<ForeignContent> kind_by_layout(std::string_view text) {
+std::optional<Content> kind_by_layout(std::string_view text) {
   constexpr std::size_t kCardMark = 72;  // IGES has cards of 80 columns
   const auto is_card = [&](std::size_t at) {
     return text.size() > at + kCardMark + 8 && text[at + kCardMark] == 'S' &&
            text.substr(at + kCardMark + 1, 7).find_first_not_of(" 0123456789") == text.npos;
   };
-  if (is_card(0)) return ForeignContent{"a file of CAD in IGES", kExportMesh, Holds::mesh};
+  if (is_card(0)) return Content{"a file of CAD in IGES", kExportMesh, Holds::mesh};
   if (text.size() >= 6 && text.starts_with("MM")) {  // a chunk that is the whole file
     if (unsigned_at(text, 2) == text.size())
-      return ForeignContent{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
+      return Content{"a scene of 3D Studio (3DS)", kExport, Holds::mesh};
   }
-  if (is_mesh_of_mujoco(text))
-    return ForeignContent{"a mesh of MuJoCo (.msh)", kExport, Holds::mesh};
+  if (is_mesh_of_mujoco(text)) return Content{"a mesh of MuJoCo (.msh)", kExport, Holds::mesh};
   if (is_map_of_colmap(text.substr(0, 64)))
-    return ForeignContent{"a depth map of COLMAP", kSaveDepths, Holds::scan};
+    return Content{"a depth map of COLMAP", kSaveDepths, Holds::scan};
   TextCursor cursor(text.substr(0, 4096));
   std::vector<std::string_view> first = cursor.row();
   while (first.size() == 1 && first[0] == "999") {  // a comment, in the line after
@@ -156,11 +188,41 @@ std::optional<ForeignContent> kind_by_layout(std::string_view text) {
     first = cursor.row();
   }
   if (first.size() == 1 && first[0] == "0" && cursor.word() == "SECTION")
-    return ForeignContent{"a drawing in DXF", kExportMesh, Holds::mesh};
+    return Content{"a drawing in DXF", kExportMesh, Holds::mesh};
   return std::nullopt;
 }
 
-std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
+// True if comments come first, as in "# .PCD v0.7" in other words, and then an entry of a PCD's
+// header: other texts begin with comments too.
+bool is_commented_pcd(std::string_view text) {
+  if (!text.starts_with('#')) return false;
+  TextCursor cursor(text);
+  while (const auto line = cursor.line()) {
+    const std::vector<std::string_view> words = split_words(*line);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    return words[0] == "VERSION" || words[0] == "FIELDS" || words[0] == "COLUMNS";
+  }
+  return false;
+}
+
+bool is_netpbm(std::string_view text) {
+  return text.size() > 2 && text[0] == 'P' && "23456fF"sv.find(text[1]) != std::string_view::npos &&
+         " \t\r\n#"sv.find(text[2]) != std::string_view::npos;
+}
+
+std::optional<ScanFormat> scan_format(std::string_view text) {
+  constexpr std::size_t kBeforePng = 12;  // bytes that ROS' compressedDepth puts before its PNG
+  if (looks_like_ply(text)) return ScanFormat::ply;
+  for (const ScanStart& start : kScanStarts)
+    if (text.starts_with(start.bytes)) return start.format;
+  if (is_netpbm(text)) return ScanFormat::netpbm;
+  if (is_commented_pcd(text)) return ScanFormat::pcd;
+  const bool is_message =
+      text.size() > kBeforePng && text.substr(kBeforePng).starts_with("\x89PNG");
+  return is_message ? std::optional(ScanFormat::compressed_depth) : std::nullopt;
+}
+
+std::optional<Content> own_kind(std::span<const std::byte> bytes) {
   Preamble preamble;
   if (bytes.size() < sizeof preamble) return std::nullopt;
   std::memcpy(&preamble, bytes.data(), sizeof preamble);
@@ -170,7 +232,7 @@ std::optional<ForeignContent> own_kind(std::span<const std::byte> bytes) {
                            : kind == Kind::tool_model ? "it is ready for vpm-query"
                            : kind == Kind::cloud      ? "it is ready for vpm-query"
                                                       : "give the file that was meant";
-  return ForeignContent{names_of(kind).what, next};
+  return Content{names_of(kind).what, next};
 }
 
 bool is_number(std::string_view word) {
@@ -207,8 +269,12 @@ bool is_table_of_numbers(std::string_view text) {
   return rows > 1;
 }
 
-std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) {
+std::optional<Content> sniff(std::span<const std::byte> bytes) {
   constexpr std::size_t kMostBlanks = 64, kLongestStart = 32;
+  if (const auto scan = scan_format(without_byte_order_mark(as_text(bytes))))
+    return Content{kScanWords[static_cast<std::size_t>(*scan)], "give it to vpm-normals",
+                   Holds::scan, scan, false};
+  if (auto own = own_kind(bytes)) return own;
   const std::string_view text =
       as_text(bytes.first(std::min(bytes.size(), kMostBlanks + kLongestStart)));
   const std::size_t begin = std::min(text.find_first_not_of(" \t\r\n"), text.size());
@@ -218,8 +284,7 @@ std::optional<ForeignContent> foreign_content(std::span<const std::byte> bytes) 
   for (const Start& element : kElements)
     if (start.starts_with(element.bytes)) return content_of(element);
   if (auto xml = xml_kind(bytes)) return xml;
-  if (auto other = kind_by_layout(as_text(bytes))) return other;
-  return own_kind(bytes);
+  return kind_by_layout(as_text(bytes));
 }
 
 }  // namespace vpm::file
