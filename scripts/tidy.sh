@@ -21,7 +21,7 @@ for entry in json.load(open(commands)):
     if not entry["file"].endswith((".cpp", ".cxx")) or "cmake_pch" in entry["file"]:
         continue
     command = re.sub(r" -Winvalid-pch| -include \S+cmake_pch\.hxx| -Werror| -fpch-preprocess", "", entry["command"])
-    command = re.sub(r"^\S*ccache ", "", command)
+    command = re.sub(r"^(\S*env \S+ )?\S*ccache ", "", command)
     parts = [entry["file"]]
     if "/Unity/" in entry["file"] and pathlib.Path(entry["file"]).exists():
         parts = re.findall(r'#include "([^"]+\.cpp)"', pathlib.Path(entry["file"]).read_text())
