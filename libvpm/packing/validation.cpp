@@ -200,7 +200,7 @@ class Count {
     constexpr double kReach =
         0.5 * (kSquare - 1);  // from the square's middle to its outer voxels, along an axis
     const Vec3 middle = lattice_.center(x0 + kReach, y0 + kReach, z);
-    constexpr double kSlack = 0.5;  // by which OpenVDB may round distances when it smooths them
+    constexpr double kSlack = 0.5;  // OpenVDB changes distances by less when it smooths
     constexpr double kFarthest = std::numbers::sqrt2 * kReach + kDisputed + kSlack;
     return bvh_.closest(middle, kFarthest * lattice_.voxel).triangle != SurfacePoint::kNone;
   }
