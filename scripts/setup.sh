@@ -67,7 +67,11 @@ cuda_options() {
 # Configures build/release with the options given.
 configure() {
   local options=(-DPython3_EXECUTABLE="$python" "$@")
-  if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+  if command -v ccache >/dev/null; then
+    # Sources with precompiled headers are kept, too, of which g++ must name the header in its preprocessed text.
+    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache")
+    if [[ -z ${CXX:-} ]]; then options+=("-DCMAKE_CXX_FLAGS=${CXXFLAGS:-} -fpch-preprocess"); fi
+  fi
   (cd "$repository" && cmake --preset release "${options[@]}")
 }
 

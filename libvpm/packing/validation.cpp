@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "libvpm/core/box.h"
@@ -42,7 +43,7 @@ struct Lattice {
     constexpr double kShift = kMargin;
     return (turn * p - low) / voxel + Vec3{kShift, kShift, kShift};
   }
-  Vec3 center(int x, int y, int z) const {
+  Vec3 center(double x, double y, double z) const {
     constexpr double kShift = kMargin;
     return transpose(turn) * (low + voxel * Vec3{x - kShift, y - kShift, z - kShift});
   }
@@ -69,32 +70,24 @@ Lattice lattice_of(const Solid& solid, int voxels) {
   return lattice;
 }
 
-// Interface that openvdb::tools::meshToVolume expects of a mesh; points in voxels.
-class MeshAdapter {
- public:
-  MeshAdapter(const Solid& solid, const std::vector<Triangle>& triangles, const Lattice& lattice)
-      : solid_(solid), triangles_(triangles), lattice_(lattice) {}
-  std::size_t polygonCount() const { return triangles_.size(); }
-  std::size_t pointCount() const { return solid_.vertices.size(); }
-  std::size_t vertexCount(std::size_t) const { return 3; }
-  void getIndexSpacePoint(std::size_t triangle, std::size_t corner, openvdb::Vec3d& point) const {
-    const Vec3 p = lattice_.to_index(solid_.vertices[triangles_[triangle][corner]]);
-    point = {p.x, p.y, p.z};
-  }
-
- private:
-  const Solid& solid_;
-  const std::vector<Triangle>& triangles_;
-  const Lattice& lattice_;
-};
-
 // Shells of equal depth and orientation, voxelised together. OpenVDB fills whatever cannot be
 // reached from outside, so shells within others need grids of their own.
 struct ShellGroup {
-  std::vector<Triangle> triangles;
+  std::vector<openvdb::Vec3I> triangles;
   int sign = 1;  // -1 for cavities
   openvdb::FloatGrid::Ptr distances;
 };
+
+// Returns the signed distances from triangles of the points given, in voxels. These types are those
+// that libopenvdb holds compiled; others take the compiler a minute here.
+openvdb::FloatGrid::Ptr distances_of(const std::vector<openvdb::Vec3s>& points,
+                                     const std::vector<openvdb::Vec3I>& triangles) {
+  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> mesh(points,
+                                                                                        triangles);
+  openvdb::util::NullInterrupter never;
+  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(
+      never, mesh, *openvdb::math::Transform::createLinearTransform(1.0), kBand, kBand);
+}
 
 std::vector<ShellGroup> voxelise(const Solid& solid, const Lattice& lattice) {
   const Topology topology = topology_of(solid.vertices.size(), solid.triangles);
@@ -107,13 +100,17 @@ std::vector<ShellGroup> voxelise(const Solid& solid, const Lattice& lattice) {
     const ShellPlace& place = places[shell[t]];
     ShellGroup& group = by_place[{place.depth, place.outward}];
     group.sign = place.outward ? 1 : -1;
-    group.triangles.push_back(solid.triangles[t]);
+    const Triangle& corners = solid.triangles[t];
+    group.triangles.emplace_back(corners[0], corners[1], corners[2]);
   }
-  const auto identity = openvdb::math::Transform::createLinearTransform(1.0);
+  std::vector<openvdb::Vec3s> points;  // in voxels, exact to a part of kRounding
+  for (const Vec3& vertex : solid.vertices) {
+    const Vec3 p = lattice.to_index(vertex);
+    points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+  }
   std::vector<ShellGroup> groups;
   for (auto& [place, group] : by_place) {
-    group.distances = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-        MeshAdapter(solid, group.triangles, lattice), *identity, kBand, kBand);
+    group.distances = distances_of(points, group.triangles);
     groups.push_back(std::move(group));
   }
   return groups;
@@ -166,13 +163,28 @@ class Count {
         static_cast<std::size_t>(lattice_.nx) * static_cast<std::size_t>(lattice_.ny), kNone);
     for (std::uint32_t k = 0; k < spheres_.size(); ++k) paint(k, z, owner, result);
     Probe probe(groups_);
-    for (int y = 0; y < lattice_.ny; ++y) {
-      for (int x = 0; x < lattice_.nx; ++x) {
+    for (int y = 0; y < lattice_.ny; y += kSquare) {
+      for (int x = 0; x < lattice_.nx; x += kSquare) count_square(x, y, z, probe, owner, result);
+    }
+    return result;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr int kSquare =
+      8;  // voxels along the edge of a square of a layer that is asked once for the mesh
+
+  // Counts the voxels of the square of layer z whose lowest voxel is (x, y).
+  void count_square(int x0, int y0, int z, Probe& probe, const std::vector<std::uint32_t>& owner,
+                    Layer& result) const {
+    const bool has_mesh = is_near_mesh(x0, y0, z);
+    for (int y = y0; y < std::min(y0 + kSquare, lattice_.ny); ++y) {
+      for (int x = x0; x < std::min(x0 + kSquare, lattice_.nx); ++x) {
         const double distance = probe.distance({x, y, z});
         const bool inside = distance < 0;
         if (inside) ++result.solid_voxels;
         if (std::abs(distance) < 0.5) ++result.cut_by_mesh;
-        result.disputed += is_disputed(lattice_.center(x, y, z), distance);
+        result.disputed += has_mesh && is_disputed(lattice_.center(x, y, z), distance);
         if (owner[at(x, y)] == kNone) continue;
         if (inside) ++result.covered;
         if (distance <= kRounding) continue;
@@ -180,11 +192,18 @@ class Count {
         result.farthest_out = std::max(result.farthest_out, distance);
       }
     }
-    return result;
   }
 
- private:
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  // False only if no voxel centre of the square has the mesh within kDisputed, where sides may be
+  // disputed.
+  bool is_near_mesh(int x0, int y0, int z) const {
+    constexpr double kReach =
+        0.5 * (kSquare - 1);  // from the square's middle to its outer voxels, along an axis
+    const Vec3 middle = lattice_.center(x0 + kReach, y0 + kReach, z);
+    constexpr double kSlack = 0.5;  // OpenVDB changes distances by less when it smooths
+    constexpr double kFarthest = std::numbers::sqrt2 * kReach + kDisputed + kSlack;
+    return bvh_.closest(middle, kFarthest * lattice_.voxel).triangle != SurfacePoint::kNone;
+  }
 
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(lattice_.nx) +
