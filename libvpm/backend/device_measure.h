@@ -1,4 +1,4 @@
-// Measures on CUDA devices, with the bits of PaperMeasure and RefinedMeasure.
+// Measures on CUDA devices, with the bits of RefinedMeasure.
 #pragma once
 
 #include <memory>
@@ -41,7 +41,7 @@ class DeviceMeasure {
   virtual double flood_microseconds() const = 0;
 };
 
-// Makes the measure that the options ask for. On Device::kAll single jobs go to the first device.
+// Makes the refined measure. On Device::kAll single jobs go to the first device.
 // Throws Error(unavailable) in builds without CUDA, or if the device has too little memory.
 std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const Level& level,
                                                    const QueryOptions& options);

@@ -33,18 +33,16 @@ enum class FloodState : std::uint8_t {
 };
 
 // The same of a cell on a device, as a word of bits that threads add in any order. Where a camera
-// tells what is inside, only `cut`, `counts_points` and `counted` are set; the rest serves the
-// flood.
+// tells what is inside, only `cut` and `counted` are set; the rest serves the flood.
 namespace cell_bit {
 inline constexpr std::uint32_t cut = 1;      // the surface passes through a piece
 inline constexpr std::uint32_t partial = 2;  // pieces are behind it, as far as the sum says
 inline constexpr std::uint32_t whole = 4;    // behind the surface
 // Behind a surface that may be another one: the plane of the nearest cut cell decides.
 inline constexpr std::uint32_t hidden = 8;
-inline constexpr std::uint32_t summed = 16;         // the sum of a cut cell is noted
-inline constexpr std::uint32_t counts_points = 32;  // the surface may pass the sphere
-inline constexpr std::uint32_t reached = 64;        // the flood of a block alone has come
-inline constexpr std::uint32_t counted = 128;       // in the result: cut as boundary, else inside
+inline constexpr std::uint32_t summed = 16;   // the sum of a cut cell is noted
+inline constexpr std::uint32_t reached = 32;  // the flood of a block alone has come
+inline constexpr std::uint32_t counted = 64;  // in the result: cut as boundary, else inside
 }  // namespace cell_bit
 
 // True if a cell with these bits is inside if the flood reaches it.

@@ -37,8 +37,7 @@ void for_each_job(std::size_t count, const Body& body) {
 
 // True if one launch can answer for both.
 bool go_together(const QueryOptions& a, const QueryOptions& b) {
-  return a.measure == b.measure && a.device == b.device && a.counts_points == b.counts_points &&
-         a.occluded == b.occluded;
+  return a.measure == b.measure && a.device == b.device && a.occluded == b.occluded;
 }
 
 void check_options(const QueryOptions& options, const ToolModel& tool) {
@@ -46,6 +45,9 @@ void check_options(const QueryOptions& options, const ToolModel& tool) {
     invalid("the stiffness must be a positive number");
   if (!std::isfinite(options.stiffness * tool.volume * std::max(1.0, tool.reach)))
     invalid("the stiffness is so large that forces overflow");
+  if (options.measure == Measure::paper && options.device.is_cuda())
+    invalid("the measure as printed is computed on the CPU only",
+            "leave the device or the other measure out");
   if (options.coherent && (options.measure == Measure::paper || options.device.is_cuda()))
     invalid("coherent poses are a matter of the refined measure on the CPU",
             "leave the other measure or device out");
@@ -101,7 +103,7 @@ void ToolQuery::run(std::span<ToolQuery* const> queries, const SceneView& scene,
     if (query->options_.coherent && queries.size() > 1)
       invalid("coherent poses follow each other", "ask for them one by one");
     if (!go_together(query->options_, queries.front()->options_))
-      invalid("tools that are queried together need the same measure, device, shadows and points",
+      invalid("tools that are queried together need the same measure, device and shadows",
               "make their queries with the same options");
   }
   for (const Job& job : jobs)
@@ -135,7 +137,6 @@ std::span<const SphereState> ToolQuery::states() const {
 }
 
 void ToolQuery::finish(Result& result) const {
-  if (!options_.counts_points && options_.measure == Measure::refined) result.points.reset();
   result.wrench.force = options_.stiffness * result.wrench.force;
   result.wrench.torque = options_.stiffness * result.wrench.torque;
 }

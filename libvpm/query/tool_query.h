@@ -25,8 +25,7 @@ class ToolQuery {
 
   // Stores the answers of many jobs, whose tools are indices into `queries`. Has the contract of
   // Query::run. Throws Error(invalid_argument) unless the queries have the same options save level
-  // and stiffness. A device launches the refined measure for up to 16 tools at once, the printed
-  // one for each tool.
+  // and stiffness. A device launches up to 16 tools at once.
   static void run(std::span<ToolQuery* const> queries, const SceneView& scene,
                   std::span<const Job> jobs, std::span<Result> results);
 
@@ -54,6 +53,12 @@ class ToolQuery {
   std::unique_ptr<DeviceMeasure> device_;
   mutable std::vector<SphereState> states_;
 };
+
+// Returns where a measure is computed if queries may use `device`: there, but the measure as
+// printed on the CPU.
+inline Device device_for(Measure measure, const Device& device) {
+  return measure == Measure::paper ? Device{} : device;
+}
 
 // Returns the job of each pose for a single tool.
 inline std::vector<Job> jobs_of(std::span<const Pose> poses) {

@@ -178,7 +178,6 @@ concept SeesFreeSpace = MeasuredBody<B> &&
   { body.side_of(in_ball, x, length) } -> std::same_as<Side>;
   { body.tells_of_parts(x, length) } -> std::same_as<bool>;
   { body.is_free_part(in_ball, x, length) } -> std::same_as<bool>;
-  { body.may_touch(in_ball, x, length) } -> std::same_as<bool>;
   { B::least_inverse_depth(in_ball) } -> std::same_as<float>;
   { body.may_be_free(0.0F, x, length) } -> std::same_as<bool>;
   { body.may_hold_free(in_ball, x, length) } -> std::same_as<bool>;
@@ -223,15 +222,6 @@ VPM_HD bool is_free_part(const B& body, const typename B::BallClass& in_ball, Ve
     return body.is_free_part(in_ball, center, radius);
   else
     return false;
-}
-// False if the surface surely does not touch a ball inside a classified one.
-template <MeasuredBody B>
-VPM_HD bool may_touch(const B& body, const typename B::BallClass& in_ball, Vec3 center,
-                      double radius) {
-  if constexpr (SeesFreeSpace<B>)
-    return body.may_touch(in_ball, center, radius);
-  else
-    return true;
 }
 // Returns the least inverse depth, 1/m, of the surface in a classified ball; 0 where no free space
 // was seen.

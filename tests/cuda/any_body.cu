@@ -19,13 +19,11 @@ Result run(const ToolModel& tool, const Body& body, const Pose& pose) {
   counters.clear();
   const MappedArray<Answer> answer(1);
   const Stream stream;
-  PoseFrame frame;
-  frame.to_surface = {pose.rotation, pose * tool.center_of_mass};
-  const RefinedLaunch<Body> launch{level.view(),   body,           {},
-                                   memory.space(), false,          blocks,
-                                   totals.get(),   counters.get(), answer.device()};
-  launch_kernel(kKernel, {blocks, kThreads}, LaunchKind::cooperative, stream.get(), launch, frame,
-                1U);
+  const Pose to_surface{pose.rotation, pose * tool.center_of_mass};
+  const RefinedLaunch<Body> launch{level.view(), body,           memory.space(),
+                                   totals.get(), counters.get(), answer.device()};
+  launch_kernel(kKernel, {blocks, kThreads}, LaunchKind::cooperative, stream.get(), launch,
+                to_surface, 1U);
   const RawResult raw = wait_for(*answer.host(), 1, stream.get());
   check(cudaStreamSynchronize(stream.get()));
   return result_of(raw, tool, pose.rotation);

@@ -264,12 +264,12 @@ TEST_P(SameFrame, EachImageAnew) {
   const ToolModel tool = testing::lattice_cube(0.12, 9, 3);
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.9}};
-  ToolQuery on_cpu(tool, {.counts_points = false});
+  ToolQuery on_cpu(tool, {});
   std::vector<Result> expected;
   for (int k = 0; k < 6; ++k)
     expected.push_back(
         on_cpu.run(prepared(images[k % 3], options, cameras[k % 2]), cameras[k % 2] * pose));
-  ToolQuery query(tool, {.device = kDevice, .counts_points = false});
+  ToolQuery query(tool, {.device = kDevice});
   DepthFrames frames(options);
   for (int k = 0; k < testing::effort(120); ++k) {
     SCOPED_TRACE(k);
@@ -286,8 +286,7 @@ TEST_P(SameFrame, InMemoryThatIsUsedAgainAtOnce) {
   const Pose cameras[] = {{}, {testing::generic_rotation(), {0.3, -3, 2}}};
   const Pose pose{testing::generic_rotation(), {0, 0, 0.8}};
   const ToolModel tool = testing::lattice_cube(0.3, 9, 3);
-  ToolQuery on_cpu(tool, {.counts_points = false}),
-      query(tool, {.device = kDevice, .counts_points = false});
+  ToolQuery on_cpu(tool, {}), query(tool, {.device = kDevice});
   Result expected[2];
   for (int k = 0; k < 2; ++k)
     expected[k] = on_cpu.run(prepared(image, options, cameras[k]), cameras[k] * pose);

@@ -27,7 +27,6 @@ void expect_sound(const Result& result) {
 QueryOptions options_of(std::size_t way, bool is_organised) {
   QueryOptions options;
   options.measure = way == 1 ? Measure::paper : Measure::refined;
-  options.counts_points = way == 2;
   if (way == 2 && is_organised) options.occluded = OccludedSpace::solid;
   options.coherent = way == 3;
   return options;

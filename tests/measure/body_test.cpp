@@ -41,7 +41,7 @@ TEST(AnyBody, AHalfSpaceHoldsWhatOfTheToolIsBelowIt) {
     for (double height = -0.2; height < 0.2; height += 0.013) {
       const HalfSpace body = below({0.2, -0.3, 0.9}, height);
       const Pose pose{testing::generic_rotation(), {0.01, -0.02, 0.03}};
-      const Result result = measure.run_on(body, Pose{}, pose, nullptr);
+      const Result result = measure.run_on(body, Pose{}, pose);
       const double expected = part_behind(tool, pose, [&](Vec3 x) { return body.top.distance(x); });
       // Where the plane cuts nothing, points alone cannot tell that the tool is inside.
       if (result.boundary == 0) continue;
@@ -60,11 +60,9 @@ TEST(AnyBody, TwoBodiesAtOnePlaceAreOne) {
     // Two cameras see one wall, and one errs by 4 mm: the lower surface shows free space.
     const HalfSpace near = below({0.2, -0.3, 0.9}, height),
                     far = below({0.2, -0.3, 0.9}, height - 0.004);
-    const Result expected = measure.run_on(far, Pose{}, pose, nullptr);
-    const Result both =
-        measure.run_on(Both<HalfSpace, HalfSpace>{near, far}, Pose{}, pose, nullptr);
-    const Result turned =
-        measure.run_on(Both<HalfSpace, HalfSpace>{far, near}, Pose{}, pose, nullptr);
+    const Result expected = measure.run_on(far, Pose{}, pose);
+    const Result both = measure.run_on(Both<HalfSpace, HalfSpace>{near, far}, Pose{}, pose);
+    const Result turned = measure.run_on(Both<HalfSpace, HalfSpace>{far, near}, Pose{}, pose);
     EXPECT_NEAR(both.volume_fraction, expected.volume_fraction, 1e-12);
     EXPECT_EQ(both.volume, turned.volume);
     EXPECT_EQ(both.wrench, turned.wrench);
@@ -75,7 +73,7 @@ TEST(AnyBody, AnEdgeIsCutByBothItsFaces) {
   const ToolModel tool = testing::lattice_cube(kEdge, 20, 2);
   RefinedMeasure measure(tool, tool.levels[0], {});
   const Both<HalfSpace, HalfSpace> edge{below({0, 0, 1}, 0.02), below({1, 0, 0}, -0.03)};
-  const Result result = measure.run_on(edge, Pose{}, Pose{}, nullptr);
+  const Result result = measure.run_on(edge, Pose{}, Pose{});
   EXPECT_NEAR(result.volume, kEdge * (0.5 * kEdge + 0.02) * (0.5 * kEdge - 0.03),
               0.002 * tool.volume);
 }

@@ -33,7 +33,6 @@ Cloud points(std::vector<Vec3f> positions, std::vector<Vec3f> normals, float rad
 Result ask(const ToolModel& tool, const Cloud& cloud, Measure measure, const Pose& pose = {}) {
   QueryOptions options;
   options.measure = measure;
-  options.counts_points = true;
   return ToolQuery(tool, options).run(PreparedCloud(cloud), pose);
 }
 
@@ -48,7 +47,7 @@ TEST(ExtremePoints, NoneTouchesNothing) {
   for (const Measure measure : {Measure::refined, Measure::paper}) {
     const Result r = ask(tool, points({}, {}), measure);
     EXPECT_EQ(r.volume, 0);
-    EXPECT_EQ(r.boundary + r.inside + r.points.value(), 0u);
+    EXPECT_EQ(r.boundary + r.inside + r.points.value_or(0), 0u);
   }
 }
 

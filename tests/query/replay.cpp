@@ -40,7 +40,7 @@ class Bytes {
     const Wrench& w = r.wrench;
     add(std::vector<double>{r.volume, r.volume_fraction, w.force.x, w.force.y, w.force.z,
                             w.torque.x, w.torque.y, w.torque.z});
-    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points.value()});
+    add(std::vector<std::uint32_t>{r.boundary, r.inside, r.points.value_or(0)});
   }
   std::vector<std::byte> take() { return std::move(all_); }
 
@@ -100,8 +100,7 @@ void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure
               const Device& device, Vec3 at, Numbers& numbers, Bytes& bytes) {
   QueryOptions options;
   options.measure = measure;
-  options.device = device;
-  options.counts_points = true;
+  options.device = device_for(measure, device);
   ToolQuery query(tool, options);
   for (int k = 0; k < kPosesPerPath; ++k) {
     bytes.add(query.run(cloud, pose(numbers, at)));

@@ -63,7 +63,6 @@ class Pipeline {
     for (const Measure measure : {Measure::refined, Measure::paper}) {
       QueryOptions options;
       options.measure = measure;
-      options.counts_points = true;
       ToolQuery query(tool, options);
       for (int k = 0; k < 4; ++k)
         results.push_back(query.run(cloud, {turned(), scale * Vec3{0.01, -0.02, 0.9 + 0.04 * k}}));

@@ -37,7 +37,6 @@ class SameBits : public ::testing::TestWithParam<Variant> {
                             Vec3 shift = {}) const {
     QueryOptions options;
     options.measure = GetParam().measure;
-    options.counts_points = true;
     ToolQuery query(tool, options);
     const PreparedCloud prepared(cloud);
     std::vector<Result> results(12);
@@ -70,7 +69,6 @@ TEST_P(SameBits, ForARoundedRotationAndTheNearestOne) {
   const PreparedCloud prepared(cloud());
   QueryOptions options;
   options.measure = GetParam().measure;
-  options.counts_points = true;
   ToolQuery query(tool, options);
   for (int k = 0; k < 12; ++k) {
     const Pose rounded = in_floats({generic_rotation(), {0.01, -0.02, 0.84 + 0.015 * k}});
@@ -120,7 +118,7 @@ struct Step {
   std::vector<SphereState> states;
 };
 std::vector<Step> go_through(const PreparedCloud& cloud, const ToolModel& tool) {
-  ToolQuery query(tool, {.coherent = true, .counts_points = true});
+  ToolQuery query(tool, {.coherent = true});
   std::vector<Step> steps(12);
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Pose pose{generic_rotation(), {0.01, -0.02, 0.84 + 0.03 * static_cast<double>(k)}};

@@ -11,7 +11,6 @@
 //   behind=0      1: a query sees the image before the newest, which is made ready meanwhile
 //   method=inverse-depth   or pca: normals of the images
 //   batch=1       number of poses asked at once, as planners do; copies of the tool share them
-//   points=0      1: also counts the cloud's points in spheres, which no control loop needs
 //   json=FILE     writes the figures as JSON too
 //   poses=FILE    writes the first path=400 poses, for vpm-query --poses
 #include <algorithm>
@@ -320,8 +319,7 @@ Options parse(int argc, char** argv) {
   Options options{{"device", "auto"}, {"measure", "refined"}, {"queries", "10000"},
                   {"level", "0"},     {"rotate", "1"},        {"batch", "1"},
                   {"json", ""},       {"poses", ""},          {"path", "400"},
-                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"},
-                  {"points", "0"}};
+                  {"frames", "none"}, {"behind", "0"},        {"method", "inverse-depth"}};
   for (int k = 3; k < argc; ++k) {
     const std::string text = argv[k];
     const std::size_t equals = text.find('=');
@@ -329,7 +327,7 @@ Options parse(int argc, char** argv) {
       throw Error(ErrorKind::invalid_argument,
                   text +
                       ": the options are device= measure= queries= level= "
-                      "rotate= frames= behind= method= batch= points= json= poses= path=");
+                      "rotate= frames= behind= method= batch= json= poses= path=");
     options[text.substr(0, equals)] = text.substr(equals + 1);
   }
   return options;
@@ -347,7 +345,6 @@ QueryOptions query_options(const Options& options) {
   QueryOptions query_options;
   query_options.device = device_from_text(options.at("device"));
   query_options.level = static_cast<std::uint32_t>(number(options, "level", 0));
-  query_options.counts_points = number(options, "points", 0) != 0;
   return query_options;
 }
 

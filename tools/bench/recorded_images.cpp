@@ -41,7 +41,7 @@ FrameResult run_frame(const std::string& name, const Cloud& cloud, const PackedS
   const PreparedCloud prepared(cloud);
   ToolQuery solid(tool.model, {.level = level, .device = device, .occluded = OccludedSpace::solid}),
       near(tool.model, {.level = level, .device = device}),
-      paper(tool.model, {.measure = Measure::paper, .level = level, .device = device});
+      paper(tool.model, {.measure = Measure::paper, .level = level});
   FrameResult result;
   result.frame = name;
   const int tries = 20 * poses;

@@ -160,17 +160,13 @@ struct QueryScene {
 
 void time_level(const ReplayTool& tool, const SuiteOptions& suite, const QueryScene& seen,
                 std::uint32_t level, int threads, Report& report) {
-  ToolQuery query(tool.model, {.level = level, .device = suite.device}),
-      counting(tool.model, {.level = level, .device = suite.device, .counts_points = true});
+  ToolQuery query(tool.model, {.level = level, .device = suite.device});
   Result result;
   const auto add = [&](const char* what, const Durations& durations) {
     add_query(report, what, level, threads, durations, result.volume_fraction);
   };
   add("refined", timed(seen.calls, QueryScene::kWarmUp,
                        [&](int k) { result = query.run(seen.prepared, seen.pose(k)); }));
-  add("refined, points counted", timed(seen.calls, QueryScene::kWarmUp, [&](int k) {
-        result = counting.run(seen.prepared, seen.pose(k));
-      }));
   add("refined, cold cloud", timed(seen.few, 1, [&](int k) {
         const PreparedCloud anew(seen.cloud);
         result = query.run(anew, seen.pose(k));

@@ -218,10 +218,9 @@ void run_soak(const ReplayTool& tool, const std::string& folder, const SuiteOpti
   const std::size_t rounds = suite.quick ? 3 : 100, queries = suite.quick ? 2000 : 10000;
   const SampledPath path = path_through(stream, tool.model, static_cast<double>(queries) / kRate);
   constexpr double kGrowth = 8;  // MB: less than half of a frame, so it shows a leak of frames
-  ToolQuery query(tool.model, {.level = tool.soak_level,
-                               .device = suite.device,
-                               .coherent = !suite.device.is_cuda(),
-                               .counts_points = true});
+  ToolQuery query(
+      tool.model,
+      {.level = tool.soak_level, .device = suite.device, .coherent = !suite.device.is_cuda()});
   FrameReader reader(stream.recording, stream.import, stream.device);
   const std::string hash = soak_round(stream, reader, path, query);
   const double before = resident_memory_mb();

@@ -119,7 +119,8 @@ SilhouetteResult follow(const Path& path, const PackedSolid& tool, std::uint32_t
 
   SilhouetteResult result{.path = path.name};
   for (const Measure measure : {Measure::refined, Measure::paper}) {
-    ToolQuery query(tool.model, {.measure = measure, .level = level, .device = device});
+    ToolQuery query(tool.model,
+                    {.measure = measure, .level = level, .device = device_for(measure, device)});
     std::vector<Result> measured;
     for (const Pose& pose : along) {
       measured.push_back(query.run(cloud, pose));

@@ -169,7 +169,7 @@ class Tradeoff {
       QueryOptions query_options;
       query_options.measure = measured_by;
       query_options.level = spheres;
-      query_options.device = options_.device;
+      query_options.device = device_for(measured_by, options_.device);
       Measured m{what,
                  c.shape,
                  c.scene,

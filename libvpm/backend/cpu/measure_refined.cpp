@@ -5,23 +5,16 @@
 namespace vpm {
 RefinedMeasure::RefinedMeasure(const ToolModel& tool, const Level& level,
                                const QueryOptions& options)
-    : tool_(tool),
-      reach_(tool.reach, options.occluded),
-      counts_points_(options.counts_points),
-      level_(tool, level),
-      cells_(level_) {
+    : tool_(tool), reach_(tool.reach, options.occluded), level_(tool, level), cells_(level_) {
   if (options.coherent) memory_.emplace(level_.size(), level_.roots().size());
 }
 
 Result RefinedMeasure::run(const PreparedCloud& cloud, const Pose& pose) {
-  const PointsOfSphere of_cloud(cloud, pose);
-  const PointsOfSphere* const points = counts_points_ ? &of_cloud : nullptr;
-  if (cloud.is_organised())
-    return run_on(cloud.depth_surface(), cloud.camera_to_world(), pose, points);
+  if (cloud.is_organised()) return run_on(cloud.depth_surface(), cloud.camera_to_world(), pose);
   constexpr double kPlaces = 1.25;  // in tool radii: holds most sampled places
   DiskSurface disks = cloud.disk_surface();
   disks.feet.enter_near(pose * tool_.center_of_mass - cloud.origin(), kPlaces * tool_.reach);
-  return run_on(disks, Pose{{}, cloud.origin()}, pose, points);
+  return run_on(disks, Pose{{}, cloud.origin()}, pose);
 }
 
 void RefinedMeasure::read_states(std::vector<SphereState>& states) const {

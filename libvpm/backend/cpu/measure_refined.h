@@ -9,7 +9,6 @@
 #include "libvpm/backend/cpu/cell_classifier.h"
 #include "libvpm/backend/cpu/cell_states.h"
 #include "libvpm/backend/cpu/inside_cells.h"
-#include "libvpm/backend/cpu/points_inside.h"
 #include "libvpm/backend/cpu/spatial_level.h"
 #include "libvpm/core/parallel.h"
 #include "libvpm/include/vpm/query_types.h"
@@ -25,23 +24,21 @@ using InsideOf =
 
 class RefinedMeasure {
  public:
-  // Uses the options about coherent poses, points and occluded space.
+  // Uses the options about coherent poses and occluded space.
   RefinedMeasure(const ToolModel& tool, const Level& level, const QueryOptions& options);
 
   // With one thread, allocates nothing after the first call.
   Result run(const PreparedCloud& cloud, const Pose& pose);
 
-  // Returns the answer for one body. `to_world` maps its frame to the world's; `points` counts the
-  // points in spheres, or is null.
+  // Returns the answer for one body. `to_world` maps its frame to the world's.
   template <MeasuredBody Surface>
-  Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose,
-                const PointsOfSphere* points) {
+  Result run_on(const Surface& surface, const Pose& to_world, const Pose& pose) {
     ToolSum sum;
     Result result;
     const Pose to_surface = relative_to(to_world, {pose.rotation, pose * tool_.center_of_mass});
-    const PoseWork<Surface> work{tool_, reach_, level_, surface, to_surface, cells_};
+    const PoseWork<Surface> work{reach_, level_, surface, to_surface, cells_};
     ParallelRegion region;
-    result.points = CellClassifier(work, points).run(region);
+    CellClassifier(work).run(region);
     CutCells cut(tool_, level_, to_surface, cells_);
     cut.list();
     InsideOf<Surface> inside(work, cut);
@@ -162,7 +159,6 @@ class RefinedMeasure {
 
   const ToolModel& tool_;
   ToolReach reach_;
-  bool counts_points_;
   SpatialLevel level_;
   CellStates cells_;
   std::optional<PoseMemory> memory_;

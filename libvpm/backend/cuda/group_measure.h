@@ -2,8 +2,8 @@
 //
 // One to four threads classify each task group's cluster, more where groups are few, and sample the
 // surface at four places of a planar one. A block task of a cut cluster is classified by one to
-// four threads, which read its pixels; others by four, which classify the balls of its cell, block
-// and sphere. Work is listed as tasks in shared memory (task_measure.h).
+// four threads, which read its pixels; others by four, which classify the balls of its cell and
+// block. Work is listed as tasks in shared memory (task_measure.h).
 #pragma once
 
 #include <climits>
@@ -38,12 +38,8 @@ template <class Surface>
 class GroupMeasure {
  public:
   // Adds to `found`, this thread's sums, which are 0 before.
-  __device__ GroupMeasure(const PoseWork<Surface>& work, bool counts_points, MeasureShared& shared,
-                          RawResult& found)
-      : work_(work),
-        counts_points_(counts_points),
-        shared_(shared),
-        tasks_(work, shared.lists, found) {}
+  __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, RawResult& found)
+      : work_(work), shared_(shared), tasks_(work, shared.lists, found) {}
 
   // Classifies the task groups of the block's part. Call from all threads.
   __device__ void run() {
@@ -210,15 +206,12 @@ class GroupMeasure {
     decltype(work_.surface.classify_ball(at, ball.radius)) in_ball;
     Side own = in_ball.side;
     if (seen.side() == Side::ambiguous) {
-      if (lanes.lane < BlockTask::of_sphere || counts_points_)  // spheres matter for points only
-        in_ball = work_.surface.classify_ball(at, ball.radius);
+      if (lanes.lane < BlockTask::kBalls) in_ball = work_.surface.classify_ball(at, ball.radius);
       own = in_ball.side;
       if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
     }
-    const auto side_of = [&](unsigned lane) {
-      return static_cast<Side>(lanes.from(static_cast<unsigned>(own), lane));
-    };
-    const Side of_cell = side_of(BlockTask::of_cell), of_sphere = side_of(BlockTask::of_sphere);
+    const auto of_cell =
+        static_cast<Side>(lanes.from(static_cast<unsigned>(own), BlockTask::of_cell));
     const Side side = seen.side() == Side::ambiguous ? of_cell : seen.side();
 
     const bool samples_cell = kFloods && lanes.lane == BlockTask::of_cell && side != Side::free;
@@ -241,7 +234,7 @@ class GroupMeasure {
     }
     if (!active) return;
     if (lanes.lane == BlockTask::of_cell && head)
-      note_cell(task, word_of_cell(side, of_sphere, whole, hidden), gap);
+      note_cell(task, word_of_cell(side, whole, hidden), gap);
     if (lanes.lane != BlockTask::of_block) return;
     if (side == Side::ambiguous)
       add_ambiguous(task, in_ball, at, ball.radius, on_surface);
@@ -268,12 +261,6 @@ class GroupMeasure {
       if (side == PlaneSide::behind) {
         tasks_.note_behind(task, plane.normal);
         if (kFloods) word = cell_bit::partial;
-      }
-      if (counts_points_) {
-        const TaskBall& sphere = task.balls[BlockTask::of_sphere];
-        if (work_.surface.classify_ball(work_.to_surface * sphere.center, sphere.radius).side ==
-            Side::ambiguous)
-          word |= cell_bit::counts_points;
       }
       note_cell(task, word, distance * distance);
     }
@@ -323,18 +310,16 @@ class GroupMeasure {
 
   __device__ void note_cell(const BlockTask& task, std::uint32_t word, double gap) {
     const std::uint32_t i = task.cell;
-    if (!kFloods) word &= cell_bit::counts_points;
-    if (word != 0) atomicOr(&work_.notes.words[i], word);
     if (!kFloods) return;
+    if (word != 0) atomicOr(&work_.notes.words[i], word);
     work_.space.gaps[i] = gap;
     work_.space.parents[i + 1] = i + 1;
   }
 
   // Returns the word to note of a cell that is `whole` behind the surface or ambiguous; counts a
   // hidden one.
-  __device__ std::uint32_t word_of_cell(Side side, Side of_sphere, bool whole, bool hidden) const {
+  __device__ std::uint32_t word_of_cell(Side side, bool whole, bool hidden) const {
     std::uint32_t word = whole ? cell_bit::whole : 0;
-    if (side == Side::ambiguous && of_sphere == Side::ambiguous) word |= cell_bit::counts_points;
     if ((whole || side == Side::ambiguous) && hidden) {
       word |= cell_bit::hidden;
       atomicAdd(&work_.counters.hidden, 1U);
@@ -390,7 +375,6 @@ class GroupMeasure {
   }
 
   const PoseWork<Surface>& work_;
-  bool counts_points_;
   MeasureShared& shared_;
   TaskMeasure<Surface> tasks_;
 };

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "libvpm/backend/cuda/measure_on_device.h"
+#include "libvpm/core/parallel.h"
 
 namespace vpm::cuda {
 
@@ -17,24 +18,28 @@ void MeasureOnDevice::run(const SceneView& scene, std::span<DeviceMeasure* const
 }
 
 Result MeasureOnDevice::ask(const Pose& pose) {
-  const PoseFrame frame = frame_of(pose, cloud_->frame(), tool_.center_of_mass, reach());
   const CurrentDevice current(device_);
   if (frame_ != nullptr) frame_->require(stream());
-  launch(frame, answer_.device(), sequence_ + 1);
+  launch(to_surface(pose, cloud_->to_world()), answer_.device(), sequence_ + 1);
   const RawResult raw = wait_for(*answer_.host(), ++sequence_, stream_.get());
   flood_microseconds_ = 1e-3 * raw.flood_ns;
   return result_of(raw, tool_, pose.rotation);
 }
 
+Pose MeasureOnDevice::to_surface(const Pose& pose, const Pose& surface_to_world) const {
+  return relative_to(surface_to_world, {pose.rotation, pose * tool_.center_of_mass});
+}
+
 std::span<const RawResult> MeasureOnDevice::answers_of(std::span<const ToolPart> tools,
-                                                       std::span<const Pose> poses) {
-  check(cudaMemcpyAsync(batch_->poses.get(), poses.data(), poses.size_bytes(),
+                                                       std::span<const Pose> to_surfaces) {
+  check(cudaMemcpyAsync(batch_->poses.get(), to_surfaces.data(), to_surfaces.size_bytes(),
                         cudaMemcpyHostToDevice, stream_.get()));
   launch(tools, batch_->poses.get(), batch_->results.get());
   check(cudaMemcpyAsync(batch_->answers.data(), batch_->results.get(),
-                        poses.size() * sizeof(RawResult), cudaMemcpyDeviceToHost, stream_.get()));
+                        to_surfaces.size() * sizeof(RawResult), cudaMemcpyDeviceToHost,
+                        stream_.get()));
   check(cudaStreamSynchronize(stream_.get()));
-  return {batch_->answers.data(), poses.size()};
+  return {batch_->answers.data(), to_surfaces.size()};
 }
 
 void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
@@ -53,8 +58,8 @@ void MeasureOnDevice::ask(std::span<DeviceMeasure* const> measures, std::span<co
     std::size_t k = 0;
     for (const ToolPart& part : batch_->tools)
       for (; k < part.end; ++k)
-        results[begin + batch_->places[k]] =
-            result_of(answers[k], part.measure->tool_, batch_->ordered[k].rotation);
+        results[begin + batch_->places[k]] = result_of(
+            answers[k], part.measure->tool_, jobs[begin + batch_->places[k]].pose.rotation);
   }
 }
 
@@ -76,6 +81,15 @@ void MeasureOnDevice::order_by_tool(std::span<DeviceMeasure* const> measures,
     const std::uint32_t place = next[jobs[k].tool]++;
     batch_->ordered[place] = jobs[k].pose;
     batch_->places[place] = k;
+  }
+  constexpr std::size_t kPosesPerTask = 2048;
+  std::size_t first = 0;
+  for (const ToolPart& part : batch_->tools) {
+    parallel_for(part.end - first, kPosesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (Pose& pose : std::span(batch_->ordered).subspan(first + begin, end - begin))
+        pose = part.measure->to_surface(pose, cloud_->to_world());
+    });
+    first = part.end;
   }
 }
 
@@ -118,9 +132,7 @@ std::unique_ptr<DeviceMeasure> make_device_measure(const ToolModel& tool, const 
   const int count = device.index == Device::kAll ? std::max(1, cuda_device_count()) : 1;
   std::vector<std::unique_ptr<DeviceMeasure>> measures;
   for (int k = 0; k < count; ++k)
-    measures.push_back(options.measure == Measure::paper
-                           ? cuda::make_paper_measure(tool, level, device.first() + k)
-                           : cuda::make_refined_measure(tool, level, options, device.first() + k));
+    measures.push_back(cuda::make_refined_measure(tool, level, options, device.first() + k));
   if (measures.size() == 1) return std::move(measures.front());
   return std::make_unique<SpreadMeasure>(std::move(measures));
 }

@@ -22,7 +22,7 @@ class MeasureOnDevice : public DeviceMeasure {
 
  protected:
   // Launches one query, which sends its result to `answer` as number `sequence`, counting up.
-  virtual void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) = 0;
+  virtual void launch(const Pose& to_surface, Answer* answer, unsigned sequence) = 0;
   // Names the poses of one tool among many: they follow those of the tool before.
   struct ToolPart {
     MeasureOnDevice* measure = nullptr;  // all are of one class
@@ -30,9 +30,8 @@ class MeasureOnDevice : public DeviceMeasure {
   };
   // Launches many queries, from poses and to results on the device, in this measure's stream and
   // cloud.
-  virtual void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) = 0;
-  // Returns the distance from the centre of mass beyond which no point matters, m.
-  virtual double reach() const = 0;
+  virtual void launch(std::span<const ToolPart> tools, const Pose* to_surfaces,
+                      RawResult* results) = 0;
   // Returns a word per sphere of query number `sequence`; state_of() says what it means.
   virtual const std::uint32_t* state_words(unsigned sequence) const = 0;
   virtual SphereState state_of(std::uint32_t word) const = 0;
@@ -51,7 +50,7 @@ class MeasureOnDevice : public DeviceMeasure {
     std::vector<RawResult> answers;
     // For several tools: the poses ordered by tool, and the place from which each comes.
     std::vector<ToolPart> tools;
-    std::vector<Pose> ordered;
+    std::vector<Pose> ordered;  // maps to the surface's frame
     std::vector<std::uint32_t> places;
   };
 
@@ -59,11 +58,13 @@ class MeasureOnDevice : public DeviceMeasure {
   // Returns null where the frame's cloud is not made on this device.
   const CloudSlot* bring(const DepthFrame& frame);
   Result ask(const Pose& pose);
+  // Returns what maps coordinates about the tool's centre of mass to the surface's frame.
+  Pose to_surface(const Pose& pose, const Pose& surface_to_world) const;
   void ask(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs,
            std::span<Result> results);
   // Returns the answers to the poses of one launch.
   std::span<const RawResult> answers_of(std::span<const ToolPart> tools,
-                                        std::span<const Pose> poses);
+                                        std::span<const Pose> to_surfaces);
   void order_by_tool(std::span<DeviceMeasure* const> measures, std::span<const Job> jobs);
 
   int device_;
@@ -81,8 +82,5 @@ class MeasureOnDevice : public DeviceMeasure {
 
 std::unique_ptr<DeviceMeasure> make_refined_measure(const ToolModel& tool, const Level& level,
                                                     const QueryOptions& options, int device);
-
-std::unique_ptr<DeviceMeasure> make_paper_measure(const ToolModel& tool, const Level& level,
-                                                  int device);
 
 }  // namespace vpm::cuda

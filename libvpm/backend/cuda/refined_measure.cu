@@ -13,7 +13,6 @@ class RefinedOnDevice : public MeasureOnDevice {
                   int device)
       : MeasureOnDevice(tool, device),
         level_(tool, level, options.occluded),
-        counts_points_(options.counts_points),
         of_images_(kernel_of_images(level_.view())),
         of_points_(kernel_of_points(level_.view())),
         memory_(TeamRoom(level_.view()), 1, std::max(of_images_.blocks, of_points_.blocks),
@@ -28,7 +27,7 @@ class RefinedOnDevice : public MeasureOnDevice {
   // Names the kernel that answers one pose.
   template <class Surface>
   struct PoseKernel {
-    using Function = void (*)(RefinedLaunch<Surface>, PoseFrame, unsigned);
+    using Function = void (*)(RefinedLaunch<Surface>, Pose, unsigned);
     Function function = nullptr;
     unsigned blocks = 0;
     bool meets = true;  // its blocks meet, so all must be resident at once
@@ -60,20 +59,20 @@ class RefinedOnDevice : public MeasureOnDevice {
     RefinedMemory memory;
   };
 
-  void launch(const PoseFrame& frame, Answer* answer, unsigned sequence) override {
-    if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), of_images_, frame, answer, sequence);
+  void launch(const Pose& to_surface, Answer* answer, unsigned sequence) override {
+    if (cloud().is_organised())
+      launch_on(cloud().depth_surface(), of_images_, to_surface, answer, sequence);
     else
-      launch_on(cloud().disk_surface(), of_points_, frame, answer, sequence);
+      launch_on(cloud().disk_surface(), of_points_, to_surface, answer, sequence);
   }
-  void launch(std::span<const ToolPart> tools, const Pose* poses, RawResult* results) override {
+  void launch(std::span<const ToolPart> tools, const Pose* to_surfaces,
+              RawResult* results) override {
     make_room(tools);
-    if (cloud().frame().is_organised)
-      launch_on(cloud().depth_surface(), tools, poses, results);
+    if (cloud().is_organised())
+      launch_on(cloud().depth_surface(), tools, to_surfaces, results);
     else
-      launch_on(cloud().disk_surface(), tools, poses, results);
+      launch_on(cloud().disk_surface(), tools, to_surfaces, results);
   }
-  double reach() const override { return level_.view().spheres_reach; }
   const std::uint32_t* state_words(unsigned sequence) const override {
     return memory_.space().notes[sequence % 2].words;
   }
@@ -84,21 +83,13 @@ class RefinedOnDevice : public MeasureOnDevice {
   }
 
   template <class Surface>
-  RefinedLaunch<Surface> arguments_of(const Surface& surface, unsigned blocks,
-                                      Answer* answer) const {
-    // Few points lie in reach: they take less than a large level's spheres. One block counts them
-    // at least, however small the device is.
-    unsigned sphere_blocks = blocks;
-    if (counts_points_) sphere_blocks -= std::max(1U, blocks / (is_small(level_.view()) ? 2 : 8));
-    return {level_.view(), surface,       cloud().points(), memory_.space(), counts_points_,
-            sphere_blocks, totals_.get(), counters_.get(),  answer};
-  }
-  template <class Surface>
-  void launch_on(const Surface& surface, const PoseKernel<Surface>& kernel, const PoseFrame& frame,
+  void launch_on(const Surface& surface, const PoseKernel<Surface>& kernel, const Pose& to_surface,
                  Answer* answer, unsigned sequence) {
+    const RefinedLaunch<Surface> arguments{level_.view(), surface,         memory_.space(),
+                                           totals_.get(), counters_.get(), answer};
     launch_kernel(kernel.function, {kernel.blocks, kThreads},
                   kernel.meets ? LaunchKind::cooperative : LaunchKind::independent, stream(),
-                  arguments_of(surface, kernel.blocks, answer), frame, sequence);
+                  arguments, to_surface, sequence);
   }
 
   static const LevelView& level_of(const ToolPart& part) {
@@ -114,10 +105,9 @@ class RefinedOnDevice : public MeasureOnDevice {
   }
   // Launches batches of as many tools as a launch has room for.
   template <class Surface>
-  void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* poses,
+  void launch_on(const Surface& surface, std::span<const ToolPart> tools, const Pose* to_surfaces,
                  RawResult* results) {
-    BatchLaunch<Surface> arguments{
-        {}, {}, surface, cloud().points(), teams_->memory.space(), teams_->room, counts_points_};
+    BatchLaunch<Surface> arguments{{}, {}, surface, teams_->memory.space(), teams_->room};
     for (unsigned begin = 0; !tools.empty();) {
       const std::size_t count = std::min<std::size_t>(arguments.kTools, tools.size());
       for (std::size_t t = 0; t < count; ++t) {
@@ -126,15 +116,14 @@ class RefinedOnDevice : public MeasureOnDevice {
       }
       const unsigned end = tools[count - 1].end;
       launch_kernel(many_poses<Surface>, {std::min(teams_->count, end - begin), kBatchThreads},
-                    LaunchKind::independent, stream(), arguments, cloud().frame(), poses + begin,
-                    end - begin, results + begin);
+                    LaunchKind::independent, stream(), arguments, to_surfaces + begin, end - begin,
+                    results + begin);
       tools = tools.subspan(count);
       begin = end;
     }
   }
 
   DeviceLevel level_;
-  bool counts_points_;
   PoseKernel<DepthSurface> of_images_;
   PoseKernel<DiskSurface> of_points_;
   RefinedMemory memory_;

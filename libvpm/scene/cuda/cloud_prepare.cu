@@ -64,9 +64,8 @@ __global__ void __launch_bounds__(CloudTile::kPointThreads,
   work.find_rays();
   wait_for_last();
   work.find_normals(gated);
-  work.place_points(points, doubtful);
+  work.write_seen(points, doubtful);
   __syncthreads();
-  work.write_points();
   if (threadIdx.x != 0) return;
   if (points > 0) atomicAdd(&counters->points, points);
   if (doubtful > 0) atomicAdd(&counters->doubtful, doubtful);

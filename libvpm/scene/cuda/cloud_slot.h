@@ -29,15 +29,13 @@ class CloudSlot : public FrameSlot {
 
   const DeviceCloud& device_cloud() const { return cloud_; }
 
-  // Launch the two steps of preparation one by one, for benchmarks.
-  void take(cudaStream_t stream);
-  void make(cudaStream_t stream);
-
  protected:
   void begin() override;
 
  private:
   void launch();
+  void take(cudaStream_t stream);
+  void make(cudaStream_t stream);
   void set_camera();
   bool is_answered() const;
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <mutex>
 
@@ -21,7 +20,6 @@ std::size_t tile_count(const DepthSurface& image, int level) {
 }  // namespace
 
 DeviceCloud::DeviceCloud(const PreparedCloud& cloud) {
-  frame_.origin = cloud.origin();
   if (cloud.is_organised())
     copy_image(cloud);
   else
@@ -40,16 +38,13 @@ DeviceCloud::DeviceCloud(const Camera& camera) {
   const std::size_t pixels = pixels_of(image);
   std::size_t tiles = 0;
   for (int level = 0; level < image.levels; ++level) tiles += tile_count(image, level);
-  set_image(image,
-            {memory_.room<Vec3f>(pixels), memory_.room<Vec3f>(pixels), memory_.room<Vec3f>(pixels),
-             memory_.room<float>(pixels)},
+  set_image(image, {memory_.room<Vec3f>(pixels), memory_.room<float>(pixels)},
             memory_.room<InverseDepthRange>(tiles));
   stand_at(camera.to_world);
 }
 
 void DeviceCloud::stand_at(const Pose& camera_to_world) {
-  frame_.origin = camera_to_world.translation;
-  frame_.camera_to_world = camera_to_world;
+  to_world_ = camera_to_world;
 }
 
 void DeviceCloud::set_image(const DepthSurface& image, const CloudRoom& room,
@@ -63,33 +58,18 @@ void DeviceCloud::set_image(const DepthSurface& image, const CloudRoom& room,
   }
   depth_.normals = room.pixel_normals;
   depth_.measured = room.measured;
-  frame_.is_organised = true;
-  frame_.intrinsics = image.k;
-  frame_.width = image.width;
-  frame_.height = image.height;
-  points_ = {room.positions, room.normals, static_cast<std::uint32_t>(pixels_of(image)),
-             image.width, nullptr};
+  is_organised_ = true;
 }
 
 void DeviceCloud::copy_image(const PreparedCloud& cloud) {
   const DepthSurface image = cloud.depth_surface();
-  const std::vector<std::uint32_t>& begin = cloud.pixel_begin();
-  const std::size_t pixels = begin.size() - 1;
-  const float nowhere = std::nanf("");
-  std::vector<Vec3f> positions(pixels, Vec3f{nowhere, nowhere, nowhere}), normals(pixels);
-  for (std::size_t p = 0; p < pixels; ++p) {
-    if (begin[p] == begin[p + 1]) continue;
-    positions[p] = cloud.positions()[begin[p]];
-    normals[p] = cloud.normals()[begin[p]];
-  }
+  const std::size_t pixels = pixels_of(image);
   std::vector<InverseDepthRange> tiles;
   for (int level = 0; level < image.levels; ++level)
     tiles.insert(tiles.end(), image.tiles[level], image.tiles[level] + tile_count(image, level));
-  set_image(image,
-            {memory_.copy(positions), memory_.copy(normals), memory_.copy(image.normals, pixels),
-             memory_.copy(image.measured, pixels)},
+  set_image(image, {memory_.copy(image.normals, pixels), memory_.copy(image.measured, pixels)},
             memory_.copy(tiles));
-  frame_.camera_to_world = cloud.camera_to_world();
+  to_world_ = cloud.camera_to_world();
 }
 
 void DeviceCloud::copy_points(const PreparedCloud& cloud) {
@@ -98,9 +78,7 @@ void DeviceCloud::copy_points(const PreparedCloud& cloud) {
     tree.boxes = memory_.copy(tree.boxes, tree.quads());
     return tree;
   };
-  const Vec3f* const positions = memory_.copy(cloud.positions());
-  const PointTree tree = copy_tree(cloud.point_tree(), positions);
-  points_ = {positions, memory_.copy(cloud.normals()), tree.count, 0, tree};
+  to_world_ = {{}, cloud.origin()};
   const DenoisedDisks& denoised = cloud.disks();
   disks_ = cloud.disk_surface();
   disks_.cones.quads = memory_.copy(disks_.cones.quads, disks_.feet.quads());

@@ -15,31 +15,10 @@ namespace vpm::cuda {
 
 // Points to the device memory for the cloud of an image, by pixel.
 struct CloudRoom {
-  Vec3f* positions = nullptr;      // about the camera, world axes; NaN without a point
-  Vec3f* normals = nullptr;        // world axes
   Vec3f* pixel_normals = nullptr;  // camera axes, as DepthSurface reads them
   float* measured = nullptr;       // inverse depth, 1/m, holes closed
   InverseDepthRange* tiles[DepthSurface::kMaxLevels] = {};
   std::int32_t levels = 0;
-};
-
-// Points to the points of a cloud, about its origin: for an image by pixel (NaN where there is
-// none), else in the order of the leaves of their tree.
-struct PointsView {
-  const Vec3f* positions = nullptr;
-  const Vec3f* normals = nullptr;
-  std::uint32_t count = 0;
-  std::int32_t width = 0;  // the image's, or 0
-  PointTree tree;          // only without an image
-};
-
-// Holds the parts of a cloud that poses are combined with.
-struct CloudFrame {
-  bool is_organised = false;
-  Vec3 origin;
-  Pose camera_to_world;
-  Intrinsics intrinsics;
-  std::int32_t width = 0, height = 0;
 };
 
 class DeviceCloud {
@@ -50,8 +29,9 @@ class DeviceCloud {
   void stand_at(const Pose& camera_to_world);
   const CloudRoom& room() const { return room_; }
 
-  const CloudFrame& frame() const { return frame_; }
-  const PointsView& points() const { return points_; }
+  bool is_organised() const { return is_organised_; }
+  // Returns what maps the surface's frame to the world's.
+  const Pose& to_world() const { return to_world_; }
   const DepthSurface& depth_surface() const { return depth_; }  // requires an organised cloud
   const DiskSurface& disk_surface() const { return disks_; }    // requires an unorganised cloud
 
@@ -63,8 +43,8 @@ class DeviceCloud {
 
   DeviceMemory memory_;
   CloudRoom room_;
-  CloudFrame frame_;
-  PointsView points_;
+  bool is_organised_ = false;
+  Pose to_world_;
   DepthSurface depth_;
   DiskSurface disks_;
 };
