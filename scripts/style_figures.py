@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ("examples", "libvpm", "tests", "tools")
 ENDINGS = {".h", ".cpp", ".cu", ".cuh"}
 FRAGMENTS = ("Of", "What", "Whether", "By", "Nor")
-QUERY_FOLDERS = ("measure", "scene", "backend", "temporal", "query", "surface")
+QUERY_FOLDERS = ("measure", "scene", "backend", "query", "surface")
 LONG = 50  # lines of a function
 STRING = re.compile(r'"(?:\\.|[^"\\])*"|(?<!\w)\'(?:\\.|[^\'\\])+\'')
 

@@ -1,6 +1,5 @@
 #include "libvpm/include/vpm/level_query.h"
 
-#include "libvpm/api/scene_body.h"
 #include "libvpm/query/level_tool_query.h"
 
 namespace vpm {
@@ -13,13 +12,13 @@ struct LevelQuery::Impl {
 LevelQuery::LevelQuery(const Tool& tool, const QueryOptions& options, const LevelRequest& request,
                        const Scene& scene, const Pose& first_pose)
     : impl_(new Impl{tool,
-                     LevelToolQuery(tool.model(), options, request, view_of(scene), first_pose)}) {}
+                     LevelToolQuery(tool.model(), options, request, scene.list(), first_pose)}) {}
 LevelQuery::~LevelQuery() = default;
 LevelQuery::LevelQuery(LevelQuery&&) noexcept = default;
 LevelQuery& LevelQuery::operator=(LevelQuery&&) noexcept = default;
 
 Result LevelQuery::run(const Scene& scene, const Pose& pose) {
-  return impl_->query.run(view_of(scene), pose);
+  return impl_->query.run(scene.list(), pose);
 }
 
 std::uint32_t LevelQuery::level() const {

@@ -2,7 +2,6 @@
 
 #include <deque>
 
-#include "libvpm/api/scene_body.h"
 #include "libvpm/core/error.h"
 #include "libvpm/query/tool_query.h"
 
@@ -30,11 +29,11 @@ Query::Query(Query&&) noexcept = default;
 Query& Query::operator=(Query&&) noexcept = default;
 
 Result Query::run(const Scene& scene, const Pose& pose) {
-  return impl_->queries.front().run(view_of(scene), pose);
+  return impl_->queries.front().run(scene.list(), pose);
 }
 
 void Query::run(const Scene& scene, std::span<const Job> jobs, std::span<Result> results) {
-  ToolQuery::run(impl_->pointers, view_of(scene), jobs, results);
+  ToolQuery::run(impl_->pointers, scene.list(), jobs, results);
 }
 
 void Query::forget() {

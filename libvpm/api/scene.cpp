@@ -1,11 +1,12 @@
 #include "libvpm/include/vpm/scene.h"
 
-#include "libvpm/api/scene_body.h"
 #include "libvpm/cloud/cloud.h"
 #include "libvpm/cloud/normals.h"
 #include "libvpm/cloud/scattered_points.h"
 #include "libvpm/core/error.h"
 #include "libvpm/include/vpm/depth_stream.h"
+#include "libvpm/scene/any_body.h"
+#include "libvpm/scene/depth_frames.h"
 
 namespace vpm {
 namespace {
@@ -55,22 +56,20 @@ std::optional<Camera> PointCloud::camera() const {
 }
 
 Body::Body(const PointCloud& cloud, Denoising points)
-    : body_(std::make_shared<const SceneBody>(PreparedCloud(cloud.cloud(), points))) {}
+    : body_(std::make_shared<const AnyBody>(cloud.cloud(), points)) {}
 
 std::size_t Body::points() const {
   return body_->points();
 }
 
-Scene::Scene(const Body& body) : bodies_(std::make_shared<const std::vector<Body>>(1, body)) {}
+Scene::Scene(const Body& body) : Scene(std::vector<Body>(1, body)) {}
 
 Scene::Scene(std::vector<Body> bodies) {
   if (bodies.empty()) throw Error(ErrorKind::invalid_argument, "a scene needs a body");
-  if (bodies.size() > 1)
-    throw Error(ErrorKind::unavailable,
-                "a scene of " + std::to_string(bodies.size()) +
-                    " bodies: this version measures a tool against one body at a time",
-                {}, "query the bodies one by one");
+  std::vector<AnyBody> list;
+  for (const Body& body : bodies) list.push_back(body.body());
   bodies_ = std::make_shared<const std::vector<Body>>(std::move(bodies));
+  list_ = std::make_shared<const std::vector<AnyBody>>(std::move(list));
 }
 
 struct DepthStream::Impl {
@@ -101,7 +100,7 @@ std::span<float> DepthStream::metres() {
 }
 
 Body DepthStream::prepare(const Pose& camera_to_world) {
-  return Body(std::make_shared<const SceneBody>(impl_->frames.prepare(camera_to_world)));
+  return Body(std::make_shared<const AnyBody>(impl_->frames.prepare(camera_to_world)));
 }
 
 }  // namespace vpm

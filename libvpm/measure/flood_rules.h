@@ -129,4 +129,17 @@ VPM_HD inline bool lies_near_sheet(double gap_squared, double cut_reach, double 
   return gap_squared <= near * near;
 }
 
+// True if the flood enters a cell from a cut neighbour: both are near one sheet, or the neighbour's
+// plane has the cell behind it, which is_behind() tells where it is needed.
+template <class IsBehind>
+VPM_HD bool enters(double gap_squared, double cut_reach, double reach, const IsBehind& is_behind) {
+  return lies_near_sheet(gap_squared, cut_reach, reach) || is_behind();
+}
+// True if the flood passes a cell behind the surface: it is no further behind than the tool's
+// radius, or the plane of the nearest cut cell has it behind it.
+template <class IsBehind>
+VPM_HD bool passes(bool is_hidden, const IsBehind& is_behind) {
+  return !is_hidden || is_behind();
+}
+
 }  // namespace vpm

@@ -25,11 +25,11 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 }  // namespace
 
-std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
-  const auto& slot = dynamic_cast<const cuda::CloudSlot&>(frame.slot());
+std::optional<FrameMemory> memory_on_device(const DepthBody& frame) {
+  const auto& slot = dynamic_cast<const cuda::CloudSlot&>(*frame.slot());
   if (!slot.is_on_device() || !slot.is_sound()) return std::nullopt;
   cuda::check(cudaDeviceSynchronize());
-  const DepthSurface& surface = slot.device_cloud().depth_surface();
+  const DepthSurface& surface = slot.body().surface();
   const std::size_t pixels = slot.pixels();
   FrameMemory memory{fetched(surface.normals, pixels), fetched(surface.measured, pixels), {}};
   for (int level = 0; level < surface.levels; ++level)
@@ -37,9 +37,9 @@ std::optional<FrameMemory> memory_on_device(const DepthFrame& frame) {
   return memory;
 }
 
-FrameMemory memory_of(const PreparedCloud& cloud) {
-  const DepthSurface surface = cloud.depth_surface();
-  const std::size_t pixels = cloud.pixel_begin().size() - 1;
+FrameMemory memory_of(const PreparedImage& image) {
+  const DepthSurface surface = image.surface();
+  const std::size_t pixels = image.pixel_begin().size() - 1;
   FrameMemory memory{{surface.normals, surface.normals + pixels},
                      {surface.measured, surface.measured + pixels},
                      {}};

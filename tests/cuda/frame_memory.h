@@ -15,9 +15,9 @@ struct FrameMemory {
 };
 
 // Returns nothing if the frame's cloud is not made on the device.
-std::optional<FrameMemory> memory_on_device(const DepthFrame& frame);
+std::optional<FrameMemory> memory_on_device(const DepthBody& frame);
 // Returns the data that the frame should have.
-FrameMemory memory_of(const PreparedCloud& cloud);
+FrameMemory memory_of(const PreparedImage& image);
 
 // True if all bytes are the same.
 bool same_bits(const FrameMemory& a, const FrameMemory& b);

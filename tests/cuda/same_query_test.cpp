@@ -7,6 +7,7 @@
 #include <deque>
 #include <set>
 
+#include "libvpm/cloud/normals.h"
 #include "libvpm/query/tool_query.h"
 #include "libvpm/synthetic/render.h"
 #include "tests/cuda/effort.h"
@@ -41,7 +42,7 @@ std::vector<Pose> poses_of(int count) {
 }
 
 // Compares a batch with results that repeat for further poses.
-void expect_same_batch(ToolQuery& query, const PreparedCloud& cloud, const std::vector<Pose>& poses,
+void expect_same_batch(ToolQuery& query, const AnyBody& cloud, const std::vector<Pose>& poses,
                        const std::vector<Result>& expected) {
   std::vector<Result> batch(poses.size());
   query.run(cloud, jobs_of(poses), batch);
@@ -69,7 +70,7 @@ TEST_P(SameQuery, OnCpuAndDevice) {
   const auto& [scene, camera] = GetParam();
   constexpr int kPoses = testing::effort(48);
   const Cloud seen = testing::see(synthetic::make_scene(scene));
-  const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  const AnyBody cloud(camera ? seen : without_camera(seen));
   std::uint32_t boundary = 0, inside = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.3, 4, 6),
                                 testing::lattice_cube(0.25, 20, 1)}) {
@@ -109,7 +110,7 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
   synthetic::Scene scene = synthetic::make_scene("wall");
   scene.camera.to_world.translation.z = -2;
   const DepthImage depth = synthetic::render_with_kinect_noise(*scene.surface, scene.camera, 1);
-  const PreparedCloud cloud(make_cloud(depth, scene.camera, NormalOptions{}));
+  const AnyBody cloud(make_cloud(depth, scene.camera, NormalOptions{}));
   constexpr int kPoses = testing::effort(192);
   std::vector<Pose> poses = poses_of(kPoses);
   for (int k = 0; k < kPoses; ++k) poses[k].translation.z = 0.97 + 0.06 * k / kPoses;
@@ -134,7 +135,7 @@ TEST(NoisyImageOnDevice, GivesTheSame) {
 TEST(ImagesAndPoints, GiveTheSameByTurns) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
   const Cloud seen = testing::see(synthetic::make_scene("block"));
-  const PreparedCloud image(seen), points(without_camera(seen));
+  const AnyBody image(seen), points(without_camera(seen));
   for (const ToolModel& tool :
        {testing::lattice_cube(0.3, 6, 3), testing::lattice_cube(0.25, 20, 1)}) {
     QueryOptions options;
@@ -143,7 +144,7 @@ TEST(ImagesAndPoints, GiveTheSameByTurns) {
     ToolQuery on_device(tool, options);
     for (int k = 0; k < testing::effort(64); ++k) {
       SCOPED_TRACE(k);
-      const PreparedCloud& cloud = k % 3 == 0 ? points : image;
+      const AnyBody& cloud = k % 3 == 0 ? points : image;
       expect_equal(on_cpu.run(cloud, pose_of(k)), on_device.run(cloud, pose_of(k)));
     }
   }
@@ -173,7 +174,7 @@ TEST(SmallQueryOnDevice, MayBeGivenUpAtOnce) {
   for (int k = 0; k < 60; ++k) {
     const ToolModel tool = testing::lattice_cube(0.05, 2, 1);
     ToolQuery query(tool, {.device = {Device::Kind::cuda, 0}});
-    const PreparedCloud cloud(seen);
+    const AnyBody cloud(seen);
     EXPECT_GE(query.run(cloud, pose_of(k)).volume, 0);
   }
 }
@@ -185,7 +186,7 @@ TEST(SmallQueryOnDevice, GivesTheSame) {
   const Cloud seen = testing::see(synthetic::make_scene("block"));
   const ToolModel tool = testing::lattice_cube(0.2, 4, 3);
   for (const bool camera : {true, false}) {
-    const PreparedCloud cloud(camera ? seen : without_camera(seen));
+    const AnyBody cloud(camera ? seen : without_camera(seen));
     QueryOptions options;
     ToolQuery on_cpu(tool, options);
     options.device = {Device::Kind::cuda, 0};
@@ -207,7 +208,7 @@ TEST(RoundedPosesOnDevice, GiveTheSame) {
   const Cloud seen = testing::see(synthetic::make_scene("step"));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
   for (const bool camera : {true, false}) {
-    const PreparedCloud cloud(camera ? seen : without_camera(seen));
+    const AnyBody cloud(camera ? seen : without_camera(seen));
     ToolQuery on_cpu(tool, {}), on_device(tool, {.device = {Device::Kind::cuda, 0}});
     std::vector<Pose> poses;
     std::vector<Result> expected;
@@ -226,7 +227,7 @@ TEST(RoundedPosesOnDevice, GiveTheSame) {
 
 TEST(SolidOccludedSpaceOnDevice, GiveTheSame) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("block")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("block")));
   int hidden = 0;
   for (const ToolModel& tool : {testing::lattice_cube(0.2, 9, 3), testing::lattice_cube(0.1, 4, 6),
                                 testing::lattice_cube(0.25, 20, 1)}) {
@@ -267,7 +268,7 @@ class ToolsTogether : public ::testing::TestWithParam<bool> {
 TEST_P(ToolsTogether, GiveTheSameAsOneByOne) {
   const bool camera = GetParam();
   const Cloud seen = testing::see(synthetic::make_scene("step"));
-  const PreparedCloud cloud(camera ? seen : without_camera(seen));
+  const AnyBody cloud(camera ? seen : without_camera(seen));
   constexpr std::uint32_t kTools = 19;
   std::deque<ToolModel> tools;
   std::deque<ToolQuery> on_cpu, on_device;
@@ -321,7 +322,7 @@ INSTANTIATE_TEST_SUITE_P(Clouds, ToolsTogether, ::testing::Bool(), [](const auto
 // Is small enough for compute-sanitizer.
 TEST(ToolsTogetherSmall, SmallQuery) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   std::deque<ToolModel> tools;
   std::deque<ToolQuery> queries;
   std::vector<ToolQuery*> together;
@@ -341,7 +342,7 @@ TEST(ToolsTogetherSmall, SmallQuery) {
 // Leaves little free memory, as other programs do: batches are cut, not refused.
 TEST(TakenDevice, AnswersABatch) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.25, 20, 4);
   const std::vector<Pose> poses = poses_of(96);
   std::vector<Result> expected(poses.size());
@@ -362,7 +363,7 @@ TEST(TakenDevice, HasRoomForFewerTeams) {
 // Asks for more poses than one device takes at once.
 TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
   if (cuda_device_count() < 2) GTEST_SKIP() << "fewer than two CUDA devices here";
-  const PreparedCloud cloud(testing::see(synthetic::make_scene("wall")));
+  const AnyBody cloud(testing::see(synthetic::make_scene("wall")));
   const ToolModel tool = testing::lattice_cube(0.2, 9, 3);
   const std::vector<Pose> poses = poses_of(40000);
   QueryOptions options;
@@ -381,7 +382,7 @@ TEST(QueryOnAllDevices, GivesTheSameInTheSameOrder) {
 
 TEST(SameQueryOnDevice, InAnEmptyCloud) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device here";
-  const PreparedCloud cloud{Cloud{}};
+  const AnyBody cloud{Cloud{}};
   const ToolModel tool = testing::lattice_cube(0.2, 4, 2);
   QueryOptions options;
   options.device = {Device::Kind::cuda, 0};

@@ -177,7 +177,7 @@ TEST(VirtualCoupling, HoldsACubeInTheWallWhereForcesBalance) {
   const ToolModel tool = testing::lattice_cube(kEdge, 6, 4);
   EXPECT_NEAR(radius_of_gyration(tool), kEdge / std::sqrt(6), 1e-3);
   const synthetic::Scene scene = synthetic::make_scene("wall");
-  const PreparedCloud cloud(testing::see(scene));
+  const AnyBody cloud(testing::see(scene));
   QueryOptions options;
   options.stiffness = kPerVolume;
   ToolQuery query(tool, options);

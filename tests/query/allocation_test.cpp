@@ -26,7 +26,7 @@ class Allocation : public ::testing::TestWithParam<Case> {
 TEST_P(Allocation, NoneAfterTheFirstQuery) {
   const Case& tested = GetParam();
   const Cloud seen = testing::see(synthetic::make_scene("inverted-ball"));
-  const PreparedCloud cloud(tested.camera ? seen : without_camera(seen));
+  const AnyBody cloud(tested.camera ? seen : without_camera(seen));
   const ToolModel tool = testing::lattice_cube(0.2, 12, 2);
   ToolQuery query(tool, {.measure = tested.measure, .coherent = tested.coherent});
   const auto pose = [](int k) {  // moves from free space into contact

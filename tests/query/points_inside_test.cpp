@@ -6,6 +6,7 @@
 #include <random>
 
 #include "libvpm/cloud/cloud.h"
+#include "libvpm/scene/points/prepared_points.h"
 #include "tests/query/lattice_model.h"
 
 namespace vpm {
@@ -32,7 +33,7 @@ TEST(PointsInside, AreThoseThatTheExactTestTakes) {
     points.positions.push_back({1000 + static_cast<float>(k % 20), static_cast<float>(k / 20), 0});
   points.normals.assign(points.positions.size(), {0, 0, -1});
   points.radii.assign(points.positions.size(), 0.01F);
-  const PreparedCloud cloud(points, Denoising::off);
+  const PreparedPoints cloud(points, Denoising::off);
   std::mt19937_64 random(1);
   PointRanges ranges;
   std::uint32_t inside = 0;

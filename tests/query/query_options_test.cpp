@@ -10,7 +10,7 @@ namespace {
 using testing::see;
 
 TEST(QueryOptions, OnlyThePrintedMeasureCountsPoints) {
-  const PreparedCloud cloud(see(synthetic::make_scene("step")));
+  const AnyBody cloud(see(synthetic::make_scene("step")));
   const ToolModel tool = testing::lattice_cube(0.2, 6, 4);
   const Pose pose{testing::generic_rotation(), {0.01, 0.02, 0.96}};
   EXPECT_GT(ToolQuery(tool, {.measure = Measure::paper}).run(cloud, pose).points.value_or(0), 0U);

@@ -96,8 +96,8 @@ Pose pose(Numbers& numbers, Vec3 at) {
                     numbers.between(0.85, 1.1)}};
 }
 
-void run_path(const ToolModel& tool, const PreparedCloud& cloud, Measure measure,
-              const Device& device, Vec3 at, Numbers& numbers, Bytes& bytes) {
+void run_path(const ToolModel& tool, const AnyBody& cloud, Measure measure, const Device& device,
+              Vec3 at, Numbers& numbers, Bytes& bytes) {
   QueryOptions options;
   options.measure = measure;
   options.device = device_for(measure, device);
@@ -130,7 +130,7 @@ std::vector<std::byte> replay(const Device& device) {
     const Cloud points = scattered(make_cloud(image, view, pca));
     for (const Cloud& cloud : {seen, points}) {
       add_cloud(cloud, bytes);
-      const PreparedCloud prepared(cloud);
+      const AnyBody prepared(cloud);
       for (const ToolModel& tool : tools) {
         for (const Measure measure : {Measure::refined, Measure::paper})
           run_path(tool, prepared, measure, device, at, numbers, bytes);

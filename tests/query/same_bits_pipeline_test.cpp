@@ -51,14 +51,14 @@ class Pipeline {
       NormalOptions normals;
       normals.method = method;
       const Cloud cloud = make_cloud(scaled(image_, scale), camera_, normals);
-      query_all(tool, PreparedCloud(cloud), scale, results);
-      query_all(tool, PreparedCloud(without_camera(cloud)), scale, results);
+      query_all(tool, AnyBody(cloud), scale, results);
+      query_all(tool, AnyBody(without_camera(cloud)), scale, results);
     }
     return results;
   }
 
  private:
-  static void query_all(const ToolModel& tool, const PreparedCloud& cloud, double scale,
+  static void query_all(const ToolModel& tool, const AnyBody& cloud, double scale,
                         std::vector<Result>& results) {
     for (const Measure measure : {Measure::refined, Measure::paper}) {
       QueryOptions options;

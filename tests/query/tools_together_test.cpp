@@ -36,7 +36,7 @@ class ToolsTogether : public ::testing::Test {
     return "";
   }
 
-  PreparedCloud cloud_;
+  AnyBody cloud_;
   std::deque<ToolModel> tools_;
   std::deque<ToolQuery> queries_;
   std::vector<ToolQuery*> together_;

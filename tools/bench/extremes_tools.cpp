@@ -54,7 +54,7 @@ Deviation touch_of_the_smallest() {
   Cloud cloud = plane_points({{}}, {{0, 0, 1}});
   cloud.origin = smallest.center;
   ToolQuery query(tool, {.measure = Measure::paper});
-  const Result r = query.run(PreparedCloud(cloud), {});
+  const Result r = query.run(AnyBody(cloud), {});
   if (r.boundary != 1) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   constexpr double kResolution = 0x1p-60;
   return {sound_fraction(r), volume(smallest) / 2 / tool.volume, kResolution};

@@ -52,7 +52,7 @@ RandomPoses run_random_poses(const synthetic::Scene& scene,
                              const std::vector<const PackedSolid*>& tools, std::uint32_t level,
                              int poses, std::uint64_t seed, OccludedSpace occluded,
                              const Device& device) {
-  const PreparedCloud cloud(
+  const AnyBody cloud(
       make_cloud(synthetic::render(*scene.surface, scene.camera), scene.camera, NormalOptions{}));
   const std::vector<Sight> sights{Sight(*scene.surface, scene.camera)};
   RandomPoses found;

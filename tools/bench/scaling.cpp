@@ -37,8 +37,8 @@ std::vector<std::uint32_t> levels_of(const SuiteOptions& options) {
 
 // Returns the z at which this fraction of the tool is inside, by bisection from far in front of the
 // wall.
-double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotation& rotation,
-                     Vec3 aside, double fraction) {
+double z_of_fraction(ToolQuery& query, const AnyBody& cloud, const Rotation& rotation, Vec3 aside,
+                     double fraction) {
   const auto is_deeper = [&](double z) {
     return query.run(cloud, {rotation, {aside.x, aside.y, z}}).volume_fraction > fraction;
   };
@@ -58,7 +58,7 @@ double z_of_fraction(ToolQuery& query, const PreparedCloud& cloud, const Rotatio
 }
 
 // Returns poses of a tool that turns and slides over the wall, 5 to 10 % of it inside.
-std::vector<Pose> sliding_path(const ToolModel& tool, const PreparedCloud& cloud, int count) {
+std::vector<Pose> sliding_path(const ToolModel& tool, const AnyBody& cloud, int count) {
   QueryOptions options;
   options.level = tool.levels.front().sphere_count;
   ToolQuery query(tool, options);
@@ -83,9 +83,8 @@ double median_of(const std::vector<double>& samples) {
   return spread_of(samples).median;
 }
 
-// Times a query from the call to the result.
-Rounds time(DeviceMeasure& query, const PreparedCloud& cloud, const std::vector<Pose>& path,
-            int count) {
+// Times a query from the call to the result; poses are in the body's frame.
+Rounds time(DeviceMeasure& query, const AnyBody& cloud, const std::vector<Pose>& path, int count) {
   Rounds rounds;
   for (int round = 0; round < count; ++round) {
     query.run(cloud, path.back());  // warms the caches up
@@ -148,7 +147,7 @@ class Scaling {
   Report run() {
     const ToolModel tool = make_tool(make_shape("twisted-torus"), levels_);
     const synthetic::Scene scene = synthetic::make_scene("tilted-wall");
-    const PreparedCloud cloud(
+    const AnyBody cloud(
         make_cloud(synthetic::render_with_kinect_noise(*scene.surface, scene.camera, kNoiseSeed),
                    scene.camera, NormalOptions{}));
     const std::vector<Pose> path = sliding_path(tool, cloud, poses_);
@@ -165,14 +164,17 @@ class Scaling {
   }
 
  private:
-  void measure(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
+  void measure(const ToolModel& tool, const Level& level, const AnyBody& cloud,
                const std::vector<Pose>& path) {
     nlohmann::json row = {
         {"part", "spheres"}, {"spheres", level.sphere_count}, {"poses", path.size()}};
     const auto query = make_device_measure(tool, level, {.device = device_});
-    const Rounds rounds = time(*query, cloud, path, rounds_);
+    std::vector<Pose> placed;
+    for (const Pose& pose : path)
+      placed.push_back(pose_in_body(cloud.to_world(), pose, tool.center_of_mass));
+    const Rounds rounds = time(*query, cloud, placed, rounds_);
     row.update(in_words(rounds));
-    row["refined_flood_us"] = flood_of(*query, cloud, path);
+    row["refined_flood_us"] = flood_of(*query, cloud, placed);
     compare(tool, level, cloud, path, row);
     report_.results.push_back(row);
     write_line(row);
@@ -182,7 +184,7 @@ class Scaling {
   }
 
   // Returns the median time of the flood on the device's clock, microseconds.
-  static double flood_of(DeviceMeasure& measure, const PreparedCloud& cloud,
+  static double flood_of(DeviceMeasure& measure, const AnyBody& cloud,
                          const std::vector<Pose>& path) {
     std::vector<double> flood;
     for (const Pose& pose : path) {
@@ -193,7 +195,7 @@ class Scaling {
   }
 
   // Counts the poses whose results on the device are those of the CPU in every field.
-  void compare(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
+  void compare(const ToolModel& tool, const Level& level, const AnyBody& cloud,
                const std::vector<Pose>& path, nlohmann::json& row) {
     QueryOptions options;
     options.level = level.sphere_count;
@@ -206,7 +208,7 @@ class Scaling {
     if (same != path.size()) report_.failure = "the measure differs between CPU and device";
   }
 
-  void add_frames(const ToolModel& tool, const Level& level, const PreparedCloud& cloud,
+  void add_frames(const ToolModel& tool, const Level& level, const AnyBody& cloud,
                   const std::vector<Pose>& path, const Rounds& rounds) {
     QueryOptions options;
     options.level = level.sphere_count;

@@ -214,7 +214,7 @@ void warn_of_size(const Arguments& a, CheckedSolid& checked) {
 
 // Narrows the radii in `a` to those that the scene resolves, and returns its scale.
 SceneScale fit_to_scene(const Tool& tool, const Solid& solid, Arguments& a) {
-  const PreparedCloud cloud(read_cloud(a.for_scene));
+  const AnyBody cloud(read_cloud(a.for_scene));
   const double size = bounding_radius(solid, mass_properties(solid).center_of_mass);
   const SceneScale scale = scene_scale(cloud, size, std::nullopt);
   a.min_radius = std::max(a.min_radius, scale.smallest_radius());

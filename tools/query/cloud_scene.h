@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "libvpm/recording/pose_reader.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 #include "tools/query/enclosed_check.h"
 #include "tools/query/measured_check.h"
 #include "tools/query/query_setup.h"
@@ -19,7 +19,7 @@ class CloudScene {
   // Reads and prepares the cloud and adds it to the view, if there is one.
   explicit CloudScene(QuerySetup& setup);
 
-  const PreparedCloud& cloud() const { return *cloud_; }
+  const AnyBody& cloud() const { return *cloud_; }
   // Returns the time that the preparation took, s.
   double prepare_seconds() const { return prepare_seconds_; }
   // Shows the answer at a pose of the k-th tool to the checks, which warn at the end.
@@ -27,7 +27,7 @@ class CloudScene {
   void warn_at_end() const;
 
  private:
-  std::optional<PreparedCloud> cloud_;
+  std::optional<AnyBody> cloud_;
   std::optional<SetupCheck> setup_check_;
   std::optional<MeasuredCheck> measured_check_;
   std::optional<EnclosedCheck> enclosed_check_;

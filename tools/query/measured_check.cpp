@@ -63,7 +63,7 @@ bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDe
                                   const ToolPose& at) const {
   constexpr double kLittle = 1e-3;  // part of the tool's volume
   const ToolModel& model = models_[at.tool];
-  const Pose to_camera = inverse(cloud_.camera_to_world()) * at.pose;
+  const Pose to_camera = inverse(cloud_.to_world()) * at.pose;
   const std::vector<CellSample>& pieces = model.levels.back().samples;
   const std::size_t every = pieces.size() / kMostPieces + 1;
   double all = 0, inside = 0, inside_unknown = 0;
@@ -84,8 +84,9 @@ bool MeasuredCheck::is_unmeasured(const DepthSurface& surface, const ContinuedDe
 }
 
 void MeasuredCheck::warn_at_end() const {
-  if (!cloud_.is_organised() || poses_.kept().empty()) return;
-  const DepthSurface surface = cloud_.depth_surface();
+  const auto* const image = cloud_.as<DepthBody>();
+  if (image == nullptr || poses_.kept().empty()) return;
+  const DepthSurface surface = image->surface();
   double reach = 0;
   for (const ToolModel& model : models_) reach = std::max(reach, model.reach);
   const ContinuedDepth continued(surface, 2 * reach);

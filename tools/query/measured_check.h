@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libvpm/model/tool_model.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/scene/any_body.h"
 #include "tools/common/tool.h"
 #include "tools/query/even_sample.h"
 
@@ -41,7 +41,7 @@ class ContinuedDepth {
 class MeasuredCheck {
  public:
   // Keeps references to all of them. Clouds without a camera are never warned about.
-  MeasuredCheck(const Tool& tool, std::span<const ToolModel> models, const PreparedCloud& cloud)
+  MeasuredCheck(const Tool& tool, std::span<const ToolModel> models, const AnyBody& cloud)
       : tool_(tool), models_(models), cloud_(cloud) {}
 
   // Notes a pose of the k-th tool.
@@ -61,7 +61,7 @@ class MeasuredCheck {
 
   const Tool& tool_;
   std::span<const ToolModel> models_;
-  const PreparedCloud& cloud_;
+  const AnyBody& cloud_;
   EvenSample<ToolPose> poses_;
 };
 

@@ -46,8 +46,12 @@ class CellClassifier {
     const CellCluster& whole = work_.level.cluster(root);
     const Vec3 center = work_.to_surface * whole.center;
     const BallClass in_ball = work_.surface.classify_ball(center, whole.reach);
-    const ClusterClass found =
+    ClusterClass found =
         class_of_cluster(work_.surface, in_ball, center, whole.reach, work_.reach.length);
+    // A flood asks the middle only where it comes.
+    if (Surface::kTellsInside && found == ClusterClass::by_middle)
+      found = class_by_middle(work_.surface, work_.surface.sample(center), center, whole.reach,
+                              work_.reach.length);
     if (found == ClusterClass::ambiguous) {
       TangentPlane plane;
       if (!finds_cluster_plane(work_.surface, in_ball, center, whole.reach, work_.reach.length,
@@ -157,13 +161,8 @@ class CellClassifier {
 
   // Sets the class of a measured cell; an uncut one that is partly inside gets `flood_state`.
   void take_result(std::uint32_t i, FloodState flood_state) {
-    const CellResult& result = work_.states.results[i];
-    if (result.plane.count > 0)
-      work_.states.set(i, CellClass::cut, FloodState::closed);
-    else if (result.sum.volume.value > 0 || result.is_far)
-      work_.states.set(i, CellClass::partial, flood_state);
-    else
-      work_.states.set(i, CellClass::free, FloodState::closed);
+    const CellClass found = class_of_result(work_.states.results[i]);
+    work_.states.set(i, found, found == CellClass::partial ? flood_state : FloodState::closed);
   }
 
   PoseWork<Surface> work_;

@@ -1,4 +1,4 @@
-// Walks the cloud's points strictly inside spheres of a tool. Cost follows the tool, not the cloud.
+// Walks a body's points strictly inside spheres of a tool. Cost follows the tool, not the body.
 #pragma once
 
 #include <atomic>
@@ -7,24 +7,24 @@
 
 #include "libvpm/backend/sphere_location.h"
 #include "libvpm/core/parallel.h"
-#include "libvpm/scene/prepared_cloud.h"
+#include "libvpm/core/pose.h"
 
 namespace vpm {
 
 using PointRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 // Calls visit(sphere, point, x), x in tool coordinates, from several threads at once. Returns the
-// number of distinct points inside. `ranges` is scratch.
-template <class Visit>
-std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& tool,
-                                const Level& level, const Pose& pose, PointRanges& ranges,
-                                const Visit& visit) {
-  const Pose to_tool = relative_to(pose, {{}, cloud.origin()});
-  const Vec3 center = pose.rotation * tool.center_of_mass + (pose.translation - cloud.origin());
+// number of distinct points inside. `points` are those of a body (BodyKind::prepared); `ranges` is
+// scratch.
+template <class Points, class Visit>
+std::uint32_t for_points_inside(const Points& points, const ToolModel& tool, const Level& level,
+                                const Pose& pose, PointRanges& ranges, const Visit& visit) {
+  const Pose to_tool = relative_to(pose, {{}, points.origin()});
+  const Vec3 center = pose.rotation * tool.center_of_mass + (pose.translation - points.origin());
   ranges.clear();
-  ranges.reserve(cloud.most_ranges());
-  cloud.for_ranges_in_ball(center, tool.reach,
-                           [&](std::uint32_t b, std::uint32_t e) { ranges.emplace_back(b, e); });
+  ranges.reserve(points.most_ranges());
+  points.for_ranges_in_ball(center, tool.reach,
+                            [&](std::uint32_t b, std::uint32_t e) { ranges.emplace_back(b, e); });
 
   const GridView grid = view_of(level.grid);
   std::atomic<std::uint32_t> total{0};
@@ -34,7 +34,7 @@ std::uint32_t for_points_inside(const PreparedCloud& cloud, const ToolModel& too
     std::uint32_t found = 0;
     for (std::size_t r = begin; r < end; ++r) {
       for (std::uint32_t k = ranges[r].first; k < ranges[r].second; ++k) {
-        const Vec3 x = to_tool * widen(cloud.positions()[k]);
+        const Vec3 x = to_tool * widen(points.positions()[k]);
         bool inside = false;
         const auto take = [&](std::uint32_t sphere) {
           inside = true;

@@ -307,7 +307,7 @@ class ImageSums {
   // Notes the result of a task's cell, once per thread; others may note the same cell.
   __device__ void note(const BlockTask& task, const TaskSums& found) {
     found_.sum.add(found.sum);
-    if (!found.is_cut && found.sum.volume.value == 0) return;
+    if (!found.is_cut && !counts(found.sum)) return;
     bits_added_ = cell_bit::counted | (found.is_cut ? cell_bit::cut : 0);
     word_before_ = atomicOr(&notes_.words[task.cell], bits_added_);
   }

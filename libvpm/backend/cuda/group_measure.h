@@ -37,6 +37,8 @@ struct SampleByLanes : SampleInTurn {
 template <class Surface>
 class GroupMeasure {
  public:
+  using Shared = MeasureShared;  // memory of a block
+
   // Adds to `found`, this thread's sums, which are 0 before.
   __device__ GroupMeasure(const PoseWork<Surface>& work, MeasureShared& shared, RawResult& found)
       : work_(work), shared_(shared), tasks_(work, shared.lists, found) {}
@@ -208,7 +210,7 @@ class GroupMeasure {
     if (seen.side() == Side::ambiguous) {
       if (lanes.lane < BlockTask::kBalls) in_ball = work_.surface.classify_ball(at, ball.radius);
       own = in_ball.side;
-      if (is_cell_seen_past(lanes, in_ball, at.z + ball.radius)) own = Side::free;
+      if (is_cell_free(lanes, in_ball, at, ball.radius)) own = Side::free;
     }
     const auto of_cell =
         static_cast<Side>(lanes.from(static_cast<unsigned>(own), BlockTask::of_cell));
@@ -223,7 +225,7 @@ class GroupMeasure {
     if (samples_cell || samples_block) on_surface = work_.surface.sample(at, in_ball.point);
 
     double gap = 0;
-    bool hidden = false, whole = side == Side::behind;
+    bool hidden = false, whole = side == Side::behind || (!kFloods && side == Side::no_surface);
     if (kFloods) {
       gap = squared_gap(on_surface);
       hidden = lanes.from(seen.seen() != ClusterClass::behind_near &&
@@ -268,12 +270,14 @@ class GroupMeasure {
       tasks_.add_clipped(task, plane);
   }
 
-  // True in the cell's lane if its ball, whose pixels all lanes read, was seen to be free.
+  // True in the cell's lane if its ball was seen to be free, though its class does not tell. All
+  // lanes read its pixels where they can.
   template <class BallClass>
-  __device__ bool is_cell_seen_past(const Subwarp& lanes, const BallClass& in_ball,
-                                    double depth) const {
-    if constexpr (SeesFreeSpace<Surface>) {
-      constexpr unsigned kCell = BlockTask::of_cell;
+  __device__ bool is_cell_free(const Subwarp& lanes, const BallClass& in_ball, Vec3 center,
+                               double radius) const {
+    constexpr unsigned kCell = BlockTask::of_cell;
+    if constexpr (SharesPixels<Surface>) {
+      const double depth = center.z + radius;
       if (!lanes.from(work_.surface.may_be_seen_past(in_ball, depth), kCell)) return false;
       const PixelRectangle own = Surface::pixels_of(in_ball);
       const PixelRectangle pixels{lanes.from(own.u0, kCell), lanes.from(own.v0, kCell),
@@ -281,7 +285,7 @@ class GroupMeasure {
       const double farthest = lanes.from(depth, kCell);
       return is_seen_past(lanes, pixels, farthest) && lanes.lane == kCell;
     } else {
-      return false;
+      return lanes.lane == kCell && side_of(work_.surface, in_ball, center, radius) == Side::free;
     }
   }
   __device__ bool is_seen_past(const Subwarp& lanes, const PixelRectangle& pixels,
@@ -289,15 +293,17 @@ class GroupMeasure {
     return !lanes.any(!work_.surface.is_seen_past(pixels, depth, lanes.lane, lanes.width));
   }
 
-  // True if a ball was seen to be free; all lanes read its pixels.
+  // True if a ball was seen to be free; all lanes read its pixels where they can.
   __device__ bool is_free(const Subwarp& lanes, Vec3 center, double radius) const {
     const auto in_ball = work_.surface.classify_ball(center, radius);
-    const double farthest = center.z + radius;
-    if constexpr (SeesFreeSpace<Surface>) {
-      if (work_.surface.may_be_seen_past(in_ball, farthest))
-        return is_seen_past(lanes, Surface::pixels_of(in_ball), farthest);
+    if constexpr (SharesPixels<Surface>) {
+      const double farthest = center.z + radius;
+      return work_.surface.may_be_seen_past(in_ball, farthest)
+                 ? is_seen_past(lanes, Surface::pixels_of(in_ball), farthest)
+                 : in_ball.side == Side::free;
+    } else {
+      return side_of(work_.surface, in_ball, center, radius) == Side::free;
     }
-    return in_ball.side == Side::free;
   }
 
   // Notes a cell of a uniform cluster.
@@ -345,12 +351,11 @@ class GroupMeasure {
 
   // Lists the block of a cell that counts whole, or the cell itself where it is compact.
   __device__ void add_whole(const BlockTask& task) {
-    if ((task.flags & BlockTask::is_compact) != 0) {
-      if ((task.flags & BlockTask::is_head) != 0)
-        tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
-    } else if ((task.flags & BlockTask::has_block) != 0) {
+    const WholePart part = whole_part_of(task.flags);
+    if (part == WholePart::cell)
+      tasks_.add(TaskLists::pieces, {task.cell, Task::whole_cell, task.cell, 1});
+    else if (part == WholePart::block)
       tasks_.add(TaskLists::pieces, {task.cell, Task::whole_block, task.block, 1});
-    }
   }
 
   // Lists a block of an ambiguous cell.

@@ -224,9 +224,10 @@ class ImageTaskGroup {
       if (side == Side::ambiguous) return Counts::not_at_all;
     }
     if (side == Side::free) return Counts::not_at_all;
-    if (is(BlockTask::is_compact))
-      return is(BlockTask::is_head) ? Counts::whole_cell : Counts::not_at_all;
-    return is(BlockTask::has_block) ? Counts::whole_block : Counts::not_at_all;
+    const WholePart part = whole_part_of(flags_);
+    return part == WholePart::cell    ? Counts::whole_cell
+           : part == WholePart::block ? Counts::whole_block
+                                      : Counts::not_at_all;
   }
 
   // Returns the side of the cell; if `asks`, its pixels may show it to be free.

@@ -116,7 +116,7 @@ class CameraVisibility {
           far, [](std::uint32_t) { return true; },
           [&](std::uint32_t i, const ToolSum& sum) {
             result.sum.add(sum);
-            if (sum.volume.value != 0)
+            if (counts(sum))
               count_cell(atomicOr(&notes_.words[i], cell_bit::counted), cell_bit::counted, result);
           });
     }
@@ -339,8 +339,8 @@ class Flood {
   }
 
   __device__ bool enters(std::uint32_t cut, std::uint32_t i) const {
-    return lies_near_sheet(space_.gaps[i], level_.reach[cut], level_.reach[i]) ||
-           lies_behind(cut, i);
+    return vpm::enters(space_.gaps[i], level_.reach[cut], level_.reach[i],
+                       [&] { return lies_behind(cut, i); });
   }
 
   __device__ __noinline__ bool lies_behind(std::uint32_t cut, std::uint32_t i) const {
@@ -355,7 +355,7 @@ class Flood {
       const std::uint32_t word = words_[i];
       if (!may_be_inside(word) || (word & cell_bit::hidden) == 0) continue;
       const std::uint32_t cut = cut_.nearest_to(warp, i);
-      if (cut < level_.count && warp.leads() && lies_behind(cut, i))
+      if (cut < level_.count && warp.leads() && passes(true, [&] { return lies_behind(cut, i); }))
         words_[i] = word & ~cell_bit::hidden;
     }
   }
@@ -379,7 +379,7 @@ class Flood {
   __device__ void add_cell(std::uint32_t i, std::uint32_t word, RawResult& result) const {
     const bool cut = (word & cell_bit::cut) != 0;
     const ToolSum sum = notes_.sums[i];
-    if (!cut && (!is_inside(i, word) || sum.volume.value == 0)) return;
+    if (!cut && !(is_inside(i, word) && counts(sum))) return;
     notes_.words[i] = word | cell_bit::counted;
     result.sum.add(sum);
     ++(cut ? result.boundary : result.inside);

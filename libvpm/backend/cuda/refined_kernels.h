@@ -65,11 +65,18 @@ __device__ RefinedSpace space_of(const RefinedSpace& first, const TeamRoom& room
 template <class Surface, class Team>
 using Inside = std::conditional_t<Surface::kTellsInside, CameraVisibility<Team>, Flood<Team>>;
 
+// True for a surface that small levels are measured before by a schedule of its own.
+template <class Surface>
+inline constexpr bool kHasImageSchedule = std::is_same_v<Surface, DepthSurface>;
+template <class Surface>
+using ImageSchedule =
+    std::conditional_t<kHasImageSchedule<Surface>, ImageMeasure, GroupMeasure<Surface>>;
+
 // Lays out a block's shared memory, which the steps of a query use one after another.
 template <class Surface>
 union BlockShared {
   MeasureShared measure;
-  ImageMeasure::Shared image;
+  typename ImageSchedule<Surface>::Shared image;
   typename Inside<Surface, BlockTeam>::Shared inside;
 };
 
@@ -84,7 +91,7 @@ __device__ RawResult measure_cells(const RefinedLaunch<Surface>& launch, const P
                                launch.space.notes[turn % 2],
                                *launch.counters,
                                {blockIdx.x, gridDim.x}};
-  if constexpr (Surface::kTellsInside) {
+  if constexpr (kHasImageSchedule<Surface>) {
     if (ImageMeasure::is_for(launch.level, work.part))
       return ImageMeasure(work, shared.image).run();
   }
@@ -116,10 +123,11 @@ __device__ void clear_next(const RefinedLaunch<Surface>& launch, unsigned turn) 
 }
 
 // Answers one query; the last block floods alone. For levels of few cells.
+template <class Surface>
 __global__ void __launch_bounds__(kThreads, kManyBlocks)
-    one_pose_small(const __grid_constant__ RefinedLaunch<DiskSurface> launch,
+    one_pose_small(const __grid_constant__ RefinedLaunch<Surface> launch,
                    const __grid_constant__ Pose to_surface, unsigned sequence) {
-  __shared__ BlockShared<DiskSurface> shared;
+  __shared__ BlockShared<Surface> shared;
   __shared__ RawResult total;
   measure_cells(launch, to_surface, sequence, shared);
   if (!is_last_of(launch.totals->done, gridDim.x)) {
@@ -167,7 +175,7 @@ __device__ void answer_pose(const RefinedLaunch<Surface>& launch, const Pose& to
     far = read_for_block(*launch.counters).far;
   }
   if (has_more()) {
-    if constexpr (Surface::kTellsInside)
+    if constexpr (kHasImageSchedule<Surface>)
       if (far > 0) note_planes(launch, to_surface, sequence, shared);
     GridTeam meeting = team;  // a copy, since a function's argument lies in memory
     Rest rest(launch.level, to_surface, launch.space, sequence, *launch.counters, meeting,

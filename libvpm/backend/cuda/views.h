@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "libvpm/backend/cell_clusters.h"
+#include "libvpm/measure/body_sum.h"
 #include "libvpm/measure/cell_measure.h"
 #include "libvpm/scene/depth/depth_sampler.h"
 #include "libvpm/scene/depth/depth_surface.h"
@@ -29,6 +30,12 @@ struct alignas(32) BlockTask {
   std::uint32_t cell = 0, block = 0, begin = 0, end = 0;  // begin, end: samples of the block
   std::uint32_t flags = 0;
 };
+
+// Returns what a block task of a cell wholly behind the surface stands for.
+VPM_HD constexpr WholePart whole_part_of(std::uint32_t flags) {
+  return whole_part((flags & BlockTask::is_compact) != 0, (flags & BlockTask::is_head) != 0,
+                    (flags & BlockTask::has_block) != 0);
+}
 
 // Groups block tasks of one cluster that are classified together.
 struct TaskGroup {
@@ -95,13 +102,8 @@ struct RawResult {
   std::uint32_t flood_ns = 0;  // time of one pose after the boundary was known, ns
 };
 
-inline Result result_of(const RawResult& raw, const ToolModel& tool,
-                        const Rotation& tool_to_world) {
-  Result result;
-  raw.sum.write(tool, tool_to_world, result);
-  result.boundary = raw.boundary;
-  result.inside = raw.inside;
-  return result;
+inline BodySum sum_of(const RawResult& raw) {
+  return {raw.sum, raw.boundary, raw.inside, std::nullopt};
 }
 
 }  // namespace vpm::cuda

@@ -14,7 +14,7 @@
 namespace vpm {
 
 struct Cloud;  // the library's own
-class SceneBody;
+class AnyBody;
 
 // Handle of immutable measured points with normals into free space; copies share it. Thread-safe.
 class VPM_API PointCloud {
@@ -65,11 +65,11 @@ class VPM_API Body {
   std::size_t points() const;
 
   // Makes the handle of a body that the library has prepared.
-  explicit Body(std::shared_ptr<const SceneBody> body) : body_(std::move(body)) {}
-  const SceneBody& body() const { return *body_; }
+  explicit Body(std::shared_ptr<const AnyBody> body) : body_(std::move(body)) {}
+  const AnyBody& body() const { return *body_; }
 
  private:
-  std::shared_ptr<const SceneBody> body_;  // never null
+  std::shared_ptr<const AnyBody> body_;  // never null
 };
 
 // List of bodies in one world frame; copies share the bodies. Thread-safe.
@@ -79,14 +79,18 @@ class VPM_API Scene {
   Scene(const Body& body);
   Scene(const PointCloud& cloud) : Scene(Body(cloud)) {}
 
-  // Makes a scene of several bodies. Throws Error(unavailable) for more than one: this version
-  // measures a tool against one body at a time; Error(invalid_argument) for none.
+  // Makes a scene of several bodies: volume, force, torque and counts of spheres are the sums over
+  // them, so that a place in two bodies counts for both; a sphere's state is boundary if any body
+  // cuts it, else inside if it is inside of any. Throws Error(invalid_argument) for none.
   explicit Scene(std::vector<Body> bodies);
 
   const std::vector<Body>& bodies() const { return *bodies_; }
+  // For the library: the same bodies, side by side.
+  const std::vector<AnyBody>& list() const { return *list_; }
 
  private:
   std::shared_ptr<const std::vector<Body>> bodies_;  // never null or empty
+  std::shared_ptr<const std::vector<AnyBody>> list_;
 };
 
 }  // namespace vpm

@@ -207,7 +207,7 @@ class TileWork {
                : between_neighbors(image, tile_.width, tile_.height, u, v);
   }
 
-  // True if a normal is so far off unit length that a PreparedCloud might refuse it.
+  // True if a normal is so far off unit length that a PreparedImage might refuse it.
   __device__ __forceinline__ static bool is_doubtful(Vec3f n) {
     constexpr float kSquaredTolerance = 1e-3F;
     return !(std::fabs(n.x * n.x + n.y * n.y + n.z * n.z - 1) <= kSquaredTolerance);

@@ -28,7 +28,7 @@ __device__ void store(float4 d, const CloudRecipe& recipe, std::size_t first) {
 }
 
 // Sets the coarse tiles, which several blocks' pixels share, to the neutral range.
-__device__ void clear_coarse_tiles(const CloudRoom& room, const Camera& camera, unsigned thread,
+__device__ void clear_coarse_tiles(const ImageRoom& room, const Camera& camera, unsigned thread,
                                    unsigned threads) {
   for (int level = CloudTile::kLevels + 1; level < room.levels; ++level) {
     const std::size_t count =

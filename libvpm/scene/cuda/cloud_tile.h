@@ -7,7 +7,7 @@
 #include "libvpm/device/cuda/device_array.h"
 #include "libvpm/device/cuda/runtime.h"
 #include "libvpm/include/vpm/camera.h"
-#include "libvpm/scene/cuda/device_cloud.h"
+#include "libvpm/scene/cuda/device_bodies.h"
 #include "libvpm/scene/depth/denoised_image.h"
 
 namespace vpm::cuda {
@@ -57,7 +57,7 @@ struct CloudRecipe {
   float4* seen = nullptr;  // normals in camera axes, rounded through world axes; inverse
                            // depth without holes
   Denoising points = Denoising::on;
-  CloudRoom room;
+  ImageRoom room;
 };
 
 // Places one of an image's tiles with a margin. `Radius` is the windows', or 0 if not constant.
