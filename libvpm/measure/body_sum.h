@@ -40,7 +40,7 @@ class SceneSum {
     const ToolSum& s = body.sum;
     const ToolSum::Sum* const terms[kTerms] = {&s.volume,    &s.force[0],  &s.force[1], &s.force[2],
                                                &s.torque[0], &s.torque[1], &s.torque[2]};
-    for (int k = 0; k < kTerms; ++k) terms_[k] += terms[k]->value;
+    for (int k = 0; k < kTerms; ++k) terms_[k].add(terms[k]->value);
     boundary_ += body.boundary;
     inside_ += body.inside;
     if (body.points) points_ = points_.value_or(0) + *body.points;
@@ -63,12 +63,22 @@ class SceneSum {
   }
 
  private:
-  __extension__ using Wide = __int128;
+  // Sums the halves of 64-bit numbers.
+  struct Wide {
+    std::int64_t high = 0, low = 0;
+
+    void add(std::int64_t value) {
+      high += value >> 32;
+      low += value & 0xffffffff;
+    }
+    // Returns the sum rounded once: both products are exact.
+    double real() const { return 0x1p32 * static_cast<double>(high) + static_cast<double>(low); }
+  };
   static constexpr int kTerms = 7;
 
-  double real(int term) const { return static_cast<double>(terms_[term]) / ToolSum::Sum::kOne; }
+  double real(int term) const { return terms_[term].real() / ToolSum::Sum::kOne; }
 
-  Wide terms_[kTerms] = {};  // volume, force, torque
+  Wide terms_[kTerms];  // volume, force, torque
   std::uint32_t boundary_ = 0, inside_ = 0, bodies_ = 0;
   std::optional<std::uint32_t> points_;
 };
